@@ -1,0 +1,262 @@
+//! What a run returns: samples, events, statistics, outcome and ledger. All SI.
+
+/// Whether the mass flies or rests on a stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Between the stops, or touching one for an instant.
+    Free,
+    /// At rest on the left stop.
+    LeftStop,
+    /// At rest on the right stop.
+    RightStop,
+}
+
+impl Phase {
+    /// The word in the CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::LeftStop => "left_stop",
+            Self::RightStop => "right_stop",
+        }
+    }
+}
+
+/// The state at a requested time; at an event's instant, the state after it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Time in s, as requested.
+    pub t: f64,
+    /// Displacement in m.
+    pub x: f64,
+    /// Velocity in m/s.
+    pub v: f64,
+    /// Acceleration of the base in m/s^2.
+    pub base_accel: f64,
+    /// Free or resting.
+    pub phase: Phase,
+}
+
+/// Left or right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Negative x.
+    Left,
+    /// Positive x.
+    Right,
+}
+
+impl Side {
+    /// The word in the CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+}
+
+/// What happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EventKind {
+    /// A rebound from a stop.
+    Impact,
+    /// The mass came to rest on a stop.
+    Rest,
+    /// The mass left a stop on which it rested.
+    Release,
+    /// A passage of the barrier top.
+    Crossing,
+}
+
+impl EventKind {
+    /// The word in the CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Impact => "impact",
+            Self::Rest => "rest",
+            Self::Release => "release",
+            Self::Crossing => "crossing",
+        }
+    }
+}
+
+/// One event of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// Time in s.
+    pub t: f64,
+    /// What happened.
+    pub kind: EventKind,
+    /// The stop, or the well entered.
+    pub side: Side,
+    /// Velocity before it in m/s, signed.
+    pub v_in: f64,
+    /// Velocity after it in m/s, signed.
+    pub v_out: f64,
+}
+
+/// What the motion is over the settled window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Regime {
+    /// Never left the stop or the equilibrium.
+    Rest,
+    /// Moved without a crossing.
+    Intrawell,
+    /// Crosses, and the crossings repeat with a period of at most 12 forcing periods.
+    Interwell,
+    /// Crosses without such a period.
+    Irregular,
+    /// The curve has one well or none: nothing to cross.
+    OneWell,
+}
+
+impl Regime {
+    /// The word in the CSV; empty for one well.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rest => "rest",
+            Self::Intrawell => "intrawell",
+            Self::Interwell => "interwell",
+            Self::Irregular => "irregular",
+            Self::OneWell => "",
+        }
+    }
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Outcome {
+    /// It reached its duration.
+    Done,
+    /// The mass left the range of the force curve at this time in s.
+    LeftTable {
+        /// Time in s.
+        at: f64,
+    },
+    /// It used up its budget of impacts.
+    ImpactBudget {
+        /// Time in s.
+        at: f64,
+        /// Impacts made.
+        count: u64,
+    },
+    /// It used up its budget of steps.
+    StepBudget {
+        /// Time in s.
+        at: f64,
+        /// Steps made.
+        count: u64,
+    },
+    /// A number was no longer finite.
+    NotFinite {
+        /// Time in s.
+        at: f64,
+    },
+    /// It was told to stop.
+    Cancelled {
+        /// Time in s.
+        at: f64,
+    },
+}
+
+impl Outcome {
+    /// The word in the CSV and the summary.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::LeftTable { .. } => "left_table",
+            Self::ImpactBudget { .. } => "impact_budget",
+            Self::StepBudget { .. } => "step_budget",
+            Self::NotFinite { .. } => "not_finite",
+            Self::Cancelled { .. } => "cancelled",
+        }
+    }
+
+    /// Time in s at which the run ended early; none where it is done.
+    pub fn ended_at(self) -> Option<f64> {
+        match self {
+            Self::Done => None,
+            Self::LeftTable { at }
+            | Self::ImpactBudget { at, .. }
+            | Self::StepBudget { at, .. }
+            | Self::NotFinite { at }
+            | Self::Cancelled { at } => Some(at),
+        }
+    }
+}
+
+/// Where the energy went over the whole run, each term integrated on its own.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ledger {
+    /// Work of the base on the mass in J.
+    pub work_j: f64,
+    /// Taken by damping in J.
+    pub damping_j: f64,
+    /// Taken by impacts in J.
+    pub impact_j: f64,
+    /// Change of kinetic energy and potential in J.
+    pub stored_j: f64,
+    /// work - damping - impact - stored in J.
+    pub residual_j: f64,
+    /// |residual| over the sum of the magnitudes moved; 0 where nothing moved.
+    pub energy_residual: f64,
+}
+
+/// Statistics of a run; those of the settled window come first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Summary {
+    /// Displacement at the end in m.
+    pub final_x: f64,
+    /// Velocity at the end in m/s.
+    pub final_v: f64,
+    /// RMS velocity over the settled window in m/s; none where the run ended before it.
+    pub rms_velocity: Option<f64>,
+    /// What the motion is over the settled window.
+    pub regime: Regime,
+    /// Crossings in the settled window.
+    pub crossings: u64,
+    /// Impacts in the settled window.
+    pub impacts: u64,
+    /// Releases in the settled window.
+    pub releases: u64,
+    /// Largest |x| in the settled window in m; none where the run ended before it.
+    pub max_abs_x: Option<f64>,
+    /// Peak to peak displacement in the settled window in m; none where the run ended before it.
+    pub travel: Option<f64>,
+    /// Share of the work that impacts took in the settled window; none without work or ledger.
+    pub impact_share: Option<f64>,
+    /// Share of the settled window spent at rest on a stop.
+    pub rested_share: Option<f64>,
+    /// Crossings over the whole run.
+    pub total_crossings: u64,
+    /// Impacts over the whole run, those inside closed-form sums not counted.
+    pub total_impacts: u64,
+    /// Chatters that were summed in closed form.
+    pub chatter_sums: u64,
+    /// Times the mass came to rest on a stop.
+    pub rests: u64,
+    /// Period of the response in forcing periods; none where it has none up to 12.
+    pub period: Option<u32>,
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// Steps of the integrator.
+    pub steps: u64,
+    /// Taylor expansions of the equation of motion.
+    pub evaluations: u64,
+    /// CPU time of the run in s.
+    pub cpu_s: f64,
+    /// Energy ledger, where it was asked for.
+    pub ledger: Option<Ledger>,
+}
+
+/// Everything a run returns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// The state at the requested times, up to the end of the run.
+    pub samples: Vec<Sample>,
+    /// Events in order of time, where they were asked for.
+    pub events: Vec<Event>,
+    /// Statistics, outcome and ledger.
+    pub summary: Summary,
+}

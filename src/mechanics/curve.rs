@@ -1,0 +1,197 @@
+//! Which force does the mechanism exert at x? One representation for every mechanism.
+//!
+//! The force is a piecewise polynomial: breaks where smoothness ends, between them one polynomial
+//! each, written about its own origin. Potential and stiffness follow exactly, by integration and
+//! differentiation of the same coefficients. The piece is a *mode* of the motion: a run changes it
+//! only at a located crossing of a break, never by looking x up again (rounding would flip it).
+
+/// One polynomial piece: F(x) = sum coefficients[i] (x - origin)^i.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piece {
+    /// Origin of the local coordinate in m.
+    pub origin: f64,
+    /// Force coefficients from the constant up, in N/m^i; never empty.
+    pub coefficients: Vec<f64>,
+    /// Potential at the origin in J, so that the potential is continuous and 0 at x = 0.
+    pub potential_at_origin: f64,
+}
+
+impl Piece {
+    /// Force dV/dx at `x` in N (what must be applied to hold the mass there).
+    pub fn force(&self, x: f64) -> f64 {
+        let y = x - self.origin;
+        self.coefficients.iter().rev().fold(0.0, |sum, c| sum * y + c)
+    }
+
+    /// Stiffness dF/dx at `x` in N/m.
+    pub fn stiffness(&self, x: f64) -> f64 {
+        let y = x - self.origin;
+        let mut sum = 0.0;
+        for (i, c) in self.coefficients.iter().enumerate().skip(1).rev() {
+            sum = sum * y + c * i as f64;
+        }
+        sum
+    }
+
+    /// Potential at `x` in J.
+    pub fn potential(&self, x: f64) -> f64 {
+        let y = x - self.origin;
+        self.potential_at_origin + self.potential_from_origin(y)
+    }
+
+    fn potential_from_origin(&self, y: f64) -> f64 {
+        let mut sum = 0.0;
+        for (i, c) in self.coefficients.iter().enumerate().rev() {
+            sum = sum * y + c / (i + 1) as f64;
+        }
+        sum * y
+    }
+}
+
+/// How well a fitted curve follows its data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitReport {
+    /// Largest |fit - data| over the samples in N.
+    pub worst_n: f64,
+    /// Where that is, in m.
+    pub worst_at_m: f64,
+    /// The force that the tolerance is relative to, in N.
+    pub scale_n: f64,
+    /// Number of samples in the data.
+    pub samples: usize,
+    /// Remarks a person should see, each a sentence.
+    pub warnings: Vec<String>,
+}
+
+/// The restoring force of a mechanism as a piecewise polynomial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceCurve {
+    pieces: Vec<Piece>,
+    breaks: Vec<f64>,
+    domain: (f64, f64),
+    odd: bool,
+    fit: Option<FitReport>,
+}
+
+impl ForceCurve {
+    /// The largest number of coefficients that a piece may have.
+    pub const MAX_COEFFICIENTS: usize = 16;
+
+    /// One polynomial on the whole line: F(x) = sum coefficients[i] x^i. Trailing zeros are dropped.
+    ///
+    /// Preconditions: finite coefficients, at most [`Self::MAX_COEFFICIENTS`] after trimming.
+    pub fn polynomial(coefficients: &[f64]) -> Self {
+        let keep = coefficients.iter().rposition(|c| *c != 0.0).map_or(1, |i| i + 1);
+        let mut own: Vec<f64> = coefficients.iter().take(keep).copied().collect();
+        if own.is_empty() {
+            own.push(0.0);
+        }
+        let odd = own.iter().step_by(2).all(|c| *c == 0.0);
+        Self {
+            pieces: vec![Piece { origin: 0.0, coefficients: own, potential_at_origin: 0.0 }],
+            breaks: Vec::new(),
+            domain: (f64::NEG_INFINITY, f64::INFINITY),
+            odd,
+            fit: None,
+        }
+    }
+
+    /// A curve of several pieces; `pieces[i]` reaches from `breaks[i - 1]` to `breaks[i]`, the
+    /// outermost ones to the ends of `domain`. The potentials of the pieces are set here, so that
+    /// the potential is continuous and 0 at x = 0 (at the nearer end where 0 is outside).
+    ///
+    /// Preconditions: `breaks` strictly increasing inside `domain`, one more piece than breaks,
+    /// values continuous at the breaks; `odd` only where the pieces mirror each other bit for bit.
+    pub fn from_pieces(
+        mut pieces: Vec<Piece>,
+        breaks: Vec<f64>,
+        domain: (f64, f64),
+        odd: bool,
+        fit: Option<FitReport>,
+    ) -> Self {
+        assert_eq!(pieces.len(), breaks.len() + 1);
+        let zero = 0.0_f64.clamp(domain.0, domain.1);
+        let middle = breaks.partition_point(|b| *b < zero);
+        pieces[middle].potential_at_origin = 0.0;
+        pieces[middle].potential_at_origin = -pieces[middle].potential(zero);
+        for i in middle + 1..pieces.len() {
+            let level = pieces[i - 1].potential(breaks[i - 1]);
+            pieces[i].potential_at_origin = 0.0;
+            pieces[i].potential_at_origin = level - pieces[i].potential(breaks[i - 1]);
+        }
+        for i in (0..middle).rev() {
+            let level = pieces[i + 1].potential(breaks[i]);
+            pieces[i].potential_at_origin = 0.0;
+            pieces[i].potential_at_origin = level - pieces[i].potential(breaks[i]);
+        }
+        Self { pieces, breaks, domain, odd, fit }
+    }
+
+    /// The pieces from left to right.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// The positions in m where one piece ends and the next begins.
+    pub fn breaks(&self) -> &[f64] {
+        &self.breaks
+    }
+
+    /// The interval in m on which the curve is known; infinite ends for a polynomial.
+    pub fn domain(&self) -> (f64, f64) {
+        self.domain
+    }
+
+    /// Ends in m of piece `index`.
+    pub fn piece_interval(&self, index: usize) -> (f64, f64) {
+        let left = if index == 0 { self.domain.0 } else { self.breaks[index - 1] };
+        let right = self.breaks.get(index).copied().unwrap_or(self.domain.1);
+        (left, right)
+    }
+
+    /// Whether F(-x) = -F(x) bit for bit.
+    pub fn is_odd(&self) -> bool {
+        self.odd
+    }
+
+    /// How well the curve follows its data, where it was fitted.
+    pub fn fit(&self) -> Option<&FitReport> {
+        self.fit.as_ref()
+    }
+
+    /// Index of the piece that holds `x`; on a break, the one towards x = 0.
+    pub fn piece_index(&self, x: f64) -> usize {
+        if x >= 0.0 {
+            self.breaks.partition_point(|b| *b < x)
+        } else {
+            self.breaks.partition_point(|b| *b <= x)
+        }
+    }
+
+    /// Force dV/dx at `x` in N, for `x` in m inside the domain; beyond it, NaN.
+    pub fn force(&self, x: f64) -> f64 {
+        self.inside(x).map_or(f64::NAN, |p| p.force(x))
+    }
+
+    /// Potential at `x` in J; beyond the domain, NaN.
+    pub fn potential(&self, x: f64) -> f64 {
+        self.inside(x).map_or(f64::NAN, |p| p.potential(x))
+    }
+
+    /// Stiffness at `x` in N/m; on a break that of the piece towards x = 0; beyond the domain, NaN.
+    pub fn stiffness(&self, x: f64) -> f64 {
+        self.inside(x).map_or(f64::NAN, |p| p.stiffness(x))
+    }
+
+    /// Stiffness in N/m just left and just right of `x`; NaN on a side that is outside the domain.
+    pub fn stiffness_on_both_sides(&self, x: f64) -> (f64, f64) {
+        let left = self.breaks.partition_point(|b| *b < x);
+        let right = self.breaks.partition_point(|b| *b <= x);
+        let at = |i: usize, inside: bool| if inside { self.pieces[i].stiffness(x) } else { f64::NAN };
+        (at(left, x > self.domain.0), at(right, x < self.domain.1))
+    }
+
+    fn inside(&self, x: f64) -> Option<&Piece> {
+        (x >= self.domain.0 && x <= self.domain.1).then(|| &self.pieces[self.piece_index(x)])
+    }
+}

@@ -1,0 +1,1 @@
+//! Questions: a study in, a table out.
