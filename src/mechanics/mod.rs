@@ -1,10 +1,14 @@
 //! Statics: where the restoring force comes from, and its landscape.
 
 mod curve;
+mod fit;
 mod landscape;
+mod table;
 
 pub use curve::{FitReport, ForceCurve, Piece};
+pub use fit::{fit, force_scale};
 pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, Landscape};
+pub use table::{FEWEST_POINTS, MOST_POINTS, Table, TableError};
 
 use crate::scene::{self, Fault, Files};
 
