@@ -15,9 +15,9 @@ const SEARCH_RADIANS: f64 = 2.0;
 const SEARCH_ORDER: usize = 26;
 
 /// Acceleration of the base, in kernel units.
-pub(crate) trait Drive<T: Scalar>: Clone + Sync {
+pub(crate) trait Drive<T: Scalar> {
     /// State carried along a series.
-    type Rolling: Clone + Default;
+    type Rolling: Default;
 
     /// Fills a\[0..=3\] at `at`.
     fn seed(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize, a: &mut [T; ROOM], roll: &mut Self::Rolling);
@@ -247,9 +247,15 @@ pub(crate) struct Tones<T> {
 }
 
 /// The last two coefficients of each tone's sine, its amplitude and growth.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(crate) struct RollingTones<T> {
     tones: Vec<[T; 4]>,
+}
+
+impl<T> Default for RollingTones<T> {
+    fn default() -> Self {
+        Self { tones: Vec::new() }
+    }
 }
 
 impl<T: Scalar> Drive<T> for Tones<T> {
