@@ -360,9 +360,8 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let stop_rounding = self.equation.stop(end).map_or(T::zero(), |s| s.press_rounding);
         let rounding = stop_rounding + self.series.a[0].abs() * T::of(4.0 * T::EPSILON);
         self.v = T::zero();
-        let mut order = BY_ACCELERATION;
-        for (i, rate) in rates.into_iter().enumerate() {
-            let size = if i == 0 { rounding } else { T::zero() };
+        for (order, rate) in (BY_ACCELERATION..).zip(rates) {
+            let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
             if rate > size {
                 break;
             }
@@ -371,7 +370,6 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
                 self.contact = Contact::Free;
                 return;
             }
-            order += 1;
         }
         self.contact = Contact::Resting(end);
         self.touch = None;

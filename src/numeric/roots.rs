@@ -122,11 +122,11 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         let mut left = [zero; COEFFICIENTS];
         let mut right = *b;
         left[0] = right[0];
-        for i in 1..=n {
+        for (i, slot) in left[..=n].iter_mut().enumerate().skip(1) {
             for j in 0..=n - i {
                 right[j] = (right[j] + right[j + 1]) * half;
             }
-            left[i] = right[0];
+            *slot = right[0];
         }
         let w = width * half;
         self.isolate(&left, low, w, depth + 1, visit) && self.isolate(&right, low + w, w, depth + 1, visit)
