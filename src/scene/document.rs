@@ -197,8 +197,7 @@ fn replace(found: Field<'_>, value: &str) -> Result<(), String> {
             Ok(())
         }
         Field::Text(text) => {
-            let quoted =
-                ['"', 'r'].iter().any(|first| value.starts_with(*first)) && value.ends_with(['"', '#']);
+            let quoted = ["\"", "r\"", "r#"].iter().any(|first| value.starts_with(first));
             *text = if quoted { text::options().from_str(value).map_err(refused)? } else { value.to_owned() };
             Ok(())
         }

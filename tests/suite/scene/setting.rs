@@ -77,6 +77,8 @@ fn whole_values_are_set_as_ron() {
     }
     document.set(" mass_g = 1e1 ").unwrap();
     document.set("title=\"a \\\"b\\\"\"").unwrap();
+    document.set("notes=read \"this\"").unwrap();
+    assert_eq!(document.scene.notes, "read \"this\"");
     document.set("notes=without quotes = fine").unwrap();
     assert_eq!((document.scene.mass_g, document.scene.title.as_str()), (10.0, "a \"b\""));
     assert_eq!(document.scene.notes, "without quotes = fine");
