@@ -257,7 +257,8 @@ impl Samples {
     ///
     /// The end of a least-squares piece has the least certain slope of all. Where keeping it stops the next piece from
     /// reaching half as far as it could, both are asked to meet at a better one: the free piece's, the
-    /// neighbouring samples', their mean. Where no slope suits both sides the break is a corner after all.
+    /// neighbouring samples', their mean. Where none suits both sides the slope is kept, whatever that costs in
+    /// pieces: data that are merely coarse or rough have no corners.
     fn continued(&self, links: &mut [Link], from: usize, limit: usize, degree: usize) -> Option<Link> {
         let before = links.last_mut()?;
         let slope = before.piece.stiffness(self.x[from]);
@@ -285,7 +286,7 @@ impl Samples {
                 return Some(link);
             }
         }
-        Some(free)
+        kept.or(Some(free))
     }
 
     /// The longest piece from sample `from` that ends at or before sample `limit`.
