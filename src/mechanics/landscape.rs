@@ -84,12 +84,16 @@ impl Landscape {
     /// Guarantee: complete (the root finder misses none); positions to rounding as far as their conditioning
     /// allows; a pair of roots that rounding cannot tell from a touching counts as one.
     pub fn of(curve: &ForceCurve) -> Self {
-        let equilibria = equilibria(curve);
-        let barrier = barrier(curve, &equilibria);
-        let mut own = Self { equilibria, barrier, extrema: extrema(curve), kinks: kinks(curve) };
+        let mut own = Self {
+            equilibria: equilibria(curve),
+            barrier: None,
+            extrema: extrema(curve),
+            kinks: kinks(curve),
+        };
         if curve.is_odd() {
             own.mirror();
         }
+        own.barrier = barrier(curve, &own.equilibria);
         own
     }
 
