@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn a_double_root_is_a_touch() {
-        assert!(all(&from_roots(&[0.3, 0.3], 1.0)).len() % 2 == 0);
+        assert!(all(&from_roots(&[0.3, 0.3], 1.0)).len().is_multiple_of(2));
         assert!(all(&from_roots(&[0.3, 0.3, 0.7], -1.0)).len() % 2 == 1);
         // a value of exactly 0 at a halving point is met as a pair, as close as rounding allows
         let pair = all(&from_roots(&[0.5, 0.5], 1.0));
