@@ -1,10 +1,15 @@
 //! What a person writes: the fields of a scene file, with their units.
 //!
 //! Every field carries its unit in its name and the units are those a person sets on a slider
-//! (mm, g, Hz, degrees). Nothing here is checked: [`check`](super::check) does that, and
+//! (mm, g, Hz, degrees). Nothing here is checked: [`check`](super::check()) does that, and
 //! `dynamics::Model` converts to SI once.
+//!
+//! Where a range stands below, both of its ends are valid; it is the very text of the range that is
+//! checked, and a test compares the two. The ends are wide on purpose: a scene stays valid when its
+//! masses, lengths and times are scaled by anything from 1e-9 to 1e9 (a duration by 1e8), yet no
+//! product of them overflows.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// A scene: one mechanism, how it is shaken and stopped, and how long it runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -12,10 +17,11 @@ use serde::{Deserialize, Serialize};
 pub struct Scene {
     /// One line that names the scene.
     pub title: String,
-    /// What to look for; free text.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
+    /// What to look for; free text. In a file a line break is a space, as wide as it may be indented,
+    /// and an empty line begins a paragraph.
+    #[serde(default, skip_serializing_if = "String::is_empty", deserialize_with = "paragraphs")]
     pub notes: String,
-    /// Proof mass in grams, above 0.
+    /// Proof mass in grams, 1e-15 to 1e15.
     pub mass_g: f64,
     /// Where the restoring force comes from.
     pub mechanism: Mechanism,
@@ -50,28 +56,30 @@ pub struct Scene {
 pub enum Mechanism {
     /// F = linear x + cubic x^3.
     Cubic {
-        /// Linear stiffness in N/m, any sign.
+        /// Linear stiffness in N/m, -1e200 to 1e200.
         linear_n_per_m: f64,
-        /// Cubic stiffness in N/m^3, any sign.
+        /// Cubic stiffness in N/m^3, -1e200 to 1e200.
         cubic_n_per_m3: f64,
     },
     /// The quartic potential with two wells at +-equilibrium, a barrier between them.
     DoubleWell {
-        /// Distance of the stable equilibria from the middle in mm, above 0.
+        /// Distance of the stable equilibria from the middle in mm, 1e-15 to 1e15.
         equilibrium_mm: f64,
-        /// Height of the barrier in mJ, above 0.
+        /// Height of the barrier in mJ, 1e-60 to 1e60.
         barrier_mj: f64,
     },
     /// F = sum of coefficients[i] x^i.
     Polynomial {
-        /// Coefficients from the constant up, in N/m^i.
+        /// 1 to 16 coefficients from the constant up, in N/m^i, each -1e200 to 1e200. All zeros are a
+        /// free mass.
         coefficients_si: Vec<f64>,
     },
     /// A measured or computed curve: CSV with columns `x_m,force_n`.
     Table {
         /// Path relative to the scene file, or the name of an embedded table.
         path: String,
-        /// Error allowed to the fitted curve, relative to the force maximum between the wells.
+        /// Error allowed to the fitted curve, relative to the force maximum between the wells, 1e-10
+        /// to 0.1.
         #[serde(default = "default_table_tolerance")]
         tolerance: f64,
     },
@@ -84,11 +92,12 @@ pub enum Damping {
     /// No damping.
     #[default]
     None,
-    /// Damping ratio of the right-hand stable equilibrium: c = 2 xi sqrt(k m).
+    /// Damping ratio xi of the right-hand stable equilibrium, 0 to 1e6: c = 2 xi sqrt(k m). Its path
+    /// is `damping.xi`.
     Ratio(f64),
     /// Damping coefficient.
     Coefficient {
-        /// c in N s/m, 0 or above.
+        /// c in N s/m, 0 to 1e30.
         c_n_s_per_m: f64,
     },
 }
@@ -102,17 +111,17 @@ pub enum Stops {
     None,
     /// Equal rigid stops on both sides.
     Rigid {
-        /// Distance of each stop from x = 0 in mm, above 0.
+        /// Distance of each stop from x = 0 in mm, 1e-15 to 1e15.
         travel_limit_mm: f64,
         /// Coefficient of restitution, 0 to 1.
         restitution: f64,
     },
     /// Rigid stops that differ; a side left out is open.
     Uneven {
-        /// Distance of the left stop from x = 0 in mm, above 0.
+        /// Distance of the left stop from x = 0 in mm, 1e-15 to 1e15.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         left_mm: Option<f64>,
-        /// Distance of the right stop from x = 0 in mm, above 0.
+        /// Distance of the right stop from x = 0 in mm, 1e-15 to 1e15.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         right_mm: Option<f64>,
         /// Restitution of the left stop, 0 to 1; left out, the right stop's.
@@ -133,28 +142,28 @@ pub enum Excitation {
     None,
     /// Constant acceleration, as of a tilted base.
     Constant {
-        /// Acceleration in g, any sign.
+        /// Acceleration in g, -1e30 to 1e30.
         accel_g: f64,
     },
     /// amplitude sin(2 pi f t + phase).
     Sine {
-        /// Frequency in Hz, above 0.
+        /// Frequency in Hz, 1e-15 to 1e15.
         frequency_hz: f64,
-        /// Amplitude in g, any sign.
+        /// Amplitude in g, -1e30 to 1e30; 0 and negative are valid.
         amplitude_g: f64,
-        /// Phase in degrees, reduced exactly at multiples of 90.
+        /// Phase in degrees, -1e15 to 1e15, reduced exactly at multiples of 90.
         #[serde(default)]
         phase_deg: f64,
     },
     /// (from + (to - from) t/over) sin(2 pi f t), then `to`.
     AmplitudeRamp {
-        /// Frequency in Hz, above 0.
+        /// Frequency in Hz, 1e-15 to 1e15.
         frequency_hz: f64,
-        /// Amplitude at time 0 in g.
+        /// Amplitude at time 0 in g, -1e30 to 1e30.
         from_g: f64,
-        /// Amplitude from the end of the ramp on, in g.
+        /// Amplitude from the end of the ramp on, in g, -1e30 to 1e30.
         to_g: f64,
-        /// Length of the ramp in s, above 0.
+        /// Length of the ramp in s, 1e-15 to 1e15.
         over_s: f64,
     },
     /// The sum of several excitations.
@@ -170,9 +179,9 @@ pub enum Start {
     Rest,
     /// A given state.
     At {
-        /// Displacement in mm, between the stops.
+        /// Displacement in mm, -1e15 to 1e15, between the stops or on one.
         x_mm: f64,
-        /// Velocity in m/s.
+        /// Velocity in m/s, -1e30 to 1e30.
         v_m_per_s: f64,
     },
 }
@@ -181,12 +190,12 @@ pub enum Start {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Run {
-    /// Duration in s, above 0, at most 1e9.
+    /// Duration in s, 1e-15 to 1e9.
     pub duration_s: f64,
-    /// Begin of the settled window in s; left out, half the duration.
+    /// Begin of the settled window in s, 0 to 1e9 and at most the duration; left out, half of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settle_s: Option<f64>,
-    /// Local error allowed, relative to the scene's scales: 1e-14 to 1e-3.
+    /// Local error allowed, relative to the scene's scales, 1e-14 to 0.001.
     #[serde(default = "default_tolerance")]
     pub tolerance: f64,
     /// Whether a run that repeats exactly may be completed from its first cycle.
@@ -200,11 +209,11 @@ pub struct Run {
 pub struct SweepAxis {
     /// Dotted path of a numeric field, such as `stops.travel_limit_mm`.
     pub field: String,
-    /// First value, in the field's unit.
+    /// First value, in the field's unit, -1e200 to 1e200.
     pub from: f64,
-    /// Last value, included where the step reaches it.
+    /// Last value, -1e200 to 1e200, included where the step reaches it; not below the first.
     pub to: f64,
-    /// Step, above 0.
+    /// Step, 1e-200 to 1e200.
     pub step: f64,
 }
 
@@ -230,11 +239,11 @@ pub struct AppHints {
     /// The layout that opens.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<Layout>,
-    /// Playing speed relative to real time, above 0, at most 1000.
+    /// Playing speed relative to real time, 1e-15 to 1000.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
     /// The stops that appear when they are switched on.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "some_stops")]
     pub stops_when_on: Option<Stops>,
 }
 
@@ -247,6 +256,32 @@ pub enum Layout {
     Study,
     /// The map of RMS velocity.
     Map,
+}
+
+/// Joins the lines of a text that was wrapped by hand; paragraphs stay, one empty line apart.
+fn paragraphs<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    let text = String::deserialize(from)?;
+    let mut joined = String::with_capacity(text.len());
+    for line in text.lines().map(str::trim) {
+        if line.is_empty() {
+            if !joined.is_empty() && !joined.ends_with('\n') {
+                joined.push_str("\n\n");
+            }
+        } else {
+            if !joined.is_empty() && !joined.ends_with('\n') {
+                joined.push(' ');
+            }
+            joined.push_str(line);
+        }
+    }
+    joined.truncate(joined.trim_end().len());
+    Ok(joined)
+}
+
+/// `Some(Stops::None)` says no more than leaving the field out, and could not be told apart from it
+/// once written: both read as `None`.
+fn some_stops<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Stops>, D::Error> {
+    Ok(Option::<Stops>::deserialize(from)?.filter(|stops| *stops != Stops::None))
 }
 
 fn default_table_tolerance() -> f64 {

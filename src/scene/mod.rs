@@ -1,24 +1,42 @@
 //! What a person writes: scenes, their checks, their files, the presets.
+//!
+//! A scene is read by [`Document::load`], changed by [`Document::set`], checked by [`Document::check`];
+//! what passes is turned into a `dynamics::Model`, which cannot be wrong. Faults that only show there go
+//! back through [`Document::error_from`] to get their file and line.
+//!
+//! ```
+//! use interwell::scene::Document;
+//!
+//! let mut document = Document::load("paper")?;
+//! document.set("stops.travel_limit_mm=2")?;
+//! assert_eq!(document.check()?, Vec::<String>::new());
+//! document.set("stops.restitution=1.2")?;
+//! let error = document.check().unwrap_err().to_string();
+//! assert!(error.contains("stops.restitution = 1.2: must be 0 to 1"), "{error}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+mod axis;
+mod check;
 mod data;
+mod decimal;
+mod document;
+mod error;
+mod fields;
+mod files;
+mod locate;
+mod presets;
+mod ranges;
+mod text;
 
+pub use axis::{Axis, LARGEST_AXIS, column_names};
+pub use check::{Checked, check, corners};
 pub use data::*;
-
-/// One thing that is wrong with a scene.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fault {
-    /// Dotted path of the field, without variant names: `stops.travel_limit_mm`.
-    pub field: String,
-    /// The value as written.
-    pub value: String,
-    /// What is wrong with it and what would be right.
-    pub problem: String,
-}
-
-/// Where the files that a scene names are read from: the folder of the scene file, or, for a preset
-/// or a pasted scene, the embedded names (and absolute paths).
-#[derive(Debug, Clone, Default)]
-pub struct Files {
-    /// Folder that relative paths start from; none for a preset or a pasted scene.
-    pub folder: Option<std::path::PathBuf>,
-}
+pub use document::Document;
+pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
+pub use fields::{FieldPath, all_fields, numeric_fields};
+pub use files::{FileError, Files, LARGEST_TABLE};
+pub use locate::{Place, Places};
+pub use presets::{PRESETS, Preset, TABLES, Table, export};
+pub use ranges::MAX_COEFFICIENTS;
+pub use text::{LARGEST_SCENE, write};

@@ -1,0 +1,248 @@
+//! Can this scene be run as it is written?
+//!
+//! All that can be said from the scene's own numbers is said here, all at once. What needs the
+//! mechanism (an equilibrium to rest at, a stiffness for a damping ratio) is said where the model is
+//! built; after both nothing downstream checks again.
+
+use super::axis::{Axis, repeated};
+use super::data::*;
+use super::error::Fault;
+use super::fields::{Field, for_each};
+use super::ranges::{MAX_COEFFICIENTS, number_text};
+
+/// What a check found.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Checked {
+    /// What is wrong, in the order of the scene's fields; empty where the scene can be run.
+    pub faults: Vec<Fault>,
+    /// What is valid and probably not meant, each a sentence that names its field.
+    pub warnings: Vec<String>,
+}
+
+/// Checks ranges and the relations between fields.
+pub fn check(scene: &Scene) -> Checked {
+    let mut checked = Checked::default();
+    ranges(scene, &mut checked);
+    mechanism(&scene.mechanism, &mut checked);
+    stops("stops", &scene.stops, &mut checked);
+    if let Some(stops_when_on) = scene.app.as_ref().and_then(|app| app.stops_when_on.as_ref()) {
+        stops("app.stops_when_on", stops_when_on, &mut checked);
+    }
+    relations(scene, &mut checked);
+    hints(scene, &mut checked);
+    sweep(scene, &mut checked);
+    checked
+}
+
+impl Checked {
+    fn fault(&mut self, field: impl Into<String>, value: impl Into<String>, problem: impl Into<String>) {
+        self.faults.push(Fault { field: field.into(), value: value.into(), problem: problem.into() });
+    }
+}
+
+fn ranges(scene: &Scene, checked: &mut Checked) {
+    for_each(&mut scene.clone(), |path, field| {
+        let Field::Number(spec, slot) = field else { return };
+        if let Some(value) = slot.get()
+            && !spec.range.contains(value)
+        {
+            checked.fault(path, number_text(value), format!("must be {}; {}", spec.range, spec.remedy));
+        }
+    });
+}
+
+fn mechanism(mechanism: &Mechanism, checked: &mut Checked) {
+    match mechanism {
+        Mechanism::Polynomial { coefficients_si } => {
+            let count = coefficients_si.len();
+            if !(1..=MAX_COEFFICIENTS).contains(&count) {
+                let problem = format!(
+                    "must have 1 to {MAX_COEFFICIENTS} coefficients; [0] is a free mass, a `Table` follows any curve"
+                );
+                checked.fault("mechanism.coefficients_si", format!("a list of {count}"), problem);
+            }
+        }
+        Mechanism::Table { path, .. } if path.trim().is_empty() => {
+            checked.fault("mechanism.path", "\"\"", "name a CSV file with the columns x_m,force_n");
+        }
+        _ => {}
+    }
+}
+
+fn stops(field: &str, stops: &Stops, checked: &mut Checked) {
+    let Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } = stops else { return };
+    if left_mm.is_none() && right_mm.is_none() {
+        checked.fault(field, "Uneven()", "give left_mm, right_mm or both; `stops: None` is no stops");
+    } else if restitution_left.is_none() && restitution_right.is_none() {
+        checked.fault(
+            field,
+            "Uneven(..)",
+            "give restitution_left or restitution_right, 0 to 1; one that is left out takes the other's value",
+        );
+    } else if restitution_left.is_some() && restitution_right.is_some() {
+        for (side, at) in [("left", left_mm), ("right", right_mm)] {
+            if at.is_none() {
+                checked.warnings.push(format!(
+                    "{field}.restitution_{side} has no effect: {side}_mm is left out, so that side is open"
+                ));
+            }
+        }
+    }
+}
+
+/// Distances of the stops in mm; an open side is at infinity.
+fn distances(stops: &Stops) -> (f64, f64) {
+    match *stops {
+        Stops::None => (f64::INFINITY, f64::INFINITY),
+        Stops::Rigid { travel_limit_mm, .. } => (travel_limit_mm, travel_limit_mm),
+        Stops::Uneven { left_mm, right_mm, .. } => {
+            (left_mm.unwrap_or(f64::INFINITY), right_mm.unwrap_or(f64::INFINITY))
+        }
+    }
+}
+
+/// What two fields say together. A value that is out of its own range is not blamed twice.
+fn relations(scene: &Scene, checked: &mut Checked) {
+    let known_bad = |field: &str, checked: &Checked| checked.faults.iter().any(|fault| fault.field == field);
+    if let Start::At { x_mm, .. } = scene.start {
+        let (left, right) = distances(&scene.stops);
+        let bad_stop = checked.faults.iter().any(|fault| fault.field.starts_with("stops"));
+        if (x_mm > right || x_mm < -left) && !bad_stop && !known_bad("start.x_mm", checked) {
+            let (side, at) = if x_mm > right { ("right", right) } else { ("left", -left) };
+            let field = match scene.stops {
+                Stops::Uneven { .. } => format!("stops.{side}_mm"),
+                _ => "stops.travel_limit_mm".to_owned(),
+            };
+            checked.fault(
+                "start.x_mm",
+                number_text(x_mm),
+                format!(
+                    "lies outside the {side} stop at {} mm ({field}); start between the stops or on one",
+                    number_text(at)
+                ),
+            );
+        }
+    }
+    let Run { duration_s, settle_s, .. } = scene.run;
+    if let Some(settle) = settle_s
+        && settle > duration_s
+        && !known_bad("run.settle_s", checked)
+        && !known_bad("run.duration_s", checked)
+    {
+        checked.fault(
+            "run.settle_s",
+            number_text(settle),
+            format!(
+                "must not exceed run.duration_s = {}; left out, it is half of it",
+                number_text(duration_s)
+            ),
+        );
+    }
+}
+
+/// What is valid and looks like a slip of units or of a zero.
+fn hints(scene: &Scene, checked: &mut Checked) {
+    if !checked.faults.is_empty() {
+        return;
+    }
+    let Run { duration_s, settle_s, .. } = scene.run;
+    if let Damping::Ratio(xi) = scene.damping
+        && xi > 1.0
+    {
+        checked.warnings.push(format!(
+            "damping.xi = {}: above 1 the mass creeps back without swinging; 2.3 % is written 0.023",
+            number_text(xi)
+        ));
+    }
+    let window = duration_s - settle_s.unwrap_or(duration_s / 2.0);
+    let mut warn = |term: &Excitation| match *term {
+        Excitation::Sine { frequency_hz, .. } if window * frequency_hz < 1.0 - 1e-9 => {
+            checked.warnings.push(format!(
+                "run: the settled window of {} s is shorter than a forcing period of {} s, so that RMS and regime \
+                 say little; run longer or settle earlier",
+                number_text(window),
+                number_text(1.0 / frequency_hz)
+            ));
+        }
+        Excitation::AmplitudeRamp { over_s, .. } if over_s > duration_s => checked.warnings.push(format!(
+            "excitation: the ramp takes {} s and the run ends after {} s, before its end",
+            number_text(over_s),
+            number_text(duration_s)
+        )),
+        _ => {}
+    };
+    let mut terms = vec![&scene.excitation];
+    while let Some(term) = terms.pop() {
+        match term {
+            Excitation::Sum(inner) => terms.extend(inner.iter().rev()),
+            term => warn(term),
+        }
+    }
+    checked.warnings.dedup();
+}
+
+fn sweep(scene: &Scene, checked: &mut Checked) {
+    if let Some(field) = repeated(scene.sweep.iter().map(|axis| axis.field.as_str())) {
+        checked.fault("sweep", field, "is swept twice; give each field one axis");
+    }
+    // Relations between fields at the values of a sweep belong to `corners`: `simulate` of a scene
+    // must not fail over a map that nobody asked for, but an axis that can never be used is a fault.
+    for (i, axis) in scene.sweep.iter().enumerate() {
+        let path = format!("sweep.{i}.");
+        if checked.faults.iter().any(|fault| fault.field.starts_with(&path)) {
+            continue;
+        }
+        if let Err((part, problem)) = Axis::from_scene(axis, scene) {
+            let value = match part {
+                "field" => format!("{:?}", axis.field),
+                "from" => number_text(axis.from),
+                "to" => number_text(axis.to),
+                _ => number_text(axis.step),
+            };
+            checked.fault(path + part, value, problem);
+        }
+    }
+}
+
+/// Checks the scene at the corners of a sweep. The relations between fields are linear, so that they
+/// hold in every cell where they hold in the corners; beyond 10 axes only the first corner is tried
+/// and the rest is left to the cells.
+pub fn corners(scene: &Scene, axes: &[Axis]) -> Vec<Fault> {
+    const MOST: usize = 10;
+    let ends: Vec<[usize; 2]> = axes.iter().map(extremes).collect();
+    let corners = if axes.len() <= MOST { 1_usize << axes.len() } else { 1 };
+    let mut cell = Scene { sweep: Vec::new(), ..scene.clone() };
+    for corner in 0..corners {
+        for (i, axis) in axes.iter().enumerate() {
+            axis.apply(&mut cell, ends[i][corner.checked_shr(i as u32).unwrap_or(0) & 1]);
+        }
+        let mut faults = check(&cell).faults;
+        if !faults.is_empty() {
+            let at: Vec<String> = axes
+                .iter()
+                .map(|axis| (axis, FieldValue(&cell, axis)))
+                .map(|(axis, value)| format!("{} = {}", axis.field, value.text()))
+                .collect();
+            for fault in &mut faults {
+                fault.problem += &format!(" (in the sweep, at {})", at.join(", "));
+            }
+            return faults;
+        }
+    }
+    Vec::new()
+}
+
+struct FieldValue<'a>(&'a Scene, &'a Axis);
+
+impl FieldValue<'_> {
+    fn text(&self) -> String {
+        super::FieldPath::new(&self.1.field).get(self.0).map_or_else(String::new, number_text)
+    }
+}
+
+/// The indices of an axis's smallest and largest value.
+fn extremes(axis: &Axis) -> [usize; 2] {
+    let by_value = |a: &usize, b: &usize| axis.values[*a].total_cmp(&axis.values[*b]);
+    let indices = || 0..axis.values.len();
+    [indices().min_by(by_value).unwrap_or(0), indices().max_by(by_value).unwrap_or(0)]
+}

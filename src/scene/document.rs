@@ -1,0 +1,194 @@
+//! A scene with where it came from, so that everything said about it can name file and line.
+
+use std::path::Path;
+
+use super::axis::{Axis, repeated, unknown};
+use super::check::{check, corners};
+use super::data::Scene;
+use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
+use super::fields::{Field, FieldPath, Slot, all_fields};
+use super::files::{Files, ReadError, read_text};
+use super::locate::Places;
+use super::presets::{self, PRESETS};
+use super::text::{self, LARGEST_SCENE, clip, explain};
+
+/// A scene, its text, and the arguments that changed it since.
+#[derive(Debug, Clone)]
+pub struct Document {
+    /// The scene, with every argument applied.
+    pub scene: Scene,
+    /// How messages call it: the path as given, or `built-in NAME`.
+    pub name: String,
+    /// The text that it was read from.
+    pub text: String,
+    /// Where the files that it names are.
+    pub files: Files,
+    /// Fields that an argument changed, with that argument; the last one counts.
+    assigned: Vec<(String, String)>,
+}
+
+impl Document {
+    /// Reads a scene file, or the built-in scene of that name. A file that is called like a built-in
+    /// scene is reached by `./paper`.
+    pub fn load(spec: &str) -> Result<Self, SceneError> {
+        if let Some(document) = Self::preset(spec) {
+            return document;
+        }
+        let text = match read_text(Path::new(spec), LARGEST_SCENE) {
+            Ok(text) => text,
+            Err(ReadError::Missing) => {
+                return Err(SceneError::NoSuchScene { spec: clip(spec), presets: presets::names() });
+            }
+            Err(ReadError::Unusable(problem)) => {
+                return Err(SceneError::Unreadable { name: clip(spec), problem });
+            }
+        };
+        Self::from_text(&clip(spec), &text, Files::beside(Path::new(spec)))
+    }
+
+    /// The built-in scene of that name. The inner result is an error only if the program was built
+    /// with a wrong preset, which its tests exclude.
+    fn preset(name: &str) -> Option<Result<Self, SceneError>> {
+        let preset = PRESETS.iter().find(|preset| preset.name == name)?;
+        Some(Self::from_text(&format!("built-in {name}"), preset.text, Files::default()))
+    }
+
+    /// Parses a scene; `name` is how messages call it. Ranges are left to [`check`](Self::check), so
+    /// that an argument may still mend them.
+    pub fn from_text(name: &str, text: &str, files: Files) -> Result<Self, SceneError> {
+        let scene = text::parse(text).map_err(|refusal| SceneError::Structure {
+            name: name.to_owned(),
+            place: refusal.place,
+            problem: refusal.problem,
+        })?;
+        Ok(Self { scene, name: name.to_owned(), text: text.to_owned(), files, assigned: Vec::new() })
+    }
+
+    /// Applies `FIELD=VALUE` as given to `--set`: a number, or any value in RON
+    /// (`stops=Rigid(travel_limit_mm: 4, restitution: 0.36)`, `run.settle_s=None`). A text may stand
+    /// without its quotes.
+    pub fn set(&mut self, argument: &str) -> Result<(), ArgumentError> {
+        let shown = format!("--set {argument}");
+        match argument.split_once('=') {
+            Some((field, value)) => self.assign(field.trim(), value.trim(), &shown),
+            None => {
+                let problem = "write FIELD=VALUE, such as stops.travel_limit_mm=1.5".to_owned();
+                Err(ArgumentError { argument: clip(&shown), problem })
+            }
+        }
+    }
+
+    /// Puts a value into a field; `argument` is what errors about it name, such as `--tolerance 1e-6`.
+    /// On an error the scene is as it was. Ranges are left to [`check`](Self::check).
+    pub fn assign(&mut self, field: &str, value: &str, argument: &str) -> Result<(), ArgumentError> {
+        let error = |problem| Err(ArgumentError { argument: clip(argument), problem });
+        if value.len() > LARGEST_SCENE {
+            return error("the value is longer than a scene may be".to_owned());
+        }
+        match FieldPath::new(field).follow(&mut self.scene, |found| replace(found, value)) {
+            Some(Ok(())) => {
+                self.assigned.push((field.to_owned(), clip(argument)));
+                Ok(())
+            }
+            Some(Err(problem)) => error(problem),
+            None => error(unknown("field", field, &all_fields(&self.scene))),
+        }
+    }
+
+    /// Checks the scene: all faults at once as an error, or the warnings, each with the file's name.
+    pub fn check(&self) -> Result<Vec<String>, SceneError> {
+        let checked = check(&self.scene);
+        if checked.faults.is_empty() {
+            Ok(checked.warnings.iter().map(|warning| format!("{}: {warning}", self.name)).collect())
+        } else {
+            Err(self.error_from(checked.faults))
+        }
+    }
+
+    /// The axes of a sweep of this scene: the given `--over` arguments, or, where there are none, the
+    /// scene's own `sweep`; empty where that is empty too. Every value is within its field's range, no
+    /// field is swept twice, and the relations between fields hold all over the grid.
+    pub fn axes<S: AsRef<str>>(&self, over: &[S]) -> Result<Vec<Axis>, SceneError> {
+        let axes: Vec<Axis> = if over.is_empty() {
+            let own = self.scene.sweep.iter().map(|axis| Axis::from_scene(axis, &self.scene).ok());
+            match own.collect() {
+                Some(axes) => axes,
+                // The check says more about what is wrong.
+                None => return Err(self.error_from(check(&self.scene).faults)),
+            }
+        } else {
+            let parse = |over: &S| {
+                let argument = over.as_ref();
+                Axis::parse(argument, &self.scene).map_err(|problem| ArgumentError {
+                    argument: clip(&format!("--over {argument}")),
+                    problem,
+                })
+            };
+            over.iter().map(parse).collect::<Result<_, _>>()?
+        };
+        if let Some(field) = repeated(axes.iter().map(|axis| axis.field.as_str())) {
+            let argument = if over.is_empty() { "sweep" } else { "--over" };
+            let problem = format!("{field} is swept twice; give each field one axis");
+            return Err(ArgumentError { argument: argument.to_owned(), problem }.into());
+        }
+        let faults = corners(&self.scene, &axes);
+        if faults.is_empty() { Ok(axes) } else { Err(self.error_from(faults)) }
+    }
+
+    /// Gives faults, whoever found them, the place where their value was written.
+    pub fn error_from(&self, faults: Vec<Fault>) -> SceneError {
+        let places = Places::of(self.text.strip_prefix('\u{feff}').unwrap_or(&self.text));
+        let place = |fault: Fault| {
+            let origin = match self.argument_for(&fault.field) {
+                Some(argument) => Origin::Argument(argument.to_owned()),
+                None => places.find(&fault.field).map_or(Origin::Unwritten, Origin::Text),
+            };
+            PlacedFault { fault, origin }
+        };
+        SceneError::Faults { name: self.name.clone(), faults: faults.into_iter().map(place).collect() }
+    }
+
+    /// The last argument that wrote this field, or something around it or inside it.
+    fn argument_for(&self, field: &str) -> Option<&str> {
+        let covers = |outer: &str, inner: &str| {
+            inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        let written = self.assigned.iter().rev();
+        written
+            .clone()
+            .find(|(own, _)| covers(own, field))
+            .or_else(|| written.clone().find(|(own, _)| covers(field, own)))
+            .map(|(_, argument)| argument.as_str())
+    }
+}
+
+/// Replaces a field from its text; the error is a sentence.
+fn replace(found: Field<'_>, value: &str) -> Result<(), String> {
+    let refused = |error: ron::error::SpannedError| format!("`{}`: {}", clip(value), explain(&error));
+    match found {
+        Field::Number(_, Slot::Required(number)) => {
+            *number = parse_number(value).ok_or_else(|| format!("`{}` is not a number", clip(value)))?;
+            Ok(())
+        }
+        Field::Number(_, Slot::Optional(number)) => {
+            *number = match (value, parse_number(value)) {
+                ("None", _) => None,
+                (_, Some(value)) => Some(value),
+                _ => return Err(format!("`{}` is neither a number nor None", clip(value))),
+            };
+            Ok(())
+        }
+        Field::Text(text) => {
+            let quoted =
+                ['"', 'r'].iter().any(|first| value.starts_with(*first)) && value.ends_with(['"', '#']);
+            *text = if quoted { text::options().from_str(value).map_err(refused)? } else { value.to_owned() };
+            Ok(())
+        }
+        Field::Value(whole) => whole.assign(value).map_err(refused),
+    }
+}
+
+/// A number as RON writes it or as Rust does: `4`, `.5`, `1e-9`, `-inf`.
+fn parse_number(text: &str) -> Option<f64> {
+    text.parse().ok().or_else(|| text::options().from_str(text).ok())
+}

@@ -1,0 +1,117 @@
+//! What can be wrong with a scene, as a person should read it.
+
+use std::fmt;
+
+use super::locate::Place;
+use super::text::clip;
+
+/// One thing that is wrong with a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fault {
+    /// Dotted path of the field, without variant names: `stops.travel_limit_mm`.
+    pub field: String,
+    /// The value as written.
+    pub value: String,
+    /// What is wrong with it and what would be right.
+    pub problem: String,
+}
+
+/// Where the value at fault was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Origin {
+    /// In the scene's text.
+    Text(Place),
+    /// In an argument such as `--set stops.travel_limit_mm=0`.
+    Argument(String),
+    /// Nowhere: a default, or a field that was left out.
+    Unwritten,
+}
+
+/// A fault and where it comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedFault {
+    /// The fault.
+    pub fault: Fault,
+    /// Where its value was written.
+    pub origin: Origin,
+}
+
+/// Why a scene cannot be used. Displays as one line for each thing that is wrong, each naming file,
+/// line, field, value and what would be right.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SceneError {
+    /// Neither a file nor a preset.
+    #[error("{spec}: no such file, and no built-in scene of that name; built in: {presets}")]
+    NoSuchScene {
+        /// What was asked for.
+        spec: String,
+        /// The names of the presets, with commas.
+        presets: String,
+    },
+    /// The file cannot be read as text.
+    #[error("{name}: {problem}")]
+    Unreadable {
+        /// The file.
+        name: String,
+        /// Why, and what would be right.
+        problem: String,
+    },
+    /// The text is not a scene.
+    #[error("{name}:{}:{}: {problem}", place.line, place.column)]
+    Structure {
+        /// The file.
+        name: String,
+        /// Where the parser stopped.
+        place: Place,
+        /// Why, with the names that are known there.
+        problem: String,
+    },
+    /// Values that cannot be used, all of them.
+    #[error("{}", Lines { name, faults })]
+    Faults {
+        /// The file.
+        name: String,
+        /// The faults in the order of the scene's fields.
+        faults: Vec<PlacedFault>,
+    },
+    /// An argument that names a field is wrong.
+    #[error(transparent)]
+    Argument(#[from] ArgumentError),
+}
+
+/// What is wrong with a `--set` or an `--over`.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{argument}: {problem}")]
+pub struct ArgumentError {
+    /// The argument as it was given, with its option.
+    pub argument: String,
+    /// What is wrong with it and what would be right.
+    pub problem: String,
+}
+
+struct Lines<'a> {
+    name: &'a str,
+    faults: &'a [PlacedFault],
+}
+
+impl fmt::Display for Lines<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, PlacedFault { fault, origin }) in self.faults.iter().enumerate() {
+            if i > 0 {
+                f.write_str("\n")?;
+            }
+            match origin {
+                Origin::Text(place) => write!(f, "{}:{}:{}: ", self.name, place.line, place.column)?,
+                Origin::Argument(argument) => write!(f, "{}: {}: ", self.name, clip(argument))?,
+                Origin::Unwritten => write!(f, "{}: ", self.name)?,
+            }
+            let Fault { field, value, problem } = fault;
+            if value.is_empty() {
+                write!(f, "{field}: {problem}")?;
+            } else {
+                write!(f, "{field} = {}: {problem}", clip(value))?;
+            }
+        }
+        Ok(())
+    }
+}

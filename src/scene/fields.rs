@@ -1,0 +1,351 @@
+//! Which fields does a scene have, and what may stand in them?
+//!
+//! One walk over the typed scene names every field by its dotted path (variant names left out:
+//! `stops.travel_limit_mm`) and hands it out mutably. Checking, `--set`, `--over`, a sweep's cells and
+//! the lists in error messages all go through it, so that none of them can know a field that another
+//! does not. Paths are compared on the way down and other branches are not entered: setting a number
+//! costs some ten string comparisons and allocates nothing, which a sweep of a million cells needs.
+
+use std::fmt;
+
+use serde::de::DeserializeOwned;
+
+use super::data::*;
+use super::ranges::{self, Spec};
+use super::text;
+
+/// One step of a path, as the walk knows it.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Segment {
+    Name(&'static str),
+    Index(usize),
+}
+
+impl fmt::Display for Segment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Name(name) => f.write_str(name),
+            Self::Index(index) => write!(f, "{index}"),
+        }
+    }
+}
+
+/// Where a number lives; an optional one may be left out.
+pub(super) enum Slot<'a> {
+    Required(&'a mut f64),
+    Optional(&'a mut Option<f64>),
+}
+
+impl Slot<'_> {
+    pub(super) fn get(&self) -> Option<f64> {
+        match self {
+            Self::Required(number) => Some(**number),
+            Self::Optional(number) => **number,
+        }
+    }
+
+    fn set(self, value: f64) {
+        match self {
+            Self::Required(number) => *number = value,
+            Self::Optional(number) => *number = Some(value),
+        }
+    }
+}
+
+/// Something that can be replaced from its RON text.
+pub(super) trait Assign {
+    fn assign(&mut self, ron: &str) -> ron::error::SpannedResult<()>;
+}
+
+impl<T: DeserializeOwned> Assign for T {
+    fn assign(&mut self, ron: &str) -> ron::error::SpannedResult<()> {
+        *self = text::options().from_str(ron)?;
+        Ok(())
+    }
+}
+
+/// A field found by the walk.
+pub(super) enum Field<'a> {
+    Number(&'static Spec, Slot<'a>),
+    Text(&'a mut String),
+    Value(&'a mut dyn Assign),
+}
+
+/// What the walk reports to.
+trait Visitor {
+    /// A field; answers whether the fields inside it are wanted. `leave` follows where it says so and
+    /// `inner` is set.
+    fn field(&mut self, segment: Segment, inner: bool, field: Field<'_>) -> bool;
+    fn leave(&mut self);
+}
+
+fn number(v: &mut impl Visitor, spec: &'static Spec, value: &mut f64) {
+    v.field(Segment::Name(spec.name), false, Field::Number(spec, Slot::Required(value)));
+}
+
+fn optional(v: &mut impl Visitor, spec: &'static Spec, value: &mut Option<f64>) {
+    v.field(Segment::Name(spec.name), false, Field::Number(spec, Slot::Optional(value)));
+}
+
+fn leaf(v: &mut impl Visitor, name: &'static str, value: &mut dyn Assign) {
+    v.field(Segment::Name(name), false, Field::Value(value));
+}
+
+fn within<V: Visitor, T: Assign>(
+    v: &mut V,
+    segment: Segment,
+    value: &mut T,
+    inside: impl FnOnce(&mut T, &mut V),
+) {
+    if v.field(segment, true, Field::Value(value)) {
+        inside(value, v);
+        v.leave();
+    }
+}
+
+fn walk(scene: &mut Scene, v: &mut impl Visitor) {
+    v.field(Segment::Name("title"), false, Field::Text(&mut scene.title));
+    v.field(Segment::Name("notes"), false, Field::Text(&mut scene.notes));
+    number(v, &ranges::MASS, &mut scene.mass_g);
+    within(v, Segment::Name("mechanism"), &mut scene.mechanism, walk_mechanism);
+    within(v, Segment::Name("damping"), &mut scene.damping, |damping, v| match damping {
+        Damping::None => {}
+        Damping::Ratio(xi) => number(v, &ranges::XI, xi),
+        Damping::Coefficient { c_n_s_per_m } => number(v, &ranges::C, c_n_s_per_m),
+    });
+    within(v, Segment::Name("stops"), &mut scene.stops, walk_stops);
+    within(v, Segment::Name("excitation"), &mut scene.excitation, walk_excitation);
+    within(v, Segment::Name("start"), &mut scene.start, |start, v| match start {
+        Start::Rest => {}
+        Start::At { x_mm, v_m_per_s } => {
+            number(v, &ranges::X, x_mm);
+            number(v, &ranges::V, v_m_per_s);
+        }
+    });
+    within(v, Segment::Name("run"), &mut scene.run, |run, v| {
+        number(v, &ranges::DURATION, &mut run.duration_s);
+        optional(v, &ranges::SETTLE, &mut run.settle_s);
+        number(v, &ranges::TOLERANCE, &mut run.tolerance);
+        leaf(v, "recurrence", &mut run.recurrence);
+    });
+    within(v, Segment::Name("sweep"), &mut scene.sweep, |sweep, v| {
+        for (i, axis) in sweep.iter_mut().enumerate() {
+            within(v, Segment::Index(i), axis, |axis, v| {
+                v.field(Segment::Name("field"), false, Field::Text(&mut axis.field));
+                number(v, &ranges::FROM, &mut axis.from);
+                number(v, &ranges::TO, &mut axis.to);
+                number(v, &ranges::STEP, &mut axis.step);
+            });
+        }
+    });
+    leaf(v, "transducer", &mut scene.transducer);
+    within(v, Segment::Name("app"), &mut scene.app, |app, v| {
+        let Some(app) = app else { return };
+        leaf(v, "layout", &mut app.layout);
+        optional(v, &ranges::SPEED, &mut app.speed);
+        within(v, Segment::Name("stops_when_on"), &mut app.stops_when_on, |stops, v| {
+            if let Some(stops) = stops {
+                walk_stops(stops, v);
+            }
+        });
+    });
+}
+
+fn walk_mechanism(mechanism: &mut Mechanism, v: &mut impl Visitor) {
+    match mechanism {
+        Mechanism::Cubic { linear_n_per_m, cubic_n_per_m3 } => {
+            number(v, &ranges::LINEAR, linear_n_per_m);
+            number(v, &ranges::CUBIC, cubic_n_per_m3);
+        }
+        Mechanism::DoubleWell { equilibrium_mm, barrier_mj } => {
+            number(v, &ranges::EQUILIBRIUM, equilibrium_mm);
+            number(v, &ranges::BARRIER, barrier_mj);
+        }
+        Mechanism::Polynomial { coefficients_si } => {
+            within(v, Segment::Name(ranges::COEFFICIENTS.name), coefficients_si, |list, v| {
+                for (i, c) in list.iter_mut().enumerate() {
+                    let slot = Slot::Required(c);
+                    v.field(Segment::Index(i), false, Field::Number(&ranges::COEFFICIENTS, slot));
+                }
+            });
+        }
+        Mechanism::Table { path, tolerance } => {
+            v.field(Segment::Name("path"), false, Field::Text(path));
+            number(v, &ranges::TABLE_TOLERANCE, tolerance);
+        }
+    }
+}
+
+fn walk_stops(stops: &mut Stops, v: &mut impl Visitor) {
+    match stops {
+        Stops::None => {}
+        Stops::Rigid { travel_limit_mm, restitution } => {
+            number(v, &ranges::TRAVEL_LIMIT, travel_limit_mm);
+            number(v, &ranges::RESTITUTION, restitution);
+        }
+        Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => {
+            optional(v, &ranges::LEFT, left_mm);
+            optional(v, &ranges::RIGHT, right_mm);
+            optional(v, &ranges::RESTITUTION_LEFT, restitution_left);
+            optional(v, &ranges::RESTITUTION_RIGHT, restitution_right);
+        }
+    }
+}
+
+fn walk_excitation<V: Visitor>(excitation: &mut Excitation, v: &mut V) {
+    match excitation {
+        Excitation::None => {}
+        Excitation::Constant { accel_g } => number(v, &ranges::ACCEL, accel_g),
+        Excitation::Sine { frequency_hz, amplitude_g, phase_deg } => {
+            number(v, &ranges::FREQUENCY, frequency_hz);
+            number(v, &ranges::AMPLITUDE, amplitude_g);
+            number(v, &ranges::PHASE, phase_deg);
+        }
+        Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s } => {
+            number(v, &ranges::FREQUENCY, frequency_hz);
+            number(v, &ranges::FROM_G, from_g);
+            number(v, &ranges::TO_G, to_g);
+            number(v, &ranges::OVER, over_s);
+        }
+        Excitation::Sum(terms) => {
+            for (i, term) in terms.iter_mut().enumerate() {
+                within(v, Segment::Index(i), term, walk_excitation);
+            }
+        }
+    }
+}
+
+/// Calls `each` for every field with its path, in the order in which a scene is written.
+pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
+    struct Each<F> {
+        path: String,
+        lengths: Vec<usize>,
+        each: F,
+    }
+    impl<F: FnMut(&str, Field<'_>)> Visitor for Each<F> {
+        fn field(&mut self, segment: Segment, inner: bool, field: Field<'_>) -> bool {
+            let length = self.path.len();
+            let dot = if length == 0 { "" } else { "." };
+            self.path.push_str(&format!("{dot}{segment}"));
+            (self.each)(&self.path, field);
+            if inner {
+                self.lengths.push(length);
+            } else {
+                self.path.truncate(length);
+            }
+            inner
+        }
+        fn leave(&mut self) {
+            self.path.truncate(self.lengths.pop().unwrap_or(0));
+        }
+    }
+    walk(scene, &mut Each { path: String::new(), lengths: Vec::new(), each });
+}
+
+/// The dotted path of a field, split once so that it can be followed many times.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FieldPath {
+    steps: Vec<Step>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Step {
+    Name(String),
+    Index(usize),
+}
+
+impl Step {
+    fn is(&self, segment: Segment) -> bool {
+        match (self, segment) {
+            (Self::Name(own), Segment::Name(name)) => own == name,
+            (Self::Index(own), Segment::Index(index)) => *own == index,
+            _ => false,
+        }
+    }
+}
+
+impl FieldPath {
+    /// Splits `stops.travel_limit_mm` at its dots. Any text is a path; whether a scene has such a
+    /// field shows when the path is followed.
+    pub fn new(path: &str) -> Self {
+        let step = |part: &str| match part.parse::<usize>() {
+            Ok(index) if index.to_string() == part => Step::Index(index),
+            _ => Step::Name(part.to_owned()),
+        };
+        Self { steps: path.split('.').map(step).collect() }
+    }
+
+    /// Puts `value` into the number at this path, whatever its range; false where the scene has no
+    /// such number.
+    #[must_use]
+    pub fn set(&self, scene: &mut Scene, value: f64) -> bool {
+        self.follow(scene, |field| match field {
+            Field::Number(_, slot) => {
+                slot.set(value);
+                true
+            }
+            _ => false,
+        })
+        .unwrap_or(false)
+    }
+
+    /// The number at this path; `None` where the scene has none or leaves it out.
+    pub fn get(&self, scene: &Scene) -> Option<f64> {
+        // The walk hands out mutable fields only; reading is rare and a scene is small.
+        self.follow(&mut scene.clone(), |field| match field {
+            Field::Number(_, slot) => slot.get(),
+            _ => None,
+        })
+        .flatten()
+    }
+
+    /// Hands the field at this path to `found`, once; `None` where the scene has no such field.
+    pub(super) fn follow<R>(&self, scene: &mut Scene, found: impl FnOnce(Field<'_>) -> R) -> Option<R> {
+        struct Seek<'p, F, R> {
+            steps: &'p [Step],
+            depth: usize,
+            found: Option<F>,
+            result: Option<R>,
+        }
+        impl<R, F: FnOnce(Field<'_>) -> R> Visitor for Seek<'_, F, R> {
+            fn field(&mut self, segment: Segment, inner: bool, field: Field<'_>) -> bool {
+                if !self.steps.get(self.depth).is_some_and(|step| step.is(segment)) {
+                    return false;
+                }
+                if self.depth + 1 < self.steps.len() {
+                    self.depth += usize::from(inner);
+                    return inner;
+                }
+                if let Some(found) = self.found.take() {
+                    self.result = Some(found(field));
+                }
+                false
+            }
+            fn leave(&mut self) {
+                self.depth -= 1;
+            }
+        }
+        let mut seek = Seek { steps: &self.steps, depth: 0, found: Some(found), result: None };
+        walk(scene, &mut seek);
+        seek.result
+    }
+}
+
+/// The paths of all numbers that this scene has, left-out optional ones included: what `--over` takes.
+/// The scene's own sweep is not among them.
+pub fn numeric_fields(scene: &Scene) -> Vec<String> {
+    let mut paths = Vec::new();
+    for_each(&mut scene.clone(), |path, field| {
+        if matches!(field, Field::Number(..)) && !path.starts_with("sweep.") {
+            paths.push(path.to_owned());
+        }
+    });
+    paths
+}
+
+/// The paths of all fields that this scene has, numbers and whole values: what `--set` takes.
+pub fn all_fields(scene: &Scene) -> Vec<String> {
+    let mut paths = Vec::new();
+    for_each(&mut scene.clone(), |path, _| paths.push(path.to_owned()));
+    paths
+}

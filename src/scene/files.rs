@@ -1,0 +1,116 @@
+//! Where are the files that a scene names, and what if they are not?
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::presets;
+
+/// The largest table that is read, 64 MB: some two million rows.
+pub const LARGEST_TABLE: usize = 64 << 20;
+
+/// Where the files that a scene names are read from: the folder of the scene file, or, for a preset
+/// or a pasted scene, the embedded names (and absolute paths).
+#[derive(Debug, Clone, Default)]
+pub struct Files {
+    /// Folder that relative paths start from; none for a preset or a pasted scene.
+    pub folder: Option<PathBuf>,
+}
+
+/// Why a file that a scene names cannot be read. The messages name the file as it was looked for.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FileError {
+    /// No file there, nor an embedded table of that name.
+    #[error("no such file: {path}; embedded tables: {embedded}")]
+    Missing {
+        /// The path that was tried.
+        path: String,
+        /// The names of the embedded tables.
+        embedded: String,
+    },
+    /// A relative path, but no folder to start from.
+    #[error(
+        "no embedded table is called {path} (there are: {embedded}), and a built-in or pasted scene has no \
+         folder: give an absolute path"
+    )]
+    NoFolder {
+        /// The path as written.
+        path: String,
+        /// The names of the embedded tables.
+        embedded: String,
+    },
+    /// The file is there and cannot be used.
+    #[error("{path}: {problem}")]
+    Unreadable {
+        /// The path that was tried.
+        path: String,
+        /// Why, and what would be right.
+        problem: String,
+    },
+}
+
+impl Files {
+    /// The files of a scene file: relative paths start at its folder.
+    pub fn beside(scene_file: &Path) -> Self {
+        let folder = scene_file.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+        Self { folder: Some(folder) }
+    }
+
+    /// The text of a file that a scene names.
+    ///
+    /// An absolute path is read as it is. A relative one starts at the folder of the scene; where no
+    /// such file is there, or there is no folder, an embedded table of that very name is taken, so that
+    /// a preset keeps its table when its text is saved somewhere else.
+    pub fn read(&self, path: &str) -> Result<String, FileError> {
+        let embedded = || presets::TABLES.iter().find(|table| table.name == path);
+        let names = || presets::TABLES.iter().map(|table| table.name).collect::<Vec<_>>().join(", ");
+        let tried = match &self.folder {
+            _ if Path::new(path).is_absolute() => PathBuf::from(path),
+            Some(folder) => folder.join(path),
+            None => {
+                let missing = || FileError::NoFolder { path: path.to_owned(), embedded: names() };
+                return embedded().map(|table| table.text.to_owned()).ok_or_else(missing);
+            }
+        };
+        let shown = tried.display().to_string();
+        match read_text(&tried, LARGEST_TABLE) {
+            Ok(text) => Ok(text),
+            Err(ReadError::Missing) => match embedded() {
+                Some(table) => Ok(table.text.to_owned()),
+                None => Err(FileError::Missing { path: shown, embedded: names() }),
+            },
+            Err(ReadError::Unusable(problem)) => Err(FileError::Unreadable { path: shown, problem }),
+        }
+    }
+}
+
+/// Why a file is no text.
+pub(super) enum ReadError {
+    Missing,
+    Unusable(String),
+}
+
+/// Reads at most `largest` bytes of UTF-8. Pipes and devices are read as files are, but never further
+/// than that.
+pub(super) fn read_text(path: &Path, largest: usize) -> Result<String, ReadError> {
+    let unusable = |problem: String| Err(ReadError::Unusable(problem));
+    if path.is_dir() {
+        return unusable("is a directory; a file is needed".to_owned());
+    }
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(largest as u64 + 1).read_to_end(&mut bytes));
+    if let Err(error) = read {
+        return match error.kind() {
+            std::io::ErrorKind::NotFound => Err(ReadError::Missing),
+            _ => unusable(format!("cannot be read: {error}")),
+        };
+    }
+    if bytes.len() > largest {
+        return unusable(format!("is larger than {} MB, the most that is read", largest >> 20));
+    }
+    String::from_utf8(bytes).or_else(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count();
+        unusable(format!("is not text: byte {} (line {line}) is not valid UTF-8", valid + 1))
+    })
+}

@@ -1,0 +1,151 @@
+//! Which values may a number in a scene have, and what helps where it has another?
+//!
+//! One row a field. `data.rs` repeats the range in the field's documentation; a test compares them.
+
+use std::fmt;
+
+/// The most coefficients that a `Polynomial` may have; the force curve's own limit.
+pub const MAX_COEFFICIENTS: usize = 16;
+
+/// A closed range: both ends are valid, NaN and the infinities never are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Range {
+    pub low: f64,
+    pub high: f64,
+}
+
+impl Range {
+    pub(super) fn contains(&self, value: f64) -> bool {
+        self.low <= value && value <= self.high
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} to {}", number_text(self.low), number_text(self.high))
+    }
+}
+
+/// A number as a person would write it: plain digits where they are few, else with an exponent; it
+/// parses back to the same double.
+pub(super) fn number_text(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !size.is_finite() || (1e-4..1e6).contains(&size) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// What is known of one numeric field.
+#[derive(Debug)]
+pub(super) struct Spec {
+    /// Last part of its path; for a list the name of the list.
+    pub name: &'static str,
+    pub range: Range,
+    /// What to do where the value is outside the range; a clause.
+    pub remedy: &'static str,
+}
+
+const fn spec(name: &'static str, low: f64, high: f64, remedy: &'static str) -> Spec {
+    Spec { name, range: Range { low, high }, remedy }
+}
+
+const LENGTH: (f64, f64) = (1e-15, 1e15);
+const COEFFICIENT: (f64, f64) = (-1e200, 1e200);
+const ACCELERATION: (f64, f64) = (-1e30, 1e30);
+
+macro_rules! specs {
+    ($($constant:ident = $name:literal, $low:expr, $high:expr, $remedy:literal;)*) => {
+        $(pub(super) static $constant: Spec = spec($name, $low, $high, $remedy);)*
+        /// All rows, for the test that compares them with the documentation.
+        #[cfg(test)]
+        pub(super) static ALL: &[&Spec] = &[$(&$constant),*];
+    };
+}
+
+specs! {
+    MASS = "mass_g", 1e-15, 1e15, "give the proof mass in grams, such as 15.2";
+    LINEAR = "linear_n_per_m", COEFFICIENT.0, COEFFICIENT.1, "give a finite stiffness in N/m; negative makes two wells";
+    CUBIC = "cubic_n_per_m3", COEFFICIENT.0, COEFFICIENT.1, "give a finite stiffness in N/m^3; positive makes two wells";
+    EQUILIBRIUM = "equilibrium_mm", LENGTH.0, LENGTH.1, "give the distance of the wells from the middle in mm, such as 7";
+    BARRIER = "barrier_mj", 1e-60, 1e60, "give the height of the barrier in mJ, such as 0.5";
+    COEFFICIENTS = "coefficients_si", COEFFICIENT.0, COEFFICIENT.1, "give finite coefficients in N/m^i; zeros are fine";
+    TABLE_TOLERANCE = "tolerance", 1e-10, 1e-1, "1e-4 of the force maximum suits measured data";
+    XI = "xi", 0.0, 1e6, "give a ratio, such as 0.023 for 2.3 %; `None` or 0 is no damping";
+    C = "c_n_s_per_m", 0.0, 1e30, "give a damping coefficient in N s/m; `None` or 0 is no damping";
+    TRAVEL_LIMIT = "travel_limit_mm", LENGTH.0, LENGTH.1,
+        "stops need room between them: give their distance from x = 0 in mm, or `stops: None` for none";
+    RESTITUTION = "restitution", 0.0, 1.0, "0 keeps no speed at an impact, 1 keeps all of it";
+    LEFT = "left_mm", LENGTH.0, LENGTH.1,
+        "give the distance of the left stop from x = 0 as a positive number in mm, or leave it out for an open side";
+    RIGHT = "right_mm", LENGTH.0, LENGTH.1,
+        "give the distance of the right stop from x = 0 as a positive number in mm, or leave it out for an open side";
+    RESTITUTION_LEFT = "restitution_left", 0.0, 1.0, "0 keeps no speed at an impact, 1 keeps all of it";
+    RESTITUTION_RIGHT = "restitution_right", 0.0, 1.0, "0 keeps no speed at an impact, 1 keeps all of it";
+    ACCEL = "accel_g", ACCELERATION.0, ACCELERATION.1, "give an acceleration in g, of either sign";
+    FREQUENCY = "frequency_hz", 1e-15, 1e15,
+        "give a frequency in Hz, such as 3; use `Constant` for a steady acceleration";
+    AMPLITUDE = "amplitude_g", ACCELERATION.0, ACCELERATION.1, "give an amplitude in g, of either sign or 0";
+    PHASE = "phase_deg", -1e15, 1e15, "give a phase in degrees";
+    FROM_G = "from_g", ACCELERATION.0, ACCELERATION.1, "give an amplitude in g, of either sign or 0";
+    TO_G = "to_g", ACCELERATION.0, ACCELERATION.1, "give an amplitude in g, of either sign or 0";
+    OVER = "over_s", 1e-15, 1e15, "give the length of the ramp in s; use `Sine` for an amplitude that stays";
+    X = "x_mm", -1e15, 1e15, "give a displacement in mm";
+    V = "v_m_per_s", -1e30, 1e30, "give a velocity in m/s";
+    DURATION = "duration_s", 1e-15, 1e9, "give how long to run in s, such as 10";
+    SETTLE = "settle_s", 0.0, 1e9, "give when the settled window begins in s, or leave it out for half the duration";
+    TOLERANCE = "tolerance", 1e-14, 1e-3, "1e-9 suits most runs and 1e-6 most maps";
+    FROM = "from", COEFFICIENT.0, COEFFICIENT.1, "give the first value of the axis";
+    TO = "to", COEFFICIENT.0, COEFFICIENT.1, "give the last value of the axis";
+    STEP = "step", 1e-200, 1e200, "an axis goes upwards in steps above 0";
+    SPEED = "speed", 1e-15, 1000.0, "1 is real time, 0.1 a tenth of it";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every occurrence of a numeric field in data.rs carries, in its documentation, a range that is
+    /// checked for a field of that name.
+    #[test]
+    fn documented_ranges_are_the_checked_ones() {
+        let source = include_str!("data.rs");
+        let mut doc = String::new();
+        let mut seen = Vec::new();
+        for line in source.lines().map(str::trim) {
+            if let Some(text) = line.strip_prefix("///") {
+                doc.push_str(text);
+                continue;
+            }
+            if line.starts_with("#[") {
+                continue;
+            }
+            let numeric = [": f64,", ": Option<f64>,", ": Vec<f64>,", "Ratio(f64),"];
+            if numeric.iter().any(|ending| line.ends_with(ending)) {
+                let name = line.trim_start_matches("pub ").split(':').next().unwrap_or_default();
+                let name = if name == "Ratio(f64)," { "xi" } else { name };
+                let known: Vec<_> = ALL.iter().filter(|spec| spec.name == name).collect();
+                let stated = known.iter().find(|spec| doc.contains(&spec.range.to_string()));
+                let stated = stated.unwrap_or_else(|| panic!("{name}: `{doc}` states none of {known:?}"));
+                seen.push((name.to_owned(), stated.range.to_string()));
+            }
+            doc.clear();
+        }
+        for spec in ALL {
+            let row = (spec.name.to_owned(), spec.range.to_string());
+            assert!(seen.contains(&row), "no field documents {row:?}");
+        }
+    }
+
+    #[test]
+    fn ends_are_inside_and_nan_is_not() {
+        for spec in ALL {
+            let Range { low, high } = spec.range;
+            assert!(spec.range.contains(low) && spec.range.contains(high));
+            for outside in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, low.next_down(), high.next_up()] {
+                assert!(!spec.range.contains(outside), "{} takes {outside}", spec.name);
+            }
+        }
+    }
+}

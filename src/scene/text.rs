@@ -1,0 +1,112 @@
+//! How is a scene read from its text, and written back?
+//!
+//! RON with `implicit_some` on, so that `settle_s: 5` needs no `Some`. What the parser refuses is
+//! reported with its place, the field it stood in and, where a name is unknown, the known ones.
+
+use ron::error::{Error as Ron, SpannedError};
+use ron::extensions::Extensions;
+
+use super::data::Scene;
+use super::locate::{Place, Places};
+
+/// The largest scene text that is read: some thousand times a long scene, and parsed at once.
+pub const LARGEST_SCENE: usize = 4 << 20;
+
+/// RON's own limit; a sum within a sum takes three levels.
+const DEEPEST: usize = 128;
+
+pub(super) fn options() -> ron::Options {
+    ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME).with_recursion_limit(DEEPEST)
+}
+
+/// What a parser refused.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Refusal {
+    pub place: Place,
+    pub problem: String,
+}
+
+/// Parses a scene; ranges are not looked at.
+pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
+    let start = Place { line: 1, column: 1 };
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if text.trim().is_empty() {
+        let problem = "the file is empty; a scene begins with `(title: \"..\", mass_g: 15.2, ..`".to_owned();
+        return Err(Refusal { place: start, problem });
+    }
+    if text.len() > LARGEST_SCENE {
+        let problem = format!("{} bytes are more than a scene may have ({LARGEST_SCENE})", text.len());
+        return Err(Refusal { place: start, problem });
+    }
+    options().from_str(text).map_err(|error| {
+        let place = Place { line: error.span.start.line, column: error.span.start.col };
+        let place = token_at(text, place);
+        let problem = explain(&error);
+        let named = matches!(
+            error.code,
+            Ron::NoSuchStructField { .. } | Ron::MissingStructField { .. } | Ron::DuplicateStructField { .. }
+        );
+        let field = if named { None } else { Places::of(text).last_before(place).map(str::to_owned) };
+        Refusal { place, problem: field.map_or(problem.clone(), |field| format!("{field}: {problem}")) }
+    })
+}
+
+/// The parser's cursor may stand on the blanks before the token that it means.
+fn token_at(text: &str, place: Place) -> Place {
+    let Some((index, line)) = text.lines().enumerate().nth(place.line - 1) else { return place };
+    let blank = line.chars().skip(place.column - 1).take_while(|c| c.is_whitespace()).count();
+    if place.column - 1 + blank >= line.chars().count() {
+        return place;
+    }
+    Place { line: index + 1, column: place.column + blank }
+}
+
+fn names(known: &[&str]) -> String {
+    if known.is_empty() { "none".to_owned() } else { known.join(", ") }
+}
+
+/// A parser's error in words, without its place.
+pub(super) fn explain(error: &SpannedError) -> String {
+    let inside =
+        |outer: &Option<String>| outer.as_ref().map_or(String::new(), |outer| format!(" in {outer}"));
+    match &error.code {
+        Ron::NoSuchEnumVariant { expected, found, outer } => {
+            format!("unknown choice `{}`{}; known: {}", clip(found), inside(outer), names(expected))
+        }
+        Ron::NoSuchStructField { expected, found, outer } => {
+            format!("unknown field `{}`{}; known: {}", clip(found), inside(outer), names(expected))
+        }
+        Ron::MissingStructField { field, outer } => format!("`{field}` is missing{}", inside(outer)),
+        Ron::DuplicateStructField { field, outer } => {
+            format!("`{field}` is given twice{}", inside(outer))
+        }
+        Ron::ExceededRecursionLimit => "brackets nested deeper than in any scene".to_owned(),
+        Ron::TrailingCharacters => "nothing may follow the end of the value".to_owned(),
+        Ron::Eof => "the text ends in the middle".to_owned(),
+        Ron::ExpectedFloat => "expected a number".to_owned(),
+        other => {
+            let text = other.to_string();
+            let mut chars = text.chars();
+            let first = chars.next().map(|c| c.to_lowercase().to_string()).unwrap_or_default();
+            clip(&format!("{first}{}", chars.as_str()))
+        }
+    }
+}
+
+/// Text from a file as part of a message: one line, not too long, nothing that moves a cursor.
+pub(super) fn clip(text: &str) -> String {
+    const LONGEST: usize = 200;
+    let clean = |c: char| if c.is_control() { ' ' } else { c };
+    let mut clipped: String = text.chars().take(LONGEST).map(clean).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        clipped.push_str("..");
+    }
+    clipped
+}
+
+/// The scene as RON text that parses back to the same scene.
+pub fn write(scene: &Scene) -> String {
+    let config = ron::ser::PrettyConfig::new().escape_strings(false).new_line("\n").compact_arrays(false);
+    // Writing into a string fails only beyond the recursion limit, which a parsed scene respects.
+    options().without_recursion_limit().to_string_pretty(scene, config).unwrap_or_default() + "\n"
+}
