@@ -68,7 +68,8 @@ impl Sink {
     /// standard output. Nothing is changed at `path` until [`finish`](Self::finish), except where
     /// it is not a regular file.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
-        let is_stdout = ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|s| path == Path::new(s));
+        let is_stdout =
+            ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|s| path == Path::new(s));
         if is_stdout {
             let identity = Identity { stdout: true, path: None, inode: stdout_inode() };
             return Ok(Self::new("standard output".into(), Kind::Stdout, identity));
@@ -81,10 +82,13 @@ impl Sink {
             Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => None,
             Err(error) => return Err(refused(error)),
         };
-        if there.as_ref().is_some_and(fs::Metadata::is_dir) || path.as_os_str().to_string_lossy().ends_with('/') {
+        if there.as_ref().is_some_and(fs::Metadata::is_dir)
+            || path.as_os_str().to_string_lossy().ends_with('/')
+        {
             return Err(OpenError::IsFolder(path.to_owned()));
         }
-        let descriptor = path.starts_with("/dev/fd") || path.starts_with("/proc/self/fd") || path == "/dev/stderr";
+        let descriptor =
+            path.starts_with("/dev/fd") || path.starts_with("/proc/self/fd") || path == "/dev/stderr";
         if let Some(there) = there.as_ref().filter(|there| descriptor || !there.is_file()) {
             // Not truncated: a shell's `3>file` is the shell's to empty.
             let file = fs::OpenOptions::new().write(true).open(path).map_err(refused)?;
@@ -176,7 +180,9 @@ impl Sink {
 /// Whether two outputs would write over each other: both standard output, or one file by two names.
 pub fn same_target(a: &Sink, b: &Sink) -> bool {
     let (a, b) = (&a.identity, &b.identity);
-    (a.stdout && b.stdout) || (a.path.is_some() && a.path == b.path) || (a.inode.is_some() && a.inode == b.inode)
+    (a.stdout && b.stdout)
+        || (a.path.is_some() && a.path == b.path)
+        || (a.inode.is_some() && a.inode == b.inode)
 }
 
 /// The place that a chain of symbolic links ends at, whether something is there or not.

@@ -38,7 +38,7 @@ pub fn curve(mechanism: &Mechanism, positions: Vec<f64>) -> Result<Table, Outsid
 /// The range in mm that shows what matters: 1.15 times as far as the outermost equilibrium or stop,
 /// rounded up to two digits and symmetric about 0, cut to where the curve is known; 10 mm each way
 /// where there is neither.
-pub fn default_range_mm(scene: &Scene, mechanism: &Mechanism) -> (f64, f64) {
+fn default_range_mm(scene: &Scene, mechanism: &Mechanism) -> (f64, f64) {
     const MARGIN: f64 = 1.15;
     const PLAIN: f64 = 10.0;
     let equilibria = mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x.abs() * 1e3);
@@ -46,6 +46,13 @@ pub fn default_range_mm(scene: &Scene, mechanism: &Mechanism) -> (f64, f64) {
     let reach = if farthest > 0.0 { two_digits_up(MARGIN * farthest) } else { PLAIN };
     let (left, right) = mechanism.curve.domain();
     ((-reach).max(left * 1e3), reach.min(right * 1e3))
+}
+
+/// `points` positions in m over the range that shows what matters.
+pub fn default_positions(scene: &Scene, mechanism: &Mechanism, points: usize) -> Vec<f64> {
+    let (left, right) = mechanism.curve.domain();
+    let inside = |mm: f64| metres(mm).clamp(left, right);
+    even_positions(default_range_mm(scene, mechanism), points).into_iter().map(inside).collect()
 }
 
 /// `value` above 0 rounded up to two significant digits, as the double nearest to that decimal.

@@ -6,6 +6,7 @@
 
 mod curve;
 mod grid;
+mod inspect;
 mod simulate;
 mod sweep;
 mod table;
@@ -13,8 +14,9 @@ mod times;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-pub use curve::{OutsideCurve, curve, default_range_mm, even_positions, metres, small_amplitude_frequency};
-pub use grid::{Axis, Grid, GridError, MAX_CELLS};
+pub use curve::{OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency};
+pub use grid::{Grid, GridError, MAX_CELLS};
+pub use inspect::inspect;
 pub use simulate::{Keep, Sampling, Simulation, sample_times, simulate};
 pub use sweep::{CellFaults, Sweep, SweepEnd, Tally};
 pub use table::{Column, Table, Values};
