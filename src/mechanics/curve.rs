@@ -39,6 +39,16 @@ impl Piece {
         self.potential_at_origin + self.potential_from_origin(y)
     }
 
+    /// The piece of -F(-x): what this one looks like on the other side of an odd curve, bit for bit.
+    pub fn mirrored(&self) -> Self {
+        let sign = |i: usize| if i % 2 == 0 { -1.0 } else { 1.0 };
+        Self {
+            origin: -self.origin,
+            coefficients: self.coefficients.iter().enumerate().map(|(i, c)| sign(i) * c).collect(),
+            potential_at_origin: self.potential_at_origin,
+        }
+    }
+
     fn potential_from_origin(&self, y: f64) -> f64 {
         let mut sum = 0.0;
         for (i, c) in self.coefficients.iter().enumerate().rev() {
@@ -125,6 +135,17 @@ impl ForceCurve {
             pieces[i].potential_at_origin = level - pieces[i].potential(breaks[i]);
         }
         Self { pieces, breaks, domain, odd, fit }
+    }
+
+    /// The same curve with a report of how well it follows its data.
+    pub fn with_fit(mut self, report: FitReport) -> Self {
+        self.fit = Some(report);
+        self
+    }
+
+    /// The highest degree of any piece.
+    pub fn max_degree(&self) -> usize {
+        self.pieces.iter().map(|p| p.coefficients.len() - 1).max().unwrap_or(0)
     }
 
     /// The pieces from left to right.

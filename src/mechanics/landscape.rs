@@ -1,15 +1,31 @@
 //! Where does the mechanism rest, and what stands between its resting places?
+//!
+//! Everything follows from the real roots of each piece's force and of its derivative
+//! ([`real_roots`](crate::numeric::real_roots)). What a root is (stable or not, an extremum or a mere
+//! touching) is told by the sign half-way to its neighbours, not by a derivative at it: this also holds at a break,
+//! where there are two derivatives, and at a double root, where there is none to go by.
+
+use super::curve::{ForceCurve, Piece};
+use crate::numeric::real_roots::{derivative, real_roots, rounding, value_and_magnitude};
+
+/// A jump of the slope counts as a kink from this part of the slope's own terms on. Pieces that were made to
+/// meet smoothly do so to some 1e-12.
+const KINK: f64 = 1e-6;
+
+/// Roots nearer to a break than this part of the piece are the break: two pieces that meet smoothly
+/// place a root on it up to rounding, one inside and one outside its interval, or both.
+const AT_BREAK: f64 = 1e-10;
 
 /// A place where the restoring force vanishes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equilibrium {
     /// Position in m.
     pub x: f64,
-    /// Whether the force drives back on both sides.
+    /// Whether the force drives back on both sides; not where one side is outside the domain.
     pub stable: bool,
-    /// Stiffness just left of it in N/m.
+    /// Stiffness just left of it in N/m; NaN at the left end of the domain.
     pub stiffness_left: f64,
-    /// Stiffness just right of it in N/m.
+    /// Stiffness just right of it in N/m; NaN at the right end of the domain.
     pub stiffness_right: f64,
 }
 
@@ -51,12 +67,214 @@ pub struct Kink {
 /// Equilibria, barrier, force extrema and kinks of one force curve, each from left to right.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Landscape {
-    /// Every place where the force vanishes; empty where it does so on a whole interval.
+    /// Every place where the force vanishes; an interval on which it does, ends and all, counts for none.
     pub equilibria: Vec<Equilibrium>,
     /// The barrier between the wells: with more than two wells the one nearest to x = 0.
     pub barrier: Option<Barrier>,
-    /// Local extrema of the force.
+    /// Local extrema of the force inside the domain, smooth or corners.
     pub extrema: Vec<ForceExtremum>,
-    /// Corners of the force.
+    /// Corners of the force: breaks at which the slope jumps by more than a millionth.
     pub kinks: Vec<Kink>,
+}
+
+impl Landscape {
+    /// The landscape of a curve; exactly symmetric where the curve is odd.
+    ///
+    /// Guarantee: complete (the root finder misses none); positions to rounding as far as their conditioning
+    /// allows; a pair of roots that rounding cannot tell from a touching counts as one.
+    pub fn of(curve: &ForceCurve) -> Self {
+        let equilibria = equilibria(curve);
+        let barrier = barrier(curve, &equilibria);
+        let mut own = Self { equilibria, barrier, extrema: extrema(curve), kinks: kinks(curve) };
+        if curve.is_odd() {
+            own.mirror();
+        }
+        own
+    }
+
+    /// The right-most stable equilibrium.
+    pub fn right_stable(&self) -> Option<&Equilibrium> {
+        self.equilibria.iter().rev().find(|e| e.stable)
+    }
+
+    /// Where a passage counts as a crossing, in m: the top of the barrier, or the equilibrium of the only well.
+    pub fn crossing_position(&self) -> Option<f64> {
+        match &self.barrier {
+            Some(barrier) => Some(barrier.x),
+            None => self.right_stable().map(|e| e.x),
+        }
+    }
+
+    /// The stiffness in N/m that a damping ratio refers to: that of the right-most stable equilibrium, on its
+    /// inner side (towards the barrier, or towards x = 0 where there is none).
+    ///
+    /// Where the equilibrium lies at or beyond a kink, seen from there, it is the slope just inside
+    /// that kink, so that it does not jump while the equilibrium moves across: of several kinks the nearest one with a
+    /// slope above 0 (one on the way down from the barrier says nothing about the well). At a kink without an inner
+    /// side (a single well with its corner at x = 0) it is the smaller of the two.
+    ///
+    /// None where no equilibrium is stable or this stiffness is not above 0.
+    pub fn damping_stiffness(&self) -> Option<f64> {
+        let well = self.right_stable()?;
+        let middle = self.barrier.map_or(0.0, |b| b.x);
+        let beyond = |kink: &&Kink| {
+            (middle < kink.x && kink.x <= well.x && kink.stiffness_left > 0.0)
+                || (middle > kink.x && kink.x >= well.x && kink.stiffness_right > 0.0)
+        };
+        let nearest = self
+            .kinks
+            .iter()
+            .filter(beyond)
+            .min_by(|a, b| (a.x - well.x).abs().total_cmp(&(b.x - well.x).abs()));
+        let stiffness = match nearest {
+            Some(kink) if well.x >= middle => kink.stiffness_left,
+            Some(kink) => kink.stiffness_right,
+            None if well.x > middle => well.stiffness_left,
+            None if well.x < middle => well.stiffness_right,
+            None => well.stiffness_left.min(well.stiffness_right),
+        };
+        (stiffness > 0.0).then_some(stiffness)
+    }
+
+    /// Takes rounding out of the symmetry of an odd curve: the left half becomes the mirror image of the right.
+    fn mirror(&mut self) {
+        fold(
+            &mut self.equilibria,
+            |e| e.x,
+            |e| Equilibrium {
+                x: -e.x,
+                stiffness_left: e.stiffness_right,
+                stiffness_right: e.stiffness_left,
+                ..*e
+            },
+        );
+        fold(&mut self.extrema, |e| e.x, |e| ForceExtremum { x: -e.x, force: -e.force });
+        fold(
+            &mut self.kinks,
+            |k| k.x,
+            |k| Kink { x: -k.x, stiffness_left: k.stiffness_right, stiffness_right: k.stiffness_left },
+        );
+    }
+}
+
+/// Keeps what stands at x >= 0 and puts its mirror image before it.
+fn fold<T: Clone>(all: &mut Vec<T>, x: impl Fn(&T) -> f64, mirrored: impl Fn(&T) -> T) {
+    let right: Vec<T> = all.iter().filter(|t| x(t) >= 0.0).cloned().collect();
+    *all = right.iter().rev().filter(|t| x(t) > 0.0).map(mirrored).chain(right.iter().cloned()).collect();
+}
+
+/// Places at which `of` a piece (its force, or its stiffness) may change sign: its roots inside, and
+/// every break, ascending.
+fn candidates(curve: &ForceCurve, of: impl Fn(&Piece) -> Vec<f64>) -> Vec<f64> {
+    let mut found: Vec<f64> = curve.breaks().to_vec();
+    for (i, piece) in curve.pieces().iter().enumerate() {
+        let (left, right) = curve.piece_interval(i);
+        let near = if right - left < f64::INFINITY { AT_BREAK * (right - left) } else { 0.0 };
+        let roots = real_roots(&of(piece), left - piece.origin, right - piece.origin);
+        found.extend(roots.into_iter().map(|y| y + piece.origin).filter(|x| {
+            let beside = |end: f64, inner: bool| inner && (x - end).abs() <= near;
+            *x >= left && *x <= right && !beside(left, i > 0) && !beside(right, i + 1 < curve.pieces().len())
+        }));
+    }
+    found.sort_by(f64::total_cmp);
+    found.dedup();
+    found
+}
+
+/// The signs just left and just right of each candidate, told half-way to its neighbours or to the end of
+/// the domain; 0 beyond it.
+fn signs_beside(candidates: &[f64], domain: (f64, f64), sign: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    let far = candidates.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+    let ends = (domain.0.max(-2.0 * far - 1.0), domain.1.min(2.0 * far + 1.0));
+    let inside = |a: f64, b: f64| {
+        let middle = 0.5 * a + 0.5 * b;
+        if middle > a && middle < b { sign(middle) } else { 0.0 }
+    };
+    (0..candidates.len())
+        .map(|i| {
+            let x = candidates[i];
+            let before = if i == 0 { ends.0 } else { candidates[i - 1] };
+            let after = candidates.get(i + 1).copied().unwrap_or(ends.1);
+            (inside(before, x), inside(x, after))
+        })
+        .collect()
+}
+
+fn sign_of(value: f64) -> f64 {
+    if value == 0.0 || value.is_nan() { 0.0 } else { value.signum() }
+}
+
+/// Whether one of the pieces that meet at `x` has a force there that is 0 to rounding.
+fn vanishes(curve: &ForceCurve, x: f64) -> bool {
+    let i = curve.piece_index(x);
+    [i.checked_sub(1), Some(i), Some(i + 1)].into_iter().flatten().any(|i| {
+        let (left, right) = if i < curve.pieces().len() { curve.piece_interval(i) } else { return false };
+        let piece = &curve.pieces()[i];
+        let (value, magnitude) = value_and_magnitude(&piece.coefficients, x - piece.origin);
+        (left..=right).contains(&x) && value.abs() <= rounding(piece.coefficients.len()) * magnitude
+    })
+}
+
+fn equilibria(curve: &ForceCurve) -> Vec<Equilibrium> {
+    let zeros = candidates(curve, |piece| piece.coefficients.clone());
+    let signs = signs_beside(&zeros, curve.domain(), |x| sign_of(curve.force(x)));
+    let (low, high) = curve.domain();
+    let mut found = Vec::new();
+    for (x, (before, after)) in zeros.into_iter().zip(signs) {
+        // A break is a candidate whatever the force there; and beside an interval of zeros the sign is 0.
+        let is_break = curve.breaks().contains(&x);
+        if is_break && before * after >= 0.0 && !vanishes(curve, x) {
+            continue;
+        }
+        if (before == 0.0 && x > low) || (after == 0.0 && x < high) {
+            continue;
+        }
+        let (stiffness_left, stiffness_right) = curve.stiffness_on_both_sides(x);
+        let stable = before < 0.0 && after > 0.0;
+        found.push(Equilibrium { x, stable, stiffness_left, stiffness_right });
+    }
+    found
+}
+
+fn barrier(curve: &ForceCurve, equilibria: &[Equilibrium]) -> Option<Barrier> {
+    let stable: Vec<usize> = (0..equilibria.len()).filter(|i| equilibria[*i].stable).collect();
+    let tops = stable.windows(2).filter_map(|pair| {
+        let (left_well, right_well) = (equilibria[pair[0]].x, equilibria[pair[1]].x);
+        let height = |x: f64, well: f64| curve.potential(x) - curve.potential(well);
+        let top = equilibria[pair[0] + 1..pair[1]]
+            .iter()
+            .max_by(|a, b| height(a.x, left_well).total_cmp(&height(b.x, left_well)))?;
+        Some(Barrier {
+            x: top.x,
+            left_well,
+            right_well,
+            from_left_j: height(top.x, left_well),
+            from_right_j: height(top.x, right_well),
+        })
+    });
+    tops.min_by(|a, b| a.x.abs().total_cmp(&b.x.abs()))
+}
+
+fn extrema(curve: &ForceCurve) -> Vec<ForceExtremum> {
+    let level = candidates(curve, |piece| derivative(&piece.coefficients));
+    let signs = signs_beside(&level, curve.domain(), |x| sign_of(curve.stiffness(x)));
+    level
+        .into_iter()
+        .zip(signs)
+        .filter(|(_, (before, after))| before * after < 0.0)
+        .map(|(x, _)| ForceExtremum { x, force: curve.force(x) })
+        .collect()
+}
+
+fn kinks(curve: &ForceCurve) -> Vec<Kink> {
+    let mut found = Vec::new();
+    for (i, x) in curve.breaks().iter().copied().enumerate() {
+        let slope = |piece: &Piece| value_and_magnitude(&derivative(&piece.coefficients), x - piece.origin);
+        let (stiffness_left, terms_left) = slope(&curve.pieces()[i]);
+        let (stiffness_right, terms_right) = slope(&curve.pieces()[i + 1]);
+        if (stiffness_right - stiffness_left).abs() > KINK * terms_left.max(terms_right) {
+            found.push(Kink { x, stiffness_left, stiffness_right });
+        }
+    }
+    found
 }

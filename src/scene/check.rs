@@ -7,7 +7,7 @@
 use super::axis::{Axis, repeated};
 use super::data::*;
 use super::error::Fault;
-use super::fields::{Field, for_each};
+use super::fields::{Field, FieldPath, for_each};
 use super::ranges::{MAX_COEFFICIENTS, number_text};
 
 /// What a check found.
@@ -218,26 +218,17 @@ pub fn corners(scene: &Scene, axes: &[Axis]) -> Vec<Fault> {
         }
         let mut faults = check(&cell).faults;
         if !faults.is_empty() {
-            let at: Vec<String> = axes
-                .iter()
-                .map(|axis| (axis, FieldValue(&cell, axis)))
-                .map(|(axis, value)| format!("{} = {}", axis.field, value.text()))
-                .collect();
-            for fault in &mut faults {
+            let value =
+                |axis: &Axis| FieldPath::new(&axis.field).get(&cell).map_or_else(String::new, number_text);
+            let at: Vec<String> =
+                axes.iter().map(|axis| format!("{} = {}", axis.field, value(axis))).collect();
+            for fault in faults.iter_mut().filter(|_| !axes.is_empty()) {
                 fault.problem += &format!(" (in the sweep, at {})", at.join(", "));
             }
             return faults;
         }
     }
     Vec::new()
-}
-
-struct FieldValue<'a>(&'a Scene, &'a Axis);
-
-impl FieldValue<'_> {
-    fn text(&self) -> String {
-        super::FieldPath::new(&self.1.field).get(self.0).map_or_else(String::new, number_text)
-    }
 }
 
 /// The indices of an axis's smallest and largest value.

@@ -1,0 +1,285 @@
+//! Where does a polynomial vanish? All real roots in an interval, or on the whole line.
+//!
+//! For building things, not for the loop of a run: it allocates. The roots of the derivative, found
+//! first, cut the interval into pieces on which the polynomial is monotone; on each a change of sign is
+//! bracketed and closed to rounding. Slower than an eigenvalue or Bernstein method, but it cannot miss a
+//! root or report one twice, and a double root is simply a root of the derivative at which the
+//! polynomial vanishes to rounding.
+
+/// Value of the polynomial with `coefficients` from the constant up (Horner), and the sum of the
+/// magnitudes of its terms, which is what its rounding error is relative to.
+pub fn value_and_magnitude(coefficients: &[f64], x: f64) -> (f64, f64) {
+    let size = x.abs();
+    coefficients
+        .iter()
+        .rev()
+        .fold((0.0, 0.0), |(value, magnitude), c| (value * x + c, magnitude * size + c.abs()))
+}
+
+/// The sign -1, 0 or 1 of the polynomial at `x`; 0 where it vanishes to rounding.
+///
+/// Rounding is taken as 2 n units in the last place of the sum of the magnitudes of the n terms:
+/// Horner's own bound (Higham, "Accuracy and Stability of Numerical Algorithms", eq. 5.3).
+pub fn sign(coefficients: &[f64], x: f64) -> f64 {
+    let (value, magnitude) = value_and_magnitude(coefficients, x);
+    if value.abs() <= rounding(coefficients.len()) * magnitude { 0.0 } else { value.signum() }
+}
+
+/// Relative rounding error of Horner's scheme with `terms` coefficients.
+pub fn rounding(terms: usize) -> f64 {
+    2.0 * terms as f64 * (0.5 * f64::EPSILON)
+}
+
+/// The derivative's coefficients.
+pub fn derivative(coefficients: &[f64]) -> Vec<f64> {
+    coefficients.iter().enumerate().skip(1).map(|(i, c)| i as f64 * c).collect()
+}
+
+/// All distinct real roots within `[left, right]`, ascending; the ends may be infinite.
+///
+/// Method: recursion over the derivatives, a safeguarded Newton iteration on each monotone piece. A
+/// polynomial in x^2 (times a power of x) is solved in x^2, so that its roots are symmetric bit for bit
+/// and 0 is exact. The variable is scaled by a power of two, so that nothing overflows.
+///
+/// Preconditions: finite coefficients, `left <= right`.
+///
+/// Guarantee: every root whose neighbourhood is resolved by double precision, to a few units in the
+/// last place of its conditioning; a multiple root, or a cluster that rounding cannot tell from one, once. Empty
+/// for the zero polynomial, which vanishes everywhere.
+pub fn real_roots(coefficients: &[f64], left: f64, right: f64) -> Vec<f64> {
+    let Some(last) = coefficients.iter().rposition(|c| *c != 0.0) else { return Vec::new() };
+    let first = coefficients.iter().position(|c| *c != 0.0).unwrap_or(0);
+    let core = &coefficients[first..=last];
+    let bound = root_bound(core);
+    let (low, high) = (left.max(-bound), right.min(bound));
+    let mut roots = Vec::new();
+    if core.len() > 1 && low <= high {
+        if core.iter().skip(1).step_by(2).all(|c| *c == 0.0) {
+            let squares: Vec<f64> = core.iter().copied().step_by(2).collect();
+            let reach = low.abs().max(high.abs());
+            // A little beyond, so that a root on an end is not lost to the rounding of the square.
+            let most = (reach * reach * (1.0 + 4.0 * f64::EPSILON)).min(f64::MAX);
+            for square in scaled_roots(&squares, 0.0, most) {
+                let root = square.sqrt();
+                roots.extend([-root, root].into_iter().filter(|r| (low..=high).contains(r)));
+            }
+        } else {
+            roots = scaled_roots(core, low, high);
+        }
+    }
+    if first > 0 && left <= 0.0 && right >= 0.0 {
+        roots.push(0.0);
+    }
+    roots.sort_by(f64::total_cmp);
+    roots.dedup();
+    roots
+}
+
+/// No root lies further from 0: Fujiwara 1916, twice the largest |a_(n-i)/a_n|^(1/i), taken in
+/// logarithms so that it does not overflow, with a little room for their rounding.
+fn root_bound(core: &[f64]) -> f64 {
+    let degree = core.len() - 1;
+    let lead = core[degree].abs().log2();
+    let most = core[..degree]
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| **c != 0.0)
+        .map(|(i, c)| (c.abs().log2() - lead) / (degree - i) as f64)
+        .fold(f64::NEG_INFINITY, f64::max);
+    (most + 1.001).exp2().min(f64::MAX)
+}
+
+/// Roots in a finite interval, after scaling variable and values by powers of two (exact).
+fn scaled_roots(core: &[f64], low: f64, high: f64) -> Vec<f64> {
+    let reach = low.abs().max(high.abs());
+    if reach == 0.0 {
+        return if core[0] == 0.0 { vec![0.0] } else { Vec::new() };
+    }
+    let power = reach.log2().ceil().clamp(-1000.0, 1000.0) as i32;
+    let unit = 2.0_f64.powi(power);
+    let top = core
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| **c != 0.0)
+        .map(|(i, c)| c.abs().log2().floor() as i32 + i as i32 * power)
+        .max()
+        .unwrap_or(0);
+    let scaled: Vec<f64> =
+        core.iter().enumerate().map(|(i, c)| times_power_of_two(*c, i as i32 * power - top)).collect();
+    monotone_roots(&scaled, low / unit, high / unit).into_iter().map(|r| r * unit).collect()
+}
+
+/// c 2^power without overflow on the way; what is too small becomes 0.
+fn times_power_of_two(mut c: f64, mut power: i32) -> f64 {
+    while power != 0 && c != 0.0 && c.is_finite() {
+        let part = power.clamp(-900, 900);
+        c *= 2.0_f64.powi(part);
+        power -= part;
+    }
+    c
+}
+
+/// Distinct roots within [low, high]; the recursion over the derivatives.
+fn monotone_roots(coefficients: &[f64], low: f64, high: f64) -> Vec<f64> {
+    let Some(last) = coefficients.iter().rposition(|c| *c != 0.0) else { return Vec::new() };
+    let own = &coefficients[..=last];
+    if last == 0 {
+        return Vec::new();
+    }
+    if last == 1 {
+        let root = -own[0] / own[1];
+        return if (low..=high).contains(&root) { vec![root] } else { Vec::new() };
+    }
+    let slope = derivative(own);
+    let mut cuts = vec![low];
+    cuts.extend(monotone_roots(&slope, low, high).into_iter().filter(|c| *c > low && *c < high));
+    cuts.push(high);
+    let mut roots: Vec<f64> = Vec::new();
+    let mut sign_before = sign(own, low);
+    if sign_before == 0.0 {
+        roots.push(low);
+    }
+    for pair in cuts.windows(2) {
+        let sign_here = sign(own, pair[1]);
+        if sign_before * sign_here < 0.0 {
+            roots.push(bracketed(own, &slope, pair[0], pair[1], sign_before));
+        }
+        if sign_here == 0.0 {
+            // Neighbouring cuts that both vanish to rounding are one cluster, unless they are the two ends.
+            let same_cluster = sign_before == 0.0 && sign(own, 0.5 * (pair[0] + pair[1])) == 0.0;
+            if !same_cluster {
+                roots.push(pair[1]);
+            }
+        }
+        sign_before = sign_here;
+    }
+    roots
+}
+
+/// The root between `low` and `high`, where the sign changes from `sign_low`; Newton's step where it
+/// stays inside the bracket and the bracket keeps shrinking, else the middle.
+fn bracketed(coefficients: &[f64], slope: &[f64], mut low: f64, mut high: f64, sign_low: f64) -> f64 {
+    let mut x = 0.5 * (low + high);
+    let mut width = high - low;
+    let mut since = 0;
+    loop {
+        let (value, _) = value_and_magnitude(coefficients, x);
+        if value == 0.0 {
+            return x;
+        }
+        if value.signum() == sign_low {
+            low = x;
+        } else {
+            high = x;
+        }
+        let newton = x - value / value_and_magnitude(slope, x).0;
+        // Newton's steps come from one side near the end, leaving the other end of the bracket far away:
+        // accept a step below rounding as the end.
+        if (newton - x).abs() <= 0.5 * f64::EPSILON * x.abs() && newton >= low && newton <= high {
+            return newton;
+        }
+        since += 1;
+        let halved = high - low <= 0.5 * width;
+        if halved {
+            width = high - low;
+            since = 0;
+        }
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return if (value_and_magnitude(coefficients, low).0).abs()
+                <= (value_and_magnitude(coefficients, high).0).abs()
+            {
+                low
+            } else {
+                high
+            };
+        }
+        // Five Newton steps that do not halve the bracket are converging or lost; one bisection tells.
+        x = if newton > low && newton < high && since < 5 {
+            newton
+        } else {
+            since = 0;
+            middle
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::real_roots;
+
+    const LINE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+    fn product(roots: &[f64]) -> Vec<f64> {
+        let mut p = vec![1.0];
+        for r in roots {
+            let mut next = vec![0.0; p.len() + 1];
+            for (i, c) in p.iter().enumerate() {
+                next[i + 1] += c;
+                next[i] -= r * c;
+            }
+            p = next;
+        }
+        p
+    }
+
+    #[test]
+    fn simple_roots_on_the_line() {
+        let expected = [-3.0, -1.5, 0.25, 2.0, 7.0];
+        let found = real_roots(&product(&expected), LINE.0, LINE.1);
+        assert_eq!(found.len(), 5);
+        for (f, e) in found.iter().zip(&expected) {
+            assert!((f - e).abs() < 1e-12, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn an_interval_keeps_its_own_and_its_ends() {
+        let p = product(&[-1.0, 2.0, 3.0]);
+        assert_eq!(real_roots(&p, -1.0, 2.5).len(), 2);
+        assert_eq!(real_roots(&p, 0.0, 1.0), Vec::<f64>::new());
+        assert_eq!(real_roots(&[-1.0, 0.0, 1.0], -1.0, 1.0), vec![-1.0, 1.0]);
+    }
+
+    #[test]
+    fn multiple_roots_come_once() {
+        assert_eq!(real_roots(&product(&[1.0, 1.0]), LINE.0, LINE.1), vec![1.0]);
+        assert_eq!(real_roots(&[0.0, 0.0, 0.0, 1.0], LINE.0, LINE.1), vec![0.0]);
+        let found = real_roots(&product(&[1.0, 1.0, 1.0, -2.0]), LINE.0, LINE.1);
+        assert_eq!(found.len(), 2, "{found:?}");
+        let found = real_roots(&product(&[0.5, 0.5, -0.5, -0.5]), LINE.0, LINE.1);
+        assert_eq!(found, vec![-0.5, 0.5]);
+    }
+
+    #[test]
+    fn none_where_there_are_none() {
+        for p in [&[][..], &[0.0, 0.0], &[3.0], &[1.0, 0.0, 1.0], &[1.0, 1.0, 1.0]] {
+            assert_eq!(real_roots(p, LINE.0, LINE.1), Vec::<f64>::new());
+        }
+    }
+
+    #[test]
+    fn odd_polynomials_have_symmetric_roots() {
+        let found = real_roots(&[0.0, 0.7, 0.0, -1.3, 0.0, 0.1], LINE.0, LINE.1);
+        assert_eq!(found.len(), 5);
+        assert_eq!(found[2], 0.0);
+        assert_eq!(found[0], -found[4]);
+        assert_eq!(found[1], -found[3]);
+    }
+
+    #[test]
+    fn scale_does_not_matter() {
+        for scale in [1e-100, 1e-9, 1e9, 1e20] {
+            let p = product(&[-2.0 * scale, scale, 5.0 * scale]);
+            let found = real_roots(&p, LINE.0, LINE.1);
+            assert_eq!(found.len(), 3, "{scale}: {found:?}");
+            for (f, e) in found.iter().zip([-2.0, 1.0, 5.0]) {
+                assert!((f / scale - e).abs() < 1e-13);
+            }
+        }
+        let far_apart = product(&[1e-9, 1.0, 1e9]);
+        let found = real_roots(&far_apart, LINE.0, LINE.1);
+        assert_eq!(found.len(), 3);
+        assert!((found[0] / 1e-9 - 1.0).abs() < 1e-12, "{found:?}");
+    }
+}
