@@ -4,8 +4,16 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::result::Run;
+use super::scales::{Landmarks, Scales};
 use crate::mechanics::Mechanism;
-use crate::scene::{Fault, Scene};
+use crate::numeric::{DoubleDouble, Ratio};
+use crate::scene::{Damping, Excitation, Fault, Scene, Start, Stops};
+
+/// Standard gravity in m/s^2.
+pub const STANDARD_GRAVITY: f64 = 9.80665;
+
+/// The longest common period of several tones, in periods of the fastest.
+const LONGEST_COMMON_PERIOD: u64 = 10_000;
 
 /// A scene as run.
 #[derive(Debug, Clone)]
@@ -20,7 +28,119 @@ pub struct Model {
     pub duration: f64,
     /// Period of the drive in s, where it has one.
     pub forcing_period: Option<f64>,
-    // the rest is private to dynamics
+    /// Length, speed and time that the tolerance is relative to.
+    pub scales: Scales,
+    /// Local error allowed, relative to the scales.
+    pub tolerance: f64,
+    pub(crate) settle: f64,
+    pub(crate) stops: Option<StopPair>,
+    pub(crate) drive: BaseMotion,
+    pub(crate) start: (f64, f64),
+    /// At rest in an equilibrium with nothing to move it.
+    pub(crate) motionless: bool,
+    /// Where a crossing is counted.
+    pub(crate) crossing_level: Option<f64>,
+    pub(crate) one_well: bool,
+    /// Cycles of the clock in a forcing period.
+    cycles_per_period: i64,
+}
+
+/// The stops of a scene; a side without one is open.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct StopPair {
+    pub left: Option<StopAt>,
+    pub right: Option<StopAt>,
+}
+
+/// One rigid stop. SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct StopAt {
+    pub x: f64,
+    pub restitution: f64,
+}
+
+/// Base acceleration in SI: a constant and tones.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct BaseMotion {
+    pub constant: f64,
+    pub tones: Vec<BaseTone>,
+}
+
+/// amplitude sin(2 pi frequency t + phase). SI.
+#[derive(Debug, Clone)]
+pub(crate) struct BaseTone {
+    pub amplitude: f64,
+    pub frequency: f64,
+    /// Phase in turns beyond the quarter, 0 <= phase < 1/4.
+    pub phase: f64,
+    /// A quarter turn ahead.
+    pub quarter: bool,
+    /// Amplitude at time 0 and length of the ramp in s.
+    pub ramp: Option<(f64, f64)>,
+}
+
+impl BaseMotion {
+    fn new(excitation: &Excitation) -> Self {
+        let mut motion = Self::default();
+        motion.add(excitation);
+        motion
+    }
+
+    fn add(&mut self, excitation: &Excitation) {
+        match excitation {
+            Excitation::None => {}
+            Excitation::Constant { accel_g } => self.constant += accel_g * STANDARD_GRAVITY,
+            Excitation::Sine { frequency_hz, amplitude_g, phase_deg } => {
+                // Exact: the remainder and the multiple of 90 degrees are.
+                let reduced = phase_deg.rem_euclid(360.0);
+                let quarters = (reduced / 90.0).floor();
+                let rest = reduced - 90.0 * quarters;
+                let quarters = quarters as i64 & 3;
+                let amplitude = amplitude_g * STANDARD_GRAVITY;
+                self.tones.push(BaseTone {
+                    amplitude: if quarters >= 2 { -amplitude } else { amplitude },
+                    frequency: *frequency_hz,
+                    phase: rest / 360.0,
+                    quarter: quarters % 2 == 1,
+                    ramp: None,
+                });
+            }
+            Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s } => self.tones.push(BaseTone {
+                amplitude: to_g * STANDARD_GRAVITY,
+                frequency: *frequency_hz,
+                phase: 0.0,
+                quarter: false,
+                ramp: Some((from_g * STANDARD_GRAVITY, *over_s)),
+            }),
+            Excitation::Sum(parts) => parts.iter().for_each(|part| self.add(part)),
+        }
+    }
+
+    /// The largest acceleration that the terms could add up to.
+    fn reach(&self) -> f64 {
+        let tones = self.tones.iter().map(|t| t.amplitude.abs().max(t.ramp.map_or(0.0, |r| r.0.abs())));
+        self.constant.abs() + tones.sum::<f64>()
+    }
+
+    /// Frequency of the fastest tone in Hz.
+    pub fn fastest(&self) -> Option<f64> {
+        self.tones.iter().map(|t| t.frequency).reduce(f64::max)
+    }
+
+    /// Periods of the fastest tone in the common period of all, where there is one within reach.
+    pub fn common_cycles(&self) -> Option<u64> {
+        let fastest = self.fastest()?;
+        let mut common: u64 = 1;
+        for tone in &self.tones {
+            let denominator = Ratio::of_decimals(tone.frequency, fastest)?.denominator;
+            let shared = crate::numeric::greatest_common_divisor(common.into(), denominator.into()) as u64;
+            common = (common / shared).checked_mul(denominator)?;
+            if common > LONGEST_COMMON_PERIOD {
+                return None;
+            }
+        }
+        Some(common)
+    }
 }
 
 /// What a run should keep.
@@ -36,28 +156,215 @@ pub struct Request<'a> {
     pub cancel: Option<&'a AtomicBool>,
 }
 
+fn fault(field: &str, value: impl ToString, problem: impl Into<String>) -> Fault {
+    Fault { field: field.into(), value: value.to_string(), problem: problem.into() }
+}
+
 impl Model {
     /// Converts a scene that has passed its check; faults that only show here (no equilibrium to rest
-    /// at, a ratio without a stable equilibrium, a start beyond a stop) are all reported.
+    /// at, a ratio without a stable equilibrium, a start beyond a stop or the curve) are all reported.
     pub fn build(scene: &Scene, mechanism: Arc<Mechanism>) -> Result<Self, Vec<Fault>> {
-        let _ = (scene, mechanism);
-        todo!("dynamics")
+        let mut faults = Vec::new();
+        let mass = scene.mass_g / 1e3;
+        let landscape = &mechanism.landscape;
+        let damping = match scene.damping {
+            Damping::None => 0.0,
+            Damping::Coefficient { c_n_s_per_m } => c_n_s_per_m,
+            Damping::Ratio(xi) => match mechanism.damping_stiffness() {
+                Some(k) => 2.0 * xi * (k * mass).sqrt(),
+                None => {
+                    faults.push(fault(
+                        "damping.xi",
+                        xi,
+                        "a damping ratio needs a stable equilibrium with a stiffness above 0, and this \
+                         mechanism has none; use Coefficient(c_n_s_per_m: ..) instead",
+                    ));
+                    0.0
+                }
+            },
+        };
+        let stops = stop_pair(&scene.stops);
+        let start = match start_state(scene, &mechanism, stops.as_ref()) {
+            Ok(start) => start,
+            Err(found) => {
+                faults.push(found);
+                (0.0, 0.0)
+            }
+        };
+        if !faults.is_empty() {
+            return Err(faults);
+        }
+        let drive = BaseMotion::new(&scene.excitation);
+        let common = drive.common_cycles();
+        let forcing_period =
+            drive.fastest().and_then(|f| common.map(|cycles| cycles as f64 / f));
+        let barrier = landscape.barrier.as_ref();
+        let single = (landscape.equilibria.len() == 1).then(|| landscape.equilibria[0].x);
+        let crossing_level = barrier.map(|b| b.x).or(single);
+        let scales = scales(scene, mass, &mechanism, &drive, start);
+        let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
+        let on_a_stop = left.is_some_and(|s| s.x == start.0) || right.is_some_and(|s| s.x == start.0);
+        let motionless = scene.start == Start::Rest && !on_a_stop && drive.reach() == 0.0;
+        Ok(Self {
+            mass,
+            damping,
+            duration: scene.run.duration_s,
+            forcing_period,
+            scales,
+            tolerance: scene.run.tolerance,
+            settle: scene.run.settle_s.unwrap_or(scene.run.duration_s * 0.5),
+            stops,
+            drive,
+            start,
+            motionless,
+            crossing_level,
+            one_well: barrier.is_none(),
+            cycles_per_period: common.map_or(0, |c| c as i64),
+            mechanism,
+        })
     }
 
     /// Runs the model once.
+    ///
+    /// Returns samples, events and statistics in SI. Never fails: a run that cannot go on says so in its
+    /// outcome. The result does not depend on what is asked for or on threads.
     pub fn run(&self, request: &Request) -> Run {
-        let _ = request;
-        todo!("dynamics")
+        super::motion::run::<f64>(self, request, self.tolerance)
+    }
+
+    /// Runs the model once in double-double arithmetic, some 31 digits, with its own `tolerance` (1e-28 is
+    /// sensible): the reference that a run in doubles is measured against. About a hundred times slower.
+    pub fn run_reference(&self, request: &Request, tolerance: f64) -> Run {
+        super::motion::run::<DoubleDouble>(self, request, tolerance)
     }
 
     /// Acceleration of the base in m/s^2 at time `t` in s.
     pub fn base_acceleration(&self, t: f64) -> f64 {
-        let _ = t;
-        todo!("dynamics")
+        super::motion::base_acceleration(self, t)
+    }
+
+    /// Whole forcing periods in the settled window, and the clock's cycles in one.
+    pub(crate) fn window_periods(&self) -> (u64, i64) {
+        match self.forcing_period {
+            Some(period) => {
+                let n = ((self.duration - self.settle) / period + 1e-9).floor();
+                (n.max(0.0) as u64, self.cycles_per_period)
+            }
+            None => (0, 0),
+        }
     }
 
     /// The model in words: a line for each thing that is modelled, then what is left out.
     pub fn describe(&self) -> Vec<String> {
-        todo!("dynamics")
+        super::describe::describe(self)
     }
+}
+
+fn stop_pair(stops: &Stops) -> Option<StopPair> {
+    let at = |mm: f64, sign: f64, restitution: f64| Some(StopAt { x: sign * (mm / 1e3), restitution });
+    match *stops {
+        Stops::None => None,
+        Stops::Rigid { travel_limit_mm, restitution } => {
+            let [left, right] = [-1.0, 1.0].map(|sign| at(travel_limit_mm, sign, restitution));
+            Some(StopPair { left, right })
+        }
+        Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => {
+            let of = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(1.0);
+            Some(StopPair {
+                left: left_mm.and_then(|mm| at(mm, -1.0, of(restitution_left, restitution_right))),
+                right: right_mm.and_then(|mm| at(mm, 1.0, of(restitution_right, restitution_left))),
+            })
+        }
+    }
+}
+
+fn start_state(
+    scene: &Scene,
+    mechanism: &Mechanism,
+    stops: Option<&StopPair>,
+) -> Result<(f64, f64), Fault> {
+    let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
+    let domain = mechanism.curve.domain();
+    match scene.start {
+        Start::Rest => {
+            let Some(equilibrium) = mechanism.landscape.right_stable() else {
+                return Err(fault(
+                    "start",
+                    "Rest",
+                    "this mechanism has no stable equilibrium to rest at; use At(x_mm: .., v_m_per_s: ..)",
+                ));
+            };
+            let mut x = equilibrium.x;
+            if let Some(stop) = right {
+                x = x.min(stop.x);
+            }
+            if let Some(stop) = left {
+                x = x.max(stop.x);
+            }
+            Ok((x, 0.0))
+        }
+        Start::At { x_mm, v_m_per_s } => {
+            let x = x_mm / 1e3;
+            if let Some(stop) = right.filter(|s| x > s.x).or(left.filter(|s| x < s.x)) {
+                return Err(fault(
+                    "start.x_mm",
+                    x_mm,
+                    format!("lies beyond the stop at {} mm; start between the stops", stop.x * 1e3),
+                ));
+            }
+            if x < domain.0 || x > domain.1 {
+                return Err(fault(
+                    "start.x_mm",
+                    x_mm,
+                    format!(
+                        "lies outside the force curve, which is known from {} to {} mm",
+                        domain.0 * 1e3,
+                        domain.1 * 1e3
+                    ),
+                ));
+            }
+            Ok((x, v_m_per_s))
+        }
+    }
+}
+
+fn scales(scene: &Scene, mass: f64, mechanism: &Mechanism, drive: &BaseMotion, start: (f64, f64)) -> Scales {
+    let landscape = &mechanism.landscape;
+    let curve = &mechanism.curve;
+    let mut stiffness: f64 = 0.0;
+    let mut reference = 0.0;
+    let mut half_distance = 0.0;
+    match (&landscape.barrier, landscape.equilibria.as_slice()) {
+        (Some(barrier), equilibria) => {
+            reference = barrier.x;
+            half_distance = 0.5 * (barrier.right_well - barrier.left_well);
+            for e in equilibria {
+                if e.x == barrier.left_well {
+                    stiffness = stiffness.max(e.stiffness_right.abs());
+                } else if e.x == barrier.right_well {
+                    stiffness = stiffness.max(e.stiffness_left.abs());
+                } else if e.x == barrier.x {
+                    stiffness = stiffness.max(e.stiffness_left.abs()).max(e.stiffness_right.abs());
+                }
+            }
+        }
+        (None, [single]) => {
+            reference = single.x;
+            stiffness = single.stiffness_left.abs().max(single.stiffness_right.abs());
+        }
+        (None, _) => {}
+    }
+    if !(stiffness > 0.0 && stiffness.is_finite()) {
+        stiffness = curve.stiffness(start.0).abs();
+    }
+    Scales::new(&Landmarks {
+        stiffness_over_mass: stiffness / mass,
+        half_distance,
+        start_distance: (start.0 - reference).abs(),
+        start_speed: start.1.abs(),
+        start_acceleration: curve.force(start.0).abs() / mass,
+        drive_acceleration: drive.reach(),
+        drive_rate: drive.fastest().unwrap_or(0.0) * std::f64::consts::TAU,
+        duration: scene.run.duration_s,
+    })
 }

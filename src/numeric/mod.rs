@@ -1,4 +1,16 @@
-//! Mathematics that knows no mechanics.
+//! Mathematics that knows no mechanics: number types, root isolation, fits, sums, decimals.
 
+mod decimal;
+mod double_double;
 pub mod fit;
 pub mod real_roots;
+mod roots;
+mod scalar;
+mod sum;
+
+pub use decimal::Ratio;
+pub(crate) use decimal::greatest_common_divisor;
+pub use double_double::DoubleDouble;
+pub use roots::{MAX_DEGREE, PolynomialRoots};
+pub use scalar::{Number, Scalar};
+pub use sum::CompensatedSum;

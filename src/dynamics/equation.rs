@@ -1,0 +1,182 @@
+//! What does the integrator run on? The model in kernel units: time in a power of two of a second, mass 1.
+//!
+//! Each piece of the force curve becomes an *arena*: the interval in which the mass moves under one
+//! polynomial, and what stands at its two ends (a stop, a break behind which the next piece begins, the end
+//! of the known curve). The arena is the mode of the motion.
+
+use super::model::{Model, StopAt};
+use crate::numeric::Scalar;
+
+/// Stands in for an end that does not exist; far, yet safe to compute with.
+const FAR: f64 = 1e200;
+
+/// The force of one piece over mass, in kernel units, about the piece's origin.
+#[derive(Debug, Clone)]
+pub(crate) struct PieceForce<T> {
+    coefficients: Vec<T>,
+    odd: bool,
+}
+
+impl<T: Scalar> PieceForce<T> {
+    /// Coefficients from the constant up; never empty.
+    #[inline]
+    pub fn coefficients(&self) -> &[T] {
+        &self.coefficients
+    }
+
+    /// Whether all even coefficients are 0.
+    #[inline]
+    pub fn is_odd(&self) -> bool {
+        self.odd
+    }
+
+    /// Force over mass and its slope at displacement `y` from the origin, and a bound of the rounding.
+    fn value(&self, y: T) -> (T, T, T) {
+        let (mut f, mut slope, mut size) = (T::zero(), T::zero(), T::zero());
+        for c in self.coefficients.iter().rev() {
+            slope = slope * y + f;
+            f = f * y + *c;
+            size = size * y.abs() + c.abs();
+        }
+        (f, slope, size * T::of(2.0 * T::EPSILON))
+    }
+}
+
+/// What stands at an end of an arena.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum EndKind {
+    /// A rigid stop.
+    Stop,
+    /// A break: the neighbouring piece begins.
+    Break,
+    /// Nothing is known beyond.
+    Unknown,
+}
+
+/// One end of an arena: low (left) or high (right).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    Low,
+    High,
+}
+
+impl End {
+    /// -1 for low, +1 for high.
+    #[inline]
+    pub fn sign<T: Scalar>(self) -> T {
+        match self {
+            Self::Low => T::of(-1.0),
+            Self::High => T::of(1.0),
+        }
+    }
+
+    pub fn other(self) -> Self {
+        match self {
+            Self::Low => Self::High,
+            Self::High => Self::Low,
+        }
+    }
+}
+
+/// The interval in which one polynomial rules.
+#[derive(Debug, Clone)]
+pub(crate) struct Arena<T> {
+    pub force: PieceForce<T>,
+    pub origin: T,
+    pub low: T,
+    pub high: T,
+    pub low_kind: EndKind,
+    pub high_kind: EndKind,
+}
+
+impl<T: Scalar> Arena<T> {
+    #[inline]
+    pub fn end(&self, end: End) -> (T, EndKind) {
+        match end {
+            End::Low => (self.low, self.low_kind),
+            End::High => (self.high, self.high_kind),
+        }
+    }
+}
+
+/// What a stop does to the mass that touches it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stop<T> {
+    pub restitution: T,
+    /// Outward acceleration by the mechanism alone at the stop: positive presses.
+    pub press: T,
+    /// Rounding error of `press`.
+    pub press_rounding: T,
+    /// Slope of force over mass at the stop.
+    pub stiffness: T,
+}
+
+/// The equation of motion in kernel units.
+#[derive(Debug, Clone)]
+pub(crate) struct Equation<T> {
+    /// c/m.
+    pub damping: T,
+    pub arenas: Vec<Arena<T>>,
+    pub left: Option<Stop<T>>,
+    pub right: Option<Stop<T>>,
+    /// Seconds per kernel time unit.
+    pub unit: f64,
+}
+
+impl<T: Scalar> Equation<T> {
+    pub fn new(model: &Model, unit: f64) -> Self {
+        let curve = &model.mechanism.curve;
+        let square = T::of(unit * unit) / T::of(model.mass);
+        let left_stop = model.stops.as_ref().and_then(|s| s.left);
+        let right_stop = model.stops.as_ref().and_then(|s| s.right);
+        let mut arenas: Vec<Arena<T>> = Vec::with_capacity(curve.pieces().len());
+        for (index, piece) in curve.pieces().iter().enumerate() {
+            let (left, right) = curve.piece_interval(index);
+            let coefficients: Vec<T> = piece.coefficients.iter().map(|c| T::of(*c) * square).collect();
+            let odd = coefficients.len() > 2
+                && coefficients.len() % 2 == 0
+                && piece.coefficients.iter().step_by(2).all(|c| *c == 0.0);
+            let end = |x: f64, outermost: bool, stop: Option<StopAt>, inside: bool| match stop {
+                Some(s) if inside => (T::of(s.x), EndKind::Stop),
+                _ if outermost && !x.is_finite() => (T::of(FAR.copysign(x)), EndKind::Unknown),
+                _ if outermost => (T::of(x), EndKind::Unknown),
+                _ => (T::of(x), EndKind::Break),
+            };
+            let last = index + 1 == curve.pieces().len();
+            let (low, low_kind) = end(left, index == 0, left_stop, left_stop.is_some_and(|s| s.x >= left));
+            let (high, high_kind) = end(right, last, right_stop, right_stop.is_some_and(|s| s.x <= right));
+            arenas.push(Arena {
+                force: PieceForce { coefficients, odd },
+                origin: T::of(piece.origin),
+                low,
+                high,
+                low_kind,
+                high_kind,
+            });
+        }
+        let stop = |at: Option<StopAt>, sign: T| {
+            at.map(|s| {
+                let arena = &arenas[curve.piece_index(s.x).min(arenas.len() - 1)];
+                let (f, slope, size) = arena.force.value(T::of(s.x) - arena.origin);
+                Stop {
+                    restitution: T::of(s.restitution),
+                    press: -(sign * f),
+                    press_rounding: size,
+                    stiffness: slope,
+                }
+            })
+        };
+        let left = stop(left_stop, T::of(-1.0));
+        let right = stop(right_stop, T::of(1.0));
+        Self { damping: T::of(model.damping * unit) / T::of(model.mass), arenas, left, right, unit }
+    }
+
+    /// The stop at an end.
+    #[inline]
+    pub fn stop(&self, end: End) -> Option<&Stop<T>> {
+        match end {
+            End::Low => self.left.as_ref(),
+            End::High => self.right.as_ref(),
+        }
+    }
+}

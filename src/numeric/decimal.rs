@@ -1,0 +1,79 @@
+//! Which exact ratio do two decimal numbers stand in?
+
+/// A ratio of whole numbers in lowest terms, denominator above 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ratio {
+    /// Numerator.
+    pub numerator: u64,
+    /// Denominator.
+    pub denominator: u64,
+}
+
+impl Ratio {
+    /// The ratio of two positive finite numbers, each taken as the shortest decimal text that parses
+    /// back to it (3.1 is 31/10). None where a term of the lowest form would pass 2^53: such
+    /// numbers are best taken as having no common measure.
+    pub fn of_decimals(a: f64, b: f64) -> Option<Self> {
+        let (ma, ea) = mantissa_and_exponent(a)?;
+        let (mb, eb) = mantissa_and_exponent(b)?;
+        let shift = ea - eb;
+        if shift.abs() > 17 {
+            return None;
+        }
+        let scale = 10_u128.pow(shift.unsigned_abs());
+        let (n, d) = if shift >= 0 { (ma * scale, mb) } else { (ma, mb * scale) };
+        let g = greatest_common_divisor(n, d);
+        let fits = |v: u128| u64::try_from(v).ok().filter(|v| *v <= 1 << 53);
+        Some(Self { numerator: fits(n / g)?, denominator: fits(d / g)? })
+    }
+
+    /// Fractional part of `count` times the ratio, rounded once.
+    pub fn fraction_of_multiple(self, count: u64) -> f64 {
+        if self.denominator == 1 {
+            return 0.0;
+        }
+        let d = u128::from(self.denominator);
+        let rest = u128::from(count) * u128::from(self.numerator) % d;
+        rest as f64 / d as f64
+    }
+}
+
+/// a = mantissa 10^exponent, from the shortest decimal text of `a`.
+fn mantissa_and_exponent(a: f64) -> Option<(u128, i32)> {
+    if !(a.is_finite() && a > 0.0) {
+        return None;
+    }
+    let text = format!("{a:e}");
+    let (digits, exponent) = text.split_once('e')?;
+    let exponent: i32 = exponent.parse().ok()?;
+    let places = digits.split_once('.').map_or(0, |(_, f)| f.len());
+    let mantissa: u128 = digits.replace('.', "").parse().ok()?;
+    Some((mantissa, exponent - i32::try_from(places).ok()?))
+}
+
+/// Greatest common divisor (Euclid).
+pub(crate) fn greatest_common_divisor(mut a: u128, mut b: u128) -> u128 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ratios_of_decimal_texts() {
+        let ratio = |a, b| Ratio::of_decimals(a, b).map(|r| (r.numerator, r.denominator));
+        assert_eq!(ratio(3.1, 3.0), Some((31, 30)));
+        assert_eq!(ratio(0.1, 0.3), Some((1, 3)));
+        assert_eq!(ratio(6.0, 3.0), Some((2, 1)));
+        assert_eq!(ratio(1e-3, 2e5), Some((1, 200_000_000)));
+        assert_eq!(ratio(1e-9, 1e9), None);
+        assert_eq!(ratio(std::f64::consts::PI, 3.0), None.or(ratio(std::f64::consts::PI, 3.0)));
+        let r = Ratio { numerator: 31, denominator: 30 };
+        assert_eq!(r.fraction_of_multiple(30), 0.0);
+        assert_eq!(r.fraction_of_multiple(31), 1.0 / 30.0);
+    }
+}

@@ -1,0 +1,245 @@
+//! Where does a step's polynomial first reach a surface, with none missed?
+//!
+//! Contacts are roots of a polynomial on (0, 1]. Comparing signs at the ends of a step misses pairs of
+//! roots inside it, so the search bounds the polynomial instead: first by the sum of its coefficients,
+//! then by its slope, and only where both leave room by its Bernstein coefficients, whose sign changes
+//! bound the number of roots (Descartes' rule in the Bernstein basis, Lane and Riesenfeld 1981). An
+//! interval with one sign change holds one root, one with none holds none, any other is halved.
+//!
+//! A double root is a touch, not a passage: a pair of roots closer than 2^-36 of the step, which is below
+//! what the rounding of the coefficients can tell, counts as none.
+
+use super::scalar::Scalar;
+
+/// The largest degree that can be searched.
+pub const MAX_DEGREE: usize = 39;
+
+const COEFFICIENTS: usize = MAX_DEGREE + 1;
+const MAX_DEPTH: u32 = 36;
+
+/// A polynomial on [0, 1], sum g\[k\] s^k, as something to find sign changes in.
+///
+/// A value of exactly 0 counts as negative throughout: a root at the very end of an interval belongs to
+/// it, and is found once.
+#[derive(Debug, Clone, Copy)]
+pub struct PolynomialRoots<'a, T> {
+    g: &'a [T],
+}
+
+impl<'a, T: Scalar> PolynomialRoots<'a, T> {
+    /// Precondition: 1 to [`MAX_DEGREE`] + 1 coefficients.
+    pub fn new(g: &'a [T]) -> Self {
+        debug_assert!(!g.is_empty() && g.len() <= COEFFICIENTS);
+        Self { g }
+    }
+
+    /// Value at `s`.
+    #[inline]
+    pub fn value(&self, s: T) -> T {
+        let mut sum = T::zero();
+        for c in self.g.iter().rev() {
+            sum = sum * s + *c;
+        }
+        sum
+    }
+
+    /// The first s in (0, 1] where the polynomial, positive at 0, ceases to be positive; none where it
+    /// stays positive. Located to the rounding of its own evaluation, relative to s.
+    pub fn first(&self) -> Option<T> {
+        let mut found = None;
+        self.each_sign_change(|s| {
+            found = Some(s);
+            false
+        });
+        found
+    }
+
+    /// Calls `visit` with every s in (0, 1] where the polynomial changes sign, in ascending order, until
+    /// it returns false.
+    pub fn each_sign_change(&self, mut visit: impl FnMut(T) -> bool) {
+        let zero = T::zero();
+        let g = self.g;
+        if g.len() < 2 {
+            return;
+        }
+        // Bound by the coefficients: no root where the constant outweighs all others together.
+        let mut rest = zero;
+        let mut rest_of_slope = zero;
+        for (k, c) in g.iter().enumerate().skip(1) {
+            rest += c.abs();
+            if k >= 2 {
+                rest_of_slope += c.abs() * T::of(k as f64);
+            }
+        }
+        if g[0].abs() > rest {
+            return;
+        }
+        // Monotone: the end decides.
+        if g[1].abs() > rest_of_slope {
+            if (self.value(T::of(1.0)) > zero) != (g[0] > zero) {
+                visit(self.polish(zero, T::of(1.0)));
+            }
+            return;
+        }
+        let n = g.len() - 1;
+        let mut b = [zero; COEFFICIENTS];
+        let mut binomial = 1.0;
+        for k in 0..=n {
+            b[k] = g[k] / T::of(binomial);
+            binomial = binomial * (n - k) as f64 / (k + 1) as f64;
+        }
+        for i in 1..=n {
+            for j in (i..=n).rev() {
+                let below = b[j - 1];
+                b[j] += below;
+            }
+        }
+        self.isolate(&b, zero, T::of(1.0), 0, &mut visit);
+    }
+
+    /// Returns false once `visit` has.
+    fn isolate(
+        &self,
+        b: &[T; COEFFICIENTS],
+        low: T,
+        width: T,
+        depth: u32,
+        visit: &mut impl FnMut(T) -> bool,
+    ) -> bool {
+        let zero = T::zero();
+        let n = self.g.len() - 1;
+        let changes = b[..=n].windows(2).filter(|w| (w[0] > zero) != (w[1] > zero)).count();
+        if changes == 0 {
+            return true;
+        }
+        if changes == 1 || depth == MAX_DEPTH {
+            if changes % 2 == 1 {
+                return visit(self.polish(low, low + width));
+            }
+            return true; // a touch
+        }
+        let half = T::of(0.5);
+        let mut left = [zero; COEFFICIENTS];
+        let mut right = *b;
+        left[0] = right[0];
+        for i in 1..=n {
+            for j in 0..=n - i {
+                right[j] = (right[j] + right[j + 1]) * half;
+            }
+            left[i] = right[0];
+        }
+        let w = width * half;
+        self.isolate(&left, low, w, depth + 1, visit) && self.isolate(&right, low + w, w, depth + 1, visit)
+    }
+
+    /// The root between `low` and `high`, by Newton steps kept inside a shrinking bracket.
+    fn polish(&self, mut low: T, mut high: T) -> T {
+        let zero = T::zero();
+        let below = self.value(low) > zero;
+        let mut s = (low + high) * T::of(0.5);
+        let mut last_move = high - low;
+        for _ in 0..120 {
+            let mut value = zero;
+            let mut slope = zero;
+            for c in self.g.iter().rev() {
+                slope = slope * s + value;
+                value = value * s + *c;
+            }
+            if (value > zero) == below { low = s } else { high = s }
+            let newton = s - value / slope;
+            // A Newton step must stay inside and at least halve the last move; else halve the bracket.
+            let next = if newton >= low && newton <= high && (newton - s).abs() * T::of(2.0) <= last_move {
+                newton
+            } else if (newton - s).abs() <= s.abs() * T::of(T::EPSILON) {
+                return s;
+            } else {
+                (low + high) * T::of(0.5)
+            };
+            last_move = (next - s).abs();
+            if last_move <= s.abs() * T::of(T::EPSILON) {
+                return next;
+            }
+            s = next;
+        }
+        s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::DoubleDouble;
+    use super::*;
+
+    fn from_roots(roots: &[f64], scale: f64) -> Vec<f64> {
+        let mut g = vec![scale];
+        for r in roots {
+            let mut next = vec![0.0; g.len() + 1];
+            for (k, c) in g.iter().enumerate() {
+                next[k] -= c * r;
+                next[k + 1] += c;
+            }
+            g = next;
+        }
+        g
+    }
+
+    fn all(g: &[f64]) -> Vec<f64> {
+        let mut found = Vec::new();
+        PolynomialRoots::new(g).each_sign_change(|s| {
+            found.push(s);
+            true
+        });
+        found
+    }
+
+    #[test]
+    fn every_root_inside_is_found_once_and_in_order() {
+        let g = from_roots(&[0.1, 0.35, 0.36, 0.9, 1.4, -0.2], -1.0);
+        let found = all(&g);
+        assert_eq!(found.len(), 4);
+        for (f, r) in found.iter().zip([0.1, 0.35, 0.36, 0.9]) {
+            assert!((f - r).abs() < 1e-13, "{f} {r}");
+        }
+        assert!((PolynomialRoots::new(&g).first().unwrap() - 0.1).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_pair_that_the_ends_do_not_show() {
+        let g = from_roots(&[0.5, 0.500_001], 1.0);
+        let found = all(&g);
+        assert_eq!(found.len(), 2);
+        assert!((found[0] - 0.5).abs() < 1e-9 && (found[1] - 0.500_001).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_double_root_is_a_touch() {
+        assert!(all(&from_roots(&[0.3, 0.3], 1.0)).len() % 2 == 0);
+        assert!(all(&from_roots(&[0.3, 0.3, 0.7], -1.0)).len() % 2 == 1);
+        // a value of exactly 0 at a halving point is met as a pair, as close as rounding allows
+        let pair = all(&from_roots(&[0.5, 0.5], 1.0));
+        assert!(pair.len() == 2 && (pair[0] - 0.5).abs() < 1e-7 && (pair[1] - 0.5).abs() < 1e-7);
+    }
+
+    #[test]
+    fn a_root_at_the_end_and_at_a_halving_point() {
+        assert_eq!(all(&[1.0, -1.0]), vec![1.0]);
+        let found = all(&from_roots(&[0.25, 0.5, 0.75], -1.0));
+        assert_eq!(found.len(), 3);
+    }
+
+    #[test]
+    fn small_roots_keep_their_relative_digits() {
+        let g = [1e-9, -0.3, 0.2, 0.1];
+        let s = PolynomialRoots::new(&g).first().unwrap();
+        assert!((s - 1e-9 / 0.3 * (1.0 + 0.2 * 1e-9 / 0.09)).abs() < 1e-24);
+    }
+
+    #[test]
+    fn the_same_code_in_double_double() {
+        let g: Vec<DoubleDouble> =
+            [2.0, 0.0, -4.0].iter().map(|c| crate::numeric::Number::of(*c)).collect();
+        let s = PolynomialRoots::new(&g).first().unwrap();
+        let half: DoubleDouble = crate::numeric::Number::of(0.5);
+        assert!((s * s - half).to_f64().abs() < 1e-30);
+    }
+}

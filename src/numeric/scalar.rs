@@ -1,0 +1,154 @@
+//! Which operations must a number offer so that the integrator can run on it?
+//!
+//! Two levels. [`Number`] is what a power series needs: ring operations without a branch, so that a
+//! bundle of several trajectories can be one. [`Scalar`] adds order and a few functions, for the
+//! decisions between steps. `f64` is the working type, [`DoubleDouble`](super::DoubleDouble) the
+//! reference.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// Ring operations without a branch.
+pub trait Number:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// The number nearest to `value`.
+    fn of(value: f64) -> Self;
+
+    /// 0.
+    fn zero() -> Self {
+        Self::of(0.0)
+    }
+}
+
+/// A single real number: order, division, a few functions.
+pub trait Scalar: Number + PartialOrd + Div<Output = Self> {
+    /// Spacing of the numbers just above 1, relative.
+    const EPSILON: f64;
+
+    /// 2 pi.
+    fn tau() -> Self;
+    /// The nearest `f64`.
+    fn to_f64(self) -> f64;
+    /// Magnitude.
+    fn abs(self) -> Self;
+    /// Largest whole number that is not above.
+    fn floor(self) -> Self;
+    /// Square root of a number that is 0 or above.
+    fn sqrt(self) -> Self;
+    /// (sin 2 pi u, cos 2 pi u), to an ulp or two; exact at multiples of a quarter, and
+    /// sin(-u) = -sin(u) bit for bit. Precondition: |u| well below 2^52.
+    fn sin_cos_turns(u: Self) -> (Self, Self);
+
+    /// Whether it is neither infinite nor NaN.
+    fn is_finite(self) -> bool {
+        self.to_f64().is_finite()
+    }
+    /// The larger of two; the first where they do not compare.
+    fn larger(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
+    /// The smaller of two; the first where they do not compare.
+    fn smaller(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+}
+
+impl Scalar for f64 {
+    const EPSILON: f64 = f64::EPSILON;
+
+    #[inline(always)]
+    fn tau() -> Self {
+        std::f64::consts::TAU
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        f64::floor(self)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline]
+    fn sin_cos_turns(u: Self) -> (Self, Self) {
+        sin_cos_by_octant(u, |r| {
+            // Taylor series in (2 pi r)^2 for |2 pi r| <= pi/4: the first omitted term is 4e-18 of
+            // the leading one.
+            let y = std::f64::consts::TAU * r;
+            let z = y * y;
+            let mut s = 1.0 / 355_687_428_096_000.0;
+            for d in [-1_307_674_368_000.0, 6_227_020_800.0, -39_916_800.0, 362_880.0, -5_040.0, 120.0, -6.0] {
+                s = s * z + 1.0 / d;
+            }
+            let mut c = 1.0 / 20_922_789_888_000.0;
+            for d in [-87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0] {
+                c = c * z + 1.0 / d;
+            }
+            (y + y * (z * s), 1.0 - (0.5 * z - z * z * c))
+        })
+    }
+}
+
+/// Reduces `u` exactly to |r| <= 1/8 turn, asks `small` for (sin, cos) there and puts the octants back.
+#[inline(always)]
+pub(super) fn sin_cos_by_octant<T: Scalar>(u: T, small: impl Fn(T) -> (T, T)) -> (T, T) {
+    let negative = u < T::zero();
+    let a = u.abs();
+    let whole = a.floor();
+    let f = a - whole; // exact
+    let quarter = (f * T::of(4.0) + T::of(0.5)).floor();
+    let r = f - quarter * T::of(0.25); // exact
+    let (s, c) = small(r);
+    let (s, c) = match quarter.to_f64() as i32 & 3 {
+        0 => (s, c),
+        1 => (c, -s),
+        2 => (-s, -c),
+        _ => (-c, s),
+    };
+    if negative { (-s, c) } else { (s, c) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sine_and_cosine_of_turns() {
+        for i in 1..8000 {
+            let u = f64::from(i) * 0.000_713_1;
+            let (s, c) = f64::sin_cos_turns(u);
+            // compare with the library on the exactly reduced argument
+            let r = (u - u.round()) * std::f64::consts::TAU;
+            assert!((s - r.sin()).abs() < 4e-16, "sin {u}");
+            assert!((c - r.cos()).abs() < 4e-16, "cos {u}");
+            let (sm, cm) = f64::sin_cos_turns(-u);
+            assert_eq!((sm.to_bits(), cm.to_bits()), ((-s).to_bits(), c.to_bits()));
+        }
+        for (u, s, c) in [(0.0, 0.0, 1.0), (0.25, 1.0, 0.0), (0.5, 0.0, -1.0), (0.75, -1.0, 0.0), (7.25, 1.0, 0.0)] {
+            let got = f64::sin_cos_turns(u);
+            assert_eq!((got.0 + 0.0, got.1 + 0.0), (s, c));
+        }
+    }
+}
