@@ -30,8 +30,10 @@ pub fn parse() -> Result<Options, ExitCode> {
             // The first lines name argument, value and remedy; usage and hints would bury them.
             let text = error.render().to_string();
             let parts = text.split("\n\n").filter(|part| !part.trim_start().starts_with("Usage:"));
-            let lines = parts.map(str::trim).collect::<Vec<_>>().join("\n");
-            say(lines.replace("For more information, try '--help'.", "").trim_end());
+            let lines = parts.flat_map(str::lines).map(str::trim);
+            let hint = |line: &str| line.starts_with("tip: to pass") || line.starts_with("For more");
+            let lines: Vec<&str> = lines.filter(|line| !line.is_empty() && !hint(line)).collect();
+            say(&lines.join("\n"));
             ExitCode::from(2)
         }
     })

@@ -46,7 +46,11 @@ impl<T: Scalar> Clock<T> {
         let fraction = T::of(rest.high()) + T::of(rest.low());
         let phase = fraction * self.period;
         let cycle = whole.to_f64() as i64;
-        if phase < self.period { Instant { cycle, phase } } else { Instant { cycle: cycle + 1, phase: T::zero() } }
+        if phase < self.period {
+            Instant { cycle, phase }
+        } else {
+            Instant { cycle: cycle + 1, phase: T::zero() }
+        }
     }
 
     /// Seconds of an instant, rounded once or twice.

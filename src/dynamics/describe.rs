@@ -7,7 +7,11 @@ pub(crate) fn describe(model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     let mut absent = Vec::new();
     let curve = &model.mechanism.curve;
-    lines.push(format!("proof mass {:.6} kg on a force curve of {}", model.mass, pieces(curve.pieces().len())));
+    lines.push(format!(
+        "proof mass {:.6} kg on a force curve of {}",
+        model.mass,
+        pieces(curve.pieces().len())
+    ));
     if model.damping > 0.0 {
         lines.push(format!("viscous damping, c = {:.6} N s/m", model.damping));
     } else {

@@ -20,7 +20,14 @@ pub(crate) trait Drive<T: Scalar> {
     type Rolling: Default;
 
     /// Fills a\[0..=3\] at `at`.
-    fn seed(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize, a: &mut [T; ROOM], roll: &mut Self::Rolling);
+    fn seed(
+        &self,
+        clock: &Clock<T>,
+        at: &Instant<T>,
+        segment: usize,
+        a: &mut [T; ROOM],
+        roll: &mut Self::Rolling,
+    );
 
     /// Fills a\[k\], k >= 4, all lower ones being known; `inverse[n]` is 1/(n(n-1)).
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling);
@@ -261,7 +268,14 @@ impl<T> Default for RollingTones<T> {
 impl<T: Scalar> Drive<T> for Tones<T> {
     type Rolling = RollingTones<T>;
 
-    fn seed(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize, a: &mut [T; ROOM], roll: &mut Self::Rolling) {
+    fn seed(
+        &self,
+        clock: &Clock<T>,
+        at: &Instant<T>,
+        segment: usize,
+        a: &mut [T; ROOM],
+        roll: &mut Self::Rolling,
+    ) {
         roll.tones.clear(); // keeps its room: nothing is allocated after the first call
         let mut sums = [self.constant, T::zero(), T::zero(), T::zero()];
         for tone in &self.tones {

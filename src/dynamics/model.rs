@@ -196,8 +196,7 @@ impl Model {
         }
         let drive = BaseMotion::new(&scene.excitation);
         let common = drive.common_cycles();
-        let forcing_period =
-            drive.fastest().and_then(|f| common.map(|cycles| cycles as f64 / f));
+        let forcing_period = drive.fastest().and_then(|f| common.map(|cycles| cycles as f64 / f));
         let barrier = landscape.barrier.as_ref();
         let single = (landscape.equilibria.len() == 1).then(|| landscape.equilibria[0].x);
         let crossing_level = barrier.map(|b| b.x).or(single);
@@ -278,11 +277,7 @@ fn stop_pair(stops: &Stops) -> Option<StopPair> {
     }
 }
 
-fn start_state(
-    scene: &Scene,
-    mechanism: &Mechanism,
-    stops: Option<&StopPair>,
-) -> Result<(f64, f64), Fault> {
+fn start_state(scene: &Scene, mechanism: &Mechanism, stops: Option<&StopPair>) -> Result<(f64, f64), Fault> {
     let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
     let domain = mechanism.curve.domain();
     match scene.start {

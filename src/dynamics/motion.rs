@@ -120,9 +120,7 @@ pub(crate) fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64) -
     let mut run = match drive_kind(&model.drive) {
         Kind::Still => with_drive(model, request, tolerance, &equation, clock, &still(model, unit)),
         Kind::Sine => with_drive(model, request, tolerance, &equation, clock, &sine(model, unit)),
-        Kind::Tones => {
-            with_drive(model, request, tolerance, &equation, clock, &tones(model, unit, &clock))
-        }
+        Kind::Tones => with_drive(model, request, tolerance, &equation, clock, &tones(model, unit, &clock)),
     };
     run.summary.cpu_s = watch.elapsed().as_secs_f64();
     run
@@ -309,15 +307,10 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         };
         let potentials = (start_potential, potential(self.arena, self.x));
         let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
-        let mut run = self.record.finish(
-            &self.at,
-            (self.x, self.v),
-            start_v,
-            phase,
-            potentials,
-            outcome,
-            |at| base_at(drive, &clock, segment, at, unit),
-        );
+        let mut run =
+            self.record.finish(&self.at, (self.x, self.v), start_v, phase, potentials, outcome, |at| {
+                base_at(drive, &clock, segment, at, unit)
+            });
         run.summary.steps = self.steps;
         run.summary.evaluations = self.evaluations;
         run
@@ -467,7 +460,10 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let one = T::of(1.0);
         let speed = self.v.abs();
         let [press, jerk, snap] = rates;
-        if !(press > T::zero() && stop.restitution < one && speed < self.settings.speed * T::of(CHATTER_SPEED)) {
+        if !(press > T::zero()
+            && stop.restitution < one
+            && speed < self.settings.speed * T::of(CHATTER_SPEED))
+        {
             return false;
         }
         let damping = self.equation.damping;

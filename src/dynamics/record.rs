@@ -138,7 +138,8 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     }
 
     fn in_window(&self, at: &Instant<T>) -> bool {
-        self.clock.between(&self.window.0, at) >= T::zero() && self.clock.between(at, &self.window.1) > T::zero()
+        self.clock.between(&self.window.0, at) >= T::zero()
+            && self.clock.between(at, &self.window.1) > T::zero()
     }
 
     /// Takes in a step of free flight.
@@ -176,8 +177,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             let end = self.clock.seconds(&self.clock.advance(&step.at, step.length));
             while let Some(t) = self.times.get(self.next_time).copied().filter(|t| *t < end) {
                 let instant = self.clock.at(t);
-                let into =
-                    self.clock.between(&step.at, &instant).larger(T::zero()).smaller(step.length);
+                let into = self.clock.between(&step.at, &instant).larger(T::zero()).smaller(step.length);
                 self.samples.push(Sample {
                     t,
                     x: (step.series.position(into) + step.origin).to_f64(),
@@ -408,7 +408,13 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             if t > last * (1.0 + 4.0 * f64::EPSILON) {
                 break;
             }
-            self.samples.push(Sample { t, x: final_x, v: final_v, base_accel: base(&self.clock.at(t)), phase });
+            self.samples.push(Sample {
+                t,
+                x: final_x,
+                v: final_v,
+                base_accel: base(&self.clock.at(t)),
+                phase,
+            });
             self.next_time += 1;
         }
         if let Some(strobe) = self.next_strobe {

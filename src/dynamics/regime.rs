@@ -60,14 +60,15 @@ impl CrossingLog {
     pub fn period(&self, length: f64, speed: f64) -> Option<u32> {
         let s = &self.strobes;
         let longest = LONGEST.min((self.periods / 2) as usize);
-        (1..=longest).find(|q| {
-            s.len() > *q
-                && (0..s.len() - q).all(|i| {
-                    (s[i + q].x - s[i].x).abs() <= STATE_MATCH * length
-                        && (s[i + q].v - s[i].v).abs() <= STATE_MATCH * speed
-                })
-        })
-        .map(|q| q as u32)
+        (1..=longest)
+            .find(|q| {
+                s.len() > *q
+                    && (0..s.len() - q).all(|i| {
+                        (s[i + q].x - s[i].x).abs() <= STATE_MATCH * length
+                            && (s[i + q].v - s[i].v).abs() <= STATE_MATCH * speed
+                    })
+            })
+            .map(|q| q as u32)
     }
 }
 
@@ -88,7 +89,8 @@ mod tests {
     fn twice_a_period_repeats() {
         let times: Vec<f64> = (0..30).map(|i| 0.25 + 0.5 * f64::from(i)).collect();
         assert!(log(15, &times).crossings_repeat());
-        let edge: Vec<f64> = (0..30).map(|i| 0.5 * f64::from(i) + if i % 4 == 0 { 1e-4 } else { 0.0 }).collect();
+        let edge: Vec<f64> =
+            (0..30).map(|i| 0.5 * f64::from(i) + if i % 4 == 0 { 1e-4 } else { 0.0 }).collect();
         assert!(log(15, &edge).crossings_repeat());
     }
 
@@ -96,7 +98,8 @@ mod tests {
     fn a_lone_crossing_or_scatter_does_not() {
         assert!(!log(15, &[6.1]).crossings_repeat());
         assert!(!log(15, &[6.1, 7.3]).crossings_repeat());
-        let scattered: Vec<f64> = (0..28).map(|i| 0.25 + 0.5 * f64::from(i) + 0.1 * f64::from(i * i % 7)).collect();
+        let scattered: Vec<f64> =
+            (0..28).map(|i| 0.25 + 0.5 * f64::from(i) + 0.1 * f64::from(i * i % 7)).collect();
         assert!(!log(15, &scattered).crossings_repeat());
         // stops crossing half way
         let dying: Vec<f64> = (0..14).map(|i| 0.25 + 0.5 * f64::from(i)).collect();

@@ -99,7 +99,8 @@ impl<T: Scalar> Series<T> {
         }
         let top = c.len() - 1;
         for j in (0..top).rev() {
-            let product = if j + 1 == top { c[top] * self.y[k] } else { convolve(&self.nested[j + 1], &self.y, k) };
+            let product =
+                if j + 1 == top { c[top] * self.y[k] } else { convolve(&self.nested[j + 1], &self.y, k) };
             self.nested[j][k] = if k == 0 { product + c[j] } else { product };
         }
         self.nested[0][k]

@@ -145,7 +145,11 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
                 slope = slope * s + value;
                 value = value * s + *c;
             }
-            if (value > zero) == below { low = s } else { high = s }
+            if (value > zero) == below {
+                low = s
+            } else {
+                high = s
+            }
             let newton = s - value / slope;
             // A Newton step must stay inside and at least halve the last move; else halve the bracket.
             let next = if newton >= low && newton <= high && (newton - s).abs() * T::of(2.0) <= last_move {
@@ -236,8 +240,7 @@ mod tests {
 
     #[test]
     fn the_same_code_in_double_double() {
-        let g: Vec<DoubleDouble> =
-            [2.0, 0.0, -4.0].iter().map(|c| crate::numeric::Number::of(*c)).collect();
+        let g: Vec<DoubleDouble> = [2.0, 0.0, -4.0].iter().map(|c| crate::numeric::Number::of(*c)).collect();
         let s = PolynomialRoots::new(&g).first().unwrap();
         let half: DoubleDouble = crate::numeric::Number::of(0.5);
         assert!((s * s - half).to_f64().abs() < 1e-30);

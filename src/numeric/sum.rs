@@ -19,7 +19,8 @@ impl<T: Scalar> CompensatedSum<T> {
     #[inline]
     pub fn add(&mut self, term: T) {
         let sum = self.sum + term;
-        self.carry += if self.sum.abs() >= term.abs() { (self.sum - sum) + term } else { (term - sum) + self.sum };
+        self.carry +=
+            if self.sum.abs() >= term.abs() { (self.sum - sum) + term } else { (term - sum) + self.sum };
         self.sum = sum;
     }
 

@@ -90,8 +90,9 @@ impl Sink {
         let descriptor =
             path.starts_with("/dev/fd") || path.starts_with("/proc/self/fd") || path == "/dev/stderr";
         if let Some(there) = there.as_ref().filter(|there| descriptor || !there.is_file()) {
-            // Not truncated: a shell's `3>file` is the shell's to empty.
-            let file = fs::OpenOptions::new().write(true).open(path).map_err(refused)?;
+            // A shell's `3>file` is the shell's to empty, and what stands in it stays.
+            let mut open = fs::OpenOptions::new();
+            let file = open.write(true).append(descriptor).open(path).map_err(refused)?;
             // Any number of outputs may go to a device such as /dev/null, but not to one pipe or file.
             let shared = is_device(there);
             let identity = Identity { stdout: false, path: None, inode: inode(there).filter(|_| !shared) };

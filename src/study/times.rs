@@ -37,15 +37,15 @@ pub enum TimesError {
 
 /// A positive rational number: exactly what decimal text says, or a fraction of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Ratio {
+struct Fraction {
     numerator: u128,
     denominator: u128,
 }
 
-impl Ratio {
+impl Fraction {
     /// The decimal number that the shortest text of `value` spells; none where it is not above 0 or
     /// needs more than 38 digits, in which case decimals mean nothing to a person either.
-    pub fn decimal(value: f64) -> Option<Self> {
+    fn decimal(value: f64) -> Option<Self> {
         if !value.is_finite() || value <= 0.0 {
             return None;
         }
@@ -133,12 +133,12 @@ impl Step {
         }
     }
 
-    fn ratio(self, duration: f64) -> Option<Ratio> {
+    fn ratio(self, duration: f64) -> Option<Fraction> {
         match self {
-            Self::Seconds(dt) => Ratio::decimal(dt),
-            Self::PeriodOf(frequency) => Ratio::decimal(frequency)?.inverse().over(60),
-            Self::Period(period) => Ratio::decimal(period)?.over(60),
-            Self::Thousandth => Ratio::decimal(duration)?.over(1000),
+            Self::Seconds(dt) => Fraction::decimal(dt),
+            Self::PeriodOf(frequency) => Fraction::decimal(frequency)?.inverse().over(60),
+            Self::Period(period) => Fraction::decimal(period)?.over(60),
+            Self::Thousandth => Fraction::decimal(duration)?.over(1000),
         }
     }
 }
@@ -153,7 +153,7 @@ pub fn even_times(step: Step, duration: f64) -> Result<Vec<f64>, TimesError> {
     }
     let exact = step.ratio(duration);
     let count = exact
-        .and_then(|ratio| ratio.fits_into(Ratio::decimal(duration)?))
+        .and_then(|ratio| ratio.fits_into(Fraction::decimal(duration)?))
         .map_or_else(|| (duration / dt * (1.0 + 4.0 * f64::EPSILON)).floor(), |fits| fits as f64)
         + 1.0;
     if count > MAX_SAMPLES as f64 {

@@ -689,17 +689,16 @@ fn stops() -> impl Strategy<Value = Stops> {
 }
 
 fn excitation() -> impl Strategy<Value = Excitation> {
-    let leaf =
-        prop_oneof![
-            Just(Excitation::None),
-            number().prop_map(|accel_g| Excitation::Constant { accel_g }),
-            (number(), number(), number()).prop_map(|(frequency_hz, amplitude_g, phase_deg)| {
-                Excitation::Sine { frequency_hz, amplitude_g, phase_deg }
-            }),
-            (number(), number(), number(), number()).prop_map(|(frequency_hz, from_g, to_g, over_s)| {
-                Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s }
-            }),
-        ];
+    let leaf = prop_oneof![
+        Just(Excitation::None),
+        number().prop_map(|accel_g| Excitation::Constant { accel_g }),
+        (number(), number(), number()).prop_map(|(frequency_hz, amplitude_g, phase_deg)| {
+            Excitation::Sine { frequency_hz, amplitude_g, phase_deg }
+        }),
+        (number(), number(), number(), number()).prop_map(|(frequency_hz, from_g, to_g, over_s)| {
+            Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s }
+        }),
+    ];
     leaf.prop_recursive(4, 16, 4, |inner| proptest::collection::vec(inner, 0..4).prop_map(Excitation::Sum))
 }
 
