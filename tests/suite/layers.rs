@@ -113,7 +113,16 @@ fn the_reader_of_uses_sees_them() {
 #[test]
 fn without_the_window_nothing_of_it_is_built() {
     let tree = Command::new(env!("CARGO"))
-        .args(["tree", "--offline", "--locked", "--no-default-features", "-e", "normal,build", "--prefix", "none"])
+        .args([
+            "tree",
+            "--offline",
+            "--locked",
+            "--no-default-features",
+            "-e",
+            "normal,build",
+            "--prefix",
+            "none",
+        ])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .unwrap();
@@ -122,7 +131,8 @@ fn without_the_window_nothing_of_it_is_built() {
     assert!(tree.starts_with("interwell"), "{tree}");
     for line in tree.lines() {
         let name = line.split(' ').next().unwrap_or_default();
-        let window = ["egui", "eframe", "winit", "wgpu", "glow"].iter().any(|crate_| name.starts_with(crate_));
+        let window =
+            ["egui", "eframe", "winit", "wgpu", "glow"].iter().any(|crate_| name.starts_with(crate_));
         assert!(!window, "`{line}` is built without the window");
     }
 }
