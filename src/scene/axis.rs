@@ -12,6 +12,9 @@ use super::text::clip;
 /// keeps the list of values itself within 80 MB.
 pub const LARGEST_AXIS: usize = 10_000_000;
 
+/// The most axes that a sweep may have.
+pub const MOST_AXES: usize = 10;
+
 /// One axis of a sweep, written out: a numeric field and the values that it takes, in its own unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {

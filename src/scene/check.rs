@@ -4,7 +4,7 @@
 //! mechanism (an equilibrium to rest at, a stiffness for a damping ratio) is said where the model is
 //! built; after both nothing downstream checks again.
 
-use super::axis::{Axis, repeated};
+use super::axis::{Axis, MOST_AXES, repeated};
 use super::data::*;
 use super::error::Fault;
 use super::fields::{Field, FieldPath, for_each};
@@ -155,16 +155,16 @@ fn hints(scene: &Scene, checked: &mut Checked) {
         ));
     }
     let window = duration_s - settle_s.unwrap_or(duration_s / 2.0);
-    let mut warn = |term: &Excitation| match *term {
+    let warn = |term: &Excitation, warnings: &mut Vec<String>| match *term {
         Excitation::Sine { frequency_hz, .. } if window * frequency_hz < 1.0 - 1e-9 => {
-            checked.warnings.push(format!(
+            warnings.push(format!(
                 "run: the settled window of {} s is shorter than a forcing period of {} s, so that RMS and regime \
                  say little; run longer or settle earlier",
                 number_text(window),
                 number_text(1.0 / frequency_hz)
             ));
         }
-        Excitation::AmplitudeRamp { over_s, .. } if over_s > duration_s => checked.warnings.push(format!(
+        Excitation::AmplitudeRamp { over_s, .. } if over_s > duration_s => warnings.push(format!(
             "excitation: the ramp takes {} s and the run ends after {} s, before its end",
             number_text(over_s),
             number_text(duration_s)
@@ -172,16 +172,22 @@ fn hints(scene: &Scene, checked: &mut Checked) {
         _ => {}
     };
     let mut terms = vec![&scene.excitation];
-    while let Some(term) = terms.pop() {
+    // A sum may have thousands of terms; the first few warnings say it.
+    while let Some(term) = terms.pop().filter(|_| checked.warnings.len() < 8) {
         match term {
             Excitation::Sum(inner) => terms.extend(inner.iter().rev()),
-            term => warn(term),
+            term => warn(term, &mut checked.warnings),
         }
     }
     checked.warnings.dedup();
 }
 
 fn sweep(scene: &Scene, checked: &mut Checked) {
+    if scene.sweep.len() > MOST_AXES {
+        let value = format!("a list of {}", scene.sweep.len());
+        checked.fault("sweep", value, format!("must have at most {MOST_AXES} axes"));
+        return;
+    }
     if let Some(field) = repeated(scene.sweep.iter().map(|axis| axis.field.as_str())) {
         checked.fault("sweep", field, "is swept twice; give each field one axis");
     }
@@ -204,17 +210,15 @@ fn sweep(scene: &Scene, checked: &mut Checked) {
     }
 }
 
-/// Checks the scene at the corners of a sweep. The relations between fields are linear, so that they
-/// hold in every cell where they hold in the corners; beyond 10 axes only the first corner is tried
-/// and the rest is left to the cells.
+/// Checks the scene at the corners of a sweep of at most [`MOST_AXES`] axes. The relations between
+/// fields are linear, so that they hold in every cell where they hold in the corners.
 pub fn corners(scene: &Scene, axes: &[Axis]) -> Vec<Fault> {
-    const MOST: usize = 10;
     let ends: Vec<[usize; 2]> = axes.iter().map(extremes).collect();
-    let corners = if axes.len() <= MOST { 1_usize << axes.len() } else { 1 };
+    let corners = 1_usize << axes.len().min(MOST_AXES);
     let mut cell = Scene { sweep: Vec::new(), ..scene.clone() };
     for corner in 0..corners {
         for (i, axis) in axes.iter().enumerate() {
-            axis.apply(&mut cell, ends[i][corner.checked_shr(i as u32).unwrap_or(0) & 1]);
+            axis.apply(&mut cell, ends[i][(corner >> i.min(MOST_AXES)) & 1]);
         }
         let mut faults = check(&cell).faults;
         if !faults.is_empty() {

@@ -26,13 +26,13 @@ pub struct Scene {
     /// Where the restoring force comes from.
     pub mechanism: Mechanism,
     /// Viscous damping.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub damping: Damping,
     /// Travel limits.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub stops: Stops,
     /// Acceleration of the base.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub excitation: Excitation,
     /// State at time 0.
     #[serde(default)]
@@ -43,7 +43,7 @@ pub struct Scene {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sweep: Vec<SweepAxis>,
     /// Electromagnetic transducer.
-    #[serde(default, skip_serializing_if = "Transducer::is_none")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub transducer: Transducer,
     /// Hints for the window; the command line ignores them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -68,7 +68,7 @@ pub enum Mechanism {
         /// Height of the barrier in mJ, 1e-60 to 1e60.
         barrier_mj: f64,
     },
-    /// F = sum of coefficients[i] x^i.
+    /// F = c0 + c1 x + c2 x^2 + ...
     Polynomial {
         /// 1 to 16 coefficients from the constant up, in N/m^i, each -1e200 to 1e200. All zeros are a
         /// free mass.
@@ -226,12 +226,6 @@ pub enum Transducer {
     None,
 }
 
-impl Transducer {
-    fn is_none(&self) -> bool {
-        *self == Self::None
-    }
-}
-
 /// Hints for the window.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -256,6 +250,11 @@ pub enum Layout {
     Study,
     /// The map of RMS velocity.
     Map,
+}
+
+/// RON would write the choice `None` as `r#None`, to tell it from an absent option.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// Joins the lines of a text that was wrapped by hand; paragraphs stay, one empty line apart.

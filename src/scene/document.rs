@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::axis::{Axis, repeated, unknown};
+use super::axis::{Axis, MOST_AXES, repeated, unknown};
 use super::check::{check, corners};
 use super::data::Scene;
 use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
@@ -11,6 +11,9 @@ use super::files::{Files, ReadError, read_text};
 use super::locate::Places;
 use super::presets::{self, PRESETS};
 use super::text::{self, LARGEST_SCENE, clip, explain};
+
+/// How many faults an error names; the rest it counts. A list may hold a million NaN.
+const MOST_FAULTS: usize = 50;
 
 /// A scene, its text, and the arguments that changed it since.
 #[derive(Debug, Clone)]
@@ -37,7 +40,8 @@ impl Document {
         let text = match read_text(Path::new(spec), LARGEST_SCENE) {
             Ok(text) => text,
             Err(ReadError::Missing) => {
-                return Err(SceneError::NoSuchScene { spec: clip(spec), presets: presets::names() });
+                let spec = if spec.is_empty() { "\"\"".to_owned() } else { clip(spec) };
+                return Err(SceneError::NoSuchScene { spec, presets: presets::names() });
             }
             Err(ReadError::Unusable(problem)) => {
                 return Err(SceneError::Unreadable { name: clip(spec), problem });
@@ -116,7 +120,12 @@ impl Document {
     /// field is swept twice, and the relations between fields hold all over the grid.
     pub fn axes<S: AsRef<str>>(&self, over: &[S]) -> Result<Vec<Axis>, SceneError> {
         let axes: Vec<Axis> = if over.is_empty() {
-            let own = self.scene.sweep.iter().map(|axis| Axis::from_scene(axis, &self.scene).ok());
+            let own = self
+                .scene
+                .sweep
+                .iter()
+                .take(MOST_AXES + 1)
+                .map(|axis| Axis::from_scene(axis, &self.scene).ok());
             match own.collect() {
                 Some(axes) => axes,
                 // The check says more about what is wrong.
@@ -132,6 +141,10 @@ impl Document {
             };
             over.iter().map(parse).collect::<Result<_, _>>()?
         };
+        if axes.len() > MOST_AXES {
+            let problem = format!("{} axes are more than a sweep may have ({MOST_AXES})", axes.len());
+            return Err(ArgumentError { argument: "--over".to_owned(), problem }.into());
+        }
         if let Some(field) = repeated(axes.iter().map(|axis| axis.field.as_str())) {
             let argument = if over.is_empty() { "sweep" } else { "--over" };
             let problem = format!("{field} is swept twice; give each field one axis");
@@ -151,7 +164,9 @@ impl Document {
             };
             PlacedFault { fault, origin }
         };
-        SceneError::Faults { name: self.name.clone(), faults: faults.into_iter().map(place).collect() }
+        let more = faults.len().saturating_sub(MOST_FAULTS);
+        let faults = faults.into_iter().take(MOST_FAULTS).map(place).collect();
+        SceneError::Faults { name: self.name.clone(), faults, more }
     }
 
     /// The last argument that wrote this field, or something around it or inside it.
@@ -177,16 +192,12 @@ fn replace(found: Field<'_>, value: &str) -> Result<(), String> {
             Ok(())
         }
         Field::Number(_, Slot::Optional(number)) => {
-            *number = match (value, parse_number(value)) {
-                ("None", _) => None,
-                (_, Some(value)) => Some(value),
-                _ => return Err(format!("`{}` is neither a number nor None", clip(value))),
-            };
+            let written = parse_number(value).map(Some).or_else(|| text::options().from_str(value).ok());
+            *number = written.ok_or_else(|| format!("`{}` is neither a number nor None", clip(value)))?;
             Ok(())
         }
         Field::Text(text) => {
-            let quoted =
-                ['"', 'r'].iter().any(|first| value.starts_with(*first)) && value.ends_with(['"', '#']);
+            let quoted = ["\"", "r\"", "r#"].iter().any(|first| value.starts_with(first));
             *text = if quoted { text::options().from_str(value).map_err(refused)? } else { value.to_owned() };
             Ok(())
         }

@@ -67,12 +67,14 @@ pub enum SceneError {
         problem: String,
     },
     /// Values that cannot be used, all of them.
-    #[error("{}", Lines { name, faults })]
+    #[error("{}", Lines { name, faults, more: *more })]
     Faults {
         /// The file.
         name: String,
         /// The faults in the order of the scene's fields.
         faults: Vec<PlacedFault>,
+        /// How many more there are beyond those, where nobody would read them all.
+        more: usize,
     },
     /// An argument that names a field is wrong.
     #[error(transparent)]
@@ -92,6 +94,7 @@ pub struct ArgumentError {
 struct Lines<'a> {
     name: &'a str,
     faults: &'a [PlacedFault],
+    more: usize,
 }
 
 impl fmt::Display for Lines<'_> {
@@ -111,6 +114,9 @@ impl fmt::Display for Lines<'_> {
             } else {
                 write!(f, "{field} = {}: {problem}", clip(value))?;
             }
+        }
+        if self.more > 0 {
+            write!(f, "\n{}: and {} more", self.name, self.more)?;
         }
         Ok(())
     }

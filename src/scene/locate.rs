@@ -28,16 +28,18 @@ impl Places {
         scanner.header();
         scanner.value(&mut String::new(), 0);
         let mut places = Vec::with_capacity(scanner.found.len());
-        let (mut line, mut begin, mut passed) = (1, 0, 0);
+        let (mut place, mut passed) = (Place { line: 1, column: 1 }, 0);
         for (path, at) in scanner.found {
-            for (i, byte) in text.as_bytes()[passed..at].iter().enumerate() {
-                if *byte == b'\n' {
-                    (line, begin) = (line + 1, passed + i + 1);
+            for byte in &text.as_bytes()[passed..at] {
+                match byte {
+                    b'\n' => place = Place { line: place.line + 1, column: 1 },
+                    // The further bytes of a character.
+                    0x80..=0xBF => {}
+                    _ => place.column += 1,
                 }
             }
             passed = at;
-            let column = 1 + text.get(begin..at).map_or(0, |before| before.chars().count());
-            places.push((path, Place { line, column }));
+            places.push((path, place));
         }
         Self(places)
     }

@@ -29,7 +29,7 @@ mod presets;
 mod ranges;
 mod text;
 
-pub use axis::{Axis, LARGEST_AXIS, column_names};
+pub use axis::{Axis, LARGEST_AXIS, MOST_AXES, column_names};
 pub use check::{Checked, check, corners};
 pub use data::*;
 pub use document::Document;

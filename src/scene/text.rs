@@ -6,7 +6,7 @@
 use ron::error::{Error as Ron, SpannedError};
 use ron::extensions::Extensions;
 
-use super::data::Scene;
+use super::data::*;
 use super::locate::{Place, Places};
 
 /// The largest scene text that is read: some thousand times a long scene, and parsed at once.
@@ -39,26 +39,60 @@ pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
         return Err(Refusal { place: start, problem });
     }
     options().from_str(text).map_err(|error| {
+        let trailing = error.code == Ron::TrailingCharacters;
         let place = Place { line: error.span.start.line, column: error.span.start.col };
-        let place = token_at(text, place);
-        let problem = explain(&error);
+        let place = token_at(text, place, trailing);
         let named = matches!(
             error.code,
             Ron::NoSuchStructField { .. } | Ron::MissingStructField { .. } | Ron::DuplicateStructField { .. }
         );
-        let field = if named { None } else { Places::of(text).last_before(place).map(str::to_owned) };
+        let places = Places::of(text);
+        let field = if named || trailing { None } else { places.last_before(place) };
+        let problem = match (&error.code, field.and_then(choices)) {
+            (Ron::ExpectedIdentifier | Ron::SuggestRawIdentifier(_), Some(known)) => {
+                format!("expected one of {}", names(known))
+            }
+            _ => explain(&error),
+        };
         Refusal { place, problem: field.map_or(problem.clone(), |field| format!("{field}: {problem}")) }
     })
 }
 
 /// The parser's cursor may stand on the blanks before the token that it means.
-fn token_at(text: &str, place: Place) -> Place {
-    let Some((index, line)) = text.lines().enumerate().nth(place.line - 1) else { return place };
-    let blank = line.chars().skip(place.column - 1).take_while(|c| c.is_whitespace()).count();
-    if place.column - 1 + blank >= line.chars().count() {
-        return place;
+fn token_at(text: &str, place: Place, further_lines: bool) -> Place {
+    let lines = text.lines().enumerate().skip(place.line - 1);
+    let mut column = place.column;
+    for (index, line) in lines {
+        let blank = line.chars().skip(column - 1).take_while(|c| c.is_whitespace()).count();
+        if column - 1 + blank < line.chars().count() {
+            return Place { line: index + 1, column: column + blank };
+        }
+        if !further_lines {
+            break;
+        }
+        column = 1;
     }
-    Place { line: index + 1, column: place.column + blank }
+    place
+}
+
+/// The variants that a field chooses from.
+fn choices(field: &str) -> Option<&'static [&'static str]> {
+    fn of<T: serde::de::DeserializeOwned>() -> Option<&'static [&'static str]> {
+        match options().from_str::<T>("Unknown").err()?.code {
+            Ron::NoSuchEnumVariant { expected, .. } => Some(expected),
+            _ => None,
+        }
+    }
+    match field.split('.').rfind(|part| part.parse::<usize>().is_err())? {
+        "mechanism" => of::<Mechanism>(),
+        "damping" => of::<Damping>(),
+        "stops" | "stops_when_on" => of::<Stops>(),
+        "excitation" => of::<Excitation>(),
+        "start" => of::<Start>(),
+        "transducer" => of::<Transducer>(),
+        "layout" => of::<Layout>(),
+        _ => None,
+    }
 }
 
 fn names(known: &[&str]) -> String {
@@ -83,6 +117,10 @@ pub(super) fn explain(error: &SpannedError) -> String {
         Ron::ExceededRecursionLimit => "brackets nested deeper than in any scene".to_owned(),
         Ron::TrailingCharacters => "nothing may follow the end of the value".to_owned(),
         Ron::Eof => "the text ends in the middle".to_owned(),
+        Ron::SuggestRawIdentifier(found) | Ron::InvalidIdentifier(found) => {
+            format!("expected a name, found `{}` (a decimal is written with a point)", clip(found))
+        }
+        Ron::ExpectedComma => "expected a comma before this".to_owned(),
         Ron::ExpectedFloat => "expected a number".to_owned(),
         other => {
             let text = other.to_string();

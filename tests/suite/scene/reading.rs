@@ -1,0 +1,215 @@
+//! Every variant reads and writes; what is no scene is refused with its place.
+
+use interwell::scene::*;
+
+use super::*;
+
+#[test]
+fn the_smallest_scene_has_the_documented_defaults() {
+    let scene = document(&[]).scene;
+    let expected = Scene {
+        title: "t".into(),
+        notes: String::new(),
+        mass_g: 15.2,
+        mechanism: Mechanism::Cubic { linear_n_per_m: -40.0, cubic_n_per_m3: 8.2e5 },
+        damping: Damping::None,
+        stops: Stops::None,
+        excitation: Excitation::None,
+        start: Start::Rest,
+        run: Run { duration_s: 10.0, settle_s: None, tolerance: 1e-9, recurrence: true },
+        sweep: vec![],
+        transducer: Transducer::None,
+        app: None,
+    };
+    assert_eq!(scene, expected);
+    assert_eq!(document(&[]).check(), Ok(vec![]));
+    reads_back(&scene);
+}
+
+#[test]
+fn every_mechanism_reads_and_writes() {
+    let table = |tolerance| Mechanism::Table { path: "a b.csv".into(), tolerance };
+    for (text, mechanism) in [
+        (
+            "DoubleWell(equilibrium_mm: 7, barrier_mj: 0.5)",
+            Mechanism::DoubleWell { equilibrium_mm: 7.0, barrier_mj: 0.5 },
+        ),
+        (
+            "Polynomial(coefficients_si: [0, -1.5, 0, 1e6])",
+            Mechanism::Polynomial { coefficients_si: vec![0.0, -1.5, 0.0, 1e6] },
+        ),
+        ("Polynomial(coefficients_si: [0])", Mechanism::Polynomial { coefficients_si: vec![0.0] }),
+        ("Table(path: \"a b.csv\")", table(1e-4)),
+        ("Table(path: \"a b.csv\", tolerance: 1e-6)", table(1e-6)),
+    ] {
+        let document = document(&[("mechanism", text)]);
+        assert_eq!(document.scene.mechanism, mechanism);
+        document.check().unwrap();
+        reads_back(&document.scene);
+    }
+}
+
+#[test]
+fn every_damping_and_stop_and_start_reads_and_writes() {
+    for (text, damping) in [
+        ("None", Damping::None),
+        ("Ratio(0.023)", Damping::Ratio(0.023)),
+        ("Coefficient(c_n_s_per_m: 0.05)", Damping::Coefficient { c_n_s_per_m: 0.05 }),
+    ] {
+        let document = document(&[("damping", text)]);
+        assert_eq!(document.scene.damping, damping);
+        document.check().unwrap();
+        reads_back(&document.scene);
+    }
+    let uneven = |left_mm, right_mm, restitution_left, restitution_right| Stops::Uneven {
+        left_mm,
+        right_mm,
+        restitution_left,
+        restitution_right,
+    };
+    for (text, stops) in [
+        ("None", Stops::None),
+        (
+            "Rigid(travel_limit_mm: 1.5, restitution: 0.36)",
+            Stops::Rigid { travel_limit_mm: 1.5, restitution: 0.36 },
+        ),
+        ("Uneven(left_mm: 1, restitution_left: 1)", uneven(Some(1.0), None, Some(1.0), None)),
+        (
+            "Uneven(left_mm: 1, right_mm: Some(2), restitution_right: 0)",
+            uneven(Some(1.0), Some(2.0), None, Some(0.0)),
+        ),
+    ] {
+        let document = document(&[("stops", text)]);
+        assert_eq!(document.scene.stops, stops);
+        document.check().unwrap();
+        reads_back(&document.scene);
+    }
+    for (text, start) in
+        [("Rest", Start::Rest), ("At(x_mm: -3, v_m_per_s: 0.1)", Start::At { x_mm: -3.0, v_m_per_s: 0.1 })]
+    {
+        let document = document(&[("start", text)]);
+        assert_eq!(document.scene.start, start);
+        document.check().unwrap();
+        reads_back(&document.scene);
+    }
+}
+
+#[test]
+fn every_excitation_reads_and_writes() {
+    let sine = |phase_deg| Excitation::Sine { frequency_hz: 3.0, amplitude_g: -1.0, phase_deg };
+    let constant = Excitation::Constant { accel_g: 0.1 };
+    let ramp = Excitation::AmplitudeRamp { frequency_hz: 3.0, from_g: 0.0, to_g: 2.0, over_s: 10.0 };
+    for (text, excitation) in [
+        ("None", Excitation::None),
+        ("Constant(accel_g: 0.1)", constant.clone()),
+        ("Sine(frequency_hz: 3, amplitude_g: -1)", sine(0.0)),
+        ("Sine(frequency_hz: 3, amplitude_g: -1, phase_deg: 90)", sine(90.0)),
+        ("AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 2, over_s: 10)", ramp.clone()),
+        ("Sum([])", Excitation::Sum(vec![])),
+        (
+            "Sum([Constant(accel_g: 0.1), Sum([Sine(frequency_hz: 3, amplitude_g: -1)]), None])",
+            Excitation::Sum(vec![constant, Excitation::Sum(vec![sine(0.0)]), Excitation::None]),
+        ),
+    ] {
+        let document = document(&[("excitation", text)]);
+        assert_eq!(document.scene.excitation, excitation);
+        document.check().unwrap();
+        reads_back(&document.scene);
+    }
+}
+
+#[test]
+fn run_sweep_and_window_hints_read_and_write() {
+    let document = document(&[
+        ("notes", "\"One\n        line.\n\n\n   A \\\"second\\\" one.\n\""),
+        ("stops", "Rigid(travel_limit_mm: 2, restitution: 0.5)"),
+        ("run", "(duration_s: 10, settle_s: 10, tolerance: 1e-14, recurrence: false)"),
+        ("sweep", "[(field: \"stops.travel_limit_mm\", from: 0.5, to: 7, step: 0.25)]"),
+        ("transducer", "None"),
+        ("app", "(layout: Look, speed: 0.1, stops_when_on: Rigid(travel_limit_mm: 1.5, restitution: 0.36))"),
+    ]);
+    document.check().unwrap();
+    let scene = &document.scene;
+    assert_eq!(scene.notes, "One line.\n\nA \"second\" one.");
+    assert_eq!(
+        scene.run,
+        Run { duration_s: 10.0, settle_s: Some(10.0), tolerance: 1e-14, recurrence: false }
+    );
+    assert_eq!(scene.sweep[0].to, 7.0);
+    let app = scene.app.as_ref().unwrap();
+    assert_eq!((app.layout, app.speed), (Some(Layout::Look), Some(0.1)));
+    assert_eq!(app.stops_when_on, Some(Stops::Rigid { travel_limit_mm: 1.5, restitution: 0.36 }));
+    reads_back(scene);
+}
+
+#[test]
+fn the_coefficient_limit_is_that_of_the_force_curve() {
+    assert_eq!(MAX_COEFFICIENTS, interwell::mechanics::ForceCurve::MAX_COEFFICIENTS);
+}
+
+#[test]
+fn structural_errors_have_a_place_and_the_known_names() {
+    for (changes, expected) in [
+        (
+            ("mechanism", "Flexures(preload_mm: 2.7)"),
+            "s.ron:5:16: mechanism: unknown choice `Flexures` in Mechanism; known: Cubic, DoubleWell, Polynomial, Table",
+        ),
+        (
+            ("stops", "Hertz(travel_limit_mm: 1)"),
+            "s.ron:6:12: stops: unknown choice `Hertz` in Stops; known: None, Rigid, Uneven",
+        ),
+        (
+            ("excitation", "Sum([\n  Chirp(from_hz: 1)])"),
+            "s.ron:7:3: excitation.0: unknown choice `Chirp` in Excitation; known: None, Constant, Sine, AmplitudeRamp, Sum",
+        ),
+        (("excitation", "Noise(seed: 1)"), "unknown choice `Noise` in Excitation; known: None, "),
+        (("excitation", "Recorded(path: \"a\")"), "unknown choice `Recorded` in Excitation; known: None, "),
+        (
+            ("stops", "Rigid(\n  travel_mm: 1)"),
+            "s.ron:7:3: unknown field `travel_mm` in Rigid; known: travel_limit_mm, restitution",
+        ),
+        (("stops", "Rigid(travel_limit_mm: 1)"), "s.ron:6:36: `restitution` is missing in Rigid"),
+        (
+            ("colour", "3"),
+            "s.ron:6:5: unknown field `colour` in Scene; known: title, notes, mass_g, mechanism,",
+        ),
+        (("mass_g", "\"heavy\""), "s.ron:5:13: mass_g: expected a number"),
+        (("title", "5"), "title: expected "),
+        (("mass_g", "1, mass_g: 2"), "`mass_g` is given twice in Scene"),
+        (("damping", "Ratio()"), "s.ron:6:20: damping: expected a number"),
+        (("damping", "0.023"), "s.ron:6:14: damping: expected one of None, Ratio, Coefficient"),
+        (("excitation", "[Sine()]"), "excitation: expected one of None, Constant, Sine"),
+        (
+            ("mass_g", "15,2"),
+            "s.ron:5:16: mass_g: expected a name, found `2` (a decimal is written with a point)",
+        ),
+        (("mass_g", "15 title: \"t\""), "expected a comma before this"),
+        (("transducer", "Coil(theta: 1)"), "unknown choice `Coil` in Transducer; known: None"),
+        (("app", "(layout: Big)"), "app.layout: unknown choice `Big` in Layout; known: Look, Study, Map"),
+    ] {
+        let error = refused(&text(&[changes]));
+        assert!(error.contains(expected), "{changes:?}\n  gives {error}\n  wants {expected}");
+        assert_eq!(error.lines().count(), 1);
+    }
+    assert!(refused("(title: \"t\")").contains("`mass_g` is missing in Scene"));
+    assert!(refused(&(text(&[]) + "x")).contains("s.ron:7:1: "), "{}", refused(&(text(&[]) + "x")));
+}
+
+#[test]
+fn hostile_text_is_refused_quickly_and_without_overflow() {
+    let start = std::time::Instant::now();
+    for empty in ["", " \n\t ", "\u{feff}"] {
+        assert!(refused(empty).contains("is empty"));
+    }
+    for open in ["(", "[", "{", "\"", "/*", "r#", "Some(", "Sum(["] {
+        let deep = open.repeat(2 << 20 >> open.len().ilog2());
+        for text in [deep.clone(), text(&[("excitation", &deep)]), text(&[("unknown", &deep)])] {
+            assert!(refused(&text).len() < 700);
+        }
+    }
+    assert!(refused(&"[".repeat(10_000_000)).contains("10000000 bytes are more than"));
+    let sums = |n: usize| text(&[("excitation", &format!("{}{}", "Sum([".repeat(n), "])".repeat(n)))]);
+    assert!(refused(&sums(1000)).contains("nested deeper"));
+    reads_back(&Document::from_text("s", &sums(20), Files::default()).unwrap().scene);
+    assert!(start.elapsed().as_secs() < 20, "took {:?}", start.elapsed());
+}
