@@ -5,7 +5,7 @@
 //! differentiation of the same coefficients. The piece is a *mode* of the motion: a run changes it
 //! only at a located crossing of a break, never by looking x up again (rounding would flip it).
 
-/// One polynomial piece: F(x) = sum coefficients[i] (x - origin)^i.
+/// One polynomial piece: `F(x) = sum coefficients[i] (x - origin)^i`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
     /// Origin of the local coordinate in m.
@@ -41,7 +41,7 @@ impl Piece {
 
     /// The piece of -F(-x): what this one looks like on the other side of an odd curve, bit for bit.
     pub fn mirrored(&self) -> Self {
-        let sign = |i: usize| if i % 2 == 0 { -1.0 } else { 1.0 };
+        let sign = |i: usize| if i.is_multiple_of(2) { -1.0 } else { 1.0 };
         Self {
             origin: -self.origin,
             coefficients: self.coefficients.iter().enumerate().map(|(i, c)| sign(i) * c).collect(),
@@ -87,7 +87,7 @@ impl ForceCurve {
     /// The largest number of coefficients that a piece may have.
     pub const MAX_COEFFICIENTS: usize = 16;
 
-    /// One polynomial on the whole line: F(x) = sum coefficients[i] x^i. Trailing zeros are dropped.
+    /// One polynomial on the whole line: `F(x) = sum coefficients[i] x^i`. Trailing zeros are dropped.
     ///
     /// Preconditions: finite coefficients, at most [`Self::MAX_COEFFICIENTS`] after trimming.
     pub fn polynomial(coefficients: &[f64]) -> Self {

@@ -22,6 +22,7 @@
 use std::ops::Range;
 
 use super::curve::{FitReport, ForceCurve, Piece};
+use super::local::{between, corners, roughness, slopes};
 use super::table::Table;
 use crate::numeric::fit::lowest_degree;
 
@@ -30,24 +31,15 @@ use crate::numeric::fit::lowest_degree;
 const DEGREES: [usize; 5] = [5, 7, 9, 11, 13];
 
 /// Steps that a swing through the whole curve is taken to need when no break is in the way; a break adds about
-/// one. An estimate: the outcome changes by a piece or two when it is halved or doubled.
+/// one. An estimate, not measured.
 const STEPS_OF_A_SWING: f64 = 20.0;
 
 /// What a step costs beside the force, in series products of the same order: the drive's sine, the step size, the
 /// looking for events. An estimate as well.
 const OTHER_PRODUCTS: f64 = 3.0;
 
-/// A corner is a jump of the slope that is this many times the uncertainty of the two one-sided slopes.
-/// Smooth data stay below 1 (the jump is of second order in the spacing, the uncertainty of first); a corner
-/// within a quarter of an interval from a sample is still recognised at 4.
-const CORNER_OVER_UNCERTAINTY: f64 = 4.0;
-
 /// Share of the tolerance that the two halves of odd data may differ by; the rest is left to the fit.
 const ODD_SHARE: f64 = 0.5;
-
-/// How far, in tolerances, a piece may be from the local interpolant half-way between two samples. That interpolant
-/// passes on the errors of its samples some 1.5-fold, the piece has one tolerance of its own.
-const BETWEEN_SAMPLES: f64 = 3.0;
 
 /// Least squares use at most this many samples of a piece, evenly picked; all are checked. More would
 /// average noise better, at a cost that grows with the table.
@@ -81,13 +73,15 @@ pub fn fit(table: &Table, tolerance: f64) -> Result<ForceCurve, String> {
             best = Some((cost, pieces, ends));
         }
     }
-    let (_, pieces, ends) = best.ok_or_else(|| {
-        "has numbers so large, or positions so close together, that no curve through them can be computed in \
-         double precision"
-            .to_owned()
-    })?;
+    let curve = best
+        .map(|(_, pieces, ends)| samples.assemble(pieces, &ends))
+        .filter(|curve| curve.pieces().iter().all(|p| p.potential_at_origin.is_finite()))
+        .ok_or_else(|| {
+            "has numbers so large or small, or positions so close together, that no curve through them can be \
+             computed in double precision"
+                .to_owned()
+        })?;
     let mut warnings = table.warnings();
-    let curve = samples.assemble(pieces, &ends);
     if curve.pieces().len() > MANY_PIECES {
         warnings.push(format!(
             "following the table to {tolerance:e} of {scale:.3e} N takes {} pieces, which slows every run: if its \
@@ -109,9 +103,8 @@ pub fn fit(table: &Table, tolerance: f64) -> Result<ForceCurve, String> {
 pub fn force_scale(table: &Table) -> f64 {
     let force = &table.force;
     let rising = |i: &usize| force[*i] < 0.0 && force[*i + 1] >= 0.0;
-    let wells = (0..force.len() - 1).filter(rising);
-    let (first, last) = (wells.clone().next(), wells.last());
-    if let (Some(first), Some(last)) = (first, last)
+    let wells = 0..force.len() - 1;
+    if let (Some(first), Some(last)) = (wells.clone().find(rising), wells.rev().find(rising))
         && first < last
     {
         let between = largest(&force[first + 1..=last]);
@@ -120,26 +113,6 @@ pub fn force_scale(table: &Table) -> f64 {
         }
     }
     largest(force)
-}
-
-/// Typical distance in N of a sample from the cubic through its four neighbours: the median over the table.
-fn roughness(table: &Table) -> f64 {
-    let mut misses: Vec<f64> = (2..table.x.len().saturating_sub(2))
-        .map(|i| {
-            let near = [i - 2, i - 1, i + 1, i + 2];
-            let mut sum = 0.0;
-            for a in near {
-                let mut weight = 1.0;
-                for b in near.into_iter().filter(|b| *b != a) {
-                    weight *= (table.x[i] - table.x[b]) / (table.x[a] - table.x[b]);
-                }
-                sum += weight * table.force[a];
-            }
-            (sum - table.force[i]).abs()
-        })
-        .collect();
-    misses.sort_by(f64::total_cmp);
-    misses.get(misses.len() / 2).copied().unwrap_or(0.0)
 }
 
 fn largest(values: &[f64]) -> f64 {
@@ -257,7 +230,8 @@ impl Samples {
     ///
     /// The end of a least-squares piece has the least certain slope of all. Where keeping it stops the next piece from
     /// reaching half as far as it could, both are asked to meet at a better one: the free piece's, the
-    /// neighbouring samples', their mean. Where no slope suits both sides the break is a corner after all.
+    /// neighbouring samples', their mean. Where none suits both sides the slope is kept, whatever that costs in
+    /// pieces: data that are merely coarse or rough have no corners.
     fn continued(&self, links: &mut [Link], from: usize, limit: usize, degree: usize) -> Option<Link> {
         let before = links.last_mut()?;
         let slope = before.piece.stiffness(self.x[from]);
@@ -285,7 +259,7 @@ impl Samples {
                 return Some(link);
             }
         }
-        Some(free)
+        kept.or(Some(free))
     }
 
     /// The longest piece from sample `from` that ends at or before sample `limit`.
@@ -494,83 +468,4 @@ fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
         }
     }
     out
-}
-
-/// At which samples does the slope jump?
-///
-/// One-sided slopes from the parabola through a sample and its two neighbours on that side; their uncertainty is
-/// what the parabola changes against the chord. A corner stands out from it ([`CORNER_OVER_UNCERTAINTY`]) and is
-/// large enough to matter: over half the nearest interval it makes more force than twice what is `allowed`.
-/// A corner between two samples is not placed here; the chain then breaks on both sides of it by itself.
-fn corners(x: &[f64], force: &[f64], allowed: f64) -> Vec<bool> {
-    let chord = |i: usize, j: usize| (force[j] - force[i]) / (x[j] - x[i]);
-    let one_sided = |at: usize, near: usize, far: usize| {
-        let first = chord(at, near);
-        let slope = first - (chord(near, far) - first) / (x[far] - x[at]) * (x[near] - x[at]);
-        (slope, (slope - first).abs())
-    };
-    let mut corner = vec![false; x.len()];
-    for i in 2..x.len().saturating_sub(2) {
-        let (left, unsure_left) = one_sided(i, i - 1, i - 2);
-        let (right, unsure_right) = one_sided(i, i + 1, i + 2);
-        let jump = (right - left).abs();
-        let nearest = (x[i + 1] - x[i]).min(x[i] - x[i - 1]);
-        corner[i] = jump > CORNER_OVER_UNCERTAINTY * (unsure_left + unsure_right)
-            && 0.5 * jump * nearest > 2.0 * allowed;
-    }
-    corner
-}
-
-/// Samples `first..=last` and up to `each` more on either side, not beyond a corner (a single sample that is a
-/// corner itself looks to both sides).
-fn neighbours(first: usize, last: usize, each: usize, corner: &[bool]) -> Range<usize> {
-    let (mut low, mut high) = (first, last);
-    for _ in 0..each {
-        low -= usize::from(low > 0 && (low == first && first == last || !corner[low]));
-        high += usize::from(high + 1 < corner.len() && (high == last && first == last || !corner[high]));
-    }
-    low..high + 1
-}
-
-/// Slope at each sample: that of the polynomial through it and up to two neighbours on each side, not
-/// beyond a corner. At a corner itself, of no use.
-fn slopes(x: &[f64], force: &[f64], corner: &[bool]) -> Vec<f64> {
-    let slope_at = |i: usize| {
-        // Derivative of Lagrange's form at one of its own nodes.
-        let near = neighbours(i, i, 2, corner);
-        let mut slope = 0.0;
-        for a in near.clone().filter(|a| *a != i) {
-            let mut weight = 1.0 / (x[a] - x[i]);
-            for b in near.clone().filter(|b| *b != a && *b != i) {
-                weight *= (x[i] - x[b]) / (x[a] - x[b]);
-            }
-            slope += weight * (force[a] - force[i]);
-        }
-        slope
-    };
-    (0..x.len()).map(slope_at).collect()
-}
-
-/// The force half-way between each sample and the next, and how far a curve may be from it: the tolerance a few
-/// times, and the difference between the interpolants through six and through four neighbours.
-fn between(x: &[f64], force: &[f64], corner: &[bool], allowed: f64) -> Vec<(f64, f64)> {
-    let interpolant = |near: Range<usize>, at: f64| {
-        let mut sum = 0.0;
-        for a in near.clone() {
-            let mut weight = 1.0;
-            for b in near.clone().filter(|b| *b != a) {
-                weight *= (at - x[b]) / (x[a] - x[b]);
-            }
-            sum += weight * force[a];
-        }
-        sum
-    };
-    (0..x.len() - 1)
-        .map(|i| {
-            let at = 0.5 * (x[i] + x[i + 1]);
-            let six = interpolant(neighbours(i, i + 1, 2, corner), at);
-            let four = interpolant(neighbours(i, i + 1, 1, corner), at);
-            (six, BETWEEN_SAMPLES * allowed + (six - four).abs())
-        })
-        .collect()
 }

@@ -12,8 +12,9 @@ use crate::numeric::real_roots::{derivative, real_roots, rounding, value_and_mag
 /// meet smoothly do so to some 1e-12.
 const KINK: f64 = 1e-6;
 
-/// Roots nearer to a break than this part of the piece are the break: two pieces that meet smoothly
-/// place a root on it up to rounding, one inside and one outside its interval, or both.
+/// Roots nearer to a break than this part of the piece are the break, where the force vanishes there to rounding
+/// or an extremum is looked for: two pieces that meet place such a root up to rounding, one inside and one outside its
+/// interval, or both.
 const AT_BREAK: f64 = 1e-10;
 
 /// A place where the restoring force vanishes.
@@ -83,12 +84,16 @@ impl Landscape {
     /// Guarantee: complete (the root finder misses none); positions to rounding as far as their conditioning
     /// allows; a pair of roots that rounding cannot tell from a touching counts as one.
     pub fn of(curve: &ForceCurve) -> Self {
-        let equilibria = equilibria(curve);
-        let barrier = barrier(curve, &equilibria);
-        let mut own = Self { equilibria, barrier, extrema: extrema(curve), kinks: kinks(curve) };
+        let mut own = Self {
+            equilibria: equilibria(curve),
+            barrier: None,
+            extrema: extrema(curve),
+            kinks: kinks(curve),
+        };
         if curve.is_odd() {
             own.mirror();
         }
+        own.barrier = barrier(curve, &own.equilibria);
         own
     }
 
@@ -164,15 +169,16 @@ fn fold<T: Clone>(all: &mut Vec<T>, x: impl Fn(&T) -> f64, mirrored: impl Fn(&T)
 }
 
 /// Places at which `of` a piece (its force, or its stiffness) may change sign: its roots inside, and
-/// every break, ascending.
-fn candidates(curve: &ForceCurve, of: impl Fn(&Piece) -> Vec<f64>) -> Vec<f64> {
+/// every break, ascending. A break that is `one` itself takes the place of the roots beside it.
+fn candidates(curve: &ForceCurve, of: impl Fn(&Piece) -> Vec<f64>, one: impl Fn(f64) -> bool) -> Vec<f64> {
     let mut found: Vec<f64> = curve.breaks().to_vec();
     for (i, piece) in curve.pieces().iter().enumerate() {
         let (left, right) = curve.piece_interval(i);
-        let near = if right - left < f64::INFINITY { AT_BREAK * (right - left) } else { 0.0 };
+        let length = right - left;
+        let near = if length.is_finite() { AT_BREAK * length } else { 0.0 };
         let roots = real_roots(&of(piece), left - piece.origin, right - piece.origin);
         found.extend(roots.into_iter().map(|y| y + piece.origin).filter(|x| {
-            let beside = |end: f64, inner: bool| inner && (x - end).abs() <= near;
+            let beside = |end: f64, is_break: bool| is_break && (x - end).abs() <= near && one(end);
             *x >= left && *x <= right && !beside(left, i > 0) && !beside(right, i + 1 < curve.pieces().len())
         }));
     }
@@ -216,7 +222,7 @@ fn vanishes(curve: &ForceCurve, x: f64) -> bool {
 }
 
 fn equilibria(curve: &ForceCurve) -> Vec<Equilibrium> {
-    let zeros = candidates(curve, |piece| piece.coefficients.clone());
+    let zeros = candidates(curve, |piece| piece.coefficients.clone(), |x| vanishes(curve, x));
     let signs = signs_beside(&zeros, curve.domain(), |x| sign_of(curve.force(x)));
     let (low, high) = curve.domain();
     let mut found = Vec::new();
@@ -256,7 +262,7 @@ fn barrier(curve: &ForceCurve, equilibria: &[Equilibrium]) -> Option<Barrier> {
 }
 
 fn extrema(curve: &ForceCurve) -> Vec<ForceExtremum> {
-    let level = candidates(curve, |piece| derivative(&piece.coefficients));
+    let level = candidates(curve, |piece| derivative(&piece.coefficients), |_| true);
     let signs = signs_beside(&level, curve.domain(), |x| sign_of(curve.stiffness(x)));
     level
         .into_iter()

@@ -3,6 +3,7 @@
 mod curve;
 mod fit;
 mod landscape;
+mod local;
 mod table;
 
 pub use curve::{FitReport, ForceCurve, Piece};
@@ -54,7 +55,7 @@ impl Mechanism {
         }
     }
 
-    /// Reads and fits the text of a table: CSV with the columns `x_m,force_n`. See [`Table::parse`] and [`fit`].
+    /// Reads and fits the text of a table: CSV with the columns `x_m,force_n`. See [`Table::parse`] and [`fit()`].
     ///
     /// Fails with a sentence that continues "the table ...".
     pub fn from_table(text: &str, tolerance: f64) -> Result<Self, String> {

@@ -1,0 +1,113 @@
+//! What do a few neighbouring samples say: is there a corner, which slope, what lies between, how rough is it?
+
+use std::ops::Range;
+
+use super::table::Table;
+
+/// A corner is a jump of the slope that is this many times the uncertainty of the two one-sided slopes.
+/// Smooth data stay below 1 (the jump is of second order in the spacing, the uncertainty of first); a corner
+/// within a quarter of an interval from a sample is still recognised at 4.
+const CORNER_OVER_UNCERTAINTY: f64 = 4.0;
+
+/// How far, in tolerances, a piece may be from the local interpolant half-way between two samples. That interpolant
+/// passes on the errors of its samples some 1.5-fold, the piece has one tolerance of its own.
+const BETWEEN_SAMPLES: f64 = 3.0;
+
+/// Typical distance in N of a sample from the cubic through its four neighbours: the median over the table.
+pub(super) fn roughness(table: &Table) -> f64 {
+    let mut misses: Vec<f64> = (2..table.x.len().saturating_sub(2))
+        .map(|i| {
+            let near = [i - 2, i - 1, i + 1, i + 2];
+            let mut sum = 0.0;
+            for a in near {
+                let mut weight = 1.0;
+                for b in near.into_iter().filter(|b| *b != a) {
+                    weight *= (table.x[i] - table.x[b]) / (table.x[a] - table.x[b]);
+                }
+                sum += weight * table.force[a];
+            }
+            (sum - table.force[i]).abs()
+        })
+        .collect();
+    misses.sort_by(f64::total_cmp);
+    misses.get(misses.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// At which samples does the slope jump?
+///
+/// One-sided slopes from the parabola through a sample and its two neighbours on that side; their uncertainty is
+/// what the parabola changes against the chord. A corner stands out from it ([`CORNER_OVER_UNCERTAINTY`]) and is
+/// large enough to matter: over half the nearest interval it makes more force than twice what is `allowed`.
+/// A corner between two samples is not placed here; the chain then breaks on both sides of it by itself.
+pub(super) fn corners(x: &[f64], force: &[f64], allowed: f64) -> Vec<bool> {
+    let chord = |i: usize, j: usize| (force[j] - force[i]) / (x[j] - x[i]);
+    let one_sided = |at: usize, near: usize, far: usize| {
+        let first = chord(at, near);
+        let slope = first - (chord(near, far) - first) / (x[far] - x[at]) * (x[near] - x[at]);
+        (slope, (slope - first).abs())
+    };
+    let mut corner = vec![false; x.len()];
+    for i in 2..x.len().saturating_sub(2) {
+        let (left, unsure_left) = one_sided(i, i - 1, i - 2);
+        let (right, unsure_right) = one_sided(i, i + 1, i + 2);
+        let jump = (right - left).abs();
+        let nearest = (x[i + 1] - x[i]).min(x[i] - x[i - 1]);
+        corner[i] = jump > CORNER_OVER_UNCERTAINTY * (unsure_left + unsure_right)
+            && 0.5 * jump * nearest > 2.0 * allowed;
+    }
+    corner
+}
+
+/// Samples `first..=last` and up to `each` more on either side, not beyond a corner (a single sample that is a
+/// corner itself looks to both sides).
+fn neighbours(first: usize, last: usize, each: usize, corner: &[bool]) -> Range<usize> {
+    let (mut low, mut high) = (first, last);
+    for _ in 0..each {
+        low -= usize::from(low > 0 && (low == first && first == last || !corner[low]));
+        high += usize::from(high + 1 < corner.len() && (high == last && first == last || !corner[high]));
+    }
+    low..high + 1
+}
+
+/// Slope at each sample: that of the polynomial through it and up to two neighbours on each side, not
+/// beyond a corner. At a corner itself, of no use.
+pub(super) fn slopes(x: &[f64], force: &[f64], corner: &[bool]) -> Vec<f64> {
+    let slope_at = |i: usize| {
+        // Derivative of Lagrange's form at one of its own nodes.
+        let near = neighbours(i, i, 2, corner);
+        let mut slope = 0.0;
+        for a in near.clone().filter(|a| *a != i) {
+            let mut weight = 1.0 / (x[a] - x[i]);
+            for b in near.clone().filter(|b| *b != a && *b != i) {
+                weight *= (x[i] - x[b]) / (x[a] - x[b]);
+            }
+            slope += weight * (force[a] - force[i]);
+        }
+        slope
+    };
+    (0..x.len()).map(slope_at).collect()
+}
+
+/// The force half-way between each sample and the next, and how far a curve may be from it: the tolerance a few
+/// times, and the difference between the interpolants through six and through four neighbours.
+pub(super) fn between(x: &[f64], force: &[f64], corner: &[bool], allowed: f64) -> Vec<(f64, f64)> {
+    let interpolant = |near: Range<usize>, at: f64| {
+        let mut sum = 0.0;
+        for a in near.clone() {
+            let mut weight = 1.0;
+            for b in near.clone().filter(|b| *b != a) {
+                weight *= (at - x[b]) / (x[a] - x[b]);
+            }
+            sum += weight * force[a];
+        }
+        sum
+    };
+    (0..x.len() - 1)
+        .map(|i| {
+            let at = 0.5 * (x[i] + x[i + 1]);
+            let six = interpolant(neighbours(i, i + 1, 2, corner), at);
+            let four = interpolant(neighbours(i, i + 1, 1, corner), at);
+            (six, BETWEEN_SAMPLES * allowed + (six - four).abs())
+        })
+        .collect()
+}
