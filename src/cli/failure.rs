@@ -24,7 +24,7 @@ impl Failure {
 
     /// What is said where Ctrl-C, or another request to end, came first.
     pub fn interrupted() -> Self {
-        Self::Failed(anyhow::anyhow!("interrupted; nothing was written"))
+        Self::Failed(anyhow::anyhow!("interrupted: no output file was made or changed"))
     }
 
     /// What is said where `name` cannot be written to.

@@ -14,7 +14,7 @@ use super::grid::Grid;
 use super::table::{Table, Values};
 use crate::dynamics::{Model, Outcome, Request, Summary};
 use crate::mechanics::Mechanism;
-use crate::scene::{self, Fault, Files, Scene};
+use crate::scene::{Fault, Files, Scene};
 
 /// A scene, the grid over it, and the mechanisms that its cells share.
 #[derive(Debug)]
@@ -59,9 +59,6 @@ const CELLS_PER_THREAD: u64 = 256;
 /// Mechanisms kept for the whole sweep, about 1 kB each; beyond that each cell builds its own.
 const KEPT_MECHANISMS: u64 = 65_536;
 
-/// Axes up to which [`scene::corners`] tries every corner.
-const CHECKED_AXES: usize = 10;
-
 impl Sweep {
     /// A sweep of `grid` over `base`, which has passed its check, as have the grid's corners.
     pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
@@ -82,20 +79,14 @@ impl Sweep {
         self.table(0, &[])
     }
 
-    /// Checks and builds every cell without running it; the first one that is wrong, with all its
+    /// Builds every cell without running it; the first one that is wrong, with all its
     /// faults. A cancelled check finds nothing.
     pub fn validate(&self, pool: &ThreadPool, task: &Task) -> Result<(), CellFaults> {
-        // The corners of fewer axes have been checked, which covers all cells.
-        let unproven = self.grid.columns().len() > CHECKED_AXES;
         let faults = |scene: &mut Scene, index: u64| {
             if task.is_cancelled() {
                 return None;
             }
-            self.grid.apply(index, scene);
-            let mut faults = if unproven { scene::check(scene).faults } else { Vec::new() };
-            if faults.is_empty() {
-                faults = self.model(index, scene).err()?;
-            }
+            let faults = self.model(index, scene).err()?;
             Some(CellFaults { cell: self.grid.describe(index), faults })
         };
         let cells = (0..self.grid.cells()).into_par_iter();
