@@ -1,1 +1,14 @@
-//! A table in, bytes out.
+//! A table in, bytes out: CSV, JSON, and the files and pipes that they go to.
+//!
+//! Nothing here computes: a number is written in the shortest form that parses back to the same
+//! double, a missing one as an empty cell (CSV) or `null` (JSON).
+
+mod csv;
+mod json;
+mod number;
+mod sink;
+
+pub use csv::{header, rows};
+pub use json::{landscape, summary};
+pub use number::push_number;
+pub use sink::{OpenError, Sink, same_target};

@@ -1,1 +1,39 @@
 //! Questions: a study in, a table out.
+//!
+//! A study takes models and plain numbers, tells its progress and lets itself be cancelled through a
+//! [`Task`], and answers with a [`Table`]. It reads no arguments and writes no files: the window and
+//! the command line ask the same studies and show the same tables.
+
+mod curve;
+mod grid;
+mod inspect;
+mod simulate;
+mod sweep;
+mod table;
+mod times;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+pub use curve::{OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency};
+pub use grid::{Grid, GridError, MAX_CELLS};
+pub use inspect::inspect;
+pub use simulate::{Keep, Sampling, Simulation, sample_times, simulate};
+pub use sweep::{CellFaults, Sweep, SweepEnd, Tally};
+pub use table::{Column, Table, Values};
+pub use times::{MAX_SAMPLES, Step, TimesError, even_times, listed_times};
+
+/// How a study that takes long is watched and stopped.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    /// Called from any thread when another part is done.
+    pub tick: &'a (dyn Fn() + Sync),
+    /// Set from elsewhere to stop soon.
+    pub cancel: &'a AtomicBool,
+}
+
+impl Task<'_> {
+    /// Whether the study was told to stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+}

@@ -1,1 +1,286 @@
-//! cli
+//! Does the command line do what its page says: every command, option, column and exit status?
+
+mod bad_input;
+mod outputs;
+
+use std::path::Path;
+
+use assert_cmd::Command;
+use predicates::prelude::*;
+use predicates::str::{contains, starts_with};
+
+/// The program with these arguments, given in one line.
+pub fn plain(line: &str) -> Command {
+    let mut command = assert_cmd::cargo::cargo_bin_cmd!("interwell");
+    command.args(line.split_whitespace());
+    command
+}
+
+/// The same without a window.
+pub fn headless(line: &str) -> Command {
+    let mut command = plain("--headless");
+    command.args(line.split_whitespace());
+    command
+}
+
+/// What a command that succeeds writes to standard output.
+pub fn stdout(line: &str) -> String {
+    let output = headless(line).assert().success().get_output().stdout.clone();
+    String::from_utf8(output).unwrap()
+}
+
+/// Asserts exit status 2, nothing on standard output and a message of few lines holding all of `words`.
+pub fn refused(mut command: Command, words: &[&str]) {
+    let assert = command.assert().code(2).stdout("");
+    let text = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+    assert!(text.starts_with("error: ") && text.lines().count() <= 4, "{text}");
+    for word in words {
+        assert!(text.contains(word), "`{word}` is not in: {text}");
+    }
+}
+
+fn column(csv: &str, name: &str) -> Vec<String> {
+    let mut lines = csv.lines();
+    let place = lines.next().unwrap().split(',').position(|own| own == name).unwrap();
+    lines.map(|line| line.split(',').nth(place).unwrap().to_owned()).collect()
+}
+
+#[test]
+fn without_headless_it_says_what_to_write() {
+    refused(plain(""), &["--headless"]);
+    refused(plain("paper"), &["--headless"]);
+    for command in ["presets", "check", "curve", "simulate", "sweep"] {
+        refused(plain(command), &["--headless", command]);
+    }
+    refused(plain("--headless"), &["presets, check, curve, simulate or sweep"]);
+    refused(headless("swep"), &["`swep`", "sweep"]);
+    refused(headless("sweep --bogus"), &["--bogus"]);
+    refused(headless("simulate --plot a.png"), &["--plot"]);
+    refused(plain("paper --headless sweep"), &["after"]);
+}
+
+#[test]
+fn help_and_version() {
+    plain("--version").assert().success().stdout(format!("interwell {}\n", env!("CARGO_PKG_VERSION")));
+    let all = ["presets", "check", "curve", "simulate", "sweep", "Examples", "Exit status"];
+    for word in all {
+        plain("--help").assert().success().stdout(contains(word));
+    }
+    for word in ["--out", "--set", "--tolerance", "--jobs", "--quiet", "--over"] {
+        headless("sweep --help").assert().success().stdout(contains(word));
+    }
+}
+
+#[test]
+fn presets_are_listed_a_line_each() {
+    let text = stdout("presets");
+    for name in ["paper", "nominal-cubic", "bouncing-ball", "elastic-box", "duffing"] {
+        assert_eq!(text.lines().filter(|line| line.starts_with(name)).count(), 1, "{name}");
+    }
+}
+
+#[test]
+fn presets_are_copied_out_and_work_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |more: &str| headless(&format!("presets --write {} {more}", folder.path().display()));
+    write("").assert().success();
+    assert!(folder.path().join("force_dl2.7.csv").is_file());
+    // Again: the same files are no reason to refuse.
+    write("").assert().success();
+    let paper = folder.path().join("paper.ron");
+    let line = format!("curve {} --at-mm 3", paper.display());
+    assert_eq!(stdout(&line), stdout("curve --at-mm 3"));
+
+    std::fs::write(&paper, "mine").unwrap();
+    refused(write(""), &["paper.ron", "--force"]);
+    assert_eq!(std::fs::read_to_string(&paper).unwrap(), "mine");
+    write("--force").assert().success();
+    assert_ne!(std::fs::read_to_string(&paper).unwrap(), "mine");
+    refused(headless("presets --write /no/such/folder"), &["/no/such/folder"]);
+}
+
+#[test]
+fn check_says_what_is_modelled() {
+    let text = stdout("check");
+    for word in ["paper", "left out", "force curve", "k = ", "c = ", "equilibrium", "barrier"] {
+        assert!(text.contains(word), "`{word}` is not in: {text}");
+    }
+    // All are reported, and one that is wrong makes it fail.
+    let check = headless("check elastic-box no-such-scene duffing also-none").assert().code(2);
+    let check = check.stdout(contains("elastic-box").and(contains("duffing")));
+    check.stderr(contains("no-such-scene").and(contains("also-none")));
+    refused(headless("check --set stops.restitution=1.2"), &["stops.restitution", "1.2"]);
+}
+
+#[test]
+fn curve_rows_and_columns() {
+    let text = stdout("curve --at-mm -3,0,3");
+    assert_eq!(text.lines().next().unwrap(), "x_m,force_n,potential_j,stiffness_n_per_m");
+    assert_eq!(column(&text, "x_m"), ["-0.003", "0", "0.003"].map(short_form));
+    let force = column(&text, "force_n");
+    assert_eq!(format!("-{}", force[0]), force[2]);
+    assert_eq!(column(&text, "potential_j")[1], "0");
+
+    let text = stdout("curve --range-mm -8:8 --points 401");
+    let x = column(&text, "x_m");
+    assert_eq!((x.len(), &x[0][..], &x[200][..], &x[201][..]), (401, "-8e-3", "0", "4e-5"));
+    assert_eq!(column(&stdout("curve duffing"), "x_m").len(), 401);
+    assert_eq!(column(&stdout("curve paper --points 5"), "x_m").len(), 5);
+    refused(headless("curve --at-mm 9"), &["9 mm", "-8 to 8 mm"]);
+    for bad in ["--at-mm nan", "--at-mm x", "--at-mm ,", "--range-mm 3:-3", "--range-mm 3", "--points 1"] {
+        refused(headless(&format!("curve {bad}")), &[]);
+    }
+    refused(headless("curve --at-mm 3 --points 4"), &["--points"]);
+}
+
+fn short_form(text: &str) -> String {
+    let mut short = String::new();
+    interwell::output::push_number(&mut short, text.parse().unwrap());
+    short
+}
+
+#[test]
+fn landscape_of_a_double_well() {
+    let text = stdout("curve nominal-cubic --landscape - --out /dev/null");
+    let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let equilibria = value["equilibria"].as_array().unwrap();
+    assert_eq!(equilibria.len(), 3);
+    let right = &equilibria[2];
+    assert!((right["x_m"].as_f64().unwrap() - 0.007).abs() < 1e-12);
+    assert!((right["frequency_hz"].as_f64().unwrap() - 11.546).abs() < 1e-3);
+    assert!(equilibria[1]["frequency_hz"].is_null() && equilibria[1]["stable"] == false);
+    assert!((value["barrier"]["height_j"].as_f64().unwrap() - 4.9e-4).abs() < 1e-9);
+    assert_eq!(value["force_extrema"].as_array().unwrap().len(), 2);
+    assert!(value["kinks"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn simulate_samples() {
+    let text = stdout("simulate elastic-box --dt 0.1 --set run.duration_s=1");
+    assert_eq!(text.lines().next().unwrap(), "t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase");
+    let t = ["0", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "1"];
+    assert_eq!(column(&text, "t_s"), t);
+    // 0.05 m/s from the middle: at the wall, and already on the way back, after 0.2 s.
+    assert_eq!(column(&text, "v_m_per_s")[1..3], ["0.05", "-0.05"]);
+    let text = stdout("simulate elastic-box --at 0.3,0,0.1");
+    assert_eq!(column(&text, "t_s"), ["0.3", "0", "0.1"]);
+    let text = stdout("simulate --set run.duration_s=1 --set run.settle_s=0");
+    assert_eq!(column(&text, "t_s").len(), 181);
+    assert_eq!(column(&text, "phase")[0], "right_stop");
+    assert_eq!(column(&stdout("simulate bouncing-ball"), "t_s").len(), 1001);
+    for bad in ["--at 10.1", "--at -1", "--at nan", "--at 1,,2", "--dt 0", "--dt -1", "--dt x", "--dt nan"] {
+        refused(headless(&format!("simulate {bad}")), &[]);
+    }
+    refused(headless("simulate --dt 1e-9"), &["10000000001", "--dt"]);
+    refused(headless("simulate --at 1 --dt 1"), &["--dt"]);
+}
+
+#[test]
+fn simulate_events_and_summary() {
+    let folder = tempfile::tempdir().unwrap();
+    let (events, summary) = (folder.path().join("e.csv"), folder.path().join("s.json"));
+    let line = "simulate bouncing-ball --out /dev/null --set mass_g=500 --tolerance 1e-10";
+    headless(line).arg("--events").arg(&events).arg("--summary").arg(&summary).assert().success();
+    let events = std::fs::read_to_string(events).unwrap();
+    assert_eq!(events.lines().next().unwrap(), "t_s,kind,side,v_in_m_per_s,v_out_m_per_s");
+    assert_eq!(column(&events, "kind")[0], "impact");
+    let rest = events.lines().find(|line| line.contains(",rest,")).unwrap();
+    assert!(rest.ends_with(",rest,left,0,0"), "{rest}");
+
+    let value = json(&summary);
+    let keys: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
+    let expected = "final_x_m final_v_m_per_s rms_velocity_m_per_s regime crossings impacts releases max_abs_x_m \
+        travel_m impact_share rested_share total_crossings total_impacts chatter_sums rests period outcome steps \
+        evaluations cpu_s ledger energy_residual scene version";
+    assert_eq!(keys.join(" "), expected);
+    assert_eq!(value["outcome"], "done");
+    assert_eq!(value["scene"]["mass_g"], 500.0);
+    assert_eq!(value["scene"]["run"]["tolerance"], 1e-10);
+    let ledger = value["ledger"].as_object().unwrap().keys().map(String::as_str).collect::<Vec<_>>();
+    assert_eq!(ledger.join(" "), "work_j damping_j impact_j stored_j residual_j");
+    assert!(value["energy_residual"].as_f64().unwrap() < 1e-9);
+}
+
+fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+#[test]
+fn a_run_that_ends_early_writes_what_it_has() {
+    // Without stops and shaken hard, the mass leaves the table.
+    let line =
+        "simulate --set stops=None --set excitation.amplitude_g=40 --summary - --out /dev/null --quiet";
+    let assert = headless(line).assert().success().stderr(contains("left_table"));
+    let value: serde_json::Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+    assert_eq!(value["outcome"], "left_table");
+    let end = value["ended_at_s"].as_f64().unwrap();
+    let samples = stdout("simulate --set stops=None --set excitation.amplitude_g=40 --dt 1e-3");
+    let last: f64 = column(&samples, "t_s").last().unwrap().parse().unwrap();
+    assert!(last <= end && end < last + 2e-3, "{last} {end}");
+    let row = "sweep --set stops=None --over excitation.amplitude_g=0,40";
+    let rows = stdout(row);
+    assert_eq!(column(&rows, "outcome"), ["done", "left_table"]);
+}
+
+#[test]
+fn sweep_rows_and_columns() {
+    let line = "sweep --over stops.travel_limit_mm=1:2:0.5 --over excitation.amplitude_g=0.58,0 --quiet";
+    let text = stdout(line);
+    let header = "travel_limit_mm,amplitude_g,rms_velocity_m_per_s,regime,crossings,impacts,max_abs_x_m,period,outcome";
+    assert_eq!(text.lines().next().unwrap(), header);
+    assert_eq!(column(&text, "travel_limit_mm"), ["1", "1", "1.5", "1.5", "2", "2"]);
+    assert_eq!(column(&text, "amplitude_g"), ["0.58", "0", "0.58", "0", "0.58", "0"]);
+    assert_eq!(column(&text, "regime"), ["interwell", "rest", "rest", "rest", "rest", "rest"]);
+    assert!(column(&text, "outcome").iter().all(|outcome| outcome == "done"));
+    headless(line).assert().stderr("");
+
+    for jobs in ["1", "2", "3"] {
+        assert_eq!(stdout(&format!("{line} --jobs {jobs}")), text, "--jobs {jobs}");
+    }
+    // A swept mechanism: each row is what the scene alone gives.
+    let two = stdout("sweep nominal-cubic --over mechanism.linear_n_per_m=-40,-30 --over mass_g=15,16");
+    let alone = stdout("sweep nominal-cubic --set mechanism.linear_n_per_m=-30 --over mass_g=16");
+    assert_eq!(column(&two, "rms_velocity_m_per_s")[3..], column(&alone, "rms_velocity_m_per_s"));
+}
+
+#[test]
+fn the_scenes_own_sweep_is_the_map() {
+    let line = "sweep paper --set run.duration_s=0.5 --set run.settle_s=0 --tolerance 1e-3 --quiet";
+    let text = stdout(line);
+    assert!(text.starts_with("travel_limit_mm,amplitude_g,"));
+    assert!(text.lines().count() > 1000);
+}
+
+#[test]
+fn sweeps_that_cannot_be_are_refused() {
+    refused(headless("sweep elastic-box"), &["--over"]);
+    let many = "sweep --over mass_g=1:1000000:1 --over stops.travel_limit_mm=1:1000000:1";
+    refused(headless(many), &["1000000000000", "cells"]);
+    refused(headless("sweep --over mass_g=1:1e12:1"), &["1000000000000"]);
+    refused(headless("sweep --over stops.restitution=0:1.2:0.4"), &["stops.restitution", "1.2"]);
+    refused(headless("sweep --over stops.travel_limit_mm=2:1:0.5"), &["stops.travel_limit_mm"]);
+    refused(headless("sweep --over stops.travel_limit_mm=1:2:0"), &["stops.travel_limit_mm"]);
+    refused(headless("sweep --over stops.none=1:2:1"), &["stops.none", "stops.travel_limit_mm"]);
+    refused(headless("sweep --over mass_g=1,2 --over mass_g=1,2"), &["mass_g"]);
+    refused(headless("sweep --over mass_g=1,2 --jobs 0"), &["--jobs"]);
+    // A cell that has no place to rest, in the middle of a grid that is valid at its corners.
+    let start = "sweep nominal-cubic --over mechanism.linear_n_per_m=-40,40 --over mechanism.cubic_n_per_m3=1e5,-1e5,1e6";
+    refused(headless(start), &["linear_n_per_m = -40", "cubic_n_per_m3 = -100000"]);
+}
+
+#[test]
+fn options_stand_anywhere_and_values_may_be_negative() {
+    let right = stdout("curve paper --at-mm -1 --quiet");
+    for line in
+        ["--quiet curve --at-mm -1", "curve --at-mm=-1 paper --quiet", "curve --quiet --at-mm -1 paper"]
+    {
+        if line.starts_with("curve") {
+            assert_eq!(stdout(line), right);
+        }
+    }
+    let mut after = plain("curve --at-mm -1 --headless");
+    after.assert().success().stdout(right);
+    let shifted = "simulate elastic-box --set start.x_mm=-3 --at 0";
+    headless(shifted).assert().success().stdout(contains("\n0,-0.003,").or(contains("\n0,-3e-3,")));
+    headless("presets --out -").assert().success().stdout(starts_with("paper"));
+}

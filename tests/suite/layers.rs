@@ -1,1 +1,138 @@
-//! layers
+//! Does each layer use only what stands to its left, and does the physics build without a window?
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A folder may name those before it, nothing after it. `cli` and `app` stand side by side.
+const ORDER: [&str; 8] = ["numeric", "scene", "mechanics", "dynamics", "study", "output", "cli", "app"];
+
+fn allowed(layer: &str, used: &str) -> bool {
+    let place = |name: &str| ORDER.iter().position(|own| *own == name);
+    match (place(layer), place(used)) {
+        _ if layer == used => true,
+        _ if ["cli", "app"].contains(&layer) && ["cli", "app"].contains(&used) => false,
+        (Some(layer), Some(used)) => used < layer,
+        _ => false,
+    }
+}
+
+/// The layers that a source text names by `crate::` or, in the binary, by `interwell::`, with lines.
+/// Comments do not count: documentation may point anywhere.
+fn uses(text: &str) -> Vec<(usize, String)> {
+    let mut found = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        let code = line.split("//").next().unwrap_or_default();
+        for root in ["crate::", "interwell::"] {
+            for (at, _) in code.match_indices(root) {
+                let before = code[..at].chars().next_back();
+                if before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == '$') {
+                    continue;
+                }
+                let rest = &code[at + root.len()..];
+                let names = rest.strip_prefix('{').map_or_else(
+                    || vec![rest],
+                    |group| group.split('}').next().unwrap_or_default().split(',').collect(),
+                );
+                for name in names {
+                    let word: String = name
+                        .trim_start()
+                        .chars()
+                        .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
+                        .collect();
+                    found.push((i + 1, word));
+                }
+            }
+        }
+    }
+    found
+}
+
+fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, into);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            into.push(path);
+        }
+    }
+}
+
+#[test]
+fn each_layer_uses_only_what_stands_to_its_left() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut checked = 0;
+    let mut wrong = Vec::new();
+    for layer in ORDER {
+        let mut files = Vec::new();
+        let single = src.join(format!("{layer}.rs"));
+        if single.is_file() {
+            files.push(single);
+        }
+        if src.join(layer).is_dir() {
+            sources(&src.join(layer), &mut files);
+        }
+        for file in files {
+            checked += 1;
+            let text = fs::read_to_string(&file).unwrap();
+            for (line, used) in uses(&text) {
+                if ORDER.contains(&used.as_str()) && !allowed(layer, &used) {
+                    wrong.push(format!("{}:{line}: {layer} uses {used}", file.display()));
+                }
+            }
+        }
+    }
+    assert!(checked > 20, "only {checked} files found in {}", src.display());
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_folder_is_a_known_layer() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    for entry in fs::read_dir(src).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        assert!(
+            ORDER.contains(&name.as_str()) || ["lib", "main"].contains(&name.as_str()),
+            "{} is in no layer: give it a place in the order",
+            path.display()
+        );
+    }
+}
+
+#[test]
+fn the_reader_of_uses_sees_them() {
+    let text = "use crate::{scene::Scene, output};\n// crate::app\nlet x = crate::numeric::f(); $crate::cli";
+    let found = uses(text);
+    let names: Vec<&str> = found.iter().map(|(_, name)| name.as_str()).collect();
+    assert_eq!(names, ["scene", "output", "numeric"]);
+    assert!(allowed("study", "dynamics") && !allowed("dynamics", "study") && !allowed("cli", "app"));
+}
+
+#[test]
+fn without_the_window_nothing_of_it_is_built() {
+    let tree = Command::new(env!("CARGO"))
+        .args([
+            "tree",
+            "--offline",
+            "--locked",
+            "--no-default-features",
+            "-e",
+            "normal,build",
+            "--prefix",
+            "none",
+        ])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    assert!(tree.status.success(), "{}", String::from_utf8_lossy(&tree.stderr));
+    let tree = String::from_utf8_lossy(&tree.stdout).into_owned();
+    assert!(tree.starts_with("interwell"), "{tree}");
+    for line in tree.lines() {
+        let name = line.split(' ').next().unwrap_or_default();
+        let window =
+            ["egui", "eframe", "winit", "wgpu", "glow"].iter().any(|crate_| name.starts_with(crate_));
+        assert!(!window, "`{line}` is built without the window");
+    }
+}

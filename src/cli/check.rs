@@ -1,0 +1,44 @@
+//! `check`: is this scene right, and what does it model?
+
+use interwell::study::inspect;
+
+use super::failure::Failure;
+use super::options::{CheckOptions, Common};
+use super::say;
+use super::support::{finish, load, mechanism, open, write_text};
+use interwell::scene::SceneError;
+
+/// Reports every scene; the ones that are wrong on standard error, after which the command has failed.
+pub fn run(options: &CheckOptions) -> Result<(), Failure> {
+    let paper = ["paper".to_owned()];
+    let scenes = if options.scenes.is_empty() { &paper[..] } else { &options.scenes[..] };
+    let first = scenes.first().map_or("", String::as_str);
+    let mut sinks = open(first, [Some(("--out", &options.common.out))])?;
+    let mut wrong = Vec::new();
+    for spec in scenes {
+        match report(spec, &options.common) {
+            Ok(text) => write_text(&mut sinks[0], &text)?,
+            Err(error) => wrong.push(error),
+        }
+    }
+    finish(sinks)?;
+    match wrong.pop() {
+        None => Ok(()),
+        // The last one is printed by whoever prints the failure.
+        Some(last) => {
+            wrong.iter().for_each(|error| say(&format!("error: {error}")));
+            Err(last.into())
+        }
+    }
+}
+
+fn report(spec: &str, common: &Common) -> Result<String, SceneError> {
+    let (document, warnings) = load(spec, common)?;
+    let mechanism = mechanism(&document)?;
+    let lines = inspect(&document.scene, &mechanism).map_err(|faults| document.error_from(faults))?;
+    let mut text = format!("{}: {}\n", document.name, document.scene.title);
+    lines.iter().for_each(|line| text += &format!("  {line}\n"));
+    let fit = mechanism.curve.fit().into_iter().flat_map(|fit| &fit.warnings);
+    warnings.iter().chain(fit).for_each(|warning| text += &format!("  warning: {warning}\n"));
+    Ok(text)
+}

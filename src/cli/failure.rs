@@ -1,0 +1,75 @@
+//! Which exit status does an error have, and what is printed of it?
+
+use std::fmt;
+use std::process::ExitCode;
+
+use interwell::output::OpenError;
+use interwell::scene::{ArgumentError, SceneError};
+use interwell::study::{CellFaults, GridError, OutsideCurve, TimesError};
+
+/// An error of a command, by whose fault it is.
+#[derive(Debug)]
+pub enum Failure {
+    /// The arguments or the scene are wrong, or a folder is missing: status 2.
+    Wrong(anyhow::Error),
+    /// The run or the writing failed: status 1.
+    Failed(anyhow::Error),
+}
+
+impl Failure {
+    /// An argument that is wrong, with what would be right.
+    pub fn argument(message: impl fmt::Display) -> Self {
+        Self::Wrong(anyhow::anyhow!("{message}"))
+    }
+
+    /// What is said where Ctrl-C, or another request to end, came first.
+    pub fn interrupted() -> Self {
+        Self::Failed(anyhow::anyhow!("interrupted: no output file was made or changed"))
+    }
+
+    /// What is said where `name` cannot be written to.
+    pub fn writing(name: &str, error: std::io::Error) -> Self {
+        Self::Failed(anyhow::anyhow!("cannot write {name}: {error}"))
+    }
+
+    /// The exit status.
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Wrong(_) => ExitCode::from(2),
+            Self::Failed(_) => ExitCode::from(1),
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::Wrong(error) | Self::Failed(error)) = self;
+        write!(f, "{error:#}")
+    }
+}
+
+macro_rules! arguments_are_wrong {
+    ($($error:ty),*) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::Wrong(error.into())
+            }
+        }
+    )*};
+}
+
+arguments_are_wrong!(SceneError, ArgumentError, GridError, TimesError, OutsideCurve);
+
+impl From<OpenError> for Failure {
+    fn from(error: OpenError) -> Self {
+        match error {
+            OpenError::MissingFolder { .. } | OpenError::IsFolder(_) => Self::Wrong(error.into()),
+            OpenError::Refused { .. } => Self::Failed(error.into()),
+        }
+    }
+}
+
+/// What is said of a sweep's first wrong cell; `error` has its faults, with their places.
+pub fn wrong_cell(cell: &CellFaults, error: SceneError) -> Failure {
+    Failure::Wrong(anyhow::anyhow!("in the cell {}:\n{error}", cell.cell))
+}

@@ -1,0 +1,77 @@
+//! The command line: arguments in, a study asked, its table written. Nothing is computed here.
+
+mod check;
+mod curve;
+mod failure;
+mod interrupt;
+mod options;
+mod presets;
+mod simulate;
+mod support;
+mod sweep;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+
+pub use failure::Failure;
+pub use options::{Command, Options};
+
+/// Reads the arguments; an `Err` is the exit status after help or an error has been printed.
+pub fn parse() -> Result<Options, ExitCode> {
+    Options::try_parse().map_err(|error| match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            let _ = error.print();
+            ExitCode::SUCCESS
+        }
+        _ => {
+            // The first lines name argument, value and remedy; usage and hints would bury them.
+            let text = error.render().to_string();
+            let parts = text.split("\n\n").filter(|part| !part.trim_start().starts_with("Usage:"));
+            let lines = parts.flat_map(str::lines).map(str::trim);
+            let hint = |line: &str| line.starts_with("tip: to pass") || line.starts_with("For more");
+            let lines: Vec<&str> = lines.filter(|line| !line.is_empty() && !hint(line)).collect();
+            say(&lines.join("\n"));
+            ExitCode::from(2)
+        }
+    })
+}
+
+/// Does what was asked for.
+pub fn run(options: Options) -> Result<(), Failure> {
+    let Options { headless, scene, command } = options;
+    let commands = "presets, check, curve, simulate or sweep";
+    match (command, headless, scene) {
+        (Some(_), _, Some(scene)) => {
+            Err(Failure::argument(format!("`{scene}` stands before the command: put the scene after it")))
+        }
+        (Some(command), false, None) => {
+            let name = command.name();
+            let remedy = format!("`{name}` works without a window: write interwell --headless {name}");
+            Err(Failure::argument(remedy))
+        }
+        (Some(command), true, None) => match command {
+            Command::Presets(options) => presets::run(&options),
+            Command::Check(options) => check::run(&options),
+            Command::Curve(options) => curve::run(&options),
+            Command::Simulate(options) => simulate::run(&options),
+            Command::Sweep(options) => sweep::run(&options),
+        },
+        (None, true, None) => Err(Failure::argument(format!(
+            "--headless needs a command: {commands}, such as interwell --headless simulate paper; see interwell --help"
+        ))),
+        (None, true, Some(word)) => Err(Failure::argument(format!(
+            "--headless needs a command before `{word}`: {commands}; see interwell --help"
+        ))),
+        (None, false, _) => Err(Failure::argument(format!(
+            "this build has no window: use interwell --headless with {commands}; see interwell --help"
+        ))),
+    }
+}
+
+/// Prints a line on standard error; where that is closed there is no one to tell.
+pub fn say(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}

@@ -1,0 +1,187 @@
+//! What can be asked for on the command line? The text of `--help` is here.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless presets
+  interwell --headless check my-scene.ron
+  interwell --headless simulate --set stops.travel_limit_mm=2 --out run.csv --summary run.json
+  interwell --headless simulate elastic-box --at 0,0.5,1 --events -  --out /dev/null
+  interwell --headless sweep --out map.csv
+  interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
+
+A scene is a .ron file or the name of a built-in one; `presets --write DIR` copies those out.
+Exit status: 0 done; 1 the run or the writing failed; 2 the arguments or the scene are wrong.";
+
+/// Bistable mechanisms with hard travel limits: see and compute how stops start interwell motion.
+#[derive(Debug, Parser)]
+#[command(name = "interwell", version, after_help = EXAMPLES, disable_help_subcommand = true)]
+pub struct Options {
+    /// Work without a window: needed before or after every command
+    #[arg(long, global = true)]
+    pub headless: bool,
+
+    /// Scene to open in the window
+    #[arg(value_name = "SCENE")]
+    pub scene: Option<String>,
+
+    /// What to compute
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// A command of `--headless`.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// List the built-in scenes, or copy them out
+    Presets(PresetsOptions),
+    /// Validate scenes; print what each models, and how accurate its force curve is
+    Check(CheckOptions),
+    /// Force, potential and stiffness of the mechanism as CSV
+    Curve(CurveOptions),
+    /// Run a scene once: samples as CSV
+    Simulate(SimulateOptions),
+    /// Run a grid of scenes: CSV with a row for each cell
+    Sweep(SweepOptions),
+}
+
+impl Command {
+    /// The word that selects it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Presets(_) => "presets",
+            Self::Check(_) => "check",
+            Self::Curve(_) => "curve",
+            Self::Simulate(_) => "simulate",
+            Self::Sweep(_) => "sweep",
+        }
+    }
+}
+
+/// What every command takes.
+#[derive(Debug, Args)]
+pub struct Common {
+    /// Where the data goes; `-` is standard output
+    #[arg(long, value_name = "FILE", default_value = "-", allow_hyphen_values = true)]
+    pub out: PathBuf,
+
+    /// Change a field of the scene, such as stops.travel_limit_mm=2 or stops=None (repeatable)
+    #[arg(long, value_name = "FIELD=VALUE", allow_hyphen_values = true)]
+    pub set: Vec<String>,
+
+    /// Local error allowed, 1e-14 to 1e-3; replaces the scene's run.tolerance
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    pub tolerance: Option<String>,
+
+    /// Threads to use [default: one per core]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: Option<u16>,
+
+    /// Say nothing on standard error but errors
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// `presets`.
+#[derive(Debug, Args)]
+pub struct PresetsOptions {
+    /// Copy the scenes and their tables into this folder
+    #[arg(long, value_name = "DIR")]
+    pub write: Option<PathBuf>,
+
+    /// With --write: replace files that are there and differ
+    #[arg(long, requires = "write")]
+    pub force: bool,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `check`.
+#[derive(Debug, Args)]
+pub struct CheckOptions {
+    /// Scene files or built-in scenes [default: paper]
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<String>,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `curve`.
+#[derive(Debug, Args)]
+pub struct CurveOptions {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// From A to B in mm [default: a little beyond equilibria and stops]
+    #[arg(long, value_name = "A:B", allow_hyphen_values = true, conflicts_with = "at_mm")]
+    pub range_mm: Option<String>,
+
+    /// Number of rows over the range [default: 401]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "at_mm",
+          value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
+    pub points: Option<u32>,
+
+    /// At these positions in mm, in this order
+    #[arg(long, value_name = "X1,X2,..", allow_hyphen_values = true)]
+    pub at_mm: Option<String>,
+
+    /// Write equilibria, barrier, force extrema and kinks as JSON
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub landscape: Option<PathBuf>,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `simulate`.
+#[derive(Debug, Args)]
+pub struct SimulateOptions {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// Time between samples in s [default: a 60th of the forcing period, else a thousandth of the duration]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, conflicts_with = "at")]
+    pub dt: Option<String>,
+
+    /// Sample at these times in s, in this order
+    #[arg(long, value_name = "T1,T2,..", allow_hyphen_values = true)]
+    pub at: Option<String>,
+
+    /// Write impacts, rests, releases and crossings as CSV
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub events: Option<PathBuf>,
+
+    /// Write statistics, outcome and energy ledger as JSON
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub summary: Option<PathBuf>,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `sweep`.
+#[derive(Debug, Args)]
+pub struct SweepOptions {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// Sweep a field; replaces the scene's own sweep (repeatable, the first is the slowest)
+    #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
+    pub over: Vec<String>,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}

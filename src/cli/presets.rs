@@ -1,0 +1,62 @@
+//! `presets`: which scenes are built in, and where can one have them as files?
+
+use std::fs;
+use std::path::Path;
+
+use interwell::output::Sink;
+use interwell::scene::{PRESETS, export};
+
+use super::failure::Failure;
+use super::options::PresetsOptions;
+use super::support::{finish, open, write_text};
+
+/// Lists the built-in scenes, a line each, or writes them into a folder and lists the files.
+pub fn run(options: &PresetsOptions) -> Result<(), Failure> {
+    let mut sinks = open("", [Some(("--out", &options.common.out))])?;
+    let text = match &options.write {
+        Some(folder) => write(folder, options.force)?,
+        None => {
+            let width = PRESETS.iter().map(|preset| preset.name.len()).max().unwrap_or(0);
+            PRESETS.iter().map(|preset| format!("{:width$}  {}\n", preset.name, preset.summary)).collect()
+        }
+    };
+    write_text(&mut sinks[0], &text)?;
+    finish(sinks)
+}
+
+/// Writes scenes and tables into `folder`, all or, where a file of that name differs, none.
+fn write(folder: &Path, force: bool) -> Result<String, Failure> {
+    if !folder.is_dir() {
+        let folder = folder.display();
+        return Err(Failure::argument(format!("--write {folder}: there is no such folder; make it first")));
+    }
+    let files = export();
+    let differs = |name: &str, text: &str| {
+        let path = folder.join(name);
+        path.exists() && fs::read(path).ok().as_deref() != Some(text.as_bytes())
+    };
+    let differing: Vec<&str> =
+        files.iter().filter(|(name, text)| differs(name, text)).map(|(name, _)| name.as_str()).collect();
+    if !differing.is_empty() && !force {
+        let message = format!(
+            "--write {}: {} there and not as built in; nothing was written: choose another folder, or \
+             replace with --force",
+            folder.display(),
+            match differing[..] {
+                [one] => format!("{one} is"),
+                _ => format!("{} are", differing.join(", ")),
+            }
+        );
+        return Err(Failure::argument(message));
+    }
+    let mut written = String::new();
+    for (name, text) in &files {
+        let path = folder.join(name);
+        let mut sink = Sink::open(&path)?;
+        sink.put(text)
+            .and_then(|()| sink.finish())
+            .map_err(|e| Failure::writing(&path.display().to_string(), e))?;
+        written += &format!("{}\n", path.display());
+    }
+    Ok(written)
+}

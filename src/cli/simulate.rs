@@ -1,0 +1,60 @@
+//! `simulate`: one run.
+
+use interwell::dynamics::{Model, Outcome};
+use interwell::output::summary;
+use interwell::study::{Keep, Sampling, sample_times, simulate};
+
+use super::failure::Failure;
+use super::options::SimulateOptions;
+use super::support::{finish, load_with_mechanism, numbers, open, write_table, write_text};
+use super::{interrupt, say};
+
+/// Runs the scene and writes samples, events and summary.
+pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
+    let common = &options.common;
+    let sampling = match (&options.at, &options.dt) {
+        (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
+        (None, Some(text)) => {
+            let wrong =
+                || Failure::argument(format!("--dt {text}: not a number; give seconds, such as 0.01"));
+            Sampling::Every(text.trim().parse().map_err(|_| wrong())?)
+        }
+        (None, None) => Sampling::Default,
+    };
+    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
+    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
+    let times = sample_times(&document.scene, &model, &sampling)?;
+    let events = options.events.as_deref().map(|path| ("--events", path));
+    let summary_path = options.summary.as_deref().map(|path| ("--summary", path));
+    let mut sinks = open(&options.scene, [Some(("--out", &common.out)), events, summary_path])?;
+
+    let cancel = interrupt::listen();
+    let keep = Keep { times, events: events.is_some() };
+    let simulation = simulate(&model, &keep, Some(cancel));
+    if interrupt::came() {
+        return Err(Failure::interrupted());
+    }
+    let [samples, events, about] = &mut sinks;
+    write_table(samples, &simulation.samples)?;
+    write_table(events, &simulation.events)?;
+    write_text(about, &summary(&simulation.summary, &document.scene, env!("CARGO_PKG_VERSION")))?;
+    finish(sinks)?;
+    if let Some(reason) = early_end(simulation.summary.outcome) {
+        say(&format!("{}: {reason}", document.name));
+    }
+    Ok(())
+}
+
+/// Why a run ended before its duration; none where it did not.
+fn early_end(outcome: Outcome) -> Option<String> {
+    let at = outcome.ended_at()?;
+    let reason = match outcome {
+        Outcome::Done => return None,
+        Outcome::LeftTable { .. } => "the mass left the range of the force curve".to_owned(),
+        Outcome::ImpactBudget { count, .. } => format!("{count} impacts are all that one run may make"),
+        Outcome::StepBudget { count, .. } => format!("{count} steps are all that one run may take"),
+        Outcome::NotFinite { .. } => "a number was no longer finite".to_owned(),
+        Outcome::Cancelled { .. } => "it was told to stop".to_owned(),
+    };
+    Some(format!("the run ended early at t = {at} s ({}): {reason}", outcome.name()))
+}

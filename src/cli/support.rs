@@ -1,0 +1,117 @@
+//! What several commands need: the scene as arguments changed it, its mechanism, lists of numbers, outputs.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use interwell::mechanics::Mechanism;
+use interwell::output::{Sink, header, rows, same_target};
+use interwell::scene::{Document, SceneError};
+use interwell::study::Table;
+
+use super::failure::Failure;
+use super::options::Common;
+use super::{interrupt, say};
+
+/// Rows that are turned into text at a time.
+const ROWS: usize = 1 << 15;
+
+/// The scene called `spec` with `--set` and `--tolerance` applied and checked, and its warnings.
+pub fn load(spec: &str, common: &Common) -> Result<(Document, Vec<String>), SceneError> {
+    let mut document = Document::load(spec)?;
+    for argument in &common.set {
+        document.set(argument)?;
+    }
+    if let Some(tolerance) = &common.tolerance {
+        document.assign("run.tolerance", tolerance, &format!("--tolerance {tolerance}"))?;
+    }
+    let warnings = document.check()?;
+    Ok((document, warnings))
+}
+
+/// The scene's mechanism.
+pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, SceneError> {
+    let built = Mechanism::build(&document.scene.mechanism, &document.files);
+    built.map(Arc::new).map_err(|fault| document.error_from(vec![fault]))
+}
+
+/// Loads the scene and its mechanism and prints the warnings of both.
+pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc<Mechanism>), Failure> {
+    let (document, mut warnings) = load(spec, common)?;
+    let mechanism = mechanism(&document)?;
+    let fit = mechanism.curve.fit().into_iter().flat_map(|fit| &fit.warnings);
+    warnings.extend(fit.map(|warning| format!("{}: {warning}", document.name)));
+    if !common.quiet {
+        warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+    }
+    Ok((document, mechanism))
+}
+
+/// The numbers of `A,B,C` as given to `option`; NaN and infinities pass, for their reader to judge.
+pub fn numbers(option: &str, text: &str, separator: char) -> Result<Vec<f64>, Failure> {
+    let number = |part: &str| {
+        let wrong = || Failure::argument(format!("{option} {text}: `{part}` is not a number"));
+        part.trim().parse().map_err(|_| wrong())
+    };
+    text.split(separator).map(number).collect()
+}
+
+/// Opens the outputs, each given with its option, before any work is done for them. None may be the
+/// scene's own file, and no two the same.
+pub fn open<const N: usize>(
+    scene: &str,
+    outputs: [Option<(&str, &Path)>; N],
+) -> Result<[Option<Sink>; N], Failure> {
+    let scene_file = std::fs::canonicalize(scene).ok();
+    let mut sinks = [const { None::<Sink> }; N];
+    for (i, output) in outputs.iter().enumerate() {
+        let Some((option, path)) = output else { continue };
+        if scene_file.is_some() && std::fs::canonicalize(path).ok() == scene_file {
+            let path = path.display();
+            return Err(Failure::argument(format!(
+                "{option} {path} would overwrite the scene: name another file"
+            )));
+        }
+        let sink = Sink::open(path)?;
+        for (j, earlier) in sinks[..i].iter().enumerate() {
+            let clash = earlier.as_ref().filter(|earlier| same_target(earlier, &sink)).and(outputs[j]);
+            if let Some((first, _)) = clash {
+                let name = sink.name();
+                let message = format!("{first} and {option} both go to {name}: give each a place of its own");
+                return Err(Failure::argument(message));
+            }
+        }
+        sinks[i] = Some(sink);
+    }
+    Ok(sinks)
+}
+
+/// Writes header and rows of `table`, where `sink` was asked for.
+pub fn write_table(sink: &mut Option<Sink>, table: &Table) -> Result<(), Failure> {
+    write_text(sink, &header(table))?;
+    for begin in (0..table.rows()).step_by(ROWS) {
+        if interrupt::came() {
+            return Err(Failure::interrupted());
+        }
+        write_text(sink, &rows(table, begin..begin + ROWS))?;
+    }
+    Ok(())
+}
+
+/// Writes text, where `sink` was asked for.
+pub fn write_text(sink: &mut Option<Sink>, text: &str) -> Result<(), Failure> {
+    let Some(sink) = sink else { return Ok(()) };
+    sink.put(text).map_err(|error| Failure::writing(sink.name(), error))
+}
+
+/// Writes out what is left of all outputs, then gives the files their names: either all of them
+/// appear or, where one cannot be written whole, none that was not there yet.
+pub fn finish<const N: usize>(mut sinks: [Option<Sink>; N]) -> Result<(), Failure> {
+    for sink in sinks.iter_mut().flatten() {
+        sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
+    }
+    for sink in sinks.into_iter().flatten() {
+        let name = sink.name().to_owned();
+        sink.finish().map_err(|error| Failure::writing(&name, error))?;
+    }
+    Ok(())
+}

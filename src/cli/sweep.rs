@@ -1,0 +1,77 @@
+//! `sweep`: a grid of runs, a row a cell, with progress on standard error.
+
+use std::io::IsTerminal;
+use std::path::Path;
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use interwell::output::{header, rows};
+use interwell::scene::Document;
+use interwell::study::{Grid, Sweep, SweepEnd, Task};
+
+use super::failure::{Failure, wrong_cell};
+use super::options::SweepOptions;
+use super::support::{finish, load_with_mechanism, open, write_text};
+use super::{interrupt, say};
+
+/// Runs the grid and writes a row a cell.
+pub fn run(options: &SweepOptions) -> Result<(), Failure> {
+    let common = &options.common;
+    let (document, _) = load_with_mechanism(&options.scene, common)?;
+    let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
+    let threads = common.jobs.map_or_else(cores, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool =
+        pool.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot start {threads} threads: {error}")))?;
+    let mut sinks = open(&options.scene, [Some(("--out", &common.out))])?;
+
+    let bar = bar(sweep.grid().cells(), common.quiet, &common.out);
+    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
+    let begin = Instant::now();
+    let result = (|| {
+        sweep.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
+        write_text(&mut sinks[0], &header(&sweep.empty_table()))?;
+        let write = |table: &_| {
+            write_text(&mut sinks[0], &rows(table, 0..usize::MAX))?;
+            let Some(sink) = &mut sinks[0] else { return Ok(false) };
+            sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
+            Ok(!sink.is_closed())
+        };
+        sweep.run(&pool, &task, write).map_err(|end| match end {
+            SweepEnd::Cancelled => Failure::interrupted(),
+            SweepEnd::Write(failure) => failure,
+        })
+    })();
+    bar.finish_and_clear();
+    let tally = result?;
+    finish(sinks)?;
+    if !common.quiet {
+        let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
+        let early = match tally.ended_early {
+            0 => String::new(),
+            n => format!(", {n} ended early (see the column outcome)"),
+        };
+        say(&format!("{cells} in {:.2} s{early}", begin.elapsed().as_secs_f64()));
+    }
+    Ok(())
+}
+
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+fn located(document: &Document, cell: interwell::study::CellFaults) -> Failure {
+    let error = document.error_from(cell.faults.clone());
+    wrong_cell(&cell, error)
+}
+
+/// A bar with rate and time left, where standard error is a terminal that the rows do not go to too.
+fn bar(cells: u64, quiet: bool, out: &Path) -> ProgressBar {
+    let rows_on_terminal = out == Path::new("-") && std::io::stdout().is_terminal();
+    if quiet || rows_on_terminal || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style =
+        ProgressStyle::with_template("{wide_bar} {human_pos}/{human_len} cells  {per_sec}  {eta} left");
+    ProgressBar::new(cells).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

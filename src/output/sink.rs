@@ -1,0 +1,326 @@
+//! Where do the bytes go, and what is left there when something fails?
+//!
+//! A regular file is written beside its final name and renamed when whole, so that neither an error
+//! nor Ctrl-C leaves a half file or harms the one that was there. What is not a regular file (a
+//! device, a pipe, standard output) is written straight. A pipe that its reader has closed swallows
+//! the rest quietly: that is how `| head -1` ends.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+/// Why a place cannot be written to.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The folder of the file does not exist.
+    #[error("cannot write {}: there is no folder {}; make it first", path.display(), folder.display())]
+    MissingFolder {
+        /// The file asked for.
+        path: PathBuf,
+        /// The folder that is missing.
+        folder: PathBuf,
+    },
+    /// The path is a folder.
+    #[error("cannot write {}: it is a folder; name a file in it", .0.display())]
+    IsFolder(PathBuf),
+    /// The operating system refuses.
+    #[error("cannot write {}: {source}", path.display())]
+    Refused {
+        /// The file asked for.
+        path: PathBuf,
+        /// What it says.
+        source: io::Error,
+    },
+}
+
+/// An open output.
+#[derive(Debug)]
+pub struct Sink {
+    name: String,
+    kind: Kind,
+    identity: Identity,
+    buffer: Vec<u8>,
+    closed: bool,
+}
+
+#[derive(Debug)]
+enum Kind {
+    Stdout,
+    Straight(File),
+    Whole { part: NamedTempFile, target: PathBuf },
+}
+
+/// What two outputs must not share.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Identity {
+    stdout: bool,
+    path: Option<PathBuf>,
+    inode: Option<(u64, u64)>,
+}
+
+/// Bytes collected before they are handed to the operating system.
+const BUFFER: usize = 1 << 16;
+
+impl Sink {
+    /// Opens `path` for writing; `-` and the names that the system gives to standard output are
+    /// standard output. Nothing is changed at `path` until [`finish`](Self::finish), except where
+    /// it is not a regular file.
+    pub fn open(path: &Path) -> Result<Self, OpenError> {
+        let is_stdout =
+            ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|s| path == Path::new(s));
+        if is_stdout {
+            let identity = Identity { stdout: true, path: None, inode: stdout_inode() };
+            return Ok(Self::new("standard output".into(), Kind::Stdout, identity));
+        }
+        let refused = |source| OpenError::Refused { path: path.to_owned(), source };
+        let name = path.display().to_string();
+        let target = follow_links(path);
+        let there = match fs::metadata(&target) {
+            Ok(there) => Some(there),
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => None,
+            Err(error) => return Err(refused(error)),
+        };
+        if there.as_ref().is_some_and(fs::Metadata::is_dir)
+            || path.as_os_str().to_string_lossy().ends_with('/')
+        {
+            return Err(OpenError::IsFolder(path.to_owned()));
+        }
+        let descriptor =
+            path.starts_with("/dev/fd") || path.starts_with("/proc/self/fd") || path == "/dev/stderr";
+        if let Some(there) = there.as_ref().filter(|there| descriptor || !there.is_file()) {
+            // A shell's `3>file` is the shell's to empty, and what stands in it stays.
+            let mut open = fs::OpenOptions::new();
+            let file = open.write(true).append(descriptor).open(path).map_err(refused)?;
+            // Any number of outputs may go to a device such as /dev/null, but not to one pipe or file.
+            let shared = is_device(there);
+            let identity = Identity { stdout: false, path: None, inode: inode(there).filter(|_| !shared) };
+            return Ok(Self::new(name, Kind::Straight(file), identity));
+        }
+        let folder = match target.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        let Some(file_name) = target.file_name().filter(|_| !path.as_os_str().is_empty()) else {
+            return Err(OpenError::IsFolder(path.to_owned()));
+        };
+        let Ok(whole_folder) = folder.canonicalize() else {
+            return Err(OpenError::MissingFolder { path: path.to_owned(), folder });
+        };
+        if !whole_folder.is_dir() {
+            return Err(OpenError::MissingFolder { path: path.to_owned(), folder });
+        }
+        let target = whole_folder.join(file_name);
+        if there.is_some() {
+            // A rename would replace a write-protected file without asking.
+            fs::OpenOptions::new().write(true).open(&target).map_err(refused)?;
+        }
+        let part = create_part(&whole_folder, there.as_ref()).map_err(refused)?;
+        let identity =
+            Identity { stdout: false, path: Some(target.clone()), inode: there.as_ref().and_then(inode) };
+        Ok(Self::new(name, Kind::Whole { part, target }, identity))
+    }
+
+    fn new(name: String, kind: Kind, identity: Identity) -> Self {
+        Self { name, kind, identity, buffer: Vec::with_capacity(BUFFER), closed: false }
+    }
+
+    /// The path as it was asked for, or "standard output".
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Whether the reader of this pipe has gone: whatever is still written is thrown away.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Appends `text`, which may stay in memory until [`flush`](Self::flush).
+    pub fn put(&mut self, text: &str) -> io::Result<()> {
+        self.buffer.extend_from_slice(text.as_bytes());
+        if self.buffer.len() >= BUFFER { self.flush() } else { Ok(()) }
+    }
+
+    /// Hands everything to the operating system.
+    pub fn flush(&mut self) -> io::Result<()> {
+        if self.closed {
+            self.buffer.clear();
+            return Ok(());
+        }
+        let bytes = &self.buffer;
+        let result = match &mut self.kind {
+            Kind::Stdout => {
+                let mut stdout = io::stdout().lock();
+                stdout.write_all(bytes).and_then(|()| stdout.flush())
+            }
+            Kind::Straight(file) => file.write_all(bytes),
+            Kind::Whole { part, .. } => part.write_all(bytes),
+        };
+        self.buffer.clear();
+        match result {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => {
+                self.closed = true;
+                Ok(())
+            }
+            other => other,
+        }
+    }
+
+    /// Writes what is left and gives a regular file its name. A sink that is dropped without this
+    /// leaves nothing behind at a regular file's place.
+    pub fn finish(mut self) -> io::Result<()> {
+        self.flush()?;
+        match self.kind {
+            Kind::Whole { part, target } => part.persist(target).map(|_| ()).map_err(|error| error.error),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Whether two outputs would write over each other: both standard output, or one file by two names.
+pub fn same_target(a: &Sink, b: &Sink) -> bool {
+    let (a, b) = (&a.identity, &b.identity);
+    (a.stdout && b.stdout)
+        || (a.path.is_some() && a.path == b.path)
+        || (a.inode.is_some() && a.inode == b.inode)
+}
+
+/// The place that a chain of symbolic links ends at, whether something is there or not.
+fn follow_links(path: &Path) -> PathBuf {
+    let mut place = path.to_owned();
+    // Linux itself gives up after 40; a circle then shows as an error of the open.
+    for _ in 0..40 {
+        match fs::read_link(&place) {
+            Ok(to) => place = place.parent().map_or_else(|| to.clone(), |folder| folder.join(&to)),
+            Err(_) => break,
+        }
+    }
+    place
+}
+
+/// A new file in `folder` with the mode that a file created there would have, or that of the one
+/// it will replace.
+fn create_part(folder: &Path, replaces: Option<&fs::Metadata>) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".interwell-").suffix(".part");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let part = builder.tempfile_in(folder)?;
+    if let Some(there) = replaces {
+        part.as_file().set_permissions(there.permissions())?;
+    }
+    Ok(part)
+}
+
+#[cfg(unix)]
+fn inode(metadata: &fs::Metadata) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    Some((metadata.dev(), metadata.ino()))
+}
+
+#[cfg(unix)]
+fn is_device(metadata: &fs::Metadata) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    metadata.file_type().is_char_device()
+}
+
+/// The file that standard output was redirected to; none where it is a device.
+#[cfg(unix)]
+fn stdout_inode() -> Option<(u64, u64)> {
+    use std::os::fd::AsFd;
+    let file = File::from(io::stdout().as_fd().try_clone_to_owned().ok()?);
+    let metadata = file.metadata().ok()?;
+    inode(&metadata).filter(|_| !is_device(&metadata))
+}
+
+#[cfg(not(unix))]
+fn inode(_: &fs::Metadata) -> Option<(u64, u64)> {
+    None
+}
+
+#[cfg(not(unix))]
+fn is_device(_: &fs::Metadata) -> bool {
+    true
+}
+
+#[cfg(not(unix))]
+fn stdout_inode() -> Option<(u64, u64)> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_appears_when_it_is_whole_and_not_before() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.csv");
+        let mut sink = Sink::open(&path).unwrap();
+        sink.put("a\n").unwrap();
+        sink.flush().unwrap();
+        assert!(!path.exists());
+        drop(sink);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+
+        let mut sink = Sink::open(&path).unwrap();
+        sink.put("b\n").unwrap();
+        sink.finish().unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "b\n");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn modes_and_links_are_kept() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("new.csv");
+        let plain = folder.path().join("plain");
+        fs::write(&plain, "").unwrap();
+        Sink::open(&path).unwrap().finish().unwrap();
+        let mode = |p: &Path| fs::metadata(p).unwrap().permissions().mode();
+        assert_eq!(mode(&path), mode(&plain));
+
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
+        let link = folder.path().join("link.csv");
+        symlink("new.csv", &link).unwrap();
+        let mut sink = Sink::open(&link).unwrap();
+        sink.put("through").unwrap();
+        sink.finish().unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&path).unwrap(), "through");
+        assert_eq!(mode(&path) & 0o777, 0o640);
+
+        let dangling = folder.path().join("dangling.csv");
+        symlink("later.csv", &dangling).unwrap();
+        Sink::open(&dangling).unwrap().finish().unwrap();
+        assert!(folder.path().join("later.csv").is_file());
+    }
+
+    #[test]
+    fn one_file_by_two_names_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let a = Sink::open(&folder.path().join("a.csv")).unwrap();
+        let b = Sink::open(&folder.path().join(".").join("a.csv")).unwrap();
+        let c = Sink::open(&folder.path().join("c.csv")).unwrap();
+        assert!(same_target(&a, &b));
+        assert!(!same_target(&a, &c));
+    }
+
+    #[test]
+    fn bad_places_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = Sink::open(&folder.path().join("none").join("a.csv")).unwrap_err();
+        assert!(matches!(missing, OpenError::MissingFolder { .. }), "{missing}");
+        assert!(matches!(Sink::open(folder.path()).unwrap_err(), OpenError::IsFolder(_)));
+        let file = folder.path().join("file");
+        fs::write(&file, "").unwrap();
+        let under = Sink::open(&file.join("a.csv")).unwrap_err();
+        assert!(matches!(under, OpenError::MissingFolder { .. }), "{under}");
+    }
+}

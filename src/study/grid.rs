@@ -1,0 +1,142 @@
+//! Which cells does a sweep have? The product of its axes, the first one slowest.
+
+use crate::scene::{Axis, Scene, column_names};
+
+/// The largest number of cells of one sweep: at a thousandth of a second each, a day of one core.
+pub const MAX_CELLS: u64 = 100_000_000;
+
+/// Why a sweep has no cells to run.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GridError {
+    /// No axis at all.
+    #[error(
+        "there is nothing to sweep: the scene has no `sweep`; name a field with --over FIELD=FROM:TO:STEP"
+    )]
+    NoAxes,
+    /// More cells than [`MAX_CELLS`].
+    #[error("the sweep has {0} cells; at most {MAX_CELLS} fit in one: take longer steps or shorter ranges")]
+    TooMany(String),
+}
+
+/// The axes and how a cell's index divides among them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    axes: Vec<Axis>,
+    columns: Vec<String>,
+    cells: u64,
+}
+
+/// Whether another value on this axis means another mechanism.
+fn changes_mechanism(axis: &&Axis) -> bool {
+    axis.field.starts_with("mechanism.")
+}
+
+impl Grid {
+    /// The grid on these axes, each of which has values; an error where it has no or too many cells.
+    pub fn new(axes: Vec<Axis>) -> Result<Self, GridError> {
+        let cells = count(axes.iter().map(|axis| axis.values.len() as u64))?;
+        let fields: Vec<&str> = axes.iter().map(|axis| axis.field.as_str()).collect();
+        Ok(Self { columns: column_names(&fields), axes, cells })
+    }
+
+    /// The names of the swept columns, slowest first.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// The number of cells.
+    pub fn cells(&self) -> u64 {
+        self.cells
+    }
+
+    /// Where cell `index` stands on each axis.
+    fn places(&self, index: u64) -> impl Iterator<Item = usize> {
+        let mut below = self.cells;
+        self.axes.iter().map(move |axis| {
+            let length = axis.values.len() as u64;
+            below /= length;
+            (index / below % length) as usize
+        })
+    }
+
+    /// The values of cell `index`, in the order of the axes.
+    pub fn values(&self, index: u64) -> impl Iterator<Item = f64> {
+        self.axes.iter().zip(self.places(index)).map(|(axis, place)| axis.values[place])
+    }
+
+    /// Puts the values of cell `index` into a scene that has the fields; allocates nothing.
+    pub fn apply(&self, index: u64, scene: &mut Scene) {
+        self.axes.iter().zip(self.places(index)).for_each(|(axis, place)| axis.apply(scene, place));
+    }
+
+    /// The number of different mechanisms among the cells.
+    pub fn mechanisms(&self) -> u64 {
+        self.axes.iter().filter(changes_mechanism).map(|axis| axis.values.len() as u64).product()
+    }
+
+    /// Which of the [`mechanisms`](Self::mechanisms) cell `index` has.
+    pub fn mechanism(&self, index: u64) -> u64 {
+        let places = self.axes.iter().zip(self.places(index)).filter(|(axis, _)| changes_mechanism(axis));
+        places.fold(0, |number, (axis, place)| number * axis.values.len() as u64 + place as u64)
+    }
+
+    /// Cell `index` in words: `travel_limit_mm = 0.5, amplitude_g = 0.02`.
+    pub fn describe(&self, index: u64) -> String {
+        let parts = self.columns.iter().zip(self.values(index));
+        let parts: Vec<String> = parts.map(|(column, value)| format!("{column} = {value}")).collect();
+        parts.join(", ")
+    }
+}
+
+/// The product of the axes' lengths.
+fn count(lengths: impl Iterator<Item = u64> + Clone) -> Result<u64, GridError> {
+    let exact = lengths.clone().try_fold(1_u64, u64::checked_mul);
+    match exact {
+        _ if lengths.clone().next().is_none() => Err(GridError::NoAxes),
+        Some(cells) if cells <= MAX_CELLS => Ok(cells),
+        Some(cells) => Err(GridError::TooMany(cells.to_string())),
+        None => {
+            let about: f64 = lengths.map(|n| n as f64).product();
+            Err(GridError::TooMany(format!("about {about:.3e}")))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Document;
+
+    fn grid(over: &[&str]) -> Grid {
+        let document = Document::load("nominal-cubic").unwrap();
+        Grid::new(document.axes(over).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn the_first_axis_is_the_slowest() {
+        let grid =
+            grid(&["run.settle_s=0:2:1", "mechanism.linear_n_per_m=0,1", "mechanism.cubic_n_per_m3=0:3:1"]);
+        assert_eq!(grid.cells(), 24);
+        let mut expected = Vec::new();
+        for a in 0..3 {
+            for b in 0..2 {
+                for c in 0..4 {
+                    expected.push((vec![f64::from(a), f64::from(b), f64::from(c)], b as u64 * 4 + c as u64));
+                }
+            }
+        }
+        let cell = |i| (grid.values(i).collect::<Vec<_>>(), grid.mechanism(i));
+        assert_eq!((0..24).map(cell).collect::<Vec<_>>(), expected);
+        assert_eq!(grid.mechanisms(), 8);
+        assert_eq!(grid.describe(5), "settle_s = 0, linear_n_per_m = 1, cubic_n_per_m3 = 1");
+    }
+
+    #[test]
+    fn too_many_cells_are_counted() {
+        assert_eq!(count([101, 41].into_iter()), Ok(4141));
+        let error = count([1_000_000, 1_000_000].into_iter()).unwrap_err();
+        assert!(error.to_string().contains("1000000000000 cells"), "{error}");
+        assert!(matches!(count([u64::MAX, 3].into_iter()), Err(GridError::TooMany(_))));
+        assert_eq!(count(std::iter::empty()), Err(GridError::NoAxes));
+    }
+}

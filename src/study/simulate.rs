@@ -1,0 +1,98 @@
+//! What does one run do? Its samples, its events and its summary.
+
+use std::sync::atomic::AtomicBool;
+
+use super::table::{Table, Values};
+use super::times::{Step, TimesError, even_times, listed_times};
+use crate::dynamics::{Event, Model, Request, Sample, Summary};
+use crate::scene::{Excitation, Scene};
+
+/// When to sample.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Sampling {
+    /// A 60th of the forcing period, without one a thousandth of the duration.
+    Default,
+    /// Every so many seconds.
+    Every(f64),
+    /// At these times in s, in any order; the rows keep that order.
+    At(Vec<f64>),
+}
+
+/// What to keep of a run besides its summary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Keep {
+    /// Sample times in s, in the order of the rows.
+    pub times: Vec<f64>,
+    /// Whether to keep the events.
+    pub events: bool,
+}
+
+/// One run, recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulation {
+    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`; up to the end of the run.
+    pub samples: Table,
+    /// `t_s,kind,side,v_in_m_per_s,v_out_m_per_s` in order of time.
+    pub events: Table,
+    /// Statistics, outcome and ledger.
+    pub summary: Summary,
+}
+
+/// The sample times in s that `sampling` asks of this run.
+pub fn sample_times(scene: &Scene, model: &Model, sampling: &Sampling) -> Result<Vec<f64>, TimesError> {
+    let step = match sampling {
+        Sampling::At(times) => return listed_times(times, model.duration),
+        Sampling::Every(dt) => Step::Seconds(*dt),
+        Sampling::Default => match (&scene.excitation, model.forcing_period) {
+            (Excitation::Sine { frequency_hz, .. } | Excitation::AmplitudeRamp { frequency_hz, .. }, _) => {
+                Step::PeriodOf(*frequency_hz)
+            }
+            (_, Some(period)) => Step::Period(period),
+            _ => Step::Thousandth,
+        },
+    };
+    even_times(step, model.duration)
+}
+
+/// Runs `model` once. Setting `cancel` from elsewhere ends it early, as its outcome then says.
+pub fn simulate(model: &Model, keep: &Keep, cancel: Option<&AtomicBool>) -> Simulation {
+    let ascending = keep.times.is_sorted();
+    let mut sorted = Vec::new();
+    if !ascending {
+        sorted.clone_from(&keep.times);
+        sorted.sort_by(f64::total_cmp);
+    }
+    let sample_times = if ascending { &keep.times } else { &sorted };
+    let run = model.run(&Request { sample_times, events: keep.events, ledger: true, cancel });
+    let samples = if ascending { run.samples } else { in_order(&keep.times, &run.samples) };
+    Simulation { samples: samples_table(&samples), events: events_table(&run.events), summary: run.summary }
+}
+
+/// The samples in the order of `times`; times that an early end left without one are left out.
+fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
+    let find = |t: &f64| {
+        let at = samples.partition_point(|sample| sample.t < *t);
+        samples.get(at).filter(|sample| sample.t == *t).copied()
+    };
+    times.iter().filter_map(find).collect()
+}
+
+fn samples_table(samples: &[Sample]) -> Table {
+    let numbers = |of: fn(&Sample) -> f64| Values::Numbers(samples.iter().map(of).collect());
+    Table::new()
+        .with("t_s", numbers(|s| s.t))
+        .with("x_m", numbers(|s| s.x))
+        .with("v_m_per_s", numbers(|s| s.v))
+        .with("base_accel_m_per_s2", numbers(|s| s.base_accel))
+        .with("phase", Values::Words(samples.iter().map(|s| s.phase.name()).collect()))
+}
+
+fn events_table(events: &[Event]) -> Table {
+    let numbers = |of: fn(&Event) -> f64| Values::Numbers(events.iter().map(of).collect());
+    Table::new()
+        .with("t_s", numbers(|e| e.t))
+        .with("kind", Values::Words(events.iter().map(|e| e.kind.name()).collect()))
+        .with("side", Values::Words(events.iter().map(|e| e.side.name()).collect()))
+        .with("v_in_m_per_s", numbers(|e| e.v_in))
+        .with("v_out_m_per_s", numbers(|e| e.v_out))
+}

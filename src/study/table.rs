@@ -1,0 +1,134 @@
+//! What does a result look like? Named columns of one length, each with a unit and one type of value.
+//!
+//! Every study answers in this form and every writer and plot reads it, so that each is written once.
+
+/// Values of one column, all of one type.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Real numbers; one that is not finite stands for a missing value.
+    Numbers(Vec<f64>),
+    /// Whole numbers; `None` is a missing value.
+    Counts(Vec<Option<u64>>),
+    /// Words from a fixed list; an empty one is a missing value.
+    Words(Vec<&'static str>),
+}
+
+impl Values {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Numbers(values) => values.len(),
+            Self::Counts(values) => values.len(),
+            Self::Words(values) => values.len(),
+        }
+    }
+
+    /// Whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// One column: what it is called and what it holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Name with the unit in it, as in the header of a CSV file: `rms_velocity_m_per_s`.
+    pub name: String,
+    /// Its values.
+    pub values: Values,
+}
+
+impl Column {
+    /// The unit as a person writes it, read off the end of the name; empty for a pure number, a
+    /// count or a word. The rule that every name carries its unit is what makes this possible.
+    pub fn unit(&self) -> &'static str {
+        // Longest ending first: `_m_per_s2` also ends like a name in seconds.
+        const UNITS: [(&str, &str); 15] = [
+            ("_m_per_s2", "m/s\u{b2}"),
+            ("_m_per_s", "m/s"),
+            ("_n_per_m3", "N/m\u{b3}"),
+            ("_n_per_m", "N/m"),
+            ("_n_s_per_m", "N s/m"),
+            ("_gpa", "GPa"),
+            ("_deg", "\u{b0}"),
+            ("_mm", "mm"),
+            ("_mj", "mJ"),
+            ("_hz", "Hz"),
+            ("_g", "g"),
+            ("_j", "J"),
+            ("_m", "m"),
+            ("_n", "N"),
+            ("_s", "s"),
+        ];
+        UNITS.iter().find(|(ending, _)| self.name.ends_with(ending)).map_or("", |(_, unit)| unit)
+    }
+}
+
+/// Columns of one length.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    columns: Vec<Column>,
+}
+
+impl Table {
+    /// A table without columns.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The table with one more column on its right.
+    ///
+    /// Precondition: as many values as the columns that are already there.
+    #[must_use]
+    pub fn with(mut self, name: impl Into<String>, values: Values) -> Self {
+        debug_assert!(self.columns.is_empty() || self.rows() == values.len());
+        self.columns.push(Column { name: name.into(), values });
+        self
+    }
+
+    /// The columns from left to right.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The column called `name`.
+    pub fn column(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+
+    /// The values of the column of real numbers called `name`.
+    pub fn numbers(&self, name: &str) -> Option<&[f64]> {
+        match &self.column(name)?.values {
+            Values::Numbers(values) => Some(values),
+            _ => None,
+        }
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |column| column.values.len())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_gives_its_unit() {
+        for (name, unit) in [
+            ("t_s", "s"),
+            ("v_m_per_s", "m/s"),
+            ("base_accel_m_per_s2", "m/s\u{b2}"),
+            ("stiffness_n_per_m", "N/m"),
+            ("travel_limit_mm", "mm"),
+            ("amplitude_g", "g"),
+            ("max_abs_x_m", "m"),
+            ("restitution", ""),
+            ("crossings", ""),
+        ] {
+            let column = Column { name: name.into(), values: Values::Words(Vec::new()) };
+            assert_eq!(column.unit(), unit, "{name}");
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! Do outputs appear whole or not at all, and do bad places cost no work?
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::process::{Command as Process, Stdio};
+
+use predicates::str::contains;
+
+use super::{headless, refused, stdout};
+
+const QUICK: &str = "simulate elastic-box --set run.duration_s=1";
+
+#[test]
+fn a_file_is_written_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    fs::write(&path, "old").unwrap();
+    headless(QUICK).arg("--out").arg(&path).assert().success().stdout("");
+    assert_eq!(fs::read_to_string(&path).unwrap(), stdout(QUICK));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing else is left there");
+}
+
+#[test]
+fn a_missing_folder_or_a_folder_is_refused_and_the_rest_not_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = folder.path().join("run.csv");
+    for option in ["--out", "--events", "--summary"] {
+        let mut command = headless(QUICK);
+        if option != "--out" {
+            command.arg("--out").arg(&good);
+        }
+        command.arg(option).arg("/no/such/folder/file");
+        refused(command, &["/no/such/folder"]);
+        assert!(!good.exists());
+    }
+    let mut command = headless("curve --landscape /no/such/folder/file --out");
+    command.arg(&good);
+    refused(command, &["/no/such/folder"]);
+    let mut command = headless("sweep --over mass_g=1,2 --out");
+    command.arg(folder.path());
+    refused(command, &["is a folder"]);
+    // A wrong cell is found before anything is written.
+    let mut command = headless("sweep nominal-cubic --over mechanism.cubic_n_per_m3=1e5,-1e5,1e6 --out");
+    command.arg(&good);
+    refused(command, &["cubic_n_per_m3"]);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn two_outputs_need_two_places() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("one");
+    let mut command = headless(QUICK);
+    command.arg("--events").arg(&path).arg("--summary").arg(&path);
+    refused(command, &["--events", "--summary"]);
+    refused(headless(&format!("{QUICK} --events -")), &["--out", "--events"]);
+    refused(headless("curve --landscape -"), &["--out", "--landscape"]);
+    headless(&format!("{QUICK} --out /dev/null --events /dev/null")).assert().success();
+    // Nor may an output take the scene's own place.
+    headless("presets --write").arg(folder.path()).assert().success();
+    let scene = folder.path().join("duffing.ron");
+    let mut command = headless("simulate");
+    command.arg(&scene).arg("--out").arg(&scene);
+    refused(command, &["overwrite"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_and_a_read_only_place_fail() {
+    for command in [QUICK, "curve", "check", "presets", "sweep --over mass_g=15,16"] {
+        let full = headless(&format!("{command} --out /dev/full"));
+        let mut full = full;
+        full.assert().code(1).stderr(contains("/dev/full"));
+    }
+    headless(&format!("{QUICK} --out /dev/null --summary /dev/full")).assert().code(1);
+    // No one, not even root, makes a file in /proc.
+    headless(&format!("{QUICK} --out /proc/run.csv")).assert().code(1).stderr(contains("/proc/run.csv"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_write_protected_file_or_folder_fails() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    fs::write(&path, "old").unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
+    if fs::OpenOptions::new().write(true).open(&path).is_ok() {
+        eprintln!("skipped: this user writes to protected files (root); /proc stands in for them above");
+        return;
+    }
+    headless(QUICK).arg("--out").arg(&path).assert().code(1).stderr(contains("run.csv"));
+    fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).unwrap();
+    headless(QUICK).arg("--out").arg(folder.path().join("new.csv")).assert().code(1);
+    fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    for line in ["simulate --dt 1e-5", "sweep --jobs 2", "curve --points 100000", "presets", "check"] {
+        let mut child = Process::new(assert_cmd::cargo::cargo_bin!("interwell"))
+            .arg("--headless")
+            .args(line.split_whitespace())
+            .arg("--quiet")
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut first = String::new();
+        // Dropping the reader after one line closes the pipe.
+        BufReader::with_capacity(1, child.stdout.take().unwrap()).read_line(&mut first).unwrap();
+        let end = child.wait_with_output().unwrap();
+        assert!(!first.is_empty(), "{line}");
+        assert_eq!((end.status.code(), end.stderr.as_slice()), (Some(0), &b""[..]), "{line}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_no_half_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.csv");
+    // Minutes of work.
+    let line =
+        "sweep --quiet --over stops.travel_limit_mm=1:7:0.001 --over excitation.amplitude_g=0:2:0.001 --out";
+    let child = Process::new(assert_cmd::cargo::cargo_bin!("interwell"))
+        .arg("--headless")
+        .args(line.split_whitespace())
+        .arg(&path)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begun = || fs::read_dir(folder.path()).unwrap().count() == 1;
+    for _ in 0..400 {
+        if begun() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(25));
+    }
+    assert!(begun());
+    // The file is there a moment before the handler is.
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    let killed = Process::new("kill").arg("-INT").arg(child.id().to_string()).status().unwrap();
+    assert!(killed.success());
+    let end = child.wait_with_output().unwrap();
+    assert_eq!(end.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&end.stderr).contains("interrupted"));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
