@@ -29,8 +29,8 @@ use crate::numeric::{PolynomialRoots, Scalar};
 
 /// Budgets of one run: generous for any sensible scene, and an end within about 20 s of one core for the
 /// others (an elastic rebound pressed on a stop with damping dies so slowly that it never ends by itself).
-const STEP_BUDGET: u64 = 30_000_000;
-const IMPACT_BUDGET: u64 = 5_000_000;
+const STEP_BUDGET: u64 = 20_000_000;
+const IMPACT_BUDGET: u64 = 2_000_000;
 
 /// The longest step, in units of the scene's time scale.
 const LONGEST_STEP: f64 = 8.0;
@@ -279,6 +279,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             scaled_for: h,
             length,
             bound,
+            limits: (arena.low, arena.high),
             x,
             v,
         };

@@ -24,6 +24,8 @@ pub(crate) struct StepView<'a, T> {
     pub length: T,
     /// Bound of |x - x(start)| over the step.
     pub bound: T,
+    /// Ends of the arena: x never passes them.
+    pub limits: (T, T),
     /// State at the end of what is kept.
     pub x: T,
     pub v: T,
@@ -200,7 +202,9 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             widen(step.series.position(from) + step.origin);
             widen(step.series.position(to) + step.origin);
         }
-        if start + step.bound > self.high || start - step.bound < self.low {
+        let highest = (start + step.bound).smaller(step.limits.1);
+        let lowest = (start - step.bound).larger(step.limits.0);
+        if highest > self.high || lowest < self.low {
             // A turning point inside may lie beyond both ends.
             let n = step.series.known;
             let mut slope = [T::zero(); super::series::ROOM];

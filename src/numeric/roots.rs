@@ -1,8 +1,8 @@
 //! Where does a step's polynomial first reach a surface, with none missed?
 //!
 //! Contacts are roots of a polynomial on (0, 1]. Comparing signs at the ends of a step misses pairs of
-//! roots inside it, so the search bounds the polynomial instead: first by the sum of its coefficients,
-//! then by its slope, and only where both leave room by its Bernstein coefficients, whose sign changes
+//! roots inside it, so the search bounds the polynomial instead: first by nested bounds of its
+//! value, then of its slope, and only where both leave room by its Bernstein coefficients, whose sign changes
 //! bound the number of roots (Descartes' rule in the Bernstein basis, Lane and Riesenfeld 1981). An
 //! interval with one sign change holds one root, one with none holds none, any other is halved.
 //!
@@ -62,20 +62,22 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         if g.len() < 2 {
             return;
         }
-        // Bound by the coefficients: no root where the constant outweighs all others together.
-        let mut rest = zero;
-        let mut rest_of_slope = zero;
-        for (k, c) in g.iter().enumerate().skip(1) {
-            rest += c.abs();
-            if k >= 2 {
-                rest_of_slope += c.abs() * T::of(k as f64);
-            }
+        // Nested bounds: for s in [0, 1] the tail g[k] + s (g[k+1] + s ..) lies between g[k] plus the smaller of
+        // 0 and the bound of the next tail, and g[k] plus the larger; likewise for the slope.
+        let (mut least, mut most) = (zero, zero);
+        let (mut least_slope, mut most_slope) = (zero, zero);
+        for (k, c) in g.iter().enumerate().skip(1).rev() {
+            least = *c + least.smaller(zero);
+            most = *c + most.larger(zero);
+            let slope = *c * T::of(k as f64);
+            least_slope = slope + least_slope.smaller(zero);
+            most_slope = slope + most_slope.larger(zero);
         }
-        if g[0].abs() > rest {
+        if if g[0] > zero { g[0] + least.smaller(zero) > zero } else { g[0] + most.larger(zero) < zero } {
             return;
         }
-        // Monotone: the end decides.
-        if g[1].abs() > rest_of_slope {
+        if most_slope < zero || least_slope > zero {
+            // Monotone: the end decides.
             if (self.value(T::of(1.0)) > zero) != (g[0] > zero) {
                 visit(self.polish(zero, T::of(1.0)));
             }
