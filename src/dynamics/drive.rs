@@ -35,17 +35,32 @@ pub(crate) trait Drive<T: Scalar> {
     /// The instant at which segment `segment` ends, where one follows.
     fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
 
-    /// The next instant at or after `from` at which `threshold` - `sign` a(t), positive now, changes sign,
-    /// within the present segment and before `until`; none where there is none.
+    /// The next instant in the span at which the press, positive now, changes sign; none where there is
+    /// none. The span lies within one segment.
     fn next_fall(
         &self,
         clock: &Clock<T>,
-        from: &Instant<T>,
-        until: &Instant<T>,
-        segment: usize,
-        threshold: T,
-        sign: T,
+        span: &Span<T>,
+        press: Press<T>,
+        roll: &mut Self::Rolling,
     ) -> Option<Instant<T>>;
+}
+
+/// From an instant to before another, within one segment of the drive.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Span<T> {
+    pub from: Instant<T>,
+    pub until: Instant<T>,
+    pub segment: usize,
+}
+
+/// The outward acceleration of a mass at rest on a stop: threshold - sign a(t).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Press<T> {
+    /// What the mechanism contributes.
+    pub threshold: T,
+    /// -1 on the left stop, 1 on the right one.
+    pub sign: T,
 }
 
 /// A constant acceleration, 0 included.
@@ -66,15 +81,7 @@ impl<T: Scalar> Drive<T> for Still<T> {
     fn segment_end(&self, _: usize) -> Option<Instant<T>> {
         None
     }
-    fn next_fall(
-        &self,
-        _: &Clock<T>,
-        _: &Instant<T>,
-        _: &Instant<T>,
-        _: usize,
-        _: T,
-        _: T,
-    ) -> Option<Instant<T>> {
+    fn next_fall(&self, _: &Clock<T>, _: &Span<T>, _: Press<T>, (): &mut ()) -> Option<Instant<T>> {
         None
     }
 }
@@ -197,11 +204,9 @@ impl<T: Scalar> Drive<T> for Sine<T> {
     fn next_fall(
         &self,
         clock: &Clock<T>,
-        from: &Instant<T>,
-        until: &Instant<T>,
-        _: usize,
-        threshold: T,
-        sign: T,
+        &Span { from, until, .. }: &Span<T>,
+        Press { threshold, sign }: Press<T>,
+        (): &mut (),
     ) -> Option<Instant<T>> {
         // threshold - b sin = 0 with sin rising through it (b > 0) or falling (b < 0).
         let b = self.tone.amplitude * sign;
@@ -234,11 +239,11 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         let fall = if behind <= T::zero() {
             Instant { cycle: from.cycle, phase }
         } else if behind <= slack {
-            *from
+            from
         } else {
             Instant { cycle: from.cycle + 1, phase }
         };
-        (clock.between(&fall, until) > T::zero()).then_some(fall)
+        (clock.between(&fall, &until) > T::zero()).then_some(fall)
     }
 }
 
@@ -311,11 +316,9 @@ impl<T: Scalar> Drive<T> for Tones<T> {
     fn next_fall(
         &self,
         clock: &Clock<T>,
-        from: &Instant<T>,
-        until: &Instant<T>,
-        segment: usize,
-        threshold: T,
-        sign: T,
+        &Span { from, until, segment }: &Span<T>,
+        Press { threshold, sign }: Press<T>,
+        roll: &mut Self::Rolling,
     ) -> Option<Instant<T>> {
         let mut reach = T::zero();
         let mut fastest = T::zero();
@@ -330,22 +333,21 @@ impl<T: Scalar> Drive<T> for Tones<T> {
         }
         let stride = T::of(SEARCH_RADIANS) / (T::tau() * fastest);
         let ramping = segment < self.segment_ends.len();
-        let mut at = *from;
+        let mut at = from;
         let mut a = [T::zero(); ROOM];
         let mut inverse = [T::zero(); ROOM];
         for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
             *slot = T::of(1.0) / T::of((k * (k - 1)) as f64);
         }
-        let mut roll = RollingTones::default();
         loop {
-            let left = clock.between(&at, until);
+            let left = clock.between(&at, &until);
             if left <= T::zero() {
                 return None;
             }
             let h = stride.smaller(left);
-            self.seed(clock, &at, segment, &mut a, &mut roll);
+            self.seed(clock, &at, segment, &mut a, roll);
             for k in 4..=SEARCH_ORDER {
-                self.extend(k, &mut a, &inverse, &mut roll);
+                self.extend(k, &mut a, &inverse, roll);
             }
             let mut g = [T::zero(); SEARCH_ORDER + 1];
             let mut power = T::of(1.0);
@@ -362,7 +364,7 @@ impl<T: Scalar> Drive<T> for Tones<T> {
             }
             if let Some(s) = PolynomialRoots::new(&g).first() {
                 let fall = clock.advance(&at, s * h);
-                return (clock.between(&fall, until) > T::zero()).then_some(fall);
+                return (clock.between(&fall, &until) > T::zero()).then_some(fall);
             }
             at = clock.advance(&at, h);
             if let (false, Some(cycles)) = (ramping, self.common_cycles) {

@@ -134,7 +134,7 @@ impl<T: Scalar> Equation<T> {
             let (left, right) = curve.piece_interval(index);
             let coefficients: Vec<T> = piece.coefficients.iter().map(|c| T::of(*c) * square).collect();
             let odd = coefficients.len() > 2
-                && coefficients.len() % 2 == 0
+                && coefficients.len().is_multiple_of(2)
                 && piece.coefficients.iter().step_by(2).all(|c| *c == 0.0);
             let end = |x: f64, outermost: bool, stop: Option<StopAt>, inside: bool| match stop {
                 Some(s) if inside => (T::of(s.x), EndKind::Stop),

@@ -198,8 +198,7 @@ impl Model {
         let common = drive.common_cycles();
         let forcing_period = drive.fastest().and_then(|f| common.map(|cycles| cycles as f64 / f));
         let barrier = landscape.barrier.as_ref();
-        let single = (landscape.equilibria.len() == 1).then(|| landscape.equilibria[0].x);
-        let crossing_level = barrier.map(|b| b.x).or(single);
+        let crossing_level = landscape.crossing_position();
         let scales = scales(scene, mass, &mechanism, &drive, start);
         let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
         let on_a_stop = left.is_some_and(|s| s.x == start.0) || right.is_some_and(|s| s.x == start.0);
@@ -228,18 +227,18 @@ impl Model {
     /// Returns samples, events and statistics in SI. Never fails: a run that cannot go on says so in its
     /// outcome. The result does not depend on what is asked for or on threads.
     pub fn run(&self, request: &Request) -> Run {
-        super::motion::run::<f64>(self, request, self.tolerance)
+        super::prepare::run::<f64>(self, request, self.tolerance)
     }
 
     /// Runs the model once in double-double arithmetic, some 31 digits, with its own `tolerance` (1e-28 is
     /// sensible): the reference that a run in doubles is measured against. About a hundred times slower.
     pub fn run_reference(&self, request: &Request, tolerance: f64) -> Run {
-        super::motion::run::<DoubleDouble>(self, request, tolerance)
+        super::prepare::run::<DoubleDouble>(self, request, tolerance)
     }
 
     /// Acceleration of the base in m/s^2 at time `t` in s.
     pub fn base_acceleration(&self, t: f64) -> f64 {
-        super::motion::base_acceleration(self, t)
+        super::prepare::base_acceleration(self, t)
     }
 
     /// Whole forcing periods in the settled window, and the clock's cycles in one.

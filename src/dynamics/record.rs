@@ -3,16 +3,13 @@
 use super::clock::{Clock, Instant};
 use super::model::{Model, Request};
 use super::regime::{CrossingLog, Strobe};
-use super::result::{Event, EventKind, Ledger, Outcome, Phase, Regime, Run, Sample, Side, Summary};
+use super::result::{Event, EventKind, Phase, Sample, Side};
 use super::series::Series;
 use crate::numeric::{CompensatedSum, PolynomialRoots, Scalar};
 
 /// Most crossings and stroboscopic states that are kept to tell the regime; a window of more is judged by
 /// its first ones.
 const KEPT: usize = 1 << 16;
-
-/// Below this share of the length scale a motion is rounding: the mass has not moved.
-const STILL: f64 = 1e-12;
 
 /// One accepted step, as the recorder sees it.
 pub(crate) struct StepView<'a, T> {
@@ -34,15 +31,15 @@ pub(crate) struct StepView<'a, T> {
 
 /// Sums over an interval of time.
 #[derive(Clone)]
-struct Sums<T> {
+pub(super) struct Sums<T> {
     /// Integral of v^2, kernel units.
-    squared_velocity: CompensatedSum<T>,
+    pub squared_velocity: CompensatedSum<T>,
     /// - integral of a v.
-    work: CompensatedSum<T>,
+    pub work: CompensatedSum<T>,
     /// Kinetic energy over mass taken by impacts.
-    impact: CompensatedSum<T>,
+    pub impact: CompensatedSum<T>,
     /// Time at rest on a stop.
-    rested: CompensatedSum<T>,
+    pub rested: CompensatedSum<T>,
 }
 
 impl<T: Scalar> Sums<T> {
@@ -53,41 +50,41 @@ impl<T: Scalar> Sums<T> {
 }
 
 pub(crate) struct Recorder<'a, T, const LEDGER: bool> {
-    model: &'a Model,
-    clock: Clock<T>,
-    unit: f64,
-    times: &'a [f64],
-    next_time: usize,
-    samples: Vec<Sample>,
-    events: Option<Vec<Event>>,
-    window: (Instant<T>, Instant<T>),
+    pub(super) model: &'a Model,
+    pub(super) clock: Clock<T>,
+    pub(super) unit: f64,
+    pub(super) times: &'a [f64],
+    pub(super) next_time: usize,
+    pub(super) samples: Vec<Sample>,
+    pub(super) events: Option<Vec<Event>>,
+    pub(super) window: (Instant<T>, Instant<T>),
     /// Forcing period in kernel units; 0 without one.
-    period: T,
-    whole: Sums<T>,
-    settled: Sums<T>,
-    low: T,
-    high: T,
-    covered: CompensatedSum<T>,
-    work_moved: f64,
-    peak_kinetic: f64,
-    barrier: Option<T>,
+    pub(super) period: T,
+    pub(super) whole: Sums<T>,
+    pub(super) settled: Sums<T>,
+    pub(super) low: T,
+    pub(super) high: T,
+    pub(super) covered: CompensatedSum<T>,
+    pub(super) work_moved: f64,
+    pub(super) peak_kinetic: f64,
+    pub(super) barrier: Option<T>,
     /// -1, 0 (on it since the start) or 1.
-    barrier_side: i8,
-    log: CrossingLog,
-    next_strobe: Option<Instant<T>>,
-    strobe_cycles: i64,
-    counts: Counts,
+    pub(super) barrier_side: i8,
+    pub(super) log: CrossingLog,
+    pub(super) next_strobe: Option<Instant<T>>,
+    pub(super) strobe_cycles: i64,
+    pub(super) counts: Counts,
 }
 
 #[derive(Default, Clone, Copy)]
-struct Counts {
-    crossings: u64,
-    impacts: u64,
-    releases: u64,
-    total_crossings: u64,
-    total_impacts: u64,
-    sums: u64,
-    rests: u64,
+pub(super) struct Counts {
+    pub crossings: u64,
+    pub impacts: u64,
+    pub releases: u64,
+    pub total_crossings: u64,
+    pub total_impacts: u64,
+    pub sums: u64,
+    pub rests: u64,
 }
 
 impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
@@ -297,7 +294,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         }
     }
 
-    fn strobe(&mut self, x: T, v: T) {
+    pub(super) fn strobe(&mut self, x: T, v: T) {
         let Some(strobe) = &mut self.next_strobe else { return };
         strobe.cycle += self.strobe_cycles;
         self.log.strobes.push(Strobe { x: x.to_f64(), v: v.to_f64() / self.unit });
@@ -386,106 +383,6 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
 
     pub fn total_impacts(&self) -> u64 {
         self.counts.total_impacts
-    }
-
-    /// Closes the record: `x`, `v` (kernel units) and `phase` at the end, `potentials` at start and end.
-    #[allow(clippy::too_many_arguments)]
-    pub fn finish(
-        mut self,
-        end: &Instant<T>,
-        (x, v): (T, T),
-        start_v: T,
-        phase: Phase,
-        potentials: (f64, f64),
-        outcome: Outcome,
-        base: impl Fn(&Instant<T>) -> f64,
-    ) -> Run {
-        let final_x = x.to_f64();
-        let final_v = v.to_f64() / self.unit;
-        // What was asked for at the very end (to rounding) is the final state.
-        let last = self.clock.seconds(end);
-        while let Some(t) = self.times.get(self.next_time).copied() {
-            if t > last * (1.0 + 4.0 * f64::EPSILON) {
-                break;
-            }
-            self.samples.push(Sample {
-                t,
-                x: final_x,
-                v: final_v,
-                base_accel: base(&self.clock.at(t)),
-                phase,
-            });
-            self.next_time += 1;
-        }
-        if let Some(strobe) = self.next_strobe {
-            // the strobe at the end of the window, which is the end of the run
-            if self.clock.between(&strobe, end).abs() <= self.period * T::of(1e-9) {
-                self.strobe(x, v);
-            }
-        }
-        let m = self.model.mass;
-        let energy = m / (self.unit * self.unit);
-        let value = |sum: &CompensatedSum<T>| sum.value().to_f64();
-        let covered = value(&self.covered);
-        let seen = covered > 0.0;
-        let ledger = LEDGER.then(|| {
-            let kinetic = |v: T| (v * v).to_f64() * 0.5;
-            let work_j = value(&self.whole.work) * energy;
-            let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
-            let impact_j = value(&self.whole.impact) * energy;
-            let stored_j = (kinetic(v) - kinetic(start_v)) * energy + (potentials.1 - potentials.0);
-            let residual_j = ((work_j - damping_j) - impact_j) - stored_j;
-            let moved =
-                (self.work_moved + self.peak_kinetic) * energy + damping_j + impact_j.abs() + stored_j.abs();
-            let energy_residual = if moved > 0.0 { residual_j.abs() / moved } else { 0.0 };
-            Ledger { work_j, damping_j, impact_j, stored_j, residual_j, energy_residual }
-        });
-        let rms = (value(&self.settled.squared_velocity).max(0.0) / covered).sqrt() / self.unit;
-        let travel = (self.high - self.low).to_f64();
-        let scales = &self.model.scales;
-        let moved = seen && travel > STILL * scales.length;
-        let work = value(&self.settled.work);
-        let impact_share = (LEDGER && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
-        let regime = if self.model.one_well {
-            Regime::OneWell
-        } else if !moved {
-            Regime::Rest
-        } else if self.counts.crossings == 0 {
-            Regime::Intrawell
-        } else if self.log.crossings_repeat() {
-            Regime::Interwell
-        } else {
-            Regime::Irregular
-        };
-        let done = outcome == Outcome::Done;
-        let period = if done && moved { self.log.period(scales.length, scales.speed) } else { None };
-        Run {
-            samples: self.samples,
-            events: self.events.unwrap_or_default(),
-            summary: Summary {
-                final_x,
-                final_v,
-                rms_velocity: seen.then_some(rms),
-                regime,
-                crossings: self.counts.crossings,
-                impacts: self.counts.impacts,
-                releases: self.counts.releases,
-                max_abs_x: seen.then(|| self.high.to_f64().abs().max(self.low.to_f64().abs())),
-                travel: seen.then_some(travel),
-                impact_share,
-                rested_share: seen.then(|| value(&self.settled.rested) / covered),
-                total_crossings: self.counts.total_crossings,
-                total_impacts: self.counts.total_impacts,
-                chatter_sums: self.counts.sums,
-                rests: self.counts.rests,
-                period,
-                outcome,
-                steps: 0,
-                evaluations: 0,
-                cpu_s: 0.0,
-                ledger,
-            },
-        }
     }
 }
 

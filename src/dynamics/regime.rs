@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     fn log(periods: u64, times: &[f64]) -> CrossingLog {
-        let side = |i: usize| if i % 2 == 0 { Side::Right } else { Side::Left };
+        let side = |i: usize| if i.is_multiple_of(2) { Side::Right } else { Side::Left };
         CrossingLog {
             periods,
             crossings: times.iter().enumerate().map(|(i, t)| (*t, side(i))).collect(),

@@ -53,12 +53,6 @@ impl<T: Scalar> Series<T> {
         self.known = 2;
     }
 
-    /// 1 / (k (k - 1)).
-    #[inline]
-    pub fn inverse(&self) -> &[T; ROOM] {
-        &self.inverse
-    }
-
     /// Adds the next coefficient.
     #[inline]
     pub fn push<D: Drive<T>>(&mut self, force: &PieceForce<T>, damping: T, drive: &D, roll: &mut D::Rolling) {
@@ -164,8 +158,8 @@ impl<T: Scalar> Series<T> {
     pub fn integrals<const WORK: bool>(&self, from: T, to: T) -> (T, T) {
         let n = self.known - 1;
         let mut v = [T::zero(); ROOM];
-        for k in 0..n {
-            v[k] = self.y[k + 1] * T::of((k + 1) as f64);
+        for (k, slot) in v[..n].iter_mut().enumerate() {
+            *slot = self.y[k + 1] * T::of((k + 1) as f64);
         }
         let mut squared = [T::zero(); ROOM];
         let mut power = [T::zero(); ROOM];
@@ -219,7 +213,7 @@ fn square<T: Number>(a: &[T; ROOM], k: usize) -> T {
         }
     }
     let twice = (even + odd) + (even + odd);
-    if k % 2 == 0 { twice + a[k / 2] * a[k / 2] } else { twice }
+    if k.is_multiple_of(2) { twice + a[k / 2] * a[k / 2] } else { twice }
 }
 
 /// log2 to 0.01, for step sizes only: the same bits on every processor, unlike a library's.

@@ -122,11 +122,11 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         let mut left = [zero; COEFFICIENTS];
         let mut right = *b;
         left[0] = right[0];
-        for i in 1..=n {
+        for (i, slot) in left[..=n].iter_mut().enumerate().skip(1) {
             for j in 0..=n - i {
                 right[j] = (right[j] + right[j + 1]) * half;
             }
-            left[i] = right[0];
+            *slot = right[0];
         }
         let w = width * half;
         self.isolate(&left, low, w, depth + 1, visit) && self.isolate(&right, low + w, w, depth + 1, visit)
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn a_double_root_is_a_touch() {
-        assert!(all(&from_roots(&[0.3, 0.3], 1.0)).len() % 2 == 0);
+        assert!(all(&from_roots(&[0.3, 0.3], 1.0)).len().is_multiple_of(2));
         assert!(all(&from_roots(&[0.3, 0.3, 0.7], -1.0)).len() % 2 == 1);
         // a value of exactly 0 at a halving point is met as a pair, as close as rounding allows
         let pair = all(&from_roots(&[0.5, 0.5], 1.0));

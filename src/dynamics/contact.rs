@@ -1,0 +1,227 @@
+//! What happens where the mass touches a stop, a break or the end of the curve?
+
+use super::clock::Instant;
+use super::drive::{Drive, Press, Span};
+use super::equation::{End, EndKind};
+use super::motion::{BY_ACCELERATION, BY_JERK, BY_SPEED, Contact, Flow, Motion, Touch};
+use super::prepare::base_at;
+use super::result::{Outcome, Phase, Side};
+use crate::numeric::Scalar;
+
+/// A rebound slower than this share of the speed scale may be part of a closed-form sum.
+const CHATTER_SPEED: f64 = 1e-6;
+
+impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+    /// Decides what a start on a surface is.
+    pub(super) fn place_at_start(&mut self) {
+        let arena = &self.equation.arenas[self.arena];
+        for end in [End::Low, End::High] {
+            let (level, kind) = arena.end(end);
+            if self.x != level || kind == EndKind::Unknown {
+                continue;
+            }
+            let outward = end.sign::<T>() * self.v;
+            if kind == EndKind::Stop {
+                if outward > T::zero() {
+                    self.strike(end, outward);
+                } else if outward < T::zero() {
+                    self.touch = Some(Touch { end, order: BY_SPEED });
+                } else {
+                    self.settle(end);
+                }
+            } else if outward > T::zero() {
+                self.enter_neighbour(end);
+            } else if outward < T::zero() {
+                self.touch = Some(Touch { end, order: BY_SPEED });
+            } else {
+                self.touch = Some(Touch { end, order: BY_ACCELERATION });
+            }
+            return;
+        }
+    }
+
+    /// Outward acceleration of a mass held at the stop of `end`, and its first two time derivatives.
+    fn press(&mut self, end: End) -> [T; 3] {
+        self.drive.seed(&self.clock, &self.at, self.segment, &mut self.series.a, &mut self.roll);
+        let sign = end.sign::<T>();
+        let stop = self.equation.stop(end).map_or(T::zero(), |s| s.press);
+        let a = &self.series.a;
+        [stop - sign * a[0], -(sign * a[1]), -(sign * a[2] * T::of(2.0))]
+    }
+
+    /// The mass stands at the stop of `end` with no speed: does it rest or leave? The first derivative of the
+    /// pressing acceleration that is not 0 (to the rounding of its terms) decides; if none is, it rests.
+    fn settle(&mut self, end: End) {
+        let rates = self.press(end);
+        let stop_rounding = self.equation.stop(end).map_or(T::zero(), |s| s.press_rounding);
+        let rounding = stop_rounding + self.series.a[0].abs() * T::of(4.0 * T::EPSILON);
+        self.v = T::zero();
+        for (order, rate) in (BY_ACCELERATION..).zip(rates) {
+            let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
+            if rate > size {
+                break;
+            }
+            if rate < -size {
+                self.touch = Some(Touch { end, order });
+                self.contact = Contact::Free;
+                return;
+            }
+        }
+        self.contact = Contact::Resting(end);
+        self.touch = None;
+        self.record.rest(&self.at, side(end));
+    }
+
+    /// The mass stands still until `until`.
+    pub(super) fn stand(&mut self, until: Instant<T>, phase: Phase) {
+        let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
+        self.record.stand(&self.at, &until, self.x, phase, |at| base_at(drive, &clock, segment, at, unit));
+        self.at = until;
+    }
+
+    /// A rest on the stop of `end`, up to its release, the end of the drive's segment, or the run's end.
+    pub(super) fn rest(&mut self, end: End) {
+        let sign = end.sign::<T>();
+        let phase = match end {
+            End::Low => Phase::LeftStop,
+            End::High => Phase::RightStop,
+        };
+        let mut until = self.end;
+        let mut next_segment = false;
+        if let Some(border) = self.drive.segment_end(self.segment)
+            && self.clock.between(&border, &self.end) > T::zero()
+        {
+            until = border;
+            next_segment = true;
+        }
+        self.steps += 1;
+        let press = self.equation.stop(end).map_or(T::zero(), |s| s.press);
+        let span = Span { from: self.at, until, segment: self.segment };
+        let fall = self.drive.next_fall(&self.clock, &span, Press { threshold: press, sign }, &mut self.roll);
+        match fall {
+            Some(fall) => {
+                self.stand(fall, phase);
+                self.record.release(&self.at, side(end));
+                self.contact = Contact::Free;
+                self.touch = Some(Touch { end, order: BY_JERK });
+            }
+            None => {
+                self.stand(until, phase);
+                if next_segment {
+                    self.segment += 1;
+                    let rounding = self.equation.stop(end).map_or(T::zero(), |s| s.press_rounding);
+                    let press = self.press(end)[0];
+                    if press < -(rounding + self.series.a[0].abs() * T::of(4.0 * T::EPSILON)) {
+                        self.record.release(&self.at, side(end));
+                        self.contact = Contact::Free;
+                        self.touch = Some(Touch { end, order: BY_ACCELERATION });
+                    }
+                }
+            }
+        }
+    }
+
+    /// The mass reaches the stop of `end` with outward speed `speed` > 0.
+    fn strike(&mut self, end: End, speed: T) {
+        let sign = end.sign::<T>();
+        let restitution = self.equation.stop(end).map_or(T::of(1.0), |s| s.restitution);
+        let rebound = restitution * speed;
+        self.record.impact(&self.at, side(end), sign * speed, -(sign * rebound));
+        if rebound > T::zero() {
+            self.v = -(sign * rebound);
+            self.touch = Some(Touch { end, order: BY_SPEED });
+        } else {
+            self.settle(end);
+        }
+    }
+
+    /// The mass passes the break at `end` of its arena.
+    fn enter_neighbour(&mut self, end: End) {
+        match end {
+            End::Low => self.arena -= 1,
+            End::High => self.arena += 1,
+        }
+        self.touch = Some(Touch { end: end.other(), order: BY_SPEED });
+    }
+
+    /// A pressed rebound, slow enough: sums what remains of the chatter in closed form. Expects the
+    /// drive to be seeded.
+    ///
+    /// The sum of the flights is S (1 - (2 j/a + g) S/6) + O(S^3), S = 2 v/(a (1 - e)), a the pressing
+    /// acceleration, j its rate, g = c/m. It is used where its own error is below the tolerance and the pressing
+    /// cannot end before it does.
+    pub(super) fn sum_chatter(&mut self, end: End, rates: [T; 3]) -> bool {
+        let Some(stop) = self.equation.stop(end) else { return false };
+        let one = T::of(1.0);
+        let speed = self.v.abs();
+        let [press, jerk, snap] = rates;
+        if !(press > T::zero()
+            && stop.restitution < one
+            && speed < self.settings.speed * T::of(CHATTER_SPEED))
+        {
+            return false;
+        }
+        let damping = self.equation.damping;
+        let whole = T::of(2.0) * speed / (press * (one - stop.restitution));
+        let squares = (jerk.abs() / press) * (jerk.abs() / press)
+            + damping * damping
+            + stop.stiffness.abs()
+            + snap.abs() / press;
+        let change = whole * whole * squares;
+        if change > T::of(2.5e-3) || whole * change > T::of(0.1 * self.settings.tolerance) {
+            return false;
+        }
+        let sum = whole * (one - (T::of(2.0) * jerk / press + damping) * whole / T::of(6.0));
+        let until = self.clock.advance(&self.at, sum);
+        let limit = self.segment_limit();
+        if self.clock.between(&until, &limit) <= T::zero() {
+            return false;
+        }
+        self.record.chatter_sum(&self.at, speed);
+        self.v = T::zero();
+        self.stand(until, Phase::Free);
+        self.steps += 1;
+        self.contact = Contact::Resting(end);
+        self.touch = None;
+        self.record.rest(&self.at, side(end));
+        true
+    }
+
+    /// The mass has reached an end of its arena; `at_once` where the step began there and led outward.
+    pub(super) fn reach(&mut self, end: End, at_once: bool) -> Flow {
+        let outward = end.sign::<T>() * self.v;
+        match self.equation.arenas[self.arena].end(end).1 {
+            EndKind::Stop => {
+                if outward > T::zero() {
+                    self.strike(end, outward);
+                } else {
+                    self.settle(end); // a touch without speed is no impact
+                }
+                None
+            }
+            EndKind::Break => {
+                if outward > T::zero() {
+                    self.enter_neighbour(end);
+                } else {
+                    // A touch of the break: back inside, unless the acceleration leads out.
+                    self.v = T::zero();
+                    if at_once {
+                        self.enter_neighbour(end);
+                        self.touch = Some(Touch { end: end.other(), order: BY_ACCELERATION });
+                    } else {
+                        self.touch = Some(Touch { end, order: BY_ACCELERATION });
+                    }
+                }
+                None
+            }
+            EndKind::Unknown => Some(Outcome::LeftTable { at: self.clock.seconds(&self.at) }),
+        }
+    }
+}
+
+fn side(end: End) -> Side {
+    match end {
+        End::Low => Side::Left,
+        End::High => Side::Right,
+    }
+}

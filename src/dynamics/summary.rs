@@ -1,0 +1,115 @@
+//! What comes out of a record: the statistics, the regime and the energy ledger.
+
+use super::clock::Instant;
+use super::record::Recorder;
+use super::result::{Ledger, Outcome, Phase, Regime, Run, Sample, Summary};
+use crate::numeric::{CompensatedSum, Scalar};
+
+/// Below this share of the length scale a motion is rounding: the mass has not moved.
+const STILL: f64 = 1e-12;
+
+/// How a run ended, as the recorder needs it.
+pub(crate) struct Ending<T> {
+    pub at: Instant<T>,
+    /// Displacement and velocity, kernel units.
+    pub state: (T, T),
+    /// Velocity at time 0, kernel units.
+    pub start_v: T,
+    pub phase: Phase,
+    /// Potential at the start and the end in J.
+    pub potentials: (f64, f64),
+    pub outcome: Outcome,
+}
+
+impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+    /// Closes the record.
+    pub fn finish(mut self, ending: &Ending<T>, base: impl Fn(&Instant<T>) -> f64) -> Run {
+        let &Ending { at: end, state: (x, v), start_v, phase, potentials, outcome } = ending;
+        let final_x = x.to_f64();
+        let final_v = v.to_f64() / self.unit;
+        // What was asked for at the very end (to rounding) is the final state.
+        let last = self.clock.seconds(&end);
+        while let Some(t) = self.times.get(self.next_time).copied() {
+            if t > last * (1.0 + 4.0 * f64::EPSILON) {
+                break;
+            }
+            self.samples.push(Sample {
+                t,
+                x: final_x,
+                v: final_v,
+                base_accel: base(&self.clock.at(t)),
+                phase,
+            });
+            self.next_time += 1;
+        }
+        if let Some(strobe) = self.next_strobe {
+            // the strobe at the end of the window, which is the end of the run
+            if self.clock.between(&strobe, &end).abs() <= self.period * T::of(1e-9) {
+                self.strobe(x, v);
+            }
+        }
+        let m = self.model.mass;
+        let energy = m / (self.unit * self.unit);
+        let value = |sum: &CompensatedSum<T>| sum.value().to_f64();
+        let covered = value(&self.covered);
+        let seen = covered > 0.0;
+        let ledger = LEDGER.then(|| {
+            let kinetic = |v: T| (v * v).to_f64() * 0.5;
+            let work_j = value(&self.whole.work) * energy;
+            let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
+            let impact_j = value(&self.whole.impact) * energy;
+            let stored_j = (kinetic(v) - kinetic(start_v)) * energy + (potentials.1 - potentials.0);
+            let residual_j = ((work_j - damping_j) - impact_j) - stored_j;
+            let moved =
+                (self.work_moved + self.peak_kinetic) * energy + damping_j + impact_j.abs() + stored_j.abs();
+            let energy_residual = if moved > 0.0 { residual_j.abs() / moved } else { 0.0 };
+            Ledger { work_j, damping_j, impact_j, stored_j, residual_j, energy_residual }
+        });
+        let rms = (value(&self.settled.squared_velocity).max(0.0) / covered).sqrt() / self.unit;
+        let travel = (self.high - self.low).to_f64();
+        let scales = &self.model.scales;
+        let moved = seen && travel > STILL * scales.length;
+        let work = value(&self.settled.work);
+        let impact_share = (LEDGER && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
+        let regime = if self.model.one_well {
+            Regime::OneWell
+        } else if !moved {
+            Regime::Rest
+        } else if self.counts.crossings == 0 {
+            Regime::Intrawell
+        } else if self.log.crossings_repeat() {
+            Regime::Interwell
+        } else {
+            Regime::Irregular
+        };
+        let done = outcome == Outcome::Done;
+        let period = if done && moved { self.log.period(scales.length, scales.speed) } else { None };
+        Run {
+            samples: self.samples,
+            events: self.events.unwrap_or_default(),
+            summary: Summary {
+                final_x,
+                final_v,
+                rms_velocity: seen.then_some(rms),
+                regime,
+                crossings: self.counts.crossings,
+                impacts: self.counts.impacts,
+                releases: self.counts.releases,
+                max_abs_x: seen.then(|| self.high.to_f64().abs().max(self.low.to_f64().abs())),
+                travel: seen.then_some(travel),
+                impact_share,
+                rested_share: seen.then(|| value(&self.settled.rested) / covered),
+                total_crossings: self.counts.total_crossings,
+                total_impacts: self.counts.total_impacts,
+                chatter_sums: self.counts.sums,
+                rests: self.counts.rests,
+                period,
+                outcome,
+                steps: 0,
+                evaluations: 0,
+                cpu_s: 0.0,
+                ledger,
+            },
+        }
+    }
+}
