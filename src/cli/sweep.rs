@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::path::Path;
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use interwell::output::{header, rows};
 use interwell::scene::Document;
 use interwell::study::{Grid, Sweep, SweepEnd, Task};
@@ -23,7 +23,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool =
         pool.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot start {threads} threads: {error}")))?;
-    let mut sinks = open(&options.scene, [Some(("--out", &common.out))])?;
+    let mut sinks = open(&[&options.scene], [Some(("--out", &common.out))])?;
 
     let bar = bar(sweep.grid().cells(), common.quiet, &common.out);
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
@@ -45,7 +45,8 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     bar.finish_and_clear();
     let tally = result?;
     finish(sinks)?;
-    if !common.quiet {
+    // Fewer cells than there are: the reader of a pipe has gone, which is no news to anyone.
+    if !common.quiet && tally.cells == sweep.grid().cells() {
         let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
         let early = match tally.ended_early {
             0 => String::new(),
