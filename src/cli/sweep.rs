@@ -72,7 +72,10 @@ fn bar(cells: u64, quiet: bool, out: &Path) -> ProgressBar {
     if quiet || rows_on_terminal || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let style =
-        ProgressStyle::with_template("{wide_bar} {human_pos}/{human_len} cells  {per_sec}  {eta} left");
-    ProgressBar::new(cells).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    let template = "{wide_bar} {human_pos}/{human_len} cells  {rate}  {eta} left";
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
+        let _ = write!(text, "{:.0}/s", state.per_sec());
+    };
+    ProgressBar::new(cells).with_style(style.with_key("rate", rate))
 }
