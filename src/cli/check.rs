@@ -12,8 +12,8 @@ use interwell::scene::SceneError;
 pub fn run(options: &CheckOptions) -> Result<(), Failure> {
     let paper = ["paper".to_owned()];
     let scenes = if options.scenes.is_empty() { &paper[..] } else { &options.scenes[..] };
-    let first = scenes.first().map_or("", String::as_str);
-    let mut sinks = open(first, [Some(("--out", &options.common.out))])?;
+    let names: Vec<&str> = scenes.iter().map(String::as_str).collect();
+    let mut sinks = open(&names, [Some(("--out", &options.common.out))])?;
     let mut wrong = Vec::new();
     for spec in scenes {
         match report(spec, &options.common) {

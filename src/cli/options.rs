@@ -4,12 +4,15 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+const USAGE: &str = "interwell [SCENE]
+       interwell --headless COMMAND [SCENE] [OPTIONS]";
+
 const EXAMPLES: &str = "\
 Examples:
   interwell --headless presets
   interwell --headless check my-scene.ron
   interwell --headless simulate --set stops.travel_limit_mm=2 --out run.csv --summary run.json
-  interwell --headless simulate elastic-box --at 0,0.5,1 --events -  --out /dev/null
+  interwell --headless simulate elastic-box --at 0,0.5,1 --events - --out /dev/null
   interwell --headless sweep --out map.csv
   interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
 
@@ -18,9 +21,9 @@ Exit status: 0 done; 1 the run or the writing failed; 2 the arguments or the sce
 
 /// Bistable mechanisms with hard travel limits: see and compute how stops start interwell motion.
 #[derive(Debug, Parser)]
-#[command(name = "interwell", version, after_help = EXAMPLES, disable_help_subcommand = true)]
+#[command(name = "interwell", version, override_usage = USAGE, after_help = EXAMPLES, disable_help_subcommand = true)]
 pub struct Options {
-    /// Work without a window: needed before or after every command
+    /// Work without a window; every command needs it, before or after its name
     #[arg(long, global = true)]
     pub headless: bool,
 
@@ -37,14 +40,19 @@ pub struct Options {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// List the built-in scenes, or copy them out
+    #[command(override_usage = "interwell --headless presets [OPTIONS]")]
     Presets(PresetsOptions),
     /// Validate scenes; print what each models, and how accurate its force curve is
+    #[command(override_usage = "interwell --headless check [SCENE]... [OPTIONS]")]
     Check(CheckOptions),
     /// Force, potential and stiffness of the mechanism as CSV
+    #[command(override_usage = "interwell --headless curve [SCENE] [OPTIONS]")]
     Curve(CurveOptions),
     /// Run a scene once: samples as CSV
+    #[command(override_usage = "interwell --headless simulate [SCENE] [OPTIONS]")]
     Simulate(SimulateOptions),
     /// Run a grid of scenes: CSV with a row for each cell
+    #[command(override_usage = "interwell --headless sweep [SCENE] [OPTIONS]")]
     Sweep(SweepOptions),
 }
 

@@ -12,7 +12,7 @@ use super::support::{finish, open, write_text};
 
 /// Lists the built-in scenes, a line each, or writes them into a folder and lists the files.
 pub fn run(options: &PresetsOptions) -> Result<(), Failure> {
-    let mut sinks = open("", [Some(("--out", &options.common.out))])?;
+    let mut sinks = open(&[], [Some(("--out", &options.common.out))])?;
     let text = match &options.write {
         Some(folder) => write(folder, options.force)?,
         None => {

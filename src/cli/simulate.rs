@@ -26,7 +26,7 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let times = sample_times(&document.scene, &model, &sampling)?;
     let events = options.events.as_deref().map(|path| ("--events", path));
     let summary_path = options.summary.as_deref().map(|path| ("--summary", path));
-    let mut sinks = open(&options.scene, [Some(("--out", &common.out)), events, summary_path])?;
+    let mut sinks = open(&[&options.scene], [Some(("--out", &common.out)), events, summary_path])?;
 
     let cancel = interrupt::listen();
     let keep = Keep { times, events: events.is_some() };

@@ -56,16 +56,17 @@ pub fn numbers(option: &str, text: &str, separator: char) -> Result<Vec<f64>, Fa
 }
 
 /// Opens the outputs, each given with its option, before any work is done for them. None may be the
-/// scene's own file, and no two the same.
+/// file of one of the scenes, and no two the same.
 pub fn open<const N: usize>(
-    scene: &str,
+    scenes: &[&str],
     outputs: [Option<(&str, &Path)>; N],
 ) -> Result<[Option<Sink>; N], Failure> {
-    let scene_file = std::fs::canonicalize(scene).ok();
+    let place = |path: &Path| std::fs::canonicalize(path).ok();
+    let scenes: Vec<_> = scenes.iter().filter_map(|scene| place(Path::new(scene))).collect();
     let mut sinks = [const { None::<Sink> }; N];
     for (i, output) in outputs.iter().enumerate() {
         let Some((option, path)) = output else { continue };
-        if scene_file.is_some() && std::fs::canonicalize(path).ok() == scene_file {
+        if place(path).is_some_and(|path| path.is_file() && scenes.contains(&path)) {
             let path = path.display();
             return Err(Failure::argument(format!(
                 "{option} {path} would overwrite the scene: name another file"

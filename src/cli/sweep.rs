@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::path::Path;
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use interwell::output::{header, rows};
 use interwell::scene::Document;
 use interwell::study::{Grid, Sweep, SweepEnd, Task};
@@ -23,7 +23,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool =
         pool.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot start {threads} threads: {error}")))?;
-    let mut sinks = open(&options.scene, [Some(("--out", &common.out))])?;
+    let mut sinks = open(&[&options.scene], [Some(("--out", &common.out))])?;
 
     let bar = bar(sweep.grid().cells(), common.quiet, &common.out);
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
@@ -45,7 +45,8 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     bar.finish_and_clear();
     let tally = result?;
     finish(sinks)?;
-    if !common.quiet {
+    // Fewer cells than there are: the reader of a pipe has gone, which is no news to anyone.
+    if !common.quiet && tally.cells == sweep.grid().cells() {
         let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
         let early = match tally.ended_early {
             0 => String::new(),
@@ -71,7 +72,10 @@ fn bar(cells: u64, quiet: bool, out: &Path) -> ProgressBar {
     if quiet || rows_on_terminal || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let style =
-        ProgressStyle::with_template("{wide_bar} {human_pos}/{human_len} cells  {per_sec}  {eta} left");
-    ProgressBar::new(cells).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    let template = "{wide_bar} {human_pos}/{human_len} cells  {rate}  {eta} left";
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
+        let _ = write!(text, "{:.0}/s", state.per_sec());
+    };
+    ProgressBar::new(cells).with_style(style.with_key("rate", rate))
 }

@@ -3,7 +3,7 @@
 //! `--dt 0.1` means 0.1, 0.2, 0.3, not 0.30000000000000004: a time is the double nearest to k times
 //! the *decimal* step, and a 60th of a forcing period of 1/3 s is the double nearest to k/180.
 
-/// The largest number of samples of one run: some 400 MB of memory.
+/// The largest number of samples of one run: they take 1 GB of memory.
 pub const MAX_SAMPLES: u64 = 10_000_000;
 
 /// Why a run cannot be sampled as asked.

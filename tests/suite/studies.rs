@@ -1,1 +1,127 @@
-//! studies
+//! Do the studies answer what one run answers, in order, and stop when told?
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use interwell::dynamics::{Model, Request};
+use interwell::mechanics::Mechanism;
+use interwell::scene::Document;
+use interwell::study::*;
+
+fn model(document: &Document) -> Model {
+    let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+    Model::build(&document.scene, Arc::new(mechanism)).unwrap()
+}
+
+fn pool(threads: usize) -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap()
+}
+
+fn sweep(over: &[&str]) -> Sweep {
+    let mut document = Document::load("nominal-cubic").unwrap();
+    document.set("run.duration_s=2").unwrap();
+    document.set("run.settle_s=1").unwrap();
+    let grid = Grid::new(document.axes(over).unwrap()).unwrap();
+    Sweep::new(&document.scene, &document.files, grid)
+}
+
+const OVER: [&str; 2] = ["stops.travel_limit_mm=1,3,5", "excitation.amplitude_g=0:2:0.5"];
+
+#[test]
+fn a_cell_is_the_run_of_its_scene() {
+    let cancel = AtomicBool::new(false);
+    let ticks = AtomicU64::new(0);
+    let tick = || {
+        ticks.fetch_add(1, Ordering::Relaxed);
+    };
+    let task = Task { tick: &tick, cancel: &cancel };
+    let sweep = sweep(&OVER);
+    sweep.validate(&pool(2), &task).unwrap();
+    let mut rows = Vec::new();
+    let write = |table: &Table| {
+        let limits = table.numbers("travel_limit_mm").unwrap();
+        let amplitudes = table.numbers("amplitude_g").unwrap();
+        let rms = table.numbers("rms_velocity_m_per_s").unwrap();
+        rows.extend((0..table.rows()).map(|i| (limits[i], amplitudes[i], rms[i])));
+        Ok::<_, ()>(true)
+    };
+    let tally = sweep.run(&pool(2), &task, write).unwrap();
+    assert_eq!((tally.cells, tally.ended_early, ticks.into_inner()), (15, 0, 15));
+    let mut expected = Vec::new();
+    for limit in [1.0, 3.0, 5.0] {
+        for amplitude in [0.0, 0.5, 1.0, 1.5, 2.0] {
+            let mut document = Document::load("nominal-cubic").unwrap();
+            for set in ["run.duration_s=2", "run.settle_s=1"] {
+                document.set(set).unwrap();
+            }
+            document.set(&format!("stops.travel_limit_mm={limit}")).unwrap();
+            document.set(&format!("excitation.amplitude_g={amplitude}")).unwrap();
+            let summary = model(&document).run(&Request::default()).summary;
+            expected.push((limit, amplitude, summary.rms_velocity.unwrap()));
+        }
+    }
+    assert_eq!(rows, expected);
+}
+
+#[test]
+fn a_sweep_stops_when_told() {
+    let cancel = AtomicBool::new(false);
+    let stop = || cancel.store(true, Ordering::Relaxed);
+    let task = Task { tick: &stop, cancel: &cancel };
+    let result = sweep(&OVER).run(&pool(1), &task, |_| Ok::<_, ()>(true));
+    assert!(matches!(result, Err(SweepEnd::Cancelled)));
+
+    let never = AtomicBool::new(false);
+    let task = Task { tick: &|| {}, cancel: &never };
+    let long = sweep(&["excitation.amplitude_g=0:1:0.001", "run.duration_s=1:2:0.5"]);
+    let unwanted = long.run(&pool(1), &task, |_| Ok::<_, ()>(false)).unwrap();
+    assert!(unwanted.cells < long.grid().cells());
+    let failing = long.run(&pool(1), &task, |_| Err("full"));
+    assert!(matches!(failing, Err(SweepEnd::Write("full"))));
+}
+
+#[test]
+fn the_first_wrong_cell_is_named() {
+    let never = AtomicBool::new(false);
+    let task = Task { tick: &|| {}, cancel: &never };
+    let sweep = sweep(&["mechanism.linear_n_per_m=-40,40", "mechanism.cubic_n_per_m3=1e5,-1e5,-2e5,1e6"]);
+    for threads in [1, 2, 3] {
+        let wrong = sweep.validate(&pool(threads), &task).unwrap_err();
+        assert_eq!(wrong.cell, "linear_n_per_m = -40, cubic_n_per_m3 = -100000");
+        assert!(!wrong.faults.is_empty());
+    }
+}
+
+#[test]
+fn samples_keep_the_order_of_their_times() {
+    let model = model(&Document::load("paper").unwrap());
+    let times = vec![3.0, 0.25, 10.0, 0.0, 0.25];
+    let keep = |times: &[f64]| Keep { times: times.to_vec(), events: false };
+    let shuffled = simulate(&model, &keep(&times), None);
+    let ascending = simulate(&model, &keep(&[0.0, 0.25, 3.0, 10.0]), None);
+    assert_eq!(shuffled.samples.numbers("t_s").unwrap(), times);
+    let (a, b) = (shuffled.samples.numbers("x_m").unwrap(), ascending.samples.numbers("x_m").unwrap());
+    assert_eq!(a, [b[2], b[1], b[3], b[0], b[1]]);
+    assert_eq!(shuffled.events.rows(), 0);
+}
+
+#[test]
+fn default_samples_follow_the_drive() {
+    let count = |set: &[&str]| {
+        let mut document = Document::load("paper").unwrap();
+        set.iter().for_each(|set| document.set(set).unwrap());
+        sample_times(&document.scene, &model(&document), &Sampling::Default).unwrap().len()
+    };
+    assert_eq!(count(&[]), 1801);
+    assert_eq!(count(&["excitation=None"]), 1001);
+    let two =
+        "excitation=Sum([Sine(frequency_hz: 3, amplitude_g: 1), Sine(frequency_hz: 2, amplitude_g: 1)])";
+    assert_eq!(count(&[two]), 601);
+    assert_eq!(
+        count(&[
+            "excitation=AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 1, over_s: 5)",
+            "run.duration_s=1"
+        ]),
+        181
+    );
+}
