@@ -6,7 +6,7 @@
 //! function is called.
 
 use super::clock::{Clock, Instant};
-use super::series::ROOM;
+use super::series::{ROOM, SEEDED};
 use crate::numeric::{PolynomialRoots, Ratio, Scalar};
 
 /// How long a search for a release looks ahead at a time, in radians of the fastest tone, and the order of
@@ -23,7 +23,7 @@ pub(crate) trait Drive<T: Scalar> {
     /// State carried along a series.
     type Rolling: Default;
 
-    /// Fills a\[0..=3\] at `at`.
+    /// Fills the first [`SEEDED`] coefficients of `a`, at `at`.
     fn seed(
         &self,
         clock: &Clock<T>,
@@ -33,7 +33,7 @@ pub(crate) trait Drive<T: Scalar> {
         roll: &mut Self::Rolling,
     );
 
-    /// Fills a\[k\], k >= 4, all lower ones being known; `inverse[n]` is 1/(n(n-1)).
+    /// Fills a\[k\], k >= [`SEEDED`], once each and in ascending order; `inverse[n]` is 1/(n(n-1)).
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling);
 
     /// The instant at which segment `segment` ends, where one follows.
@@ -318,7 +318,7 @@ impl<T: Scalar> Drive<T> for Tones<T> {
             }
             roll.tones.push([unit[2], unit[3], amplitude, growth]);
         }
-        a[..4].copy_from_slice(&sums);
+        a[..SEEDED].copy_from_slice(&sums);
     }
 
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling) {
@@ -368,7 +368,7 @@ impl<T: Scalar> Drive<T> for Tones<T> {
             }
             let h = stride.smaller(left);
             self.seed(clock, &at, segment, &mut a, roll);
-            for k in 4..=SEARCH_ORDER {
+            for k in SEEDED..=SEARCH_ORDER {
                 self.extend(k, &mut a, &inverse, roll);
             }
             let mut g = [T::zero(); SEARCH_ORDER + 1];
