@@ -5,25 +5,32 @@ use std::path::Path;
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
-use interwell::output::{header, rows};
+use interwell::output::{Overlay, can_show, header, rows, sweep_figure};
 use interwell::scene::Document;
-use interwell::study::{Grid, Sweep, SweepEnd, Task};
+use interwell::study::{Grid, Sweep, SweepEnd, Table, Task, first_interwell, release_line};
 
 use super::failure::{Failure, wrong_cell};
 use super::options::SweepOptions;
+use super::picture::{Picture, caption};
 use super::support::{finish, load_with_mechanism, open, write_text};
 use super::{interrupt, say};
 
 /// Runs the grid and writes a row a cell.
 pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let common = &options.common;
-    let (document, _) = load_with_mechanism(&options.scene, common)?;
+    let picture = Picture::asked(&options.plot)?;
+    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
+    if picture.is_some() {
+        can_show(sweep.grid())?;
+    }
     let threads = common.jobs.map_or_else(cores, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool =
         pool.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot start {threads} threads: {error}")))?;
-    let mut sinks = open(&[&options.scene], [Some(("--out", &common.out))])?;
+    let outputs = [Some(("--out", &*common.out)), picture.map(|own| own.output())];
+    let mut sinks = open(&[&options.scene], outputs)?;
+    let mut shown = picture.map(|_| Table::new());
 
     let bar = bar(sweep.grid().cells(), common.quiet, &common.out);
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
@@ -31,11 +38,15 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let result = (|| {
         sweep.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
         write_text(&mut sinks[0], &header(&sweep.empty_table()))?;
-        let write = |table: &_| {
+        let write = |table: &Table| {
+            if let Some(shown) = &mut shown {
+                shown.append(table);
+            }
             write_text(&mut sinks[0], &rows(table, 0..usize::MAX))?;
             let Some(sink) = &mut sinks[0] else { return Ok(false) };
             sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
-            Ok(!sink.is_closed())
+            // Where the reader of a pipe has gone, a picture may still be wanted.
+            Ok(!sink.is_closed() || shown.is_some())
         };
         sweep.run(&pool, &task, write).map_err(|end| match end {
             SweepEnd::Cancelled => Failure::interrupted(),
@@ -44,6 +55,15 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     })();
     bar.finish_and_clear();
     let tally = result?;
+    if let Some((picture, rows)) = picture.zip(shown) {
+        let grid = sweep.grid();
+        let overlay = Overlay {
+            release: release_line(&document.scene, &mechanism, grid),
+            first_interwell: first_interwell(grid, &rows),
+        };
+        let figure = sweep_figure(&rows, grid, &overlay, &document.scene, &caption(&document), picture.theme)?;
+        picture.write(&mut sinks[1], &figure)?;
+    }
     finish(sinks)?;
     // Fewer cells than there are: the reader of a pipe has gone, which is no news to anyone.
     if !common.quiet && tally.cells == sweep.grid().cells() {

@@ -1,4 +1,4 @@
-//! A table in, bytes out: CSV, JSON, and the files and pipes that they go to.
+//! A table in, bytes out: CSV, JSON, pictures, and the files and pipes that they go to.
 //!
 //! Nothing here computes: a number is written in the shortest form that parses back to the same
 //! double, a missing one as an empty cell (CSV) or `null` (JSON).
@@ -6,9 +6,14 @@
 mod csv;
 mod json;
 mod number;
+mod plot;
 mod sink;
 
 pub use csv::{header, rows};
 pub use json::{landscape, summary};
 pub use number::push_number;
+pub use plot::{
+    Caption, Figure, Format, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, Theme, UnknownFormat, can_show, curve_figure,
+    run_figure, sweep_figure,
+};
 pub use sink::{OpenError, Sink, same_target};

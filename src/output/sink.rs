@@ -131,6 +131,14 @@ impl Sink {
         &self.name
     }
 
+    /// Where the regular file will stand that this writes; none for a pipe, a device or standard output.
+    pub fn file(&self) -> Option<&Path> {
+        match &self.kind {
+            Kind::Whole { target, .. } => Some(target),
+            _ => None,
+        }
+    }
+
     /// Whether the reader of this pipe has gone: whatever is still written is thrown away.
     pub fn is_closed(&self) -> bool {
         self.closed
@@ -138,7 +146,12 @@ impl Sink {
 
     /// Appends `text`, which may stay in memory until [`flush`](Self::flush).
     pub fn put(&mut self, text: &str) -> io::Result<()> {
-        self.buffer.extend_from_slice(text.as_bytes());
+        self.put_bytes(text.as_bytes())
+    }
+
+    /// Appends bytes as [`put`](Self::put) does text.
+    pub fn put_bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.buffer.extend_from_slice(bytes);
         if self.buffer.len() >= BUFFER { self.flush() } else { Ok(()) }
     }
 
