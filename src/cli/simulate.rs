@@ -7,7 +7,7 @@ use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_tra
 use super::failure::Failure;
 use super::options::SimulateOptions;
 use super::picture::{Picture, caption};
-use super::support::{finish, load_with_mechanism, numbers, open, write_table, write_text};
+use super::support::{Watch, finish, load_with_mechanism, numbers, open, write_table, write_text};
 use super::{interrupt, say};
 
 /// Runs the scene and writes samples, events and summary.
@@ -32,6 +32,7 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let mut sinks = open(&[&options.scene], outputs)?;
 
     let cancel = interrupt::listen();
+    let watch = Watch::start();
     let keep = Keep { times, events: events.is_some() };
     let (simulation, trace) = match picture {
         None => (simulate(&model, &keep, Some(cancel)), None),
@@ -46,7 +47,7 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let [samples, events, about, plot] = &mut sinks;
     write_table(samples, &simulation.samples)?;
     write_table(events, &simulation.events)?;
-    write_text(about, &summary(&simulation.summary, &document.scene, env!("CARGO_PKG_VERSION")))?;
+    write_text(about, &summary(&simulation.summary, &document.scene, &watch.origin(1)))?;
     if let Some((picture, trace)) = picture.zip(trace) {
         let (about, mechanism) = (caption(&document), &model.mechanism);
         let figure = run_figure(&trace, &simulation.summary, mechanism, &about, picture.theme);

@@ -22,6 +22,8 @@ pub struct Trace {
     pub portrait_from: f64,
     /// Positions of the left and the right stop in m; NaN where there is none.
     pub stops: (f64, f64),
+    /// Begin of the settled window in s.
+    pub settle: f64,
     /// Duration in s that was asked for.
     pub duration: f64,
 }
@@ -61,6 +63,7 @@ pub fn simulate_with_trace(
         rests: rests(&run.events, run.samples.first(), end),
         portrait_from,
         stops,
+        settle: model.settle,
         duration: model.duration,
     };
     let samples = samples_table(&in_order(&keep.times, &run.samples));

@@ -11,6 +11,7 @@ use crate::study::Table;
 
 const LEFT: f64 = 160.0;
 const RIGHT: f64 = 1560.0;
+const GUTTER: f64 = 110.0;
 const TICKS: usize = 5;
 
 /// The picture of the curve in `table` (as [`curve`](crate::study::curve) gives it), with stops at these
@@ -42,9 +43,10 @@ pub fn curve_figure(
     let lower = Area::new(LEFT, 550.0, RIGHT, 860.0);
     let force_axis = height(column("force_n"), force, 0.0, &format!("force to hold, {force_unit}"));
     let potential_axis = height(column("potential_j"), potential, f64::NAN, &format!("potential, {potential_unit}"));
+    let framed = |area, x, y| Frame { gutter: Some(GUTTER), ..Frame::new(area, x, y) };
     let frames = [
-        (Frame::new(upper, across.clone().silent(), force_axis), pairs(column("force_n"), force), theme.ink),
-        (Frame::new(lower, across.clone(), potential_axis), pairs(column("potential_j"), potential), theme.second),
+        (framed(upper, across.clone().silent(), force_axis), pairs(column("force_n"), force), theme.ink),
+        (framed(lower, across.clone(), potential_axis), pairs(column("potential_j"), potential), theme.second),
     ];
     let kinks: Vec<f64> = landscape.kinks.iter().map(|kink| kink.x).filter(|x| inside(*x)).collect();
     for (frame, line, ink) in &frames {
@@ -81,9 +83,7 @@ pub fn curve_figure(
         entries.push((Sample::Line(theme.soft, style::LINE, Some(style::DOT)), "kink of the force"));
     }
     if inside(stops.0) || inside(stops.1) {
-        let wall = theme.wall;
-        let patch = Sample::Patch(wall.over(theme.paper, 0.16), Some(wall.over(theme.paper, 0.55)));
-        entries.push((patch, "beyond a stop"));
+        entries.push((Sample::Patch(theme.wall_fill(), Some(theme.wall_hatch())), "stop"));
     }
     legend(&mut figure, theme, &entries, LEFT, RIGHT, 142.0);
     caption.draw(&mut figure, theme, &subtitle(landscape), LEFT);
@@ -114,10 +114,10 @@ fn subtitle(landscape: &Landscape) -> String {
 }
 
 /// The factor from SI and the name of the largest of `units` (each its size in SI, falling) in which the
-/// greatest value is 1 or more.
+/// greatest value is 0.1 or more.
 fn scaled(values: &[f64], units: &[(f64, &'static str)]) -> (f64, &'static str) {
     let greatest = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
-    let fits = units.iter().find(|(size, _)| greatest >= *size).or(units.last().filter(|_| greatest > 0.0));
+    let fits = units.iter().find(|(size, _)| greatest >= 0.1 * size).or(units.last().filter(|_| greatest > 0.0));
     fits.or(units.first()).map_or((1.0, ""), |(size, unit)| (1.0 / size, *unit))
 }
 

@@ -14,12 +14,15 @@ pub struct Frame {
     pub x: Axis,
     /// The axis upward.
     pub y: Axis,
+    /// How far left of the frame the label of the axis upward stands; by itself, as near as the
+    /// numbers let it.
+    pub gutter: Option<f64>,
 }
 
 impl Frame {
     /// A frame at `area` with these axes.
     pub fn new(area: Area, x: Axis, y: Axis) -> Self {
-        Self { area, x, y }
+        Self { area, x, y, gutter: None }
     }
 
     /// Where a value of x stands on the canvas.
@@ -94,7 +97,8 @@ impl Frame {
         };
         let below = bottom + style::TICK_LENGTH + ascent + 16.0 + style::AXIS;
         figure.text(label(&self.x.label, (0.5 * (left + right), below), false));
-        let beside = (left - style::TICK_LENGTH - 7.0 - widest - 18.0).max(style::AXIS);
+        let near = style::TICK_LENGTH + 7.0 + widest + 18.0;
+        let beside = (left - self.gutter.unwrap_or(near)).max(style::AXIS);
         figure.text(label(&self.y.label, (beside, 0.5 * (top + bottom)), true));
     }
 
@@ -180,28 +184,27 @@ impl Frame {
         }
     }
 
-    /// A wall: what lies beyond `x` on its left (`left`) or right is solid.
+    /// A wall at `x`, solid towards its left (`left`) or right.
     pub fn wall_across(&self, figure: &mut Figure, x: f64, left: bool, theme: &Theme) {
         let at = self.across(x);
-        let Area { left: from, top, right: to, bottom } = self.area;
-        let beyond = if left { Area::new(from, top, at, bottom) } else { Area::new(at, top, to, bottom) };
-        self.wall(figure, beyond, [(at, top), (at, bottom)], theme);
+        let Area { top, bottom, .. } = self.area;
+        let (from, to) = if left { (at - style::WALL, at) } else { (at, at + style::WALL) };
+        if let Some(solid) = Area::new(from, top, to, bottom).common(self.area) {
+            figure.rect(solid, theme.wall_fill());
+            figure.hatch(solid, style::HATCH, theme.wall_hatch());
+        }
+        figure.line(&[(at, top), (at, bottom)], style::LINE, theme.wall, self.area);
     }
 
-    /// A wall: what lies beyond `y`, below or above it, is solid.
+    /// A wall at `y`, solid below or above it.
     pub fn wall_down(&self, figure: &mut Figure, y: f64, below: bool, theme: &Theme) {
         let at = self.down(y);
-        let Area { left, top, right, bottom } = self.area;
-        let beyond = if below { Area::new(left, at, right, bottom) } else { Area::new(left, top, right, at) };
-        self.wall(figure, beyond, [(left, at), (right, at)], theme);
-    }
-
-    fn wall(&self, figure: &mut Figure, beyond: Area, edge: [Point; 2], theme: &Theme) {
-        if let Some(beyond) = beyond.common(self.area) {
-            figure.rect(beyond, theme.wall.over(theme.paper, 0.16));
-            figure.hatch(beyond, style::HATCH, theme.wall.over(theme.paper, 0.55));
+        let Area { left, right, .. } = self.area;
+        let (top, bottom) = if below { (at, at + style::WALL) } else { (at - style::WALL, at) };
+        if let Some(solid) = Area::new(left, top, right, bottom).common(self.area) {
+            figure.rect(solid, theme.wall_fill());
         }
-        figure.line(&edge, style::LINE, theme.wall, self.area);
+        figure.line(&[(left, at), (right, at)], style::LINE, theme.wall, self.area);
     }
 }
 

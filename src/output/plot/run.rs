@@ -13,6 +13,7 @@ use crate::study::{Trace, Values};
 
 const LEFT: f64 = 150.0;
 const MIDDLE: f64 = 985.0;
+const GUTTER: f64 = 102.0;
 const PORTRAIT: Area = Area { left: 1150.0, top: 175.0, right: 1565.0, bottom: 600.0 };
 const PANELS: [(f64, f64); 3] = [(175.0, 425.0), (447.0, 657.0), (679.0, 869.0)];
 
@@ -34,21 +35,24 @@ pub fn run_figure(
         // Stops count where the mass comes near them, so that a far one does not press the motion flat.
         let far = x.iter().map(|x| x.abs()).filter(|x| x.is_finite()).fold(0.0, f64::max);
         let near = [trace.stops.0, trace.stops.1].into_iter().filter(move |stop| stop.abs() <= 1.3 * far);
-        Axis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.09, count, "displacement, mm")
+        Axis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, count, "displacement, mm")
     };
     let (speed, speed_unit) = speed_unit(v.iter().copied());
     let speed_label = format!("velocity, {speed_unit}");
-    let v_axis = Axis::around(v.iter().map(|v| v * speed), 0.08, 4, &speed_label);
+    let v_axis = Axis::around(v.iter().map(|v| v * speed), 0.08, 5, &speed_label);
     let g_axis =
-        Axis::around(accel.iter().map(|a| a / STANDARD_GRAVITY).chain([0.0]), 0.1, 4, "base acceleration, g");
-    let area = |(top, bottom): (f64, f64)| Area::new(LEFT, top, MIDDLE, bottom);
+        Axis::around(accel.iter().map(|a| a / STANDARD_GRAVITY).chain([0.0]), 0.1, 4, "base accel., g");
+    let framed = |(top, bottom): (f64, f64), x, y| {
+        Frame { gutter: Some(GUTTER), ..Frame::new(Area::new(LEFT, top, MIDDLE, bottom), x, y) }
+    };
     let frames = [
-        Frame::new(area(PANELS[0]), time.clone().silent(), x_axis(5)),
-        Frame::new(area(PANELS[1]), time.clone().silent(), Axis { label: "velocity".into(), ..v_axis.clone() }),
-        Frame::new(area(PANELS[2]), time, Axis { label: "base accel., g".into(), ..g_axis }),
+        framed(PANELS[0], time.clone().silent(), x_axis(6)),
+        framed(PANELS[1], time.clone().silent(), v_axis),
+        framed(PANELS[2], time, g_axis),
     ];
-    for frame in &frames {
-        rests(&mut figure, frame, trace, theme);
+    for (i, frame) in frames.iter().enumerate() {
+        let strength = if i == 0 { 1.0 } else { 0.5 };
+        rests(&mut figure, frame, trace, theme.rest.over(theme.paper, strength));
         frame.grid(&mut figure, theme);
     }
     frames[1].horizontal(&mut figure, 0.0, style::THIN, theme.soft, None);
@@ -80,8 +84,8 @@ pub fn run_figure(
     let near = stops.into_iter().filter(|stop| stop.abs() <= 1.3 * far);
     let portrait = Frame::new(
         PORTRAIT,
-        Axis::around(px.iter().copied().chain(near).map(|x| x * 1e3), 0.1, 4, "displacement, mm"),
-        Axis::around(pv.iter().map(|v| v * speed), 0.08, 6, &speed_label),
+        Axis::around(px.iter().copied().chain(near).map(|x| x * 1e3), 0.1, 6, "displacement, mm"),
+        Axis::around(pv.iter().map(|v| v * speed), 0.08, 8, &speed_label),
     );
     portrait.grid(&mut figure, theme);
     for (stop, left) in [(trace.stops.0, true), (trace.stops.1, false)] {
@@ -98,15 +102,13 @@ pub fn run_figure(
 
     let mut entries = Vec::new();
     if trace.impacts.rows() > 0 {
-        entries.push((Sample::Ticks(theme.regimes[3]), "impact"));
+        entries.push((Sample::Ticks(theme.ink), "impact"));
     }
     if trace.rests.rows() > 0 {
         entries.push((Sample::Patch(theme.rest, None), "at rest on a stop"));
     }
     if trace.stops.0.is_finite() || trace.stops.1.is_finite() {
-        let wall = theme.wall;
-        let patch = Sample::Patch(wall.over(theme.paper, 0.16), Some(wall.over(theme.paper, 0.55)));
-        entries.push((patch, "stop"));
+        entries.push((Sample::Patch(theme.wall_fill(), None), "stop"));
     }
     if wells.iter().any(|well| shown(well * 1e3)) {
         entries.push((Sample::Line(theme.stable, style::LINE, Some(style::DASH)), "well"));
@@ -133,7 +135,7 @@ fn words<'a>(values: Option<&'a Values>) -> &'a [&'static str] {
 }
 
 /// Spans at rest, shaded; neighbours nearer than a part of a pixel are one.
-fn rests(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
+fn rests(figure: &mut Figure, frame: &Frame, trace: &Trace, ink: Ink) {
     let from = trace.rests.numbers("from_s").unwrap_or_default();
     let to = trace.rests.numbers("to_s").unwrap_or_default();
     let mut open: Option<(f64, f64)> = None;
@@ -141,7 +143,7 @@ fn rests(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
         if let Some((left, right)) = span {
             let area = Area::new(left, frame.area.top, right, frame.area.bottom);
             if let Some(area) = area.common(frame.area) {
-                figure.rect(area, theme.rest);
+                figure.rect(area, ink);
             }
         }
     };
@@ -160,7 +162,7 @@ fn rests(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
 
 /// A tick for each impact at the edge on its stop's side, one a pixel where they lie closer.
 fn impacts(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
-    const TICK: f64 = 17.0;
+    const TICK: f64 = 20.0;
     let times = trace.impacts.numbers("t_s").unwrap_or_default();
     let sides = words(trace.impacts.column("side").map(|column| &column.values));
     let mut last = [f64::NEG_INFINITY; 2];
@@ -171,7 +173,7 @@ fn impacts(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
             last[usize::from(left)] = at;
             let edge = if left { frame.area.bottom } else { frame.area.top };
             let inner = if left { edge - TICK } else { edge + TICK };
-            figure.line(&[(at, edge), (at, inner)], 2.0, theme.regimes[3], frame.area);
+            figure.line(&[(at, edge), (at, inner)], 2.0, theme.ink, frame.area);
         }
     }
 }
@@ -203,12 +205,16 @@ fn account(figure: &mut Figure, summary: &Summary, trace: &Trace, unit: &str, sc
     }
     let mut lines = Vec::new();
     if let Some(rms) = summary.rms_velocity {
+        lines.push(format!("settled, from {} s on:", short(trace.settle)));
         lines.push(format!("RMS velocity {} {unit}", short(rms * scale)));
     }
     if summary.rms_velocity.is_some() {
         let share = summary.rested_share.filter(|share| *share > 0.0);
-        lines.push(format!("{} crossings, {} impacts", summary.crossings, summary.impacts));
-        lines.extend(share.map(|share| format!("at rest {} % of the time", short(100.0 * share))));
+        lines.push(match name {
+            "" => format!("{} impacts", summary.impacts),
+            _ => format!("{} crossings, {} impacts", summary.crossings, summary.impacts),
+        });
+        lines.extend(share.map(|share| format!("at rest {:.0} % of the time", 100.0 * share)));
     }
     if trace.path.rows() > 0 && lines.is_empty() {
         lines.push("ended before its settled window".to_owned());

@@ -48,6 +48,8 @@ pub const GRID: f64 = 1.2;
 pub const MARKER: f64 = 9.0;
 /// Distance between the lines of a hatching, and their width.
 pub const HATCH: (f64, f64) = (11.0, 1.6);
+/// Thickness of a wall.
+pub const WALL: f64 = 30.0;
 /// Length of a tick.
 pub const TICK_LENGTH: f64 = 9.0;
 /// Dash and gap of a dashed line.
@@ -123,6 +125,16 @@ impl Theme {
         rest_hatch: Ink(0x72, 0x78, 0x82),
         regimes: [Ink(0x9a, 0x9a, 0x9a), Ink(0x2b, 0x95, 0xd6), PURPLE, Ink(0xf0, 0x73, 0x10)],
     };
+
+    /// The inside of a wall.
+    pub fn wall_fill(&self) -> Ink {
+        self.wall.over(self.paper, 0.22)
+    }
+
+    /// The hatching of a wall.
+    pub fn wall_hatch(&self) -> Ink {
+        self.wall.over(self.paper, 0.6)
+    }
 
     /// Light or dark.
     pub fn of(dark: bool) -> &'static Self {

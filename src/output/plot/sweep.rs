@@ -298,7 +298,7 @@ fn over(
         frame.line(figure, &points, style::GUIDE + 4.0, style::BLACK);
         frame.dashed(figure, &points, style::GUIDE, style::WHITE, style::DASH);
         let sample = Sample::Outlined(style::WHITE, Some(style::DASH));
-        entries.insert(0, (sample, "release: amplitude = |F(limit)| / mass"));
+        entries.insert(0, (sample, "release in closed form, |F(limit)|/mass"));
     }
     entries
 }
