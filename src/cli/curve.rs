@@ -30,7 +30,10 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
     };
     let table = curve(&mechanism, positions)?;
     let landscape_path = options.landscape.as_deref().map(|path| ("--landscape", path));
-    let mut sinks = open(&[&options.scene], [Some(("--out", &common.out)), landscape_path, picture.map(|own| own.output())])?;
+    let mut sinks = open(
+        &[&options.scene],
+        [Some(("--out", &common.out)), landscape_path, picture.map(|own| own.output())],
+    )?;
     write_table(&mut sinks[0], &table)?;
     write_text(&mut sinks[1], &landscape(&mechanism, document.scene.mass_g * 1e-3))?;
     if let Some(picture) = picture {

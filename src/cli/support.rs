@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use interwell::mechanics::Mechanism;
 use cpu_time::ProcessTime;
+use interwell::mechanics::Mechanism;
 use interwell::output::{Origin, Sink, header, rows, same_target};
 use interwell::scene::{Document, SceneError};
 use interwell::study::Table;

@@ -62,11 +62,13 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
             release: release_line(&document.scene, &mechanism, grid),
             first_interwell: first_interwell(grid, &rows),
         };
-        let figure = sweep_figure(&rows, grid, &overlay, &document.scene, &caption(&document), picture.theme)?;
+        let figure =
+            sweep_figure(&rows, grid, &overlay, &document.scene, &caption(&document), picture.theme)?;
         picture.write(&mut sinks[1], &figure)?;
     }
     if sinks[2].is_some() {
-        let data = common.out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let data =
+            common.out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let grid = sweep.grid();
         let origin = watch.origin(threads);
         let text = manifest(&document.scene, &document.name, grid, &tally, &origin, &data);

@@ -71,6 +71,8 @@ impl Column {
         let unit = self.unit();
         let ending = UNITS.iter().find(|(ending, _)| self.name.ends_with(ending)).map_or("", |(e, _)| e);
         let words = self.name.strip_suffix(ending).unwrap_or(&self.name).replace(['_', '.'], " ");
+        // The one name that is a letter.
+        let words = if words == "xi" { "damping ratio".to_owned() } else { words };
         if unit.is_empty() { words } else { format!("{words}, {unit}") }
     }
 }

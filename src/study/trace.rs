@@ -5,7 +5,7 @@
 
 use super::simulate::{Keep, Simulation, events_table, in_order, samples_table};
 use super::table::{Table, Values};
-use crate::dynamics::{Event, EventKind, Model, Phase, Request, Sample, Side};
+use crate::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Sample, Side};
 
 /// One run as a picture shows it.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,8 +24,8 @@ pub struct Trace {
     pub stops: (f64, f64),
     /// Begin of the settled window in s.
     pub settle: f64,
-    /// Duration in s that was asked for.
-    pub duration: f64,
+    /// Time in s at which the run ended.
+    pub end: f64,
 }
 
 /// Samples over the whole run, at least and at most: some per column of a picture, and memory.
@@ -46,25 +46,30 @@ pub fn simulate_with_trace(
     keep: &Keep,
     cancel: Option<&std::sync::atomic::AtomicBool>,
 ) -> (Simulation, Trace) {
-    let portrait_from = portrait_from(model);
-    let mut times = picture_times(model, portrait_from);
-    times.extend_from_slice(&keep.times);
-    times.sort_by(f64::total_cmp);
-    times.dedup();
+    let mut portrait_from = portrait_from(model);
+    let mut seen = picture_times(model, portrait_from, model.duration);
+    let times = ascending(seen.iter().chain(&keep.times).copied().collect());
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, cancel });
     let stop = |side: Option<f64>| side.unwrap_or(f64::NAN);
     let stops = model.stops.map_or((f64::NAN, f64::NAN), |pair| {
         (stop(pair.left.map(|own| own.x)), stop(pair.right.map(|own| own.x)))
     });
     let end = run.summary.outcome.ended_at().unwrap_or(model.duration);
+    let mut shown = in_order(&seen, &run.samples);
+    if end < model.duration && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
+        // It ended where hardly a sample had been asked for: the same run again, looked at more closely.
+        portrait_from = 0.0;
+        seen = picture_times(model, portrait_from, end);
+        shown = model.run(&Request { sample_times: &seen, events: false, ledger: false, cancel }).samples;
+    }
     let trace = Trace {
-        path: path(&run.samples, &run.events, stops),
+        path: path(&shown, &run.events, stops),
         impacts: impacts(&run.events),
         rests: rests(&run.events, run.samples.first(), end),
         portrait_from,
         stops,
         settle: model.settle,
-        duration: model.duration,
+        end,
     };
     let samples = samples_table(&in_order(&keep.times, &run.samples));
     let events = events_table(if keep.events { &run.events } else { &[] });
@@ -78,9 +83,14 @@ fn portrait_from(model: &Model) -> f64 {
     }
 }
 
-/// Even times over the run, and closer ones over the phase portrait; not in order.
-fn picture_times(model: &Model, portrait_from: f64) -> Vec<f64> {
-    let duration = model.duration;
+fn ascending(mut times: Vec<f64>) -> Vec<f64> {
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
+/// Even times up to `duration`, and closer ones over the phase portrait, in ascending order.
+fn picture_times(model: &Model, portrait_from: f64, duration: f64) -> Vec<f64> {
     let swing = std::f64::consts::TAU * model.scales.time;
     let fastest = model.forcing_period.map_or(swing, |period| period.min(swing));
     let count = (duration / fastest * PER_PERIOD).clamp(OVERVIEW.0, OVERVIEW.1).floor();
@@ -88,7 +98,7 @@ fn picture_times(model: &Model, portrait_from: f64) -> Vec<f64> {
         let time = move |i: u32| (from + (duration - from) * f64::from(i) / count).min(duration);
         (0..=count as u32).map(time)
     };
-    even(0.0, count).chain(even(portrait_from, PORTRAIT)).collect()
+    ascending(even(0.0, count).chain(even(portrait_from, PORTRAIT)).collect())
 }
 
 /// Samples and impacts in order of time. A sample at an impact's instant is the state after it.

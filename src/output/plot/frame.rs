@@ -14,8 +14,8 @@ pub struct Frame {
     pub x: Axis,
     /// The axis upward.
     pub y: Axis,
-    /// How far left of the frame the label of the axis upward stands; by itself, as near as the
-    /// numbers let it.
+    /// How far left of the frame the label of the axis upward stands at least, so that labels of several
+    /// frames are in line; the numbers may push it further.
     pub gutter: Option<f64>,
 }
 
@@ -68,8 +68,10 @@ impl Frame {
             align,
             upright: false,
         };
-        for (value, words) in &self.x.ticks {
+        let numbered = self.numbered();
+        for (i, (value, words)) in self.x.ticks.iter().enumerate() {
             let at = self.across(*value);
+            let words = if numbered(i) { words } else { "" };
             let tick = [(at, bottom), (at, bottom + style::TICK_LENGTH)];
             figure.line(&tick, style::FRAME, theme.ink, Figure::canvas());
             figure.text(text(words, (at, bottom + style::TICK_LENGTH + ascent + 8.0), Align::Centre));
@@ -80,16 +82,16 @@ impl Frame {
             let tick = [(left - style::TICK_LENGTH, at), (left, at)];
             figure.line(&tick, style::FRAME, theme.ink, Figure::canvas());
             widest = widest.max(font::width(words, style::TICK, false));
-            figure.text(text(
-                words,
-                (left - style::TICK_LENGTH - 7.0, at + 0.5 * ascent),
-                Align::Right,
-            ));
+            figure.text(text(words, (left - style::TICK_LENGTH - 7.0, at + 0.5 * ascent), Align::Right));
         }
+        // A label too long for its axis is smaller, so that it does not reach into the next one.
         let label = |words: &str, at: Point, upright: bool| Text {
             words: words.to_owned(),
             at,
-            size: style::AXIS,
+            size: {
+                let room = if upright { bottom - top + 20.0 } else { right - left + 60.0 };
+                style::AXIS * (room / font::width(words, style::AXIS, false)).min(1.0)
+            },
             ink: theme.ink,
             bold: false,
             align: Align::Centre,
@@ -98,8 +100,26 @@ impl Frame {
         let below = bottom + style::TICK_LENGTH + ascent + 16.0 + style::AXIS;
         figure.text(label(&self.x.label, (0.5 * (left + right), below), false));
         let near = style::TICK_LENGTH + 7.0 + widest + 18.0;
-        let beside = (left - self.gutter.unwrap_or(near)).max(style::AXIS);
+        let beside = (left - self.gutter.map_or(near, |gutter| gutter.max(near))).max(style::AXIS);
         figure.text(label(&self.y.label, (beside, 0.5 * (top + bottom)), true));
+    }
+
+    /// Which ticks to the right have their number: as many as stand apart, 0 among them.
+    fn numbered(&self) -> impl Fn(usize) -> bool + use<> {
+        const APART: f64 = 16.0;
+        let ticks: Vec<(f64, f64)> = self
+            .x
+            .ticks
+            .iter()
+            .map(|(value, words)| (self.across(*value), 0.5 * font::width(words, style::TICK, false)))
+            .collect();
+        let zero = self.x.ticks.iter().position(|tick| tick.0 == 0.0).unwrap_or(0);
+        let apart = |every: &usize| {
+            let kept: Vec<_> = ticks.iter().skip(zero % every).step_by(*every).collect();
+            kept.windows(2).all(|pair| pair[1].0 - pair[0].0 >= pair[0].1 + pair[1].1 + APART)
+        };
+        let every = (1..=ticks.len().max(1)).find(apart).unwrap_or(1);
+        move |i| i % every == zero % every
     }
 
     /// A line through data.
@@ -170,14 +190,7 @@ impl Frame {
         self.guide(figure, [(self.area.left, at), (self.area.right, at)], width, ink, dash);
     }
 
-    fn guide(
-        &self,
-        figure: &mut Figure,
-        ends: [Point; 2],
-        width: f64,
-        ink: Ink,
-        dash: Option<(f64, f64)>,
-    ) {
+    fn guide(&self, figure: &mut Figure, ends: [Point; 2], width: f64, ink: Ink, dash: Option<(f64, f64)>) {
         match dash {
             Some(dash) => figure.dashed(&ends, width, ink, dash, self.area),
             None => figure.line(&ends, width, ink, self.area),

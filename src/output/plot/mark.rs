@@ -43,8 +43,7 @@ pub fn marker(figure: &mut Figure, marker: Marker, at: Point, size: f64, ink: In
 
 fn plain(figure: &mut Figure, marker: Marker, (x, y): Point, size: f64, ink: Ink) {
     let flat = 0.86 * size;
-    let polygon =
-        |points: &[Point]| points.iter().map(|(dx, dy)| (x + dx, y + dy)).collect::<Vec<Point>>();
+    let polygon = |points: &[Point]| points.iter().map(|(dx, dy)| (x + dx, y + dy)).collect::<Vec<Point>>();
     match marker {
         Marker::Disc => figure.disc((x, y), size, ink),
         Marker::Square => figure.rect(Area::new(x - flat, y - flat, x + flat, y + flat), ink),

@@ -8,6 +8,7 @@ mod curve;
 mod figure;
 mod font;
 mod frame;
+mod map;
 mod mark;
 mod paint;
 mod run;
@@ -18,11 +19,12 @@ use std::path::Path;
 
 pub use curve::curve_figure;
 pub use figure::Figure;
+pub use map::Overlay;
 pub use mark::Caption;
 pub use paint::PaintError;
 pub use run::run_figure;
 pub use style::Theme;
-pub use sweep::{MAX_PICTURE_CELLS, NoPicture, Overlay, can_show, sweep_figure};
+pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_figure};
 
 /// A kind of file that holds a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

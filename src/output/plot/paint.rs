@@ -45,12 +45,8 @@ pub fn png(figure: &Figure) -> Result<Vec<u8>, PaintError> {
     let (width, height) = (SIZE.0 * FINER, SIZE.1 * FINER);
     let mut pixels = vec![0; (width * height * 3) as usize];
     // ab_glyph's size is the line's height, and its text stands half a size below the given point.
-    let terms = Terms {
-        scale: FINER.into(),
-        text_size: LINE_HEIGHT,
-        baseline: 0.5 * LINE_HEIGHT,
-        lines: false,
-    };
+    let terms =
+        Terms { scale: FINER.into(), text_size: LINE_HEIGHT, baseline: 0.5 * LINE_HEIGHT, lines: false };
     draw(figure, &mut BitMapBackend::with_buffer(&mut pixels, (width, height)), terms)?;
     let pixels = averaged(&pixels);
     let mut bytes = Vec::new();
@@ -180,9 +176,8 @@ fn averaged(large: &[u8]) -> Vec<u8> {
     for rows in large.chunks_exact(stride * finer) {
         for column in 0..width {
             for channel in 0..3 {
-                let at = |row: usize, k: usize| {
-                    u32::from(rows[row * stride + (column * finer + k) * 3 + channel])
-                };
+                let at =
+                    |row: usize, k: usize| u32::from(rows[row * stride + (column * finer + k) * 3 + channel]);
                 let sum: u32 = (0..finer).flat_map(|row| (0..finer).map(move |k| at(row, k))).sum();
                 small.push(((sum + FINER * FINER / 2) / (FINER * FINER)) as u8);
             }

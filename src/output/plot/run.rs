@@ -6,7 +6,7 @@ use super::font;
 use super::frame::Frame;
 use super::mark::{Caption, Sample, legend, marker, regime};
 use super::style::{self, Ink, Theme};
-use crate::dynamics::{STANDARD_GRAVITY, Summary};
+use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
 use crate::study::{Trace, Values};
@@ -27,78 +27,19 @@ pub fn run_figure(
 ) -> Figure {
     let mut figure = Figure::new(theme.paper);
     let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
-    let (t, x, v) = (column("t_s"), column("x_m"), column("v_m_per_s"));
-    let accel = column("base_accel_m_per_s2");
-    let time = Axis::between(0.0, trace.duration, 6, "time, s");
-    let millis = |value: &f64| value * 1e3;
-    let x_axis = |count: usize| {
-        // Stops count where the mass comes near them, so that a far one does not press the motion flat.
-        let far = x.iter().map(|x| x.abs()).filter(|x| x.is_finite()).fold(0.0, f64::max);
-        let near = [trace.stops.0, trace.stops.1].into_iter().filter(move |stop| stop.abs() <= 1.3 * far);
-        Axis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, count, "displacement, mm")
+    let stable = mechanism.landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
+    let seen = Seen {
+        trace,
+        theme,
+        t: column("t_s"),
+        x: column("x_m"),
+        v: column("v_m_per_s"),
+        accel: column("base_accel_m_per_s2"),
+        wells: stable.map(|equilibrium| equilibrium.x).collect(),
+        speed: speed_unit(column("v_m_per_s").iter().copied()),
     };
-    let (speed, speed_unit) = speed_unit(v.iter().copied());
-    let speed_label = format!("velocity, {speed_unit}");
-    let v_axis = Axis::around(v.iter().map(|v| v * speed), 0.08, 5, &speed_label);
-    let g_axis =
-        Axis::around(accel.iter().map(|a| a / STANDARD_GRAVITY).chain([0.0]), 0.1, 4, "base accel., g");
-    let framed = |(top, bottom): (f64, f64), x, y| {
-        Frame { gutter: Some(GUTTER), ..Frame::new(Area::new(LEFT, top, MIDDLE, bottom), x, y) }
-    };
-    let frames = [
-        framed(PANELS[0], time.clone().silent(), x_axis(6)),
-        framed(PANELS[1], time.clone().silent(), v_axis),
-        framed(PANELS[2], time, g_axis),
-    ];
-    for (i, frame) in frames.iter().enumerate() {
-        let strength = if i == 0 { 1.0 } else { 0.5 };
-        rests(&mut figure, frame, trace, theme.rest.over(theme.paper, strength));
-        frame.grid(&mut figure, theme);
-    }
-    frames[1].horizontal(&mut figure, 0.0, style::THIN, theme.soft, None);
-    frames[2].horizontal(&mut figure, 0.0, style::THIN, theme.soft, None);
-    for (stop, below) in [(trace.stops.0, true), (trace.stops.1, false)] {
-        if stop.is_finite() {
-            frames[0].wall_down(&mut figure, stop * 1e3, below, theme);
-        }
-    }
-    let wells: Vec<f64> = mechanism.landscape.equilibria.iter().filter(|e| e.stable).map(|e| e.x).collect();
-    let shown = |y: f64| y >= frames[0].y.low && y <= frames[0].y.high;
-    for well in &wells {
-        frames[0].horizontal(&mut figure, well * 1e3, style::LINE, theme.stable, Some(style::DASH));
-    }
-    let lines: [(&[f64], f64, Ink); 3] =
-        [(x, 1e3, theme.ink), (v, speed, theme.second), (accel, 1.0 / STANDARD_GRAVITY, theme.shaking)];
-    for (frame, (values, scale, ink)) in frames.iter().zip(lines) {
-        let pairs = t.iter().zip(values).map(|(t, value)| (*t, value * scale));
-        frame.dense_line(&mut figure, pairs.filter(|pair| pair.1.is_finite()), style::FINE_LINE, ink);
-    }
-    impacts(&mut figure, &frames[0], trace, theme);
-    frames.iter().for_each(|frame| frame.axes(&mut figure, theme));
-
-    // The phase portrait.
-    let from = t.partition_point(|t| *t < trace.portrait_from);
-    let (px, pv) = (&x[from..], &v[from..]);
-    let stops = [trace.stops.0, trace.stops.1];
-    let far = px.iter().map(|x| x.abs()).filter(|x| x.is_finite()).fold(0.0, f64::max);
-    let near = stops.into_iter().filter(|stop| stop.abs() <= 1.3 * far);
-    let portrait = Frame::new(
-        PORTRAIT,
-        Axis::around(px.iter().copied().chain(near).map(|x| x * 1e3), 0.1, 6, "displacement, mm"),
-        Axis::around(pv.iter().map(|v| v * speed), 0.08, 8, &speed_label),
-    );
-    portrait.grid(&mut figure, theme);
-    for (stop, left) in [(trace.stops.0, true), (trace.stops.1, false)] {
-        if stop.is_finite() {
-            portrait.wall_across(&mut figure, stop * 1e3, left, theme);
-        }
-    }
-    for well in &wells {
-        portrait.vertical(&mut figure, well * 1e3, style::LINE, theme.stable, Some(style::DASH));
-    }
-    let path = px.iter().map(millis).zip(pv.iter().map(|v| v * speed));
-    portrait.path(&mut figure, path, style::FINE_LINE, theme.second);
-    portrait.axes(&mut figure, theme);
+    let reach = seen.panels(&mut figure);
+    seen.portrait(&mut figure);
 
     let mut entries = Vec::new();
     if trace.impacts.rows() > 0 {
@@ -110,15 +51,108 @@ pub fn run_figure(
     if trace.stops.0.is_finite() || trace.stops.1.is_finite() {
         entries.push((Sample::Patch(theme.wall_fill(), None), "stop"));
     }
-    if wells.iter().any(|well| shown(well * 1e3)) {
+    if seen.wells.iter().any(|well| (reach.low..=reach.high).contains(&(well * 1e3))) {
         entries.push((Sample::Line(theme.stable, style::LINE, Some(style::DASH)), "well"));
     }
     legend(&mut figure, theme, &entries, LEFT, MIDDLE, 142.0);
-    let span = format!("phase portrait from {} s on", short(trace.portrait_from));
-    note(&mut figure, &span, (PORTRAIT.left, 152.0), style::TICK, theme.ink, false);
-    account(&mut figure, summary, trace, speed_unit, speed, theme);
+    account(&mut figure, summary, trace, seen.speed, theme);
     caption.draw(&mut figure, theme, &subtitle(summary), LEFT);
     figure
+}
+
+/// What a run's picture is drawn from. SI.
+struct Seen<'a> {
+    trace: &'a Trace,
+    theme: &'a Theme,
+    t: &'a [f64],
+    x: &'a [f64],
+    v: &'a [f64],
+    accel: &'a [f64],
+    wells: Vec<f64>,
+    /// Factor from m/s and name of the unit of speed.
+    speed: (f64, &'static str),
+}
+
+impl Seen<'_> {
+    /// The axis for these displacements. Stops count where the mass comes near them, so that a far one
+    /// does not press the motion flat.
+    fn displacement(&self, x: &[f64]) -> Axis {
+        let farthest = x.iter().map(|x| x.abs()).filter(|x| x.is_finite()).fold(0.0, f64::max);
+        let stops = [self.trace.stops.0, self.trace.stops.1];
+        let near = stops.into_iter().filter(|stop| stop.abs() <= 1.3 * farthest);
+        Axis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, 6, "displacement, mm")
+    }
+
+    fn velocity(&self, v: &[f64], count: usize) -> Axis {
+        let (scale, unit) = self.speed;
+        Axis::around(v.iter().map(|v| v * scale), 0.08, count, &format!("velocity, {unit}"))
+    }
+
+    /// Displacement, velocity and base acceleration over time; the axis of displacement.
+    fn panels(&self, figure: &mut Figure) -> Axis {
+        let Self { trace, theme, .. } = *self;
+        let time = Axis::between(0.0, trace.end, 6, "time, s");
+        let in_g = self.accel.iter().map(|a| a / STANDARD_GRAVITY);
+        let g_axis = Axis::around(in_g.chain([0.0]), 0.1, 4, "base accel., g");
+        let framed = |(top, bottom): (f64, f64), x, y| {
+            let frame = Frame::new(Area::new(LEFT, top, MIDDLE, bottom), x, y);
+            Frame { gutter: Some(GUTTER), ..frame }
+        };
+        let frames = [
+            framed(PANELS[0], time.clone().silent(), self.displacement(self.x)),
+            framed(PANELS[1], time.clone().silent(), self.velocity(self.v, 5)),
+            framed(PANELS[2], time, g_axis),
+        ];
+        for (frame, strength) in frames.iter().zip([1.0, 0.5, 0.5]) {
+            rests(figure, frame, trace, theme.rest.over(theme.paper, strength));
+            frame.grid(figure, theme);
+        }
+        frames[1].horizontal(figure, 0.0, style::THIN, theme.soft, None);
+        frames[2].horizontal(figure, 0.0, style::THIN, theme.soft, None);
+        for (stop, below) in [(trace.stops.0, true), (trace.stops.1, false)] {
+            if stop.is_finite() {
+                frames[0].wall_down(figure, stop * 1e3, below, theme);
+            }
+        }
+        for well in &self.wells {
+            frames[0].horizontal(figure, well * 1e3, style::LINE, theme.stable, Some(style::DASH));
+        }
+        let lines = [
+            (self.x, 1e3, theme.ink),
+            (self.v, self.speed.0, theme.second),
+            (self.accel, 1.0 / STANDARD_GRAVITY, theme.shaking),
+        ];
+        for (frame, (values, scale, ink)) in frames.iter().zip(lines) {
+            let pairs = self.t.iter().zip(values).map(|(t, value)| (*t, value * scale));
+            frame.dense_line(figure, pairs.filter(|pair| pair.1.is_finite()), style::FINE_LINE, ink);
+        }
+        impacts(figure, &frames[0], trace, theme);
+        frames.iter().for_each(|frame| frame.axes(figure, theme));
+        let [Frame { y, .. }, ..] = frames;
+        y
+    }
+
+    /// Velocity over displacement.
+    fn portrait(&self, figure: &mut Figure) {
+        let Self { trace, theme, .. } = *self;
+        let from = self.t.partition_point(|t| *t < trace.portrait_from);
+        let (x, v) = (&self.x[from..], &self.v[from..]);
+        let frame = Frame::new(PORTRAIT, self.displacement(x), self.velocity(v, 8));
+        frame.grid(figure, theme);
+        for (stop, left) in [(trace.stops.0, true), (trace.stops.1, false)] {
+            if stop.is_finite() {
+                frame.wall_across(figure, stop * 1e3, left, theme);
+            }
+        }
+        for well in &self.wells {
+            frame.vertical(figure, well * 1e3, style::LINE, theme.stable, Some(style::DASH));
+        }
+        let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0));
+        frame.path(figure, path, style::FINE_LINE, theme.second);
+        frame.axes(figure, theme);
+        let words = format!("phase portrait from {} s on", short(trace.portrait_from));
+        note(figure, &words, (PORTRAIT.left, 152.0), style::TICK, theme.ink, false);
+    }
 }
 
 /// The unit in which speeds up to those given are short numbers, with the factor from m/s.
@@ -127,7 +161,7 @@ pub fn speed_unit(values: impl Iterator<Item = f64>) -> (f64, &'static str) {
     if greatest < 2.0 { (1e3, "mm/s") } else { (1.0, "m/s") }
 }
 
-fn words<'a>(values: Option<&'a Values>) -> &'a [&'static str] {
+fn words(values: Option<&Values>) -> &[&'static str] {
     match values {
         Some(Values::Words(words)) => words,
         _ => &[],
@@ -160,16 +194,18 @@ fn rests(figure: &mut Figure, frame: &Frame, trace: &Trace, ink: Ink) {
     shade(open);
 }
 
-/// A tick for each impact at the edge on its stop's side, one a pixel where they lie closer.
+/// A tick for each impact at the edge on its stop's side; of those that lie close, some.
 fn impacts(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
     const TICK: f64 = 20.0;
+    /// So far apart the wall is still seen between them.
+    const APART: f64 = 4.5;
     let times = trace.impacts.numbers("t_s").unwrap_or_default();
     let sides = words(trace.impacts.column("side").map(|column| &column.values));
     let mut last = [f64::NEG_INFINITY; 2];
     for (t, side) in times.iter().zip(sides) {
         let left = *side == "left";
         let at = frame.across(*t);
-        if at - last[usize::from(left)] >= 1.5 {
+        if at - last[usize::from(left)] >= APART {
             last[usize::from(left)] = at;
             let edge = if left { frame.area.bottom } else { frame.area.top };
             let inner = if left { edge - TICK } else { edge + TICK };
@@ -178,9 +214,20 @@ fn impacts(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
     }
 }
 
+fn reason(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Done => "done",
+        Outcome::LeftTable { .. } => "the mass left the force curve",
+        Outcome::ImpactBudget { .. } => "more impacts than one run may make",
+        Outcome::StepBudget { .. } => "more steps than one run may take",
+        Outcome::NotFinite { .. } => "a number was no longer finite",
+        Outcome::Cancelled { .. } => "told to stop",
+    }
+}
+
 fn subtitle(summary: &Summary) -> String {
     match summary.outcome.ended_at() {
-        Some(at) => format!("ended early at {} s: {}", short(at), summary.outcome.name().replace('_', " ")),
+        Some(at) => format!("ended early at {} s: {}", short(at), reason(summary.outcome)),
         None => match (summary.regime.name(), summary.period) {
             ("", _) => "one well or none: nothing to cross".to_owned(),
             ("interwell", Some(1)) => "interwell: repeats in every forcing period".to_owned(),
@@ -194,7 +241,7 @@ fn subtitle(summary: &Summary) -> String {
 }
 
 /// Regime and numbers, under the phase portrait.
-fn account(figure: &mut Figure, summary: &Summary, trace: &Trace, unit: &str, scale: f64, theme: &Theme) {
+fn account(figure: &mut Figure, summary: &Summary, trace: &Trace, (scale, unit): (f64, &str), theme: &Theme) {
     let mut y = 738.0;
     let name = summary.regime.name();
     if summary.rms_velocity.is_some() && !name.is_empty() {
