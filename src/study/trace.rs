@@ -40,6 +40,9 @@ const PORTRAIT_PERIODS: f64 = 12.0;
 /// Samples in a phase portrait.
 const PORTRAIT: f64 = 24_000.0;
 
+/// The most rows in a phase portrait; more of them, as of a million impacts, only blacken it.
+const MOST_PORTRAIT: usize = 60_000;
+
 /// Runs `model` once and keeps, besides what `keep` says, what a picture needs.
 pub fn simulate_with_trace(
     model: &Model,
@@ -62,8 +65,13 @@ pub fn simulate_with_trace(
         seen = picture_times(model, portrait_from, end);
         shown = model.run(&Request { sample_times: &seen, events: false, ledger: false, cancel }).samples;
     }
+    let path = path(&shown, &run.events, stops);
+    let rows = path.numbers("t_s").unwrap_or_default();
+    if let Some(t) = rows.len().checked_sub(MOST_PORTRAIT).map(|first| rows[first]) {
+        portrait_from = portrait_from.max(t);
+    }
     let trace = Trace {
-        path: path(&shown, &run.events, stops),
+        path,
         impacts: impacts(&run.events),
         rests: rests(&run.events, run.samples.first(), end),
         portrait_from,
