@@ -6,4 +6,6 @@ mod free;
 mod late;
 mod ledger;
 mod linear;
+#[cfg(any())]
+mod pending;
 mod symmetry;
