@@ -6,6 +6,7 @@ mod free;
 mod late;
 mod ledger;
 mod linear;
+
 #[cfg(any())]
 mod pending;
 mod symmetry;

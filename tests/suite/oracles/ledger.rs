@@ -83,6 +83,23 @@ fn every_ledger_closes_to_the_tolerance() {
 }
 
 #[test]
+fn an_undamped_orbit_keeps_its_energy() {
+    // The free double well from 1.5 m, 100 s, some eleven periods and 200 steps: nothing is dissipated, so the residual is the
+    // drift of the energy. 8 times the tolerance was measured; a local error of a tenth of it at each step allows 20.
+    for tolerance in [1e-3, 1e-6, 1e-9, 1e-12, 1e-14] {
+        let model = unit_well(&format!(
+            "start: At(x_mm: 1500, v_m_per_s: 0), run: (duration_s: 100, tolerance: {tolerance:?})"
+        ));
+        let ledger = run(&model).summary.ledger.unwrap();
+        assert_eq!((ledger.work_j, ledger.damping_j, ledger.impact_j), (0.0, 0.0, 0.0));
+        assert!(ledger.energy_residual <= 20.0 * tolerance, "at {tolerance:e}: {ledger:?}");
+        let energy = |x: f64, v: f64| 0.5 * v * v + 0.25 * x.powi(4) - 0.5 * x * x;
+        let summary = run(&model).summary;
+        near(ledger.stored_j, energy(summary.final_x, summary.final_v) - energy(1.5, 0.0), 1e-15);
+    }
+}
+
+#[test]
 fn the_reference_numbers_of_a_chattering_run() {
     // P2: cubic well, D = 4 mm, e = 0.36, 1.5 g at 3 Hz, 10 s: RMS velocity 0.114697633346 m/s over 5..10 s, 60 rests and
     // releases after the rest of the start, 780 impacts down to 1e-6 m/s, period 1.
