@@ -1,6 +1,7 @@
 //! Problems with exact answers, each asserted to the digits that its conditioning allows.
 
 mod ball;
+mod consistent;
 mod forced;
 mod free;
 mod late;
