@@ -1,4 +1,5 @@
-//! Rates far apart: a drive much faster than the mechanism, a ripple on a slow one, a mechanism much faster than the drive.
+//! Rates far apart: a drive much faster than the mechanism, a ripple on a slow one, a mechanism much faster
+//! than the drive.
 
 use std::f64::consts::TAU;
 
@@ -31,8 +32,9 @@ fn a_drive_ten_thousand_times_faster_than_the_spring() {
 
 #[test]
 fn a_fast_ripple_decides_a_release() {
-    // Pressed on the right stop with 2 N by F = -2 N on 1 kg: the release under a_b = A sin(w t) + r sin(1000 w t) is the first
-    // instant at which the sum reaches 2, which the ripple brings forward. Found here by a fine scan and bisection.
+    // Pressed on the right stop with 2 N by F = -2 N on 1 kg: the release under a_b = A sin(w t) + r sin(1000
+    // w t) is the first instant at which the sum reaches 2, which the ripple brings forward. Found here by a
+    // fine scan and bisection.
     let (slow, a, ripple) = (0.5, 2.05, 0.02);
     let model = model(&format!(
         "mass_g: 1000, mechanism: Polynomial(coefficients_si: [-2]),
@@ -64,7 +66,8 @@ fn a_fast_ripple_decides_a_release() {
 
 #[test]
 fn a_stiff_spring_under_a_slow_drive() {
-    // x'' + g x' + k x = -A sin(w t) with sqrt k = 1e4 w and strong damping: quasi-static, and exactly the steady orbit.
+    // x'' + g x' + k x = -A sin(w t) with sqrt k = 1e4 w and strong damping: quasi-static, and exactly the
+    // steady orbit.
     let (k, g, w) = (1e8, 1e4, 1.0);
     let model = model(&format!(
         "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, {k:?}]), damping: Coefficient(c_n_s_per_m: {g:?}),

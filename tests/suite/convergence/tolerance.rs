@@ -56,8 +56,8 @@ fn chattering_error(run: &Run, reference: &Run) -> f64 {
     own.iter().zip(&exact).map(error).fold(rms_error(run, reference), f64::max)
 }
 
-/// Errors at every tolerance, the coarsest first: each within `share` of its tolerance plus `rounding`, and none more
-/// than ten times that of the tolerance before it.
+/// Errors at every tolerance, the coarsest first: each within `share` of its tolerance plus `rounding`, and
+/// none more than ten times that of the tolerance before it.
 #[track_caller]
 fn assert_follows(errors: &[f64], share: f64, rounding: f64) {
     for (error, tolerance) in errors.iter().zip(tolerances()) {
@@ -70,7 +70,8 @@ fn assert_follows(errors: &[f64], share: f64, rounding: f64) {
 
 #[test]
 fn the_error_of_a_smooth_run_follows_the_tolerance() {
-    // P1: at most a quarter of the tolerance was measured (at 1e-5), and 3e-15 at 1e-14; ten times that is allowed.
+    // P1: at most a quarter of the tolerance was measured (at 1e-5), and 3e-15 at 1e-14; ten times that is
+    // allowed.
     let model = smooth();
     let exact = reference(&model);
     let errors: Vec<f64> = tolerances().map(|t| smooth_error(&model, &at(&model, t), &exact)).collect();
@@ -79,7 +80,8 @@ fn the_error_of_a_smooth_run_follows_the_tolerance() {
 
 #[test]
 fn the_error_of_a_chattering_run_follows_the_tolerance() {
-    // P2: at most 0.18 of the tolerance was measured (at 1e-4), and 1.3e-14 below 1e-12; ten times that is allowed.
+    // P2: at most 0.18 of the tolerance was measured (at 1e-4), and 1.3e-14 below 1e-12; ten times that is
+    // allowed.
     let model = chattering();
     let exact = reference(&model);
     let errors: Vec<f64> = tolerances().map(|t| chattering_error(&at(&model, t), &exact)).collect();
@@ -98,8 +100,8 @@ fn the_ledger_follows_the_tolerance() {
 
 #[test]
 fn what_was_counted_does_not_depend_on_the_tolerance() {
-    // P2 at any tolerance, even 1e-3: 60 releases, 61 rests with that of the start, 60 crossings, period 1, and 780 impacts
-    // above 1e-6 m/s.
+    // P2 at any tolerance, even 1e-3: 60 releases, 61 rests with that of the start, 60 crossings, period 1,
+    // and 780 impacts above 1e-6 m/s.
     let model = chattering();
     for tolerance in tolerances() {
         let run = at(&model, tolerance);
@@ -113,8 +115,9 @@ fn what_was_counted_does_not_depend_on_the_tolerance() {
 
 #[test]
 fn steps_grow_slowly_with_the_digits() {
-    // The order grows with the digits, so eleven more of them cost at most half the steps again. Measured: 1083 to 1596 for
-    // P1, 1201 to 1381 for P2, all of them in ten seconds of motion; a quarter more is allowed.
+    // The order grows with the digits, so eleven more of them cost at most half the steps again. Measured:
+    // 1083 to 1596 for P1, 1201 to 1381 for P2, all of them in ten seconds of motion; a quarter more is
+    // allowed.
     for (model, least, most) in [(smooth(), 1083, 1596), (chattering(), 1201, 1381)] {
         let steps: Vec<u64> = tolerances().map(|t| at(&model, t).summary.steps).collect();
         assert!(steps.iter().all(|s| *s <= most + most / 4), "{steps:?}");

@@ -41,8 +41,9 @@ fn scaled(units: Units, run: &Run) -> Vec<(EventKind, f64, f64)> {
 
 #[test]
 fn units_do_not_matter() {
-    // Mass, length and time each, and all together, in units of 1e-9 to 1e9: the same events at the same times with the same
-    // speeds (s and m/s of the scene as written), to 5e-12; the same ledger to 1e-12; the same steps, give or take two.
+    // Mass, length and time each, and all together, in units of 1e-9 to 1e9: the same events at the same
+    // times with the same speeds (s and m/s of the scene as written), to 5e-12; the same ledger to 1e-12; the
+    // same steps, give or take two.
     let one = Units { mass: 1.0, length: 1.0, time: 1.0 };
     for stops in [Some((4.0, 0.36)), Some((5.5, 0.8)), None] {
         let base = run(&cubic(one, stops, 1e-12));
@@ -93,8 +94,8 @@ fn powers_of_two_change_no_digit() {
 
 #[test]
 fn a_ball_without_a_scale_of_its_own_falls_alike_in_all_units() {
-    // Constant force, no stiffness, no drive: the scales follow from acceleration and duration. e = 0.5 rests after 3 times
-    // the fall, in any unit of length and time.
+    // Constant force, no stiffness, no drive: the scales follow from acceleration and duration. e = 0.5 rests
+    // after 3 times the fall, in any unit of length and time.
     for (length, time) in [(1e-9, 1.0), (1e9, 1.0), (1.0, 1e-9), (1.0, 1e8), (1e6, 1e-6), (1e-7, 1e-7)] {
         let g = 9.81 * length / (time * time);
         let model = model(&format!(

@@ -30,8 +30,8 @@ fn scenes() -> Vec<Model> {
 
 #[test]
 fn a_stop_never_reached_changes_no_bit() {
-    // The unstopped run against stops far out, just outside the largest excursion, and on one side only: every sample and
-    // every figure of the summary.
+    // The unstopped run against stops far out, just outside the largest excursion, and on one side only:
+    // every sample and every figure of the summary.
     for changes in [
         &["excitation.amplitude_g=1.1"][..],
         &["excitation.amplitude_g=0.3"],
@@ -120,7 +120,8 @@ fn the_settled_window_changes_no_bit_of_the_motion() {
 
 #[test]
 fn a_shorter_run_is_the_beginning_of_a_longer_one() {
-    // Until the last step the duration is no concern of the trajectory either: events and samples to the last bit.
+    // Until the last step the duration is no concern of the trajectory either: events and samples to the last
+    // bit.
     let times = every(0.0173, 570);
     let with =
         |duration: f64| run_at(&preset("nominal-cubic", &[&format!("run.duration_s={duration:?}")]), &times);

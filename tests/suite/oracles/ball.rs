@@ -64,8 +64,8 @@ fn the_quoted_rest_times() {
 
 #[test]
 fn the_ball_of_ballode() {
-    // MATLAB's ballode: thrown up from the floor with 20 m/s, g = 9.8, e = 0.9: hits at (2 v0/g)(1 - e^n)/(1 - e),
-    // rest at (2 v0/g)/(1 - e) = 40.816327 s. The throw itself is no event.
+    // MATLAB's ballode: thrown up from the floor with 20 m/s, g = 9.8, e = 0.9: hits at (2 v0/g)(1 - e^n)/(1
+    // - e), rest at (2 v0/g)/(1 - e) = 40.816327 s. The throw itself is no event.
     let model = model(
         "mass_g: 1000, mechanism: Polynomial(coefficients_si: [9.8]),
          stops: Uneven(left_mm: 1, restitution_left: 0.9), start: At(x_mm: -1, v_m_per_s: 20),
@@ -86,8 +86,8 @@ fn the_ball_of_ballode() {
 
 #[test]
 fn a_ball_on_a_base_that_accelerates_is_the_same_ball() {
-    // A force of m g and a base acceleration of g are one and the same in x'' = -F/m - a_b: impact times of the
-    // series, to rounding.
+    // A force of m g and a base acceleration of g are one and the same in x'' = -F/m - a_b: impact times of
+    // the series, to rounding.
     let model = model(
         "mass_g: 250, mechanism: Polynomial(coefficients_si: [0]),
          stops: Uneven(left_mm: 1000, restitution_left: 0.8), excitation: Constant(accel_g: 1),

@@ -100,9 +100,10 @@ fn check_samples(run: &Run, limits: &Limits) {
 
 #[test]
 fn every_record_tells_one_story() {
-    // Over 400 scenes: events in order, impacts outward and reflected by e, rest and release by turns, crossings by turns and never
-    // while resting, samples within the stops and in the phase that the events tell, counts those of the list, the
-    // impacts' energy that of the listed speeds and what the sums took, the ledger closed.
+    // Over 400 scenes: events in order, impacts outward and reflected by e, rest and release by turns,
+    // crossings by turns and never while resting, samples within the stops and in the phase that the events
+    // tell, counts those of the list, the impacts' energy that of the listed speeds and what the sums took,
+    // the ledger closed.
     let mut draw = Draw(1);
     let (mut impacts, mut rests, mut crossings) = (0, 0, 0);
     for i in 0..400 {

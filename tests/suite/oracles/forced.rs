@@ -28,8 +28,9 @@ fn change(samples: &[interwell::dynamics::Sample], shift: usize, count: usize) -
 
 #[test]
 fn published_periods_of_the_forced_double_well() {
-    // A = 0.20 period 1, 0.28 period 2, 0.29 period 4, 0.37 period 5, 0.50 chaos, 0.65 period 2, from (1, 0). A period n is
-    // shown by strobes that repeat to 1e-7 after n periods and move by more than 1e-2 after any fewer.
+    // A = 0.20 period 1, 0.28 period 2, 0.29 period 4, 0.37 period 5, 0.50 chaos, 0.65 period 2, from (1, 0).
+    // A period n is shown by strobes that repeat to 1e-7 after n periods and move by more than 1e-2 after any
+    // fewer.
     let cases = [
         (0.20, Some(1), Regime::Intrawell),
         (0.28, Some(2), Regime::Intrawell),
@@ -58,8 +59,8 @@ fn published_periods_of_the_forced_double_well() {
 
 #[test]
 fn melnikovs_amplitude_is_no_threshold_of_steady_chaos() {
-    // A = 4 c cosh(pi w/2)/(3 sqrt 2 pi w) = 0.25276 at c = 0.3, w = 1.2. There and just above it the manifolds touch, yet
-    // the motion from (1, 0) settles within the well with the drive's own period.
+    // A = 4 c cosh(pi w/2)/(3 sqrt 2 pi w) = 0.25276 at c = 0.3, w = 1.2. There and just above it the
+    // manifolds touch, yet the motion from (1, 0) settles within the well with the drive's own period.
     let w = 1.2;
     let amplitude = 4.0 * 0.3 * (0.5 * PI * w).cosh() / (3.0 * SQRT_2 * PI * w);
     near(amplitude, 0.25276, 5e-6);
@@ -71,8 +72,9 @@ fn melnikovs_amplitude_is_no_threshold_of_steady_chaos() {
 
 #[test]
 fn along_the_separatrix_melnikovs_drive_feeds_what_damping_takes() {
-    // To first order in a small e, along x = sqrt 2 / cosh t the damping 0.3 e takes 0.3 e 4/3, and the best phased force of
-    // Melnikov's amplitude 0.25276 e gives just that. Any other phase gives cos of its distance less.
+    // To first order in a small e, along x = sqrt 2 / cosh t the damping 0.3 e takes 0.3 e 4/3, and the best
+    // phased force of Melnikov's amplitude 0.25276 e gives just that. Any other phase gives cos of its
+    // distance less.
     let (w, half, e) = (1.2, 12.0f64, 1e-9);
     let amplitude = e * 4.0 * 0.3 * (0.5 * PI * w).cosh() / (3.0 * SQRT_2 * PI * w);
     let (x0, v0) = (SQRT_2 / half.cosh(), SQRT_2 / half.cosh() * half.tanh());
@@ -94,8 +96,8 @@ fn along_the_separatrix_melnikovs_drive_feeds_what_damping_takes() {
     }
 }
 
-/// Determinant of the map from a start to the state after the run, by central differences of steps d and 2 d combined
-/// (error of fourth order in d). `start` in m and m/s, `scene` takes the state.
+/// Determinant of the map from a start to the state after the run, by central differences of steps d and 2 d
+/// combined (error of fourth order in d). `start` in m and m/s, `scene` takes the state.
 fn determinant(scene: impl Fn(f64, f64) -> Model, (x, v): (f64, f64), (dx, dv): (f64, f64)) -> f64 {
     let end = |x: f64, v: f64| {
         let summary = run(&scene(x, v)).summary;
@@ -115,14 +117,12 @@ fn determinant(scene: impl Fn(f64, f64) -> Model, (x, v): (f64, f64), (dx, dv): 
 
 #[test]
 fn the_period_map_contracts_areas_by_the_damping() {
-    // det of the period map = exp(-c T/m): on the period-1 orbit of A = 0.20, on the period-5 one, and along chaos.
+    // det of the period map = exp(-c T/m): on the period-1 orbit of A = 0.20, on the period-5 one, and along
+    // chaos.
     let period = TAU / 1.2;
     for amplitude in [0.20, 0.37, 0.50] {
         let settled = run(&forced(amplitude)).summary;
         let scene = |x: f64, v: f64| {
-            let mut changed = forced(amplitude);
-            changed.duration = period;
-            changed.tolerance = 1e-13;
             preset(
                 "duffing",
                 &[
@@ -141,8 +141,8 @@ fn the_period_map_contracts_areas_by_the_damping() {
 
 #[test]
 fn an_impact_contracts_areas_by_the_square_of_its_restitution() {
-    // The jump at an impact has the determinant e^2 (saltation), whatever the drive: after n impacts the map's is
-    // e^(2n) exp(-c t/m).
+    // The jump at an impact has the determinant e^2 (saltation), whatever the drive: after n impacts the
+    // map's is e^(2n) exp(-c t/m).
     let (e, c, duration): (f64, f64, f64) = (0.8, 0.1, 7.0);
     let scene = |x: f64, v: f64| {
         unit_well(&format!(

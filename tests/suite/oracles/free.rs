@@ -38,8 +38,8 @@ fn elliptic_periods_have_their_published_digits() {
 
 #[test]
 fn an_orbit_within_a_well_returns_after_its_period() {
-    // Released at rest at x0: after every period T the mass is back, at rest, and half a period later it turns
-    // at sqrt(2 - x0^2). A time error dt shows as v = -F(x0) dt.
+    // Released at rest at x0: after every period T the mass is back, at rest, and half a period later it
+    // turns at sqrt(2 - x0^2). A time error dt shows as v = -F(x0) dt.
     for (x0, bound) in [(1.2, 1e-12), (1.41, 1e-11)] {
         let period = inner_period(x0);
         let periods = 10;
@@ -95,8 +95,8 @@ fn the_separatrix_is_a_hyperbolic_secant() {
 
 #[test]
 fn impacts_take_energy_by_a_ladder() {
-    // E_n - V(L) = e^(2n) (E_0 - V(L)) with L = 1.2, E_0 = 1, e = 0.85: every impact speed is known, the first
-    // six alternate between the stops, and the sixth leaves the mass in one well.
+    // E_n - V(L) = e^(2n) (E_0 - V(L)) with L = 1.2, E_0 = 1, e = 0.85: every impact speed is known, the
+    // first six alternate between the stops, and the sixth leaves the mass in one well.
     let (limit, restitution, energy): (f64, f64, f64) = (1.2, 0.85, 1.0);
     let v0 = (2.0 * energy).sqrt();
     let model = unit_well(&format!(
@@ -146,8 +146,8 @@ fn inside_the_wells_it_rests_pressed_on_a_stop() {
 
 #[test]
 fn outside_the_wells_motion_in_one_well_can_hit() {
-    // 1 < D/x_eq < sqrt 2: it rests at the equilibrium, unpressed; an orbit in the well hits where its outer turning
-    // point, sqrt(2 - x0^2), lies beyond the stop, at sqrt(2 (V(x0) - V(D))), and not otherwise.
+    // 1 < D/x_eq < sqrt 2: it rests at the equilibrium, unpressed; an orbit in the well hits where its outer
+    // turning point, sqrt(2 - x0^2), lies beyond the stop, at sqrt(2 (V(x0) - V(D))), and not otherwise.
     let still = with_stops(1300.0, "Rest");
     assert!(still.events.is_empty());
     assert!(still.samples.iter().all(|s| (s.x, s.v, s.phase) == (1.0, 0.0, Phase::Free)));

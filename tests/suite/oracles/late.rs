@@ -21,8 +21,9 @@ fn slow_drive(frequency: f64, duration: f64) -> Model {
 
 #[test]
 fn every_cycle_of_a_billion_seconds_is_the_first_one() {
-    // A mass that rests in every half period starts each release from the same state at the same phase. So each cycle's
-    // impacts have the speeds of the first one's, bit for bit, and come 1/f later to the last digit of t: at 1e9 s as at 1e6 s.
+    // A mass that rests in every half period starts each release from the same state at the same phase. So
+    // each cycle's impacts have the speeds of the first one's, bit for bit, and come 1/f later to the last
+    // digit of t: at 1e9 s as at 1e6 s.
     let frequency = 1e-6;
     let run = run(&slow_drive(frequency, 1e9));
     let releases: Vec<usize> =
@@ -51,8 +52,8 @@ fn every_cycle_of_a_billion_seconds_is_the_first_one() {
 
 #[test]
 fn a_slow_ramp_releases_after_a_million_seconds() {
-    // From rest on the stop under (r t) sin(2 pi f t) the release is the first root of r t sin(2 pi f t) = |F(D)|/m: here in
-    // cycle 123412 of 0.125 Hz, after 987 297 s, known to the last digit of t.
+    // From rest on the stop under (r t) sin(2 pi f t) the release is the first root of r t sin(2 pi f t) =
+    // |F(D)|/m: here in cycle 123412 of 0.125 Hz, after 987 297 s, known to the last digit of t.
     let (frequency, over, to): (f64, f64, f64) = (0.125, 2e6, 1.5);
     let scene = |duration: f64| {
         preset(
@@ -88,8 +89,8 @@ fn a_slow_ramp_releases_after_a_million_seconds() {
 
 #[test]
 fn a_forced_oscillator_has_its_phase_after_a_hundred_million_seconds() {
-    // x'' + g x' + k x = -A sin w t, long settled: at 1e8 s, 3e5 periods on, the state is that of the steady orbit at the
-    // exact product of the doubles f and t, to 1e-13 of its size.
+    // x'' + g x' + k x = -A sin w t, long settled: at 1e8 s, 3e5 periods on, the state is that of the steady
+    // orbit at the exact product of the doubles f and t, to 1e-13 of its size.
     let (frequency, duration) = (0.003, 1e8);
     let model = model(&format!(
         "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 1e-3]),

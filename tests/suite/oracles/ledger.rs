@@ -6,8 +6,8 @@ use crate::support::*;
 
 #[test]
 fn a_million_elastic_impacts_do_not_drift() {
-    // A free mass between perfect stops: the n-th impact at 0.2 + 0.4 n s to 1e-10 of it, with the speed of the
-    // start bit for bit.
+    // A free mass between perfect stops: the n-th impact at 0.2 + 0.4 n s to 1e-10 of it, with the speed of
+    // the start bit for bit.
     let model =
         preset("elastic-box", &["run.duration_s=400000.1", "run.tolerance=1e-9", "run.settle_s=399999.9"]);
     let run = run(&model);
@@ -28,8 +28,9 @@ fn a_million_elastic_impacts_do_not_drift() {
 
 #[test]
 fn elastic_impacts_over_a_barrier_keep_their_speed() {
-    // The unit well between perfect stops, E = 0.1 above the barrier: every impact at sqrt(2 (E - V(D))); what a flight adds to
-    // the error is at most the local tolerance, 1e-13, so 2e-9 is left after 2e4 of them.
+    // The unit well between perfect stops, E = 0.1 above the barrier: every impact at sqrt(2 (E - V(D)));
+    // what a flight adds to the error is at most the local tolerance, 1e-13, so 2e-9 is left after 2e4 of
+    // them.
     let model = unit_well(
         "stops: Rigid(travel_limit_mm: 1200, restitution: 1), start: At(x_mm: 0, v_m_per_s: 0.4472135954999579),
          run: (duration_s: 80000, tolerance: 1e-12)",
@@ -48,7 +49,8 @@ fn elastic_impacts_over_a_barrier_keep_their_speed() {
 
 #[test]
 fn every_ledger_closes_to_the_tolerance() {
-    // work - damping - impact - stored, each integrated on its own, is 0 to the tolerance of the run or to rounding.
+    // work - damping - impact - stored, each integrated on its own, is 0 to the tolerance of the run or to
+    // rounding.
     let scenes: [(&str, &[&str]); 12] = [
         ("paper", &[]),
         ("paper", &["stops=None", "excitation.amplitude_g=1.3"]),
@@ -84,8 +86,9 @@ fn every_ledger_closes_to_the_tolerance() {
 
 #[test]
 fn an_undamped_orbit_keeps_its_energy() {
-    // The free double well from 1.5 m, 100 s, some eleven periods and 200 steps: nothing is dissipated, so the residual is the
-    // drift of the energy. 8 times the tolerance was measured; a local error of a tenth of it at each step allows 20.
+    // The free double well from 1.5 m, 100 s, some eleven periods and 200 steps: nothing is dissipated, so
+    // the residual is the drift of the energy. 8 times the tolerance was measured; a local error of a tenth
+    // of it at each step allows 20.
     for tolerance in [1e-3, 1e-6, 1e-9, 1e-12, 1e-14] {
         let model = unit_well(&format!(
             "start: At(x_mm: 1500, v_m_per_s: 0), run: (duration_s: 100, tolerance: {tolerance:?})"
@@ -101,8 +104,8 @@ fn an_undamped_orbit_keeps_its_energy() {
 
 #[test]
 fn the_reference_numbers_of_a_chattering_run() {
-    // P2: cubic well, D = 4 mm, e = 0.36, 1.5 g at 3 Hz, 10 s: RMS velocity 0.114697633346 m/s over 5..10 s, 60 rests and
-    // releases after the rest of the start, 780 impacts down to 1e-6 m/s, period 1.
+    // P2: cubic well, D = 4 mm, e = 0.36, 1.5 g at 3 Hz, 10 s: RMS velocity 0.114697633346 m/s over 5..10 s,
+    // 60 rests and releases after the rest of the start, 780 impacts down to 1e-6 m/s, period 1.
     let run = run(&preset("nominal-cubic", &["run.tolerance=1e-12"]));
     let summary = &run.summary;
     near(summary.rms_velocity.unwrap(), 0.114697633346, 5.5e-13);
@@ -117,7 +120,8 @@ fn the_reference_numbers_of_a_chattering_run() {
 
 #[test]
 fn a_run_without_stops_agrees_with_twice_the_digits() {
-    // P1: the cubic well without stops at 1.1 g, 10 s: final state and RMS velocity as in 31 digits, to 1e-12.
+    // P1: the cubic well without stops at 1.1 g, 10 s: final state and RMS velocity as in 31 digits, to
+    // 1e-12.
     let model = preset("nominal-cubic", &["stops=None", "excitation.amplitude_g=1.1", "run.tolerance=1e-12"]);
     let request = interwell::dynamics::Request::default();
     let (own, reference) = (model.run(&request).summary, model.run_reference(&request, 1e-27).summary);

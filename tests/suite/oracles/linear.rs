@@ -135,8 +135,8 @@ fn a_sine_on_a_damped_oscillator_in_closed_form() {
 
 #[test]
 fn a_steady_orbit_has_the_textbook_rms() {
-    // Long settled, RMS velocity = w X/sqrt 2 and peak to peak 2 X, X = A/sqrt((k - w^2)^2 + (g w)^2); a run's period is
-    // one forcing period; the base's work is damping's.
+    // Long settled, RMS velocity = w X/sqrt 2 and peak to peak 2 X, X = A/sqrt((k - w^2)^2 + (g w)^2); a
+    // run's period is one forcing period; the base's work is damping's.
     let (oscillator, model) = sprung(
         0.6,
         "excitation: Sine(frequency_hz: 5, amplitude_g: 0.7), run: (duration_s: 6, settle_s: 3, tolerance: 1e-12)",
@@ -155,8 +155,8 @@ fn a_steady_orbit_has_the_textbook_rms() {
 #[cfg(any())] // until a sum's series is right
 #[test]
 fn a_ramped_amplitude_in_closed_form_through_its_end() {
-    // (from + (to - from) t/over) sin w t, then `to`: the closed form of each part, joined at the end of the ramp, which is
-    // no step of its own choosing. The last ramp outlasts the run.
+    // (from + (to - from) t/over) sin w t, then `to`: the closed form of each part, joined at the end of the
+    // ramp, which is no step of its own choosing. The last ramp outlasts the run.
     for (from, to, over) in [(0.0, 1.0, 1.2345), (0.9, -0.4, 2.5), (-0.3, 0.0, 1e-3), (0.1, 0.2, 50.0)] {
         let (oscillator, model) = sprung(
             0.05,
@@ -190,8 +190,8 @@ fn a_ramped_amplitude_in_closed_form_through_its_end() {
 #[cfg(any())] // until a sum's series is right
 #[test]
 fn sums_of_sines_superpose() {
-    // 3 and 4.5 Hz have the common period 2/3 s; 3 and 3 sqrt 2 Hz have none: both in closed form, with a constant and a
-    // ramp beside them.
+    // 3 and 4.5 Hz have the common period 2/3 s; 3 and 3 sqrt 2 Hz have none: both in closed form, with a
+    // constant and a ramp beside them.
     let root = 3.0 * std::f64::consts::SQRT_2;
     for (second, common) in [(4.5, Some(2.0 / 3.0)), (root, None)] {
         let (oscillator, model) = sprung(
@@ -225,7 +225,8 @@ fn sums_of_sines_superpose() {
 #[cfg(any())] // until a sum's series is right
 #[test]
 fn a_ripple_on_a_slow_drive_superposes() {
-    // 1 g at 0.5 Hz with a thousandth of it at 500 Hz, on a spring of 7.96 Hz: in closed form, to 3e-12 of the scales.
+    // 1 g at 0.5 Hz with a thousandth of it at 500 Hz, on a spring of 7.96 Hz: in closed form, to 3e-12 of
+    // the scales.
     let (oscillator, model) = sprung(
         0.08,
         "excitation: Sum([Sine(frequency_hz: 0.5, amplitude_g: 1), Sine(frequency_hz: 500, amplitude_g: 0.001)]),
@@ -245,9 +246,10 @@ fn a_ripple_on_a_slow_drive_superposes() {
 
 #[test]
 fn a_stop_is_met_just_above_the_grazing_amplitude() {
-    // On the steady orbit of x'' + 2 z x' + x = A sin w t a stop at g is not met until A = g sqrt((1 - w^2)^2 + (2 z w)^2).
-    // A share d below it: no impact in 20 periods; d above: the first impact at (asin(g/X) + phi)/w or half a
-    // period before, with speed w sqrt(X^2 - g^2), whose relative error is that of the orbit over 2 d.
+    // On the steady orbit of x'' + 2 z x' + x = A sin w t a stop at g is not met until A = g sqrt((1 - w^2)^2
+    // + (2 z w)^2). A share d below it: no impact in 20 periods; d above: the first impact at (asin(g/X) +
+    // phi)/w or half a period before, with speed w sqrt(X^2 - g^2), whose relative error is that of the orbit
+    // over 2 d.
     let zeta = 0.05;
     for w in [0.7, 1.6] {
         let phi = f64::atan2(2.0 * zeta * w, 1.0 - w * w);

@@ -10,8 +10,8 @@ use crate::support::*;
 
 #[test]
 fn the_ledger_closes_on_long_steps_too() {
-    // Residual within the tolerance at every tolerance. Today, over the tolerance: spring under 5 Hz 23 at 1e-12 and 340 at
-    // 1e-14; sum with 40 Hz 2.9 at 1e-6.
+    // Residual within the tolerance at every tolerance. Today, over the tolerance: spring under 5 Hz 23 at
+    // 1e-12 and 340 at 1e-14; sum with 40 Hz 2.9 at 1e-6.
     for tolerance in [1e-3, 1e-6, 1e-9, 1e-12, 1e-14] {
         let spring = model(&format!(
             "mass_g: 20, mechanism: Polynomial(coefficients_si: [0, 50]), damping: Coefficient(c_n_s_per_m: 0.6),
@@ -34,7 +34,8 @@ fn the_ledger_closes_on_long_steps_too() {
 
 #[test]
 fn the_ledger_closes_under_a_fast_drive() {
-    // A drive 1e4 times faster than the spring. Residual today: 0.25 at 1e-3, 5.7e-3 at 1e-6, 3.6e-5 at 1e-9, 4.8e-7 at 1e-12.
+    // A drive 1e4 times faster than the spring. Residual today: 0.25 at 1e-3, 5.7e-3 at 1e-6, 3.6e-5 at 1e-9,
+    // 4.8e-7 at 1e-12.
     let w: f64 = 1e4;
     for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
         let model = model(&format!(
@@ -51,8 +52,9 @@ fn the_ledger_closes_under_a_fast_drive() {
 
 #[test]
 fn the_length_scale_under_a_fast_drive_is_that_of_the_motion() {
-    // The same scene moves by some 1 m; its error should be the tolerance of that, some hundredfold for 16 000 cycles. Today
-    // 0.5 m at 1e-3, 8e-5 m at 1e-6, 1.4e-5 m at 1e-9: the length scale is drive over spring, 1e4 m, not 1e4 m/w = 1 m.
+    // The same scene moves by some 1 m; its error should be the tolerance of that, some hundredfold for 16
+    // 000 cycles. Today 0.5 m at 1e-3, 8e-5 m at 1e-6, 1.4e-5 m at 1e-9: the length scale is drive over
+    // spring, 1e4 m, not 1e4 m/w = 1 m.
     let w: f64 = 1e4;
     for tolerance in [1e-3, 1e-6, 1e-9] {
         let model = model(&format!(
@@ -69,8 +71,8 @@ fn the_length_scale_under_a_fast_drive_is_that_of_the_motion() {
 
 #[test]
 fn a_million_flights_take_exactly_their_time() {
-    // The elastic box: n-th impact at 0.2 + 0.4 n s to 1e-14 of it. Today 1.3e-11: 5 us after 4e5 s, because without a force
-    // the time scale is the duration, and a clock's cycle of 16 of them has phases of 1e-9 s.
+    // The elastic box: n-th impact at 0.2 + 0.4 n s to 1e-14 of it. Today 1.3e-11: 5 us after 4e5 s, because
+    // without a force the time scale is the duration, and a clock's cycle of 16 of them has phases of 1e-9 s.
     let run = run(&preset("elastic-box", &["run.duration_s=400000.1"]));
     let mut n = 0.0;
     for impact in of_kind(&run, EventKind::Impact) {
@@ -81,8 +83,8 @@ fn a_million_flights_take_exactly_their_time() {
 
 #[test]
 fn a_search_for_a_release_is_bounded_and_can_be_cancelled() {
-    // At rest under a ramp that needs 1e9 s the search looks at 1e10 strides within one step, some 2300 s, and never at the
-    // cancel flag; 1e6 s take 2.3 s.
+    // At rest under a ramp that needs 1e9 s the search looks at 1e10 strides within one step, some 2300 s,
+    // and never at the cancel flag; 1e6 s take 2.3 s.
     let cancel = AtomicBool::new(true);
     let model = preset(
         "nominal-cubic",

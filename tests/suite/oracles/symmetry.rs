@@ -40,8 +40,8 @@ fn mirror(a: &Model, b: &Model) -> Run {
 
 #[test]
 fn chaos_is_mirrored_to_the_last_bit() {
-    // (x, v, a_b) -> (-x, -v, -a_b) on 300 periods of chaos, where one bit would show: by a negative amplitude, and by a phase
-    // half a turn on.
+    // (x, v, a_b) -> (-x, -v, -a_b) on 300 periods of chaos, where one bit would show: by a negative
+    // amplitude, and by a phase half a turn on.
     let start = ["start.x_mm=300", "start.v_m_per_s=0.4"];
     let opposite = ["start.x_mm=-300", "start.v_m_per_s=-0.4"];
     let base = preset("duffing", &start);
