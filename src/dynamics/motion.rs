@@ -52,6 +52,8 @@ pub(super) struct Touch {
 pub(super) const BY_SPEED: usize = 1;
 pub(super) const BY_ACCELERATION: usize = 2;
 pub(super) const BY_JERK: usize = 3;
+/// The surface is not there for one step: neither side of a break claims a mass that stands on it.
+pub(super) const HELD: usize = usize::MAX;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Contact {
@@ -108,6 +110,10 @@ pub(super) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     pub arena: usize,
     pub touch: Option<Touch>,
     pub contact: Contact,
+    /// When a release turned out to be none.
+    pub refused: Option<Instant<T>>,
+    /// Whether the mass has been handed across a break without moving.
+    pub turned_back: bool,
     pub steps: u64,
     pub evaluations: u64,
 }
@@ -143,6 +149,8 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             arena: model.mechanism.curve.piece_index(model.start.0),
             touch: None,
             contact: if model.motionless { Contact::Motionless } else { Contact::Free },
+            refused: None,
+            turned_back: false,
             steps: 0,
             evaluations: 0,
         }
@@ -214,6 +222,9 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
     /// One step of free flight; `left` is the time to the end of the run.
     fn fly(&mut self, left: T) -> Flow {
         let zero = T::zero();
+        if self.pass_segment_end() {
+            return None;
+        }
         let arena = &self.equation.arenas[self.arena];
         self.drive.seed(&self.clock, &self.at, self.segment, &mut self.series.a, &mut self.roll);
         self.evaluations += 1;
@@ -294,6 +305,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         self.x = x;
         self.v = v;
         self.touch = None;
+        self.turned_back &= length == zero;
         if segment_ends && touched.is_none() {
             self.segment += 1;
         }
@@ -343,7 +355,11 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             let sign = end.sign::<T>();
             let gap = sign * (arena.end(end).0 - self.x);
             let touch = self.touch.filter(|t| t.end == end);
-            if touch.is_none() && gap > bound {
+            if match touch {
+                Some(touch) => touch.order == HELD,
+                // beyond the surface only by rounding, after it was held, and on the way back
+                None => gap > bound || (gap < zero && sign * self.v <= zero),
+            } {
                 continue;
             }
             let mut g = [zero; ROOM];
