@@ -152,7 +152,6 @@ fn a_steady_orbit_has_the_textbook_rms() {
 }
 
 // until a sum's series is right
-#[cfg(any())] // until a sum's series is right
 #[test]
 fn a_ramped_amplitude_in_closed_form_through_its_end() {
     // (from + (to - from) t/over) sin w t, then `to`: the closed form of each part, joined at the end of the
@@ -187,7 +186,6 @@ fn a_ramped_amplitude_in_closed_form_through_its_end() {
 }
 
 // until a sum's series is right
-#[cfg(any())] // until a sum's series is right
 #[test]
 fn sums_of_sines_superpose() {
     // 3 and 4.5 Hz have the common period 2/3 s; 3 and 3 sqrt 2 Hz have none: both in closed form, with a
@@ -222,7 +220,6 @@ fn sums_of_sines_superpose() {
     }
 }
 
-#[cfg(any())] // until a sum's series is right
 #[test]
 fn a_ripple_on_a_slow_drive_superposes() {
     // 1 g at 0.5 Hz with a thousandth of it at 500 Hz, on a spring of 7.96 Hz: in closed form, to 3e-12 of
