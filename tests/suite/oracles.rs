@@ -2,11 +2,10 @@
 
 mod ball;
 mod consistent;
+mod demanding;
 mod forced;
 mod free;
 mod late;
 mod ledger;
 mod linear;
-#[cfg(any())] // does not hold yet
-mod pending;
 mod symmetry;

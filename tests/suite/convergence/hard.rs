@@ -10,7 +10,7 @@ use crate::support::*;
 #[test]
 fn a_drive_ten_thousand_times_faster_than_the_spring() {
     // x'' + x = -A sin(w t), w = 1e4, from rest at 0: x = A (sin(w t) - w sin t)/(w^2 - 1) of some 1 m, to
-    // 1e-13 of the length scale, A; in two or three steps a cycle.
+    // 1e-13 of the length scale, A; in four steps a cycle.
     let (w, a) = (1e4, 1e4);
     let model = model(&format!(
         "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 1]),
@@ -27,7 +27,7 @@ fn a_drive_ten_thousand_times_faster_than_the_spring() {
     }
     assert_eq!(run.samples.len(), 26);
     let cycles = 10.0 * w / TAU;
-    assert!((run.summary.steps as f64) < 3.5 * cycles);
+    assert!((run.summary.steps as f64) < 5.0 * cycles, "{} steps in {cycles} cycles", run.summary.steps);
 }
 
 #[test]

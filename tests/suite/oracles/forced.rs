@@ -121,7 +121,9 @@ fn the_period_map_contracts_areas_by_the_damping() {
     // chaos.
     let period = TAU / 1.2;
     for amplitude in [0.20, 0.37, 0.50] {
+        // along chaos any start will do; a fixed one, since the end of a chaotic run is luck
         let settled = run(&forced(amplitude)).summary;
+        let start = if amplitude == 0.50 { (1.0, 0.0) } else { (settled.final_x, settled.final_v) };
         let scene = |x: f64, v: f64| {
             preset(
                 "duffing",
@@ -134,7 +136,7 @@ fn the_period_map_contracts_areas_by_the_damping() {
                 ],
             )
         };
-        let d = determinant(scene, (settled.final_x, settled.final_v), (2e-4, 2e-4));
+        let d = determinant(scene, start, (2e-4, 2e-4));
         near_relative(d, (-0.3 * period).exp(), 1e-9);
     }
 }

@@ -1,4 +1,4 @@
-//! Facts that do not hold yet; each states what holds today.
+//! Facts that take more than a good step: long steps, a drive far faster than the mass, a clock without a drive.
 
 use std::f64::consts::TAU;
 
@@ -8,8 +8,7 @@ use crate::support::*;
 
 #[test]
 fn the_ledger_closes_on_long_steps_too() {
-    // Residual within the tolerance at every tolerance. Today, over the tolerance: spring under 5 Hz 23 at
-    // 1e-12 and 340 at 1e-14; sum with 40 Hz 2.9 at 1e-6.
+    // Residual within the tolerance at every tolerance: the products of the step's polynomials are integrated whole.
     for tolerance in [1e-3, 1e-6, 1e-9, 1e-12, 1e-14] {
         let spring = model(&format!(
             "mass_g: 20, mechanism: Polynomial(coefficients_si: [0, 50]), damping: Coefficient(c_n_s_per_m: 0.6),
@@ -32,8 +31,7 @@ fn the_ledger_closes_on_long_steps_too() {
 
 #[test]
 fn the_ledger_closes_under_a_fast_drive() {
-    // A drive 1e4 times faster than the spring. Residual today: 0.25 at 1e-3, 5.7e-3 at 1e-6, 3.6e-5 at 1e-9,
-    // 4.8e-7 at 1e-12.
+    // A drive 1e4 times faster than the spring.
     let w: f64 = 1e4;
     for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
         let model = model(&format!(
@@ -50,9 +48,8 @@ fn the_ledger_closes_under_a_fast_drive() {
 
 #[test]
 fn the_length_scale_under_a_fast_drive_is_that_of_the_motion() {
-    // The same scene moves by some 1 m; its error should be the tolerance of that, some hundredfold for 16
-    // 000 cycles. Today 0.5 m at 1e-3, 8e-5 m at 1e-6, 1.4e-5 m at 1e-9: the length scale is drive over
-    // spring, 1e4 m, not 1e4 m/w = 1 m.
+    // The same scene moves by some 1 m; its error is the tolerance of that, some hundredfold for 16 000 cycles:
+    // the length scale is that of the motion, not the drive over the spring, 1e4 m.
     let w: f64 = 1e4;
     for tolerance in [1e-3, 1e-6, 1e-9] {
         let model = model(&format!(
@@ -69,8 +66,7 @@ fn the_length_scale_under_a_fast_drive_is_that_of_the_motion() {
 
 #[test]
 fn a_million_flights_take_exactly_their_time() {
-    // The elastic box: n-th impact at 0.2 + 0.4 n s to 1e-14 of it. Today 1.3e-11: 5 us after 4e5 s, because
-    // without a force the time scale is the duration, and a clock's cycle of 16 of them has phases of 1e-9 s.
+    // The elastic box: n-th impact at 0.2 + 0.4 n s to 1e-14 of it: the clock without a drive is as fine.
     let run = run(&preset("elastic-box", &["run.duration_s=400000.1"]));
     let mut n = 0.0;
     for impact in of_kind(&run, EventKind::Impact) {
