@@ -1,13 +1,13 @@
 //! How does the base accelerate, as a series about any instant?
 //!
 //! Three forms, one chosen per run, so that a scene pays only for what it names: a constant, one sine, a sum
-//! of tones of which some may be ramped. A tone is evaluated from the clock's exact phase at the start of a
+//! of anything. A tone is evaluated from the clock's exact phase at the start of a
 //! step and continued by its own series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so nothing drifts and no library
 //! function is called.
 
 use super::clock::{Clock, Instant};
 use super::series::{ROOM, SEEDED};
-use crate::numeric::{PolynomialRoots, Ratio, Scalar};
+use crate::numeric::{DoubleDouble, Number, PolynomialRoots, Ratio, Scalar};
 
 /// How long a search for a release looks ahead at a time, in radians of the fastest tone, and the order of
 /// its series: the first neglected term, 2^27/27!, is below rounding.
@@ -152,7 +152,7 @@ impl TurnsPerCycle {
         match self {
             Self::Exact(ratio) => ratio.fraction_of_multiple(cycle.unsigned_abs()),
             Self::Rounded(ratio) => {
-                let turns = crate::numeric::DoubleDouble::product(cycle as f64, ratio);
+                let turns = DoubleDouble::product(cycle as f64, ratio);
                 (turns - turns.floor()).to_f64()
             }
         }
@@ -184,13 +184,6 @@ impl<T: Scalar> Tone<T> {
                 (ramp.from + ramp.rate * clock.between(&start, at), ramp.rate)
             }
             _ => (self.amplitude, T::zero()),
-        }
-    }
-
-    fn largest(&self) -> T {
-        match &self.ramp {
-            Some(ramp) => self.amplitude.abs().larger(ramp.from.abs()),
-            None => self.amplitude.abs(),
         }
     }
 }
@@ -269,31 +262,107 @@ impl<T: Scalar> Drive<T> for Sine<T> {
     }
 }
 
-/// A constant and any number of tones.
+/// A sine whose frequency grows evenly up to an instant and then holds.
 #[derive(Debug, Clone)]
-pub(crate) struct Tones<T> {
-    pub constant: T,
-    pub tones: Vec<Tone<T>>,
-    /// Ends of the ramps, ascending.
-    pub segment_ends: Vec<Instant<T>>,
-    /// Cycles of the clock after which all tones are where they were, where that is known.
-    pub common_cycles: Option<i64>,
+pub(crate) struct Chirp<T> {
+    pub amplitude: T,
+    /// Frequencies at time 0 and from the end on in Hz, and the length in s.
+    pub from: f64,
+    pub to: f64,
+    pub over: f64,
+    /// The segment of the drive that begins where the chirp ends.
+    pub holds_from_segment: usize,
 }
 
-/// The last two coefficients of each tone's sine, its amplitude and growth.
-#[derive(Debug, Clone)]
-pub(crate) struct RollingTones<T> {
-    tones: Vec<[T; 4]>,
-}
-
-impl<T> Default for RollingTones<T> {
-    fn default() -> Self {
-        Self { tones: Vec::new() }
+impl<T: Scalar> Chirp<T> {
+    /// (sin, cos) at an instant, angular frequency there and its growth, in kernel units. The phase is formed
+    /// in twice the digits and only its fraction of a turn rounded.
+    fn state(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> (T, T, T, T) {
+        let dd = DoubleDouble::of;
+        let time = clock.exact_seconds(at);
+        let growth = (dd(self.to) - dd(self.from)) / dd(self.over);
+        let holding = segment >= self.holds_from_segment;
+        let (turns, frequency, growth) = if holding {
+            let before = (dd(self.from) + dd(self.to)) * dd(self.over) * dd(0.5);
+            (before + (time - dd(self.over)) * dd(self.to), dd(self.to), dd(0.0))
+        } else {
+            let frequency = dd(self.from) + growth * time;
+            (time * (dd(self.from) + growth * time * dd(0.5)), frequency, growth)
+        };
+        let (s, c) = T::sin_cos_turns(T::of_pair(turns - turns.floor()));
+        let unit = clock.unit();
+        let omega = T::tau() * T::of_pair(frequency * dd(unit));
+        (s, c, omega, T::tau() * T::of_pair(growth * dd(unit * unit)))
     }
 }
 
-impl<T: Scalar> Drive<T> for Tones<T> {
-    type Rolling = RollingTones<T>;
+/// The next coefficients of sine and cosine of a phase with rate w and growth b, from the last two of each:
+/// (k + 1) s\[k+1\] = w c\[k\] + b c\[k-1\], and the cosine likewise with the sign turned.
+fn next_chirp<T: Scalar>(last: &mut ChirpState<T>, share: T) {
+    let ChirpState { sine, cosine, rate, growth, .. } = *last;
+    let s = (rate * cosine[1] + growth * cosine[0]) * share;
+    let c = -((rate * sine[1] + growth * sine[0]) * share);
+    last.sine = [sine[1], s];
+    last.cosine = [cosine[1], c];
+}
+
+/// The last two coefficients of a chirp's sine and cosine, and what continues them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ChirpState<T> {
+    sine: [T; 2],
+    cosine: [T; 2],
+    rate: T,
+    growth: T,
+    amplitude: T,
+}
+
+/// Straight lines between samples; zero before the first and after the last.
+#[derive(Debug, Clone)]
+pub(crate) struct Line<T> {
+    /// The segment of the drive in which this line begins, ascending.
+    pub first_segment: usize,
+    /// When it begins.
+    pub at: Instant<T>,
+    /// Its value there and its slope, kernel units.
+    pub value: T,
+    pub slope: T,
+}
+
+/// A constant and any number of tones, chirps and records.
+#[derive(Debug, Clone)]
+pub(crate) struct Composite<T> {
+    pub constant: T,
+    pub tones: Vec<Tone<T>>,
+    pub chirps: Vec<Chirp<T>>,
+    /// For each record its lines; the last one is zero.
+    pub records: Vec<Vec<Line<T>>>,
+    /// Ends of ramps and chirps and the samples of records, ascending.
+    pub segment_ends: Vec<Instant<T>>,
+    /// Cycles of the clock after which, from the last segment's start on, all parts are where they were; none
+    /// where they never are within the run, or it is not known.
+    pub common_cycles: Option<i64>,
+    /// No acceleration but the constant passes this.
+    pub reach: T,
+    /// Angular frequency of the fastest part that moves, kernel units; 0 without one.
+    pub fastest: T,
+}
+
+/// What continues the series of a composite drive.
+#[derive(Debug, Clone)]
+pub(crate) struct Rolling<T> {
+    /// For each tone the last two coefficients of its sine, its amplitude and growth.
+    tones: Vec<[T; 4]>,
+    chirps: Vec<ChirpState<T>>,
+}
+
+impl<T> Default for Rolling<T> {
+    fn default() -> Self {
+        Self { tones: Vec::new(), chirps: Vec::new() }
+    }
+}
+
+impl<T: Scalar> Drive<T> for Composite<T> {
+    type Rolling = Rolling<T>;
 
     fn seed(
         &self,
@@ -303,7 +372,9 @@ impl<T: Scalar> Drive<T> for Tones<T> {
         a: &mut [T; ROOM],
         roll: &mut Self::Rolling,
     ) {
-        roll.tones.clear(); // keeps its room: nothing is allocated after the first call
+        // Clearing keeps the room: nothing is allocated after the first call.
+        roll.tones.clear();
+        roll.chirps.clear();
         let mut sums = [self.constant, T::zero(), T::zero(), T::zero()];
         for tone in &self.tones {
             let (s, d) = tone.unit(at);
@@ -318,6 +389,25 @@ impl<T: Scalar> Drive<T> for Tones<T> {
             }
             roll.tones.push([unit[2], unit[3], amplitude, growth]);
         }
+        for chirp in &self.chirps {
+            let (s, c, rate, growth) = chirp.state(clock, at, segment);
+            let zero = T::zero();
+            let amplitude = chirp.amplitude;
+            let mut state = ChirpState { sine: [zero, s], cosine: [zero, c], rate, growth, amplitude };
+            sums[0] += amplitude * s;
+            for (k, sum) in sums.iter_mut().enumerate().skip(1) {
+                next_chirp(&mut state, T::of(1.0) / T::of(k as f64));
+                *sum += amplitude * state.sine[1];
+            }
+            roll.chirps.push(state);
+        }
+        for record in &self.records {
+            let line = record.partition_point(|line| line.first_segment <= segment);
+            if let Some(line) = line.checked_sub(1).map(|i| &record[i]) {
+                sums[0] += line.value + line.slope * clock.between(&line.at, at);
+                sums[1] += line.slope;
+            }
+        }
         a[..SEEDED].copy_from_slice(&sums);
     }
 
@@ -327,6 +417,13 @@ impl<T: Scalar> Drive<T> for Tones<T> {
             let next = tone.curvature() * *before * inverse[k];
             sum += *amplitude * next + *growth * *last;
             (*before, *last) = (*last, next);
+        }
+        if !roll.chirps.is_empty() {
+            let share = inverse[k] * T::of((k - 1) as f64); // 1/k
+            for state in &mut roll.chirps {
+                next_chirp(state, share);
+                sum += state.amplitude * state.sine[1];
+            }
         }
         a[k] = sum;
     }
@@ -342,19 +439,12 @@ impl<T: Scalar> Drive<T> for Tones<T> {
         Press { threshold, sign }: Press<T>,
         roll: &mut Self::Rolling,
     ) -> Fall<T> {
-        let mut reach = T::zero();
-        let mut fastest = T::zero();
-        for tone in &self.tones {
-            reach += tone.largest();
-            if tone.largest() > T::zero() {
-                fastest = fastest.larger(tone.frequency);
-            }
-        }
-        if threshold - sign * self.constant > reach || fastest == T::zero() {
+        if threshold - sign * self.constant > self.reach {
             return Fall::Never;
         }
-        let stride = T::of(SEARCH_RADIANS) / (T::tau() * fastest);
-        let ramping = segment < self.segment_ends.len();
+        let turning = self.fastest > T::zero();
+        let stride = T::of(SEARCH_RADIANS) / self.fastest;
+        let last_segment = segment >= self.segment_ends.len();
         let mut at = from;
         let mut a = [T::zero(); ROOM];
         let mut inverse = [T::zero(); ROOM];
@@ -366,14 +456,15 @@ impl<T: Scalar> Drive<T> for Tones<T> {
             if left <= T::zero() {
                 return Fall::Never;
             }
-            let h = stride.smaller(left);
+            let h = if turning { stride.smaller(left) } else { left };
             self.seed(clock, &at, segment, &mut a, roll);
-            for k in SEEDED..=SEARCH_ORDER {
+            let order = if turning { SEARCH_ORDER } else { 1 };
+            for k in SEEDED..=order {
                 self.extend(k, &mut a, &inverse, roll);
             }
             let mut g = [T::zero(); SEARCH_ORDER + 1];
             let mut power = T::of(1.0);
-            for (k, slot) in g.iter_mut().enumerate() {
+            for (k, slot) in g[..=order].iter_mut().enumerate() {
                 *slot = -(sign * a[k]) * power;
                 power = power * h;
             }
@@ -384,12 +475,12 @@ impl<T: Scalar> Drive<T> for Tones<T> {
                 }
                 g[0] = T::of(f64::MIN_POSITIVE); // rounding: it rises, the fall comes later
             }
-            if let Some(s) = PolynomialRoots::new(&g).first() {
+            if let Some(s) = PolynomialRoots::new(&g[..=order]).first() {
                 let fall = clock.advance(&at, s * h);
                 return Fall::within(clock, fall, &until);
             }
             at = clock.advance(&at, h);
-            if let (false, Some(cycles)) = (ramping, self.common_cycles) {
+            if let (true, Some(cycles)) = (last_segment, self.common_cycles) {
                 // one common period without a fall: there is none
                 if at.cycle > from.cycle + cycles {
                     return Fall::Never;

@@ -1,5 +1,6 @@
 //! Motion: the equation of motion and its exact, event-driven integration.
 
+mod base;
 mod clock;
 mod contact;
 mod describe;
@@ -15,6 +16,7 @@ mod scales;
 mod series;
 mod summary;
 
-pub use model::{Model, Request, STANDARD_GRAVITY};
+pub use base::STANDARD_GRAVITY;
+pub use model::{Model, Request};
 pub use result::*;
 pub use scales::Scales;

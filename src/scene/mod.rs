@@ -28,6 +28,7 @@ mod files;
 mod locate;
 mod presets;
 mod ranges;
+mod record;
 mod text;
 
 pub use axis::{Axis, LARGEST_AXIS, MOST_AXES, column_names};
@@ -41,4 +42,5 @@ pub use files::{FileError, Files, LARGEST_TABLE};
 pub use locate::{Place, Places};
 pub use presets::{PRESETS, Preset, TABLES, Table, export};
 pub use ranges::MAX_COEFFICIENTS;
+pub use record::{Record, RecordError};
 pub use text::{LARGEST_SCENE, write};

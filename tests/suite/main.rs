@@ -2,6 +2,7 @@
 
 mod cli;
 mod convergence;
+mod drives;
 mod impacts;
 mod layers;
 mod mechanics;
