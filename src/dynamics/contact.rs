@@ -1,15 +1,19 @@
 //! What happens where the mass touches a stop, a break or the end of the curve?
 
 use super::clock::Instant;
-use super::drive::{Drive, Press, Span};
-use super::equation::{End, EndKind};
-use super::motion::{BY_ACCELERATION, BY_JERK, BY_SPEED, Contact, Flow, Motion, Touch};
+use super::drive::{Drive, Fall, Press, SEARCH_STRIDES, Span};
+use super::equation::{End, EndKind, FAR};
+use super::motion::{BY_ACCELERATION, BY_JERK, BY_SPEED, Contact, Flow, HELD, Motion, Touch};
 use super::prepare::base_at;
 use super::result::{Outcome, Phase, Side};
 use crate::numeric::Scalar;
 
 /// A rebound slower than this share of the speed scale may be part of a closed-form sum.
 const CHATTER_SPEED: f64 = 1e-6;
+
+/// Share of the clock's cycle by which the search for a release skips an instant at which the press only
+/// touched 0: well above what the rounding of a double root spans, well below any press worth resolving.
+const PAST_A_TOUCH: f64 = 1e-6;
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// Decides what a start on a surface is.
@@ -81,44 +85,58 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
 
     /// A rest on the stop of `end`, up to its release, the end of the drive's segment, or the run's end.
     pub(super) fn rest(&mut self, end: End) {
-        let sign = end.sign::<T>();
         let phase = match end {
             End::Low => Phase::LeftStop,
             End::High => Phase::RightStop,
         };
-        let mut until = self.end;
-        let mut next_segment = false;
-        if let Some(border) = self.drive.segment_end(self.segment)
-            && self.clock.between(&border, &self.end) > T::zero()
-        {
-            until = border;
-            next_segment = true;
-        }
         self.steps += 1;
-        let press = self.equation.stop(end).map_or(T::zero(), |s| s.press);
-        let span = Span { from: self.at, until, segment: self.segment };
-        let fall = self.drive.next_fall(&self.clock, &span, Press { threshold: press, sign }, &mut self.roll);
-        match fall {
-            Some(fall) => {
+        let until = self.segment_limit();
+        let mut from = self.at;
+        if self.refused == Some(self.at) {
+            // The press only touched 0 here, to rounding: look beyond.
+            from = self.clock.advance(&from, self.clock.period() * T::of(PAST_A_TOUCH));
+        }
+        let threshold = self.equation.stop(end).map_or(T::zero(), |s| s.press);
+        let press = Press { threshold, sign: end.sign::<T>() };
+        let span = Span { from, until, segment: self.segment };
+        match self.drive.next_fall(&self.clock, &span, press, &mut self.roll) {
+            Fall::At(fall) => {
                 self.stand(fall, phase);
-                self.record.release(&self.at, side(end));
-                self.contact = Contact::Free;
-                self.touch = Some(Touch { end, order: BY_JERK });
+                self.release(end, BY_JERK);
             }
-            None => {
+            Fall::NotBefore(later) => {
+                self.steps += SEARCH_STRIDES;
+                self.stand(later, phase);
+            }
+            Fall::Never => {
                 self.stand(until, phase);
-                if next_segment {
-                    self.segment += 1;
+                if self.pass_segment_end() {
                     let rounding = self.equation.stop(end).map_or(T::zero(), |s| s.press_rounding);
                     let press = self.press(end)[0];
                     if press < -(rounding + self.series.a[0].abs() * T::of(4.0 * T::EPSILON)) {
-                        self.record.release(&self.at, side(end));
-                        self.contact = Contact::Free;
-                        self.touch = Some(Touch { end, order: BY_ACCELERATION });
+                        self.release(end, BY_ACCELERATION);
                     }
                 }
             }
         }
+    }
+
+    fn release(&mut self, end: End, order: usize) {
+        self.record.release(&self.at, side(end));
+        self.contact = Contact::Free;
+        self.touch = Some(Touch { end, order });
+    }
+
+    /// Enters the drive's next segment where the present one has ended.
+    pub(super) fn pass_segment_end(&mut self) -> bool {
+        let ended = self
+            .drive
+            .segment_end(self.segment)
+            .is_some_and(|border| self.clock.between(&self.at, &border) <= T::zero());
+        if ended {
+            self.segment += 1;
+        }
+        ended
     }
 
     /// The mass reaches the stop of `end` with outward speed `speed` > 0.
@@ -126,7 +144,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let sign = end.sign::<T>();
         let restitution = self.equation.stop(end).map_or(T::of(1.0), |s| s.restitution);
         let rebound = restitution * speed;
-        self.record.impact(&self.at, side(end), sign * speed, -(sign * rebound));
+        // 0 - keeps a rebound of 0 from being -0
+        self.record.impact(&self.at, side(end), sign * speed, T::zero() - sign * rebound);
         if rebound > T::zero() {
             self.v = -(sign * rebound);
             self.touch = Some(Touch { end, order: BY_SPEED });
@@ -190,32 +209,38 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// The mass has reached an end of its arena; `at_once` where the step began there and led outward.
     pub(super) fn reach(&mut self, end: End, at_once: bool) -> Flow {
         let outward = end.sign::<T>() * self.v;
-        match self.equation.arenas[self.arena].end(end).1 {
-            EndKind::Stop => {
-                if outward > T::zero() {
-                    self.strike(end, outward);
-                } else {
-                    self.settle(end); // a touch without speed is no impact
-                }
-                None
+        let (level, kind) = self.equation.arenas[self.arena].end(end);
+        match kind {
+            EndKind::Stop if outward > T::zero() => self.strike(end, outward),
+            EndKind::Stop if at_once => {
+                // It was let go where the press is 0 to rounding, and does not leave: it rests on.
+                self.refused = Some(self.at);
+                self.v = T::zero();
+                self.contact = Contact::Resting(end);
+                self.record.rest(&self.at, side(end));
             }
+            EndKind::Stop => self.settle(end), // a touch without speed is no impact
+            EndKind::Break if outward > T::zero() => self.enter_neighbour(end),
             EndKind::Break => {
-                if outward > T::zero() {
-                    self.enter_neighbour(end);
+                // A touch of the break: back inside, unless the acceleration leads out; where both sides lead
+                // out, by rounding, it stays on this side.
+                self.v = T::zero();
+                if !at_once {
+                    self.touch = Some(Touch { end, order: BY_ACCELERATION });
+                } else if self.turned_back {
+                    self.touch = Some(Touch { end, order: HELD });
                 } else {
-                    // A touch of the break: back inside, unless the acceleration leads out.
-                    self.v = T::zero();
-                    if at_once {
-                        self.enter_neighbour(end);
-                        self.touch = Some(Touch { end: end.other(), order: BY_ACCELERATION });
-                    } else {
-                        self.touch = Some(Touch { end, order: BY_ACCELERATION });
-                    }
+                    self.turned_back = true;
+                    self.enter_neighbour(end);
+                    self.touch = Some(Touch { end: end.other(), order: BY_ACCELERATION });
                 }
-                None
             }
-            EndKind::Unknown => Some(Outcome::LeftTable { at: self.clock.seconds(&self.at) }),
+            EndKind::Unknown if level.abs() >= T::of(FAR) => {
+                return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
+            }
+            EndKind::Unknown => return Some(Outcome::LeftTable { at: self.clock.seconds(&self.at) }),
         }
+        None
     }
 }
 

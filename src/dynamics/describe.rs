@@ -1,27 +1,23 @@
 //! What does a scene model, and what does it leave out? In words, for `check`.
 
 use super::model::{Model, StopAt};
+use crate::numeric::short;
 
-/// A line for each thing that is modelled, then what is left out.
+/// A line for each thing that is modelled, then what is left out. The force curve and the meaning of a
+/// damping ratio are told elsewhere.
 pub(crate) fn describe(model: &Model) -> Vec<String> {
-    let mut lines = Vec::new();
+    let mut lines = vec![format!("proof mass {} g", short(model.mass * 1e3))];
     let mut absent = Vec::new();
-    let curve = &model.mechanism.curve;
-    lines.push(format!(
-        "proof mass {:.6} kg on a force curve of {}",
-        model.mass,
-        pieces(curve.pieces().len())
-    ));
     if model.damping > 0.0 {
-        lines.push(format!("viscous damping, c = {:.6} N s/m", model.damping));
+        lines.push(format!("viscous damping, c = {} N s/m", short(model.damping)));
     } else {
         absent.push("damping");
     }
     match &model.stops {
         Some(pair) => {
-            let stop = |name: &str, at: Option<StopAt>| match at {
-                Some(s) => format!("{name} at {:.6} mm with restitution {}", s.x * 1e3, s.restitution),
-                None => format!("none on the {name}"),
+            let stop = |side: &str, at: Option<StopAt>| match at {
+                Some(s) => format!("{side} at {} mm with restitution {}", short(s.x * 1e3), s.restitution),
+                None => format!("{side} open"),
             };
             lines.push(format!("rigid stops: {}; {}", stop("left", pair.left), stop("right", pair.right)));
         }
@@ -29,19 +25,21 @@ pub(crate) fn describe(model: &Model) -> Vec<String> {
     }
     let drive = &model.drive;
     if drive.constant != 0.0 {
-        lines.push(format!("constant base acceleration {:.6} m/s^2", drive.constant));
+        lines.push(format!("constant base acceleration of {} m/s^2", short(drive.constant)));
     }
     for tone in &drive.tones {
         let size = match tone.ramp {
-            Some((from, over)) => format!("amplitude {from:.6} to {:.6} m/s^2 over {over} s", tone.amplitude),
-            None => format!("amplitude {:.6} m/s^2", tone.amplitude.abs()),
+            Some((from, over)) => {
+                format!("{} to {} m/s^2 over {over} s", short(from), short(tone.amplitude))
+            }
+            None => format!("{} m/s^2", short(tone.amplitude.abs())),
         };
-        lines.push(format!("sine of {} Hz, {size}", tone.frequency));
+        lines.push(format!("base acceleration: sine of {} Hz, amplitude {size}", short(tone.frequency)));
     }
     if drive.tones.len() > 1 {
         lines.push(match model.forcing_period {
-            Some(period) => format!("the drive repeats after {period:.9} s"),
-            None => "the drive has no common period within reach".into(),
+            Some(period) => format!("the excitation repeats after {} s", short(period)),
+            None => "the excitation has no common period within reach".into(),
         });
     }
     if drive.constant == 0.0 && drive.tones.is_empty() {
@@ -49,20 +47,19 @@ pub(crate) fn describe(model: &Model) -> Vec<String> {
     }
     absent.push("transducer");
     lines.push(format!(
-        "start at x = {:.6} mm, v = {:.6} m/s; {} s, settled after {} s",
-        model.start.0 * 1e3,
-        model.start.1,
-        model.duration,
-        model.settle
+        "start at x = {} mm, v = {} m/s; runs {} s, settled after {} s",
+        short(model.start.0 * 1e3),
+        short(model.start.1),
+        short(model.duration),
+        short(model.settle)
     ));
     lines.push(format!(
-        "tolerance {:e} relative to {:.4e} m, {:.4e} m/s, {:.4e} s",
-        model.tolerance, model.scales.length, model.scales.speed, model.scales.time
+        "tolerance {:e}, relative to {} mm, {} m/s and {} s",
+        model.tolerance,
+        short(model.scales.length * 1e3),
+        short(model.scales.speed),
+        short(model.scales.time)
     ));
     lines.push(format!("left out: {}", absent.join(", ")));
     lines
-}
-
-fn pieces(count: usize) -> String {
-    if count == 1 { "one polynomial".into() } else { format!("{count} polynomial pieces") }
 }

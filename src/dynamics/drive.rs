@@ -6,7 +6,7 @@
 //! function is called.
 
 use super::clock::{Clock, Instant};
-use super::series::ROOM;
+use super::series::{ROOM, SEEDED};
 use crate::numeric::{PolynomialRoots, Ratio, Scalar};
 
 /// How long a search for a release looks ahead at a time, in radians of the fastest tone, and the order of
@@ -14,12 +14,16 @@ use crate::numeric::{PolynomialRoots, Ratio, Scalar};
 const SEARCH_RADIANS: f64 = 2.0;
 const SEARCH_ORDER: usize = 26;
 
+/// Strides of a search before it reports where it stands: longer than a common period of two or three
+/// tones of everyday frequencies.
+pub(crate) const SEARCH_STRIDES: u64 = 4096;
+
 /// Acceleration of the base, in kernel units.
 pub(crate) trait Drive<T: Scalar> {
     /// State carried along a series.
     type Rolling: Default;
 
-    /// Fills a\[0..=3\] at `at`.
+    /// Fills the first [`SEEDED`] coefficients of `a`, at `at`.
     fn seed(
         &self,
         clock: &Clock<T>,
@@ -29,21 +33,39 @@ pub(crate) trait Drive<T: Scalar> {
         roll: &mut Self::Rolling,
     );
 
-    /// Fills a\[k\], k >= 4, all lower ones being known; `inverse[n]` is 1/(n(n-1)).
+    /// Fills a\[k\], k >= [`SEEDED`], once each and in ascending order; `inverse[n]` is 1/(n(n-1)).
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling);
 
     /// The instant at which segment `segment` ends, where one follows.
     fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
 
-    /// The next instant in the span at which the press, positive now, changes sign; none where there is
-    /// none. The span lies within one segment.
+    /// The next instant in the span at which the press, positive now, changes sign. The span lies within
+    /// one segment.
     fn next_fall(
         &self,
         clock: &Clock<T>,
         span: &Span<T>,
         press: Press<T>,
         roll: &mut Self::Rolling,
-    ) -> Option<Instant<T>>;
+    ) -> Fall<T>;
+}
+
+/// When the press on a stop ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Fall<T> {
+    /// It changes sign here.
+    At(Instant<T>),
+    /// It does not within the span.
+    Never,
+    /// Not up to here; ask again (a search is broken off now and then, so that its work is counted).
+    NotBefore(Instant<T>),
+}
+
+impl<T: Scalar> Fall<T> {
+    /// At `fall` where that lies before the end of the span.
+    fn within(clock: &Clock<T>, fall: Instant<T>, until: &Instant<T>) -> Self {
+        if clock.between(&fall, until) > T::zero() { Self::At(fall) } else { Self::Never }
+    }
 }
 
 /// From an instant to before another, within one segment of the drive.
@@ -81,8 +103,8 @@ impl<T: Scalar> Drive<T> for Still<T> {
     fn segment_end(&self, _: usize) -> Option<Instant<T>> {
         None
     }
-    fn next_fall(&self, _: &Clock<T>, _: &Span<T>, _: Press<T>, (): &mut ()) -> Option<Instant<T>> {
-        None
+    fn next_fall(&self, _: &Clock<T>, _: &Span<T>, _: Press<T>, (): &mut ()) -> Fall<T> {
+        Fall::Never
     }
 }
 
@@ -207,12 +229,12 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         &Span { from, until, .. }: &Span<T>,
         Press { threshold, sign }: Press<T>,
         (): &mut (),
-    ) -> Option<Instant<T>> {
+    ) -> Fall<T> {
         // threshold - b sin = 0 with sin rising through it (b > 0) or falling (b < 0).
         let b = self.tone.amplitude * sign;
         let height = threshold / b.abs();
         if !(height.abs() < T::of(1.0)) {
-            return None; // never reached, or touched without a change of sign
+            return Fall::Never; // never reached, or touched without a change of sign
         }
         let mut turns = T::of(height.to_f64().asin() / std::f64::consts::TAU);
         for _ in 0..3 {
@@ -243,7 +265,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         } else {
             Instant { cycle: from.cycle + 1, phase }
         };
-        (clock.between(&fall, &until) > T::zero()).then_some(fall)
+        Fall::within(clock, fall, &until)
     }
 }
 
@@ -296,7 +318,7 @@ impl<T: Scalar> Drive<T> for Tones<T> {
             }
             roll.tones.push([unit[2], unit[3], amplitude, growth]);
         }
-        a[..4].copy_from_slice(&sums);
+        a[..SEEDED].copy_from_slice(&sums);
     }
 
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling) {
@@ -319,7 +341,7 @@ impl<T: Scalar> Drive<T> for Tones<T> {
         &Span { from, until, segment }: &Span<T>,
         Press { threshold, sign }: Press<T>,
         roll: &mut Self::Rolling,
-    ) -> Option<Instant<T>> {
+    ) -> Fall<T> {
         let mut reach = T::zero();
         let mut fastest = T::zero();
         for tone in &self.tones {
@@ -329,7 +351,7 @@ impl<T: Scalar> Drive<T> for Tones<T> {
             }
         }
         if threshold - sign * self.constant > reach || fastest == T::zero() {
-            return None;
+            return Fall::Never;
         }
         let stride = T::of(SEARCH_RADIANS) / (T::tau() * fastest);
         let ramping = segment < self.segment_ends.len();
@@ -339,14 +361,14 @@ impl<T: Scalar> Drive<T> for Tones<T> {
         for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
             *slot = T::of(1.0) / T::of((k * (k - 1)) as f64);
         }
-        loop {
+        for _ in 0..SEARCH_STRIDES {
             let left = clock.between(&at, &until);
             if left <= T::zero() {
-                return None;
+                return Fall::Never;
             }
             let h = stride.smaller(left);
             self.seed(clock, &at, segment, &mut a, roll);
-            for k in 4..=SEARCH_ORDER {
+            for k in SEEDED..=SEARCH_ORDER {
                 self.extend(k, &mut a, &inverse, roll);
             }
             let mut g = [T::zero(); SEARCH_ORDER + 1];
@@ -358,21 +380,22 @@ impl<T: Scalar> Drive<T> for Tones<T> {
             g[0] += threshold;
             if g[0] <= T::zero() {
                 if g[1] <= T::zero() {
-                    return Some(at);
+                    return Fall::At(at);
                 }
                 g[0] = T::of(f64::MIN_POSITIVE); // rounding: it rises, the fall comes later
             }
             if let Some(s) = PolynomialRoots::new(&g).first() {
                 let fall = clock.advance(&at, s * h);
-                return (clock.between(&fall, &until) > T::zero()).then_some(fall);
+                return Fall::within(clock, fall, &until);
             }
             at = clock.advance(&at, h);
             if let (false, Some(cycles)) = (ramping, self.common_cycles) {
                 // one common period without a fall: there is none
                 if at.cycle > from.cycle + cycles {
-                    return None;
+                    return Fall::Never;
                 }
             }
         }
+        Fall::NotBefore(at)
     }
 }

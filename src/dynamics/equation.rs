@@ -8,7 +8,7 @@ use super::model::{Model, StopAt};
 use crate::numeric::Scalar;
 
 /// Stands in for an end that does not exist; far, yet safe to compute with.
-const FAR: f64 = 1e200;
+pub(super) const FAR: f64 = 1e200;
 
 /// The force of one piece over mass, in kernel units, about the piece's origin.
 #[derive(Debug, Clone)]

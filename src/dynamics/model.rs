@@ -15,6 +15,9 @@ pub const STANDARD_GRAVITY: f64 = 9.80665;
 /// The longest common period of several tones, in periods of the fastest.
 const LONGEST_COMMON_PERIOD: u64 = 10_000;
 
+/// The most periods of the fastest tone that the clock counts exactly, about 2^53.
+const MOST_PERIODS: f64 = 9e15;
+
 /// A scene as run.
 #[derive(Debug, Clone)]
 pub struct Model {
@@ -191,10 +194,21 @@ impl Model {
                 (0.0, 0.0)
             }
         };
+        let drive = BaseMotion::new(&scene.excitation);
+        let periods = drive.fastest().unwrap_or(0.0) * scene.run.duration_s;
+        if periods > MOST_PERIODS {
+            faults.push(fault(
+                "run.duration_s",
+                scene.run.duration_s,
+                format!(
+                    "makes {periods:e} periods of the excitation; at most {MOST_PERIODS:e} can be counted: \
+                     shorten the run or lower the frequency"
+                ),
+            ));
+        }
         if !faults.is_empty() {
             return Err(faults);
         }
-        let drive = BaseMotion::new(&scene.excitation);
         let common = drive.common_cycles();
         let forcing_period = drive.fastest().and_then(|f| common.map(|cycles| cycles as f64 / f));
         let barrier = landscape.barrier.as_ref();

@@ -15,6 +15,8 @@ use crate::numeric::{Number, Scalar};
 pub(crate) const MAX_ORDER: usize = 32;
 /// Room for coefficients 0..=MAX_ORDER.
 pub(crate) const ROOM: usize = MAX_ORDER + 2;
+/// Coefficients of the drive that are there from the start.
+pub(crate) const SEEDED: usize = 4;
 /// Products kept for the nested form of the force: one row a degree above the first.
 const ROWS: usize = crate::mechanics::ForceCurve::MAX_COEFFICIENTS;
 
@@ -44,8 +46,8 @@ impl<T: Scalar> Series<T> {
         Self { y: zeros, a: zeros, known: 0, scaled: zeros, square: zeros, nested: [zeros; ROWS], inverse }
     }
 
-    /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first three
-    /// coefficients of the drive are already in `a`.
+    /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first
+    /// [`SEEDED`] coefficients of the drive are already in `a`.
     #[inline]
     pub fn start(&mut self, y: T, v: T) {
         self.y[0] = y;
@@ -57,7 +59,7 @@ impl<T: Scalar> Series<T> {
     #[inline]
     pub fn push<D: Drive<T>>(&mut self, force: &PieceForce<T>, damping: T, drive: &D, roll: &mut D::Rolling) {
         let k = self.known - 2;
-        if k >= 2 {
+        if k >= SEEDED {
             drive.extend(k, &mut self.a, &self.inverse, roll);
         }
         let f = self.force_coefficient(force, k);

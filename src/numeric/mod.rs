@@ -6,6 +6,7 @@ pub mod fit;
 pub mod real_roots;
 mod roots;
 mod scalar;
+mod short;
 mod sum;
 
 pub use decimal::Ratio;
@@ -13,4 +14,5 @@ pub(crate) use decimal::greatest_common_divisor;
 pub use double_double::DoubleDouble;
 pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::{Number, Scalar};
+pub use short::short;
 pub use sum::CompensatedSum;

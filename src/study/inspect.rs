@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::curve::small_amplitude_frequency;
 use crate::dynamics::Model;
 use crate::mechanics::{Equilibrium, Landscape, Mechanism};
+use crate::numeric::short;
 use crate::scene::{Damping, Fault, Scene};
 
 /// The scene in words, a line each; all faults that only show when the model is built.
@@ -48,10 +49,7 @@ fn force_curve(mechanism: &Mechanism) -> String {
 /// k and c of a damping ratio.
 fn damping(scene: &Scene, model: &Model) -> Option<String> {
     let Damping::Ratio(xi) = scene.damping else { return None };
-    // c = 2 xi sqrt(k m): the same scene at a ratio of 1 tells the k that the model takes.
-    let unit = Scene { damping: Damping::Ratio(1.0), ..scene.clone() };
-    let unit = Model::build(&unit, Arc::clone(&model.mechanism)).ok()?;
-    let stiffness = (unit.damping / 2.0).powi(2) / unit.mass;
+    let stiffness = model.mechanism.damping_stiffness()?;
     Some(format!(
         "damping ratio {xi}: with k = {} N/m, c = 2 xi sqrt(k m) = {} N s/m",
         short(stiffness),
@@ -98,26 +96,4 @@ fn equilibrium(equilibrium: &Equilibrium, mass: f64) -> String {
     let frequency = small_amplitude_frequency(mass, equilibrium);
     let frequency = frequency.map_or(String::new(), |f| format!(", {} Hz when plucked", short(f)));
     format!("{kind} equilibrium at {} mm, stiffness {stiffness} N/m{frequency}", short(equilibrium.x * 1e3))
-}
-
-/// Four significant digits.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) {
-        // Adding 0 makes -0 a plain 0.
-        format!("{}", rounded + 0.0)
-    } else {
-        format!("{rounded:e}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_short() {
-        let written = [7.18234e-3, -0.0, 1.0 / 3.0, 4123.4, 8.2e5, 1.2e-9, 8.2e7].map(short);
-        assert_eq!(written, ["0.007182", "0", "0.3333", "4123", "820000", "1.2e-9", "8.2e7"]);
-    }
 }
