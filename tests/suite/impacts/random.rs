@@ -154,11 +154,8 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
             .prop_map(|(linear_n_per_m, cubic_n_per_m3)| Mechanism::Cubic { linear_n_per_m, cubic_n_per_m3 }),
         2 => (300.0..1500.0f64, 50.0..500.0f64)
             .prop_map(|(equilibrium_mm, barrier_mj)| Mechanism::DoubleWell { equilibrium_mm, barrier_mj }),
-        1 => prop::collection::vec(-2.0..2.0f64, 1..5).prop_map(|mut c| {
-            c.resize(4, 0.0);
-            c.extend([0.0, 1.0]);
-            polynomial(&c)
-        }),
+        1 => (-2.0..2.0f64, prop_oneof![-2.0..-0.1f64, 0.1..2.0f64], -2.0..2.0f64, -2.0..2.0f64)
+            .prop_map(|(c0, c1, c2, c3)| polynomial(&[c0, c1, c2, c3, 0.0, 1.0])),
         1 => prop_oneof![
             Just(polynomial(&[0.0])),
             (-2.0..2.0f64).prop_map(|c| polynomial(&[c])),
