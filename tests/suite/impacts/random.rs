@@ -229,8 +229,8 @@ fn place(stops: &Stops, mechanism: &Mechanism, share: f64, speed: f64) -> Start 
 
 fn any_scene() -> impl Strategy<Value = Scene> {
     let speed = prop_oneof![2 => Just(0.0), 3 => -2.0..2.0f64, 1 => -1e-6..1e-6f64];
-    (mechanism(), stops(), drive(), 0.0..1.0f64, speed, prop_oneof![Just(0.0), 0.0..1.0f64], 0..4usize).prop_map(
-        |(mechanism, stops, excitation, share, speed, c, tolerance)| {
+    (mechanism(), stops(), drive(), 0.0..1.0f64, speed, prop_oneof![Just(0.0), 0.0..1.0f64], 0..4usize)
+        .prop_map(|(mechanism, stops, excitation, share, speed, c, tolerance)| {
             let start = place(&stops, &mechanism, share, speed);
             let flat = matches!(&mechanism, Mechanism::Polynomial { coefficients_si: c } if c.len() == 1);
             let mut s = scene(mechanism, start, 10.0);
@@ -246,8 +246,7 @@ fn any_scene() -> impl Strategy<Value = Scene> {
             s.run.settle_s = Some(2.5);
             s.run.tolerance = [1e-3, 1e-6, 1e-9, 1e-12][tolerance];
             s
-        },
-    )
+        })
 }
 
 proptest! {
