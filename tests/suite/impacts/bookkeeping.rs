@@ -25,9 +25,14 @@ fn a_sample_at_an_events_instant_is_the_state_after_it() {
         let sign = if e.side == interwell::dynamics::Side::Left { -1.0 } else { 1.0 };
         match e.kind {
             EventKind::Impact => {
-                assert!(p.x == sign * 4e-3 && p.phase == Phase::Free, "{e:?} {p:?}");
+                // the time in s is rounded to an ulp: so far the mass may have gone, at some 10 m/s^2
+                let gone = e.v_out.abs() * 1e-15;
+                assert!(
+                    sign * p.x <= 4e-3 && sign * p.x >= 4e-3 - gone && p.phase == Phase::Free,
+                    "{e:?} {p:?}"
+                );
                 let summed = e.v_out.abs() < unresolved && p.v == 0.0;
-                assert!(summed || (p.v - e.v_out).abs() <= 1e-15 * e.v_out.abs(), "{e:?} {p:?}");
+                assert!(summed || (p.v - e.v_out).abs() <= 1e-14, "{e:?} {p:?}");
             }
             EventKind::Rest => {
                 assert!(p.x == sign * 4e-3 && p.v == 0.0 && p.phase != Phase::Free, "{e:?} {p:?}");
