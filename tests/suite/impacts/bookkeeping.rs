@@ -26,13 +26,14 @@ fn a_sample_at_an_events_instant_is_the_state_after_it() {
         match e.kind {
             EventKind::Impact => {
                 // the time in s is rounded to an ulp: so far the mass may have gone, at some 10 m/s^2
-                let gone = e.v_out.abs() * 1e-15;
+                let late = 2.0 * f64::EPSILON * e.t;
+                let gone = e.v_out.abs() * late + 1e-18;
                 assert!(
                     sign * p.x <= 4e-3 && sign * p.x >= 4e-3 - gone && p.phase == Phase::Free,
                     "{e:?} {p:?}"
                 );
                 let summed = e.v_out.abs() < unresolved && p.v == 0.0;
-                assert!(summed || (p.v - e.v_out).abs() <= 1e-14, "{e:?} {p:?}");
+                assert!(summed || (p.v - e.v_out).abs() <= 30.0 * late, "{e:?} {p:?}");
             }
             EventKind::Rest => {
                 assert!(p.x == sign * 4e-3 && p.v == 0.0 && p.phase != Phase::Free, "{e:?} {p:?}");
