@@ -9,6 +9,9 @@ use super::result::Run;
 use super::series::ROOM;
 use crate::numeric::{Ratio, Scalar};
 
+/// Cycle of the clock without a drive, in kernel time units.
+const SHORTEST_CYCLE: f64 = 1.0 / 65536.0;
+
 /// Runs the model in numbers of type `T`.
 pub(crate) fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64) -> Run {
     let watch = cpu_time::ThreadTime::now();
@@ -61,8 +64,13 @@ fn drive_kind(drive: &BaseMotion) -> Kind {
 }
 
 fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
-    // without a drive: a cycle of 16 time units
-    Clock::new(model.drive.fastest().unwrap_or(1.0 / (16.0 * unit)), unit)
+    let frequency = model.drive.fastest().unwrap_or_else(|| {
+        // Without a drive: so short a cycle that its phase is exact, a power of two of the time unit, and not so
+        // many cycles that they could not be counted.
+        let units = model.duration / unit;
+        1.0 / (unit * SHORTEST_CYCLE.max((units.log2().ceil() - 50.0).exp2()))
+    });
+    Clock::new(frequency, unit)
 }
 
 fn still<T: Scalar>(model: &Model, unit: f64) -> Still<T> {

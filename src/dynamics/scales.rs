@@ -7,7 +7,8 @@
 //!   the barrier (one well: at it; none: at the start); without stiffness the drive's fastest tone;
 //!   without both, sqrt(acceleration over length), or speed over length;
 //! - length L: the largest of half the distance between the wells, the start's distance from the
-//!   barrier (or the single equilibrium, or 0), start speed over w, and drive acceleration over w^2;
+//!   barrier (or the single equilibrium, or 0), start speed over w, and drive acceleration over w and the
+//!   larger of w and the fastest tone's rate (a fast drive moves the mass that far, by its first kick);
 //! - speed L w, time 1/w.
 
 /// Length in m, speed in m/s, time in s; all above 0 and finite.
@@ -53,7 +54,7 @@ impl Scales {
                 .half_distance
                 .max(l.start_distance)
                 .max(l.start_speed / rate)
-                .max(l.drive_acceleration / (rate * rate))
+                .max(l.drive_acceleration / (rate * rate.max(l.drive_rate)))
                 .max(if usable(stiff) { 0.0 } else { l.start_acceleration / (rate * rate) });
             (length, rate)
         } else if usable(acceleration) {

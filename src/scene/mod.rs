@@ -18,6 +18,7 @@
 
 mod axis;
 mod check;
+mod columns;
 mod data;
 mod decimal;
 mod document;
@@ -31,6 +32,7 @@ mod text;
 
 pub use axis::{Axis, LARGEST_AXIS, MOST_AXES, column_names};
 pub use check::{Checked, check, corners};
+pub use columns::{Columns, ColumnsError, MOST_ROWS, read_columns};
 pub use data::*;
 pub use document::Document;
 pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};

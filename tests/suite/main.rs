@@ -9,3 +9,4 @@ mod oracles;
 mod presets;
 mod scene;
 mod studies;
+mod support;
