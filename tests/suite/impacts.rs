@@ -4,6 +4,7 @@ mod bookkeeping;
 mod breaks;
 mod budgets;
 mod chatter;
+mod figures;
 mod random;
 mod release;
 mod scenes;

@@ -141,8 +141,7 @@ pub fn assert_mirrored(a: &Run, b: &Run) {
         assert_eq!(flat(p), (t, kind, -side, -v_in, -v_out));
     }
     assert_eq!(a.summary.rms_velocity, b.summary.rms_velocity);
-    let reach = |r: &Run| r.summary.max_abs_x.unwrap_or(0.0);
-    assert!((reach(a) - reach(b)).abs() <= 1e-13 * reach(a), "{:e} {:e}", reach(a), reach(b));
+    assert_eq!(a.summary.max_abs_x, b.summary.max_abs_x);
     assert_eq!((a.summary.steps, a.summary.final_x), (b.summary.steps, -b.summary.final_x));
     let (p, q) = (a.summary.ledger.unwrap(), b.summary.ledger.unwrap());
     assert_eq!((p.work_j, p.damping_j, p.impact_j), (q.work_j, q.damping_j, q.impact_j));
@@ -267,7 +266,7 @@ proptest! {
             Outcome::ImpactBudget { .. } => prop_assert!(elastic),
             other => prop_assert!(false, "{:?}", other),
         }
-        assert_sound(&scene, &m, &run, 1e3);
+        assert_sound(&scene, &m, &run, 100.0);
         // (the barrier of a curve that is not odd is a root, and known to rounding alone)
         if !matches!(&scene.mechanism, Mechanism::Polynomial { coefficients_si } if coefficients_si.len() > 2) {
             assert_mirrored(&run, &model(&mirrored(&scene)).run(&full(&times)));
