@@ -18,6 +18,10 @@ const SEARCH_ORDER: usize = 26;
 /// tones of everyday frequencies.
 pub(crate) const SEARCH_STRIDES: u64 = 4096;
 
+/// Up to so many tones the check of a step evaluates each anew; more of them cannot cancel in the series by
+/// chance.
+const FEW_TONES: usize = 8;
+
 /// Acceleration of the base, in kernel units.
 pub(crate) trait Drive<T: Scalar> {
     /// State carried along a series.
@@ -35,6 +39,10 @@ pub(crate) trait Drive<T: Scalar> {
 
     /// Fills a\[k\], k >= [`SEEDED`], once each and in ascending order; `inverse[n]` is 1/(n(n-1)).
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling);
+
+    /// a(t) at `at` by itself, not by the series: what a step is checked against. A drive of many tones may
+    /// answer with `by_series`, the value of its series.
+    fn value(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize, by_series: impl Fn() -> T) -> T;
 
     /// The instant at which segment `segment` ends, where one follows.
     fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
@@ -100,6 +108,10 @@ impl<T: Scalar> Drive<T> for Still<T> {
     }
     #[inline]
     fn extend(&self, _: usize, _: &mut [T; ROOM], _: &[T; ROOM], (): &mut ()) {}
+    #[inline]
+    fn value(&self, _: &Clock<T>, _: &Instant<T>, _: usize, _: impl Fn() -> T) -> T {
+        self.acceleration
+    }
     fn segment_end(&self, _: usize) -> Option<Instant<T>> {
         None
     }
@@ -210,6 +222,11 @@ impl<T: Scalar> Drive<T> for Sine<T> {
     #[inline]
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], (): &mut ()) {
         a[k] = self.tone.curvature() * a[k - 2] * inverse[k];
+    }
+
+    #[inline]
+    fn value(&self, _: &Clock<T>, at: &Instant<T>, _: usize, _: impl Fn() -> T) -> T {
+        self.tone.amplitude * self.tone.unit(at).0
     }
 
     fn segment_end(&self, _: usize) -> Option<Instant<T>> {
@@ -361,6 +378,21 @@ impl<T> Default for Rolling<T> {
     }
 }
 
+impl<T: Scalar> Composite<T> {
+    /// The sum of the records and its slope.
+    fn record(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> (T, T) {
+        let mut sum = (T::zero(), T::zero());
+        for record in &self.records {
+            let line = record.partition_point(|line| line.first_segment <= segment);
+            if let Some(line) = line.checked_sub(1).map(|i| &record[i]) {
+                sum.0 += line.value + line.slope * clock.between(&line.at, at);
+                sum.1 += line.slope;
+            }
+        }
+        sum
+    }
+}
+
 impl<T: Scalar> Drive<T> for Composite<T> {
     type Rolling = Rolling<T>;
 
@@ -401,13 +433,9 @@ impl<T: Scalar> Drive<T> for Composite<T> {
             }
             roll.chirps.push(state);
         }
-        for record in &self.records {
-            let line = record.partition_point(|line| line.first_segment <= segment);
-            if let Some(line) = line.checked_sub(1).map(|i| &record[i]) {
-                sums[0] += line.value + line.slope * clock.between(&line.at, at);
-                sums[1] += line.slope;
-            }
-        }
+        let (value, slope) = self.record(clock, at, segment);
+        sums[0] += value;
+        sums[1] += slope;
         a[..SEEDED].copy_from_slice(&sums);
     }
 
@@ -426,6 +454,14 @@ impl<T: Scalar> Drive<T> for Composite<T> {
             }
         }
         a[k] = sum;
+    }
+
+    fn value(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize, by_series: impl Fn() -> T) -> T {
+        if self.tones.len() > FEW_TONES || !self.chirps.is_empty() {
+            return by_series();
+        }
+        let tones = self.tones.iter().map(|tone| tone.amplitude_at(clock, at, segment).0 * tone.unit(at).0);
+        tones.fold(self.constant + self.record(clock, at, segment).0, |sum, a| sum + a)
     }
 
     fn segment_end(&self, segment: usize) -> Option<Instant<T>> {
@@ -475,9 +511,18 @@ impl<T: Scalar> Drive<T> for Composite<T> {
                 }
                 g[0] = T::of(f64::MIN_POSITIVE); // rounding: it rises, the fall comes later
             }
-            if let Some(s) = PolynomialRoots::new(&g[..=order]).first() {
-                let fall = clock.advance(&at, s * h);
-                return Fall::within(clock, fall, &until);
+            let press = PolynomialRoots::new(&g[..=order]);
+            if let Some(s) = press.first() {
+                // Below 0 by no more than rounding it only touches: the way to the bottom of a parabola.
+                let (_, slope, curvature) = press.value_and_slopes(s);
+                let rounding = (threshold.abs() + self.reach) * T::of(8.0 * T::EPSILON);
+                let touches = curvature > T::zero() && slope * slope <= T::of(2.0) * curvature * rounding;
+                if !touches {
+                    return Fall::within(clock, clock.advance(&at, s * h), &until);
+                }
+                let across = T::of(4.0) * (rounding / curvature).sqrt();
+                at = clock.advance(&at, (s + across) * h);
+                continue;
             }
             at = clock.advance(&at, h);
             if let (true, Some(cycles)) = (last_segment, self.common_cycles) {

@@ -229,61 +229,66 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         if end_side == self.barrier_side && gap.abs() > step.bound {
             return;
         }
-        if self.barrier_side == 0 {
-            self.barrier_side = end_side; // leaves the top on which it started
-            return;
-        }
         let n = step.series.known;
         let mut g = step.series.scaled;
-        let sign = T::of(f64::from(self.barrier_side));
-        g[0] = gap * sign;
-        for c in &mut g[1..n] {
-            *c = *c * sign;
+        g[0] = gap;
+        // A step that starts on the top leaves it by its first coefficient that is not 0.
+        let first = g[..n].iter().position(|c| *c != T::zero());
+        let Some(first) = first else { return };
+        let departs: i8 = if g[first] > T::zero() { 1 } else { -1 };
+        if self.barrier_side == 0 {
+            self.barrier_side = departs; // a start on the top is no crossing
         }
         let mut found = [T::zero(); super::series::ROOM];
         let mut count = 0;
-        if gap == T::zero() {
-            // The step starts on the top, reached at the end of the last one.
-            if end_side == -self.barrier_side {
-                count = 1;
+        if departs != self.barrier_side {
+            count = 1; // the top was reached at the end of the last step and is passed now, at 0
+        }
+        if departs < 0 {
+            for c in &mut g[first..n] {
+                *c = -*c;
             }
-        } else {
-            PolynomialRoots::new(&g[..n]).each_sign_change(|s| {
-                let t = s * step.scaled_for;
-                if t > step.length {
-                    return false;
-                }
-                found[count] = t;
-                count += 1;
-                count < found.len()
-            });
-            // The end decides the parity: rounding may put a root just beyond it.
-            if end_side != 0 && (count % 2 == 1) != (end_side != self.barrier_side) {
-                if count > 0 {
-                    count -= 1;
-                } else {
-                    found[0] = step.length;
-                    count = 1;
-                }
-            } else if end_side == 0 && count % 2 == 1 {
-                count -= 1; // on the top: the next step tells
+        }
+        PolynomialRoots::new(&g[first..n]).each_sign_change(|s| {
+            let t = s * step.scaled_for;
+            if t > step.length || count == found.len() {
+                return false;
+            }
+            found[count] = t;
+            count += 1;
+            true
+        });
+        // The end decides the parity: rounding may put a root just beyond it, or a touch of the top.
+        let odd = count % 2 == 1;
+        if end_side == 0 {
+            count -= usize::from(odd); // on the top: the next step tells
+        } else if odd != (end_side != self.barrier_side) {
+            if count > 0 {
+                count -= 1;
+            } else {
+                found[0] = step.length;
+                count = 1;
             }
         }
         for t in &found[..count] {
-            self.barrier_side = -self.barrier_side;
-            let at = self.clock.advance(&step.at, *t);
-            let v = step.series.velocity(*t).to_f64() / self.unit;
-            let side = if self.barrier_side > 0 { Side::Right } else { Side::Left };
-            self.counts.total_crossings += 1;
-            if self.in_window(&at) {
-                self.counts.crossings += 1;
-                if self.log.crossings.len() < KEPT && self.period > T::zero() {
-                    let time = (self.clock.between(&self.window.0, &at) / self.period).to_f64();
-                    self.log.crossings.push((time, side));
-                }
-            }
-            self.event(&at, EventKind::Crossing, side, v, v);
+            self.crossing(step, *t);
         }
+    }
+
+    fn crossing(&mut self, step: &StepView<T>, into: T) {
+        self.barrier_side = -self.barrier_side;
+        let at = self.clock.advance(&step.at, into);
+        let v = step.series.velocity(into).to_f64() / self.unit;
+        let side = if self.barrier_side > 0 { Side::Right } else { Side::Left };
+        self.counts.total_crossings += 1;
+        if self.in_window(&at) {
+            self.counts.crossings += 1;
+            if self.log.crossings.len() < KEPT && self.period > T::zero() {
+                let time = (self.clock.between(&self.window.0, &at) / self.period).to_f64();
+                self.log.crossings.push((time, side));
+            }
+        }
+        self.event(&at, EventKind::Crossing, side, v, v);
     }
 
     fn strobes(&mut self, step: &StepView<T>) {

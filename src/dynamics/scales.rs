@@ -21,7 +21,12 @@ pub struct Scales {
     pub speed: f64,
     /// Time in s.
     pub time: f64,
+    /// The longest step of the integrator in s: some radians of the rate; where nothing sets a rate, the run.
+    pub(crate) longest_step: f64,
 }
+
+/// The longest step in units of the time scale.
+const LONGEST_STEP: f64 = 8.0;
 
 /// What the rule looks at. All SI, magnitudes.
 #[derive(Debug, Clone, Default)]
@@ -49,7 +54,8 @@ impl Scales {
         let driven: f64 = l.drive.iter().map(|part| part.0).sum();
         let fastest = l.drive.iter().map(|part| part.1).fold(0.0, f64::max);
         let acceleration = l.start_acceleration.max(driven);
-        let (length, rate) = if usable(stiff) || usable(fastest) {
+        let rated = usable(stiff) || usable(fastest);
+        let (length, rate) = if rated {
             let rate = if usable(stiff) { stiff } else { fastest };
             let driven: f64 = l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum();
             let length = l
@@ -71,7 +77,8 @@ impl Scales {
         };
         let length = if usable(length) { length } else { 1.0 };
         let rate = if usable(rate) { rate } else { 1.0 };
-        Self { length, speed: length * rate, time: 1.0 / rate }
+        let longest_step = if rated { LONGEST_STEP / rate } else { l.duration };
+        Self { length, speed: length * rate, time: 1.0 / rate, longest_step }
     }
 
     /// The power of two of a second nearest to the time scale.

@@ -170,6 +170,23 @@ impl<T: Scalar> Series<T> {
         sum
     }
 
+    /// Displacement from the piece's origin, velocity and acceleration at time `t` into the step.
+    #[inline]
+    pub fn state(&self, t: T) -> (T, T, T) {
+        let (mut y, mut v, mut half) = (T::zero(), T::zero(), T::zero());
+        for c in self.y[..self.known].iter().rev() {
+            half = half * t + v;
+            v = v * t + y;
+            y = y * t + *c;
+        }
+        (y, v, half + half)
+    }
+
+    /// Acceleration of the base at time `t` into the step, by its series.
+    pub fn base(&self, t: T) -> T {
+        self.a[..(self.known - 2).max(SEEDED)].iter().rev().fold(T::zero(), |sum, c| sum * t + *c)
+    }
+
     /// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base
     /// acceleration times velocity; of the full products of the step's own polynomials. (Truncated at their order
     /// the products miss, on a long step under a fast drive, a thousand times the tolerance.)

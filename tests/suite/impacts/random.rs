@@ -109,7 +109,14 @@ pub fn mirrored(scene: &Scene) -> Scene {
                 to_g: -to_g,
                 over_s: *over_s,
             },
+            Excitation::Chirp { from_hz, to_hz, over_s, amplitude_g } => Excitation::Chirp {
+                from_hz: *from_hz,
+                to_hz: *to_hz,
+                over_s: *over_s,
+                amplitude_g: -amplitude_g,
+            },
             Excitation::Sum(parts) => Excitation::Sum(parts.iter().map(drive).collect()),
+            Excitation::Noise { .. } | Excitation::Recorded { .. } => unreachable!("not drawn here"),
         }
     }
     let mut m = scene.clone();
