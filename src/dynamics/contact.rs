@@ -38,7 +38,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             } else if outward < T::zero() {
                 self.touch = Some(Touch { end, order: BY_SPEED });
             } else {
-                self.touch = Some(Touch { end, order: BY_ACCELERATION });
+                self.balance(end);
             }
             return;
         }
@@ -163,6 +163,32 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.touch = Some(Touch { end: end.other(), order: BY_SPEED });
     }
 
+    /// The mass stands on the break at `end` of its arena with no speed: the first derivative of its motion that is
+    /// not 0 (to the rounding of its terms) chooses the side; where none is, it stays on this one.
+    fn balance(&mut self, end: End) {
+        let sign = end.sign::<T>();
+        let arena = &self.equation.arenas[self.arena];
+        let (force, _, rounding) = arena.force.value(arena.end(end).0 - arena.origin);
+        self.drive.seed(&self.clock, &self.at, self.segment, &mut self.series.a, &mut self.roll);
+        let a = &self.series.a;
+        let rates = [-(sign * (force + a[0])), -(sign * a[1]), -(sign * a[2])];
+        let rounding = rounding + a[0].abs() * T::of(4.0 * T::EPSILON);
+        self.v = T::zero();
+        self.touch = Some(Touch { end, order: HELD });
+        for (order, rate) in (BY_ACCELERATION..).zip(rates) {
+            let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
+            if rate > size {
+                self.enter_neighbour(end);
+                self.touch = Some(Touch { end: end.other(), order });
+                return;
+            }
+            if rate < -size {
+                self.touch = Some(Touch { end, order });
+                return;
+            }
+        }
+    }
+
     /// A pressed rebound, slow enough: sums what remains of the chatter in closed form. Expects the
     /// drive to be seeded.
     ///
@@ -222,11 +248,10 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             EndKind::Stop => self.settle(end), // a touch without speed is no impact
             EndKind::Break if outward > T::zero() => self.enter_neighbour(end),
             EndKind::Break => {
-                // A touch of the break: back inside, unless the acceleration leads out; where both sides lead
-                // out, by rounding, it stays on this side.
+                // A touch of the break; where both sides lead out, by rounding, it stays on this one.
                 self.v = T::zero();
                 if !at_once {
-                    self.touch = Some(Touch { end, order: BY_ACCELERATION });
+                    self.balance(end);
                 } else if self.turned_back {
                     self.touch = Some(Touch { end, order: HELD });
                 } else {

@@ -505,31 +505,35 @@ impl<T: Scalar> Drive<T> for Composite<T> {
                 power = power * h;
             }
             g[0] += threshold;
-            if g[0] <= T::zero() {
-                if g[1] <= T::zero() {
-                    return Fall::At(at);
-                }
-                g[0] = T::of(f64::MIN_POSITIVE); // rounding: it rises, the fall comes later
-            }
+            // Below 0 by no more than rounding it only touches: the way to the bottom of a parabola.
+            let rounding = (threshold.abs() + self.reach) * T::of(8.0 * T::EPSILON);
+            let touches = |slope: T, curvature: T| {
+                curvature > T::zero() && slope * slope <= T::of(2.0) * curvature * rounding
+            };
+            let across = |curvature: T| T::of(4.0) * (rounding / curvature).sqrt();
             let press = PolynomialRoots::new(&g[..=order]);
-            if let Some(s) = press.first() {
-                // Below 0 by no more than rounding it only touches: the way to the bottom of a parabola.
+            let (s, slope, curvature) = if g[0] > T::zero() {
+                let Some(s) = press.first() else {
+                    at = clock.advance(&at, h);
+                    if let (true, Some(cycles)) = (last_segment, self.common_cycles)
+                        && at.cycle > from.cycle + cycles
+                    {
+                        return Fall::Never; // one common period without a fall: there is none
+                    }
+                    continue;
+                };
                 let (_, slope, curvature) = press.value_and_slopes(s);
-                let rounding = (threshold.abs() + self.reach) * T::of(8.0 * T::EPSILON);
-                let touches = curvature > T::zero() && slope * slope <= T::of(2.0) * curvature * rounding;
-                if !touches {
-                    return Fall::within(clock, clock.advance(&at, s * h), &until);
-                }
-                let across = T::of(4.0) * (rounding / curvature).sqrt();
-                at = clock.advance(&at, (s + across) * h);
-                continue;
-            }
-            at = clock.advance(&at, h);
-            if let (true, Some(cycles)) = (last_segment, self.common_cycles) {
-                // one common period without a fall: there is none
-                if at.cycle > from.cycle + cycles {
-                    return Fall::Never;
-                }
+                (s, slope, curvature)
+            } else {
+                (T::zero(), g[1], T::of(2.0) * g[2.min(order)])
+            };
+            if touches(slope, curvature) {
+                at = clock.advance(&at, (s + across(curvature)) * h);
+            } else if s == T::zero() && slope > T::zero() {
+                // rounding: it rises, the fall comes later
+                at = clock.advance(&at, T::of(2.0) * rounding / slope * h);
+            } else {
+                return Fall::within(clock, clock.advance(&at, s * h), &until);
             }
         }
         Fall::NotBefore(at)

@@ -126,6 +126,15 @@ pub(super) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     pub evaluations: u64,
 }
 
+/// A step that has been chosen.
+struct Step<T> {
+    length: T,
+    /// The instant at which it ends, where that is the end of the run or of the drive's segment.
+    arrival: Option<Instant<T>>,
+    /// Displacement from the piece's origin and velocity at its end.
+    end: (T, T),
+}
+
 /// Whether a step went on or the run ended.
 pub(super) type Flow = Option<Outcome>;
 
@@ -255,7 +264,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         }
 
         self.series.start(self.x - arena.origin, self.v);
-        let Some((h, arrival)) = self.choose_step(flight, left) else {
+        let Some(Step { length: h, arrival, end }) = self.choose_step(flight, left) else {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
         };
 
@@ -265,10 +274,9 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             Some((s, end)) => (s * h, Some(end)),
             None => (h, None),
         };
-        let v = self.series.velocity(length);
-        let x = match touched {
-            Some(end) => arena.end(end).0,
-            None => self.series.position(length) + arena.origin,
+        let (x, v) = match touched {
+            Some(end) => (arena.end(end).0, self.series.velocity(length)),
+            None => (end.0 + arena.origin, end.1),
         };
         if !(x.is_finite() && v.is_finite()) {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
@@ -298,13 +306,12 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         touched.and_then(|end| self.reach(end, length == zero))
     }
 
-    /// Extends the series as far as the step needs; the step's length, and the instant at which it ends where
-    /// that is the end of the run or of the drive's segment. None where the coefficients are not finite.
+    /// Extends the series as far as the step needs; none where the coefficients are not finite.
     ///
     /// Coefficients may vanish one after the other without the next one vanishing (a high power from its flat
     /// middle, tones that cancel), and then the last ones promise too long a step. So each step is checked
     /// against the equation of motion at its end, and halved until it holds.
-    fn choose_step(&mut self, flight: Option<T>, left: T) -> Option<(T, Option<Instant<T>>)> {
+    fn choose_step(&mut self, flight: Option<T>, left: T) -> Option<Step<T>> {
         let natural = |motion: &Self| {
             let s = &motion.settings;
             motion.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest)
@@ -334,8 +341,9 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
                     arrival = Some(border);
                 }
             }
-            if self.step_holds(h) {
-                return Some((h, arrival));
+            let end = self.series.state(h);
+            if self.step_holds(h, end) {
+                return Some(Step { length: h, arrival, end: (end.0, end.1) });
             }
             if self.series.known <= self.settings.order {
                 self.expand();
@@ -387,9 +395,8 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
 
     /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and
     /// rounding ask: the residual is what the first neglected terms leave.
-    fn step_holds(&self, h: T) -> bool {
+    fn step_holds(&self, h: T, (y, v, acceleration): (T, T, T)) -> bool {
         let arena = &self.equation.arenas[self.arena];
-        let (y, v, acceleration) = self.series.state(h);
         let at = self.clock.advance(&self.at, h);
         let base = self.drive.value(&self.clock, &at, self.segment, || self.series.base(h));
         let sum = (acceleration + self.equation.damping * v) + base;
@@ -416,11 +423,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             let sign = end.sign::<T>();
             let gap = sign * (arena.end(end).0 - self.x);
             let touch = self.touch.filter(|t| t.end == end);
-            if match touch {
-                Some(touch) => touch.order == HELD,
-                // beyond the surface only by rounding, after it was held, and on the way back
-                None => gap > bound || (gap < zero && sign * self.v <= zero),
-            } {
+            if touch.map_or(gap > bound, |touch| touch.order == HELD) {
                 continue;
             }
             let mut g = [zero; ROOM];
@@ -428,7 +431,9 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
                 *slot = -(sign * *c);
             }
             g[0] = gap;
-            let mut from = touch.map_or(0, |t| t.order.min(n - 1));
+            // Beyond the surface only by rounding, after it was held, and not on the way out: it is touched.
+            let returns = touch.is_none() && gap < zero && sign * self.v <= zero;
+            let mut from = if returns { BY_SPEED } else { touch.map_or(0, |t| t.order.min(n - 1)) };
             // A coefficient that is exactly 0 decides nothing.
             while from + 1 < n && g[from] == zero {
                 from += 1;

@@ -211,6 +211,10 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             for k in 1..n {
                 slope[k - 1] = step.series.scaled[k] * T::of(k as f64);
             }
+            if slope[0] < T::zero() {
+                // a value of 0 counts as negative: the mirrored motion must be told the same
+                slope[..n - 1].iter_mut().for_each(|c| *c = -*c);
+            }
             PolynomialRoots::new(&slope[..n - 1]).each_sign_change(|s| {
                 let t = s * step.scaled_for;
                 if t >= from && t <= to {

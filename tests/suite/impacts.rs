@@ -5,6 +5,7 @@ mod breaks;
 mod budgets;
 mod chatter;
 mod figures;
+mod misleading;
 mod random;
 mod release;
 mod scenes;
