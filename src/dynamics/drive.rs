@@ -42,7 +42,14 @@ pub(crate) trait Drive<T: Scalar> {
 
     /// a(t) at `at` by itself, not by the series: what a step is checked against. A drive of many tones may
     /// answer with `by_series`, the value of its series.
-    fn value(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize, by_series: impl Fn() -> T) -> T;
+    fn value(
+        &self,
+        clock: &Clock<T>,
+        at: &Instant<T>,
+        segment: usize,
+        by_series: impl Fn() -> T,
+        roll: &mut Self::Rolling,
+    ) -> T;
 
     /// The instant at which segment `segment` ends, where one follows.
     fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
@@ -109,7 +116,7 @@ impl<T: Scalar> Drive<T> for Still<T> {
     #[inline]
     fn extend(&self, _: usize, _: &mut [T; ROOM], _: &[T; ROOM], (): &mut ()) {}
     #[inline]
-    fn value(&self, _: &Clock<T>, _: &Instant<T>, _: usize, _: impl Fn() -> T) -> T {
+    fn value(&self, _: &Clock<T>, _: &Instant<T>, _: usize, _: impl Fn() -> T, (): &mut ()) -> T {
         self.acceleration
     }
     fn segment_end(&self, _: usize) -> Option<Instant<T>> {
@@ -207,11 +214,15 @@ pub(crate) struct Sine<T> {
 }
 
 impl<T: Scalar> Drive<T> for Sine<T> {
-    type Rolling = ();
+    /// Where the tone was last evaluated, and what it was: a step begins where the check of the last one looked.
+    type Rolling = Option<(Instant<T>, (T, T))>;
 
     #[inline]
-    fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], (): &mut ()) {
-        let (s, d) = self.tone.unit(at);
+    fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Rolling) {
+        let (s, d) = match last {
+            Some((when, unit)) if when == at => *unit,
+            _ => self.tone.unit(at),
+        };
         let w = self.tone.curvature();
         a[0] = self.tone.amplitude * s;
         a[1] = self.tone.amplitude * d;
@@ -220,13 +231,22 @@ impl<T: Scalar> Drive<T> for Sine<T> {
     }
 
     #[inline]
-    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], (): &mut ()) {
+    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], _: &mut Self::Rolling) {
         a[k] = self.tone.curvature() * a[k - 2] * inverse[k];
     }
 
     #[inline]
-    fn value(&self, _: &Clock<T>, at: &Instant<T>, _: usize, _: impl Fn() -> T) -> T {
-        self.tone.amplitude * self.tone.unit(at).0
+    fn value(
+        &self,
+        _: &Clock<T>,
+        at: &Instant<T>,
+        _: usize,
+        _: impl Fn() -> T,
+        last: &mut Self::Rolling,
+    ) -> T {
+        let unit = self.tone.unit(at);
+        *last = Some((*at, unit));
+        self.tone.amplitude * unit.0
     }
 
     fn segment_end(&self, _: usize) -> Option<Instant<T>> {
@@ -238,7 +258,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         clock: &Clock<T>,
         &Span { from, until, .. }: &Span<T>,
         Press { threshold, sign }: Press<T>,
-        (): &mut (),
+        _: &mut Self::Rolling,
     ) -> Fall<T> {
         // threshold - b sin = 0 with sin rising through it (b > 0) or falling (b < 0).
         let b = self.tone.amplitude * sign;
@@ -456,7 +476,14 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         a[k] = sum;
     }
 
-    fn value(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize, by_series: impl Fn() -> T) -> T {
+    fn value(
+        &self,
+        clock: &Clock<T>,
+        at: &Instant<T>,
+        segment: usize,
+        by_series: impl Fn() -> T,
+        _: &mut Self::Rolling,
+    ) -> T {
         if self.tones.len() > FEW_TONES || !self.chirps.is_empty() {
             return by_series();
         }

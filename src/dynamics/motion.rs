@@ -398,10 +398,11 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
 
     /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and
     /// rounding ask: the residual is what the first neglected terms leave.
-    fn step_holds(&self, h: T, (y, v, acceleration): (T, T, T)) -> bool {
+    fn step_holds(&mut self, h: T, (y, v, acceleration): (T, T, T)) -> bool {
         let arena = &self.equation.arenas[self.arena];
         let at = self.clock.advance(&self.at, h);
-        let base = self.drive.value(&self.clock, &at, self.segment, || self.series.base(h));
+        let series = &self.series;
+        let base = self.drive.value(&self.clock, &at, self.segment, || series.base(h), &mut self.roll);
         let sum = (acceleration + self.equation.damping * v) + base;
         let residual = (arena.force.at(y) + sum).abs() * h;
         let order = self.series.known - 1;
