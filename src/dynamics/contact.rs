@@ -1,7 +1,8 @@
 //! What happens where the mass touches a stop, a break or the end of the curve?
 
 use super::clock::Instant;
-use super::drive::{Drive, Fall, Press, SEARCH_STRIDES, Span};
+use super::composite::SEARCH_STRIDES;
+use super::drive::{Drive, Fall, Press, Span};
 use super::equation::{End, EndKind, FAR};
 use super::motion::{BY_ACCELERATION, BY_JERK, BY_SPEED, Contact, Flow, HELD, Motion, Touch, UNDECIDED};
 use super::prepare::base_at;
