@@ -3,7 +3,7 @@
 use std::fmt;
 use std::process::ExitCode;
 
-use interwell::output::OpenError;
+use interwell::output::{NoPicture, OpenError};
 use interwell::scene::{ArgumentError, SceneError};
 use interwell::study::{CellFaults, GridError, OutsideCurve, TimesError};
 
@@ -58,7 +58,7 @@ macro_rules! arguments_are_wrong {
     )*};
 }
 
-arguments_are_wrong!(SceneError, ArgumentError, GridError, TimesError, OutsideCurve);
+arguments_are_wrong!(SceneError, ArgumentError, GridError, TimesError, OutsideCurve, NoPicture);
 
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {

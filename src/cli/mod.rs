@@ -5,6 +5,7 @@ mod curve;
 mod failure;
 mod interrupt;
 mod options;
+mod picture;
 mod presets;
 mod simulate;
 mod support;

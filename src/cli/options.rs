@@ -13,7 +13,7 @@ Examples:
   interwell --headless check my-scene.ron
   interwell --headless simulate --set stops.travel_limit_mm=2 --out run.csv --summary run.json
   interwell --headless simulate elastic-box --at 0,0.5,1 --events - --out /dev/null
-  interwell --headless sweep --out map.csv
+  interwell --headless sweep --out map.csv --plot map.png
   interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
 
 A scene is a .ron file or the name of a built-in one; `presets --write DIR` copies those out.
@@ -93,6 +93,18 @@ pub struct Common {
     pub quiet: bool,
 }
 
+/// What the commands take that can draw.
+#[derive(Debug, Args)]
+pub struct PlotOptions {
+    /// Draw a picture; the name ends in .png or .svg
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub plot: Option<PathBuf>,
+
+    /// With --plot: light on dark
+    #[arg(long, requires = "plot")]
+    pub dark: bool,
+}
+
 /// `presets`.
 #[derive(Debug, Args)]
 pub struct PresetsOptions {
@@ -145,6 +157,10 @@ pub struct CurveOptions {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub landscape: Option<PathBuf>,
 
+    /// The picture.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -173,6 +189,10 @@ pub struct SimulateOptions {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub summary: Option<PathBuf>,
 
+    /// The picture.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -188,6 +208,10 @@ pub struct SweepOptions {
     /// Sweep a field; replaces the scene's own sweep (repeatable, the first is the slowest)
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
+
+    /// The picture.
+    #[command(flatten)]
+    pub plot: PlotOptions,
 
     /// What every command takes.
     #[command(flatten)]

@@ -1,17 +1,19 @@
 //! `simulate`: one run.
 
 use interwell::dynamics::{Model, Outcome};
-use interwell::output::summary;
-use interwell::study::{Keep, Sampling, sample_times, simulate};
+use interwell::output::{run_figure, summary};
+use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_trace};
 
 use super::failure::Failure;
 use super::options::SimulateOptions;
-use super::support::{finish, load_with_mechanism, numbers, open, write_table, write_text};
+use super::picture::{Picture, caption};
+use super::support::{Watch, finish, load_with_mechanism, numbers, open, write_table, write_text};
 use super::{interrupt, say};
 
 /// Runs the scene and writes samples, events and summary.
 pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let common = &options.common;
+    let picture = Picture::asked(&options.plot)?;
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
         (None, Some(text)) => {
@@ -26,18 +28,31 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let times = sample_times(&document.scene, &model, &sampling)?;
     let events = options.events.as_deref().map(|path| ("--events", path));
     let summary_path = options.summary.as_deref().map(|path| ("--summary", path));
-    let mut sinks = open(&[&options.scene], [Some(("--out", &common.out)), events, summary_path])?;
+    let outputs = [Some(("--out", &*common.out)), events, summary_path, picture.map(|own| own.output())];
+    let mut sinks = open(&[&options.scene], outputs)?;
 
     let cancel = interrupt::listen();
+    let watch = Watch::start();
     let keep = Keep { times, events: events.is_some() };
-    let simulation = simulate(&model, &keep, Some(cancel));
+    let (simulation, trace) = match picture {
+        None => (simulate(&model, &keep, Some(cancel)), None),
+        Some(_) => {
+            let (simulation, trace) = simulate_with_trace(&model, &keep, Some(cancel));
+            (simulation, Some(trace))
+        }
+    };
     if interrupt::came() {
         return Err(Failure::interrupted());
     }
-    let [samples, events, about] = &mut sinks;
+    let [samples, events, about, plot] = &mut sinks;
     write_table(samples, &simulation.samples)?;
     write_table(events, &simulation.events)?;
-    write_text(about, &summary(&simulation.summary, &document.scene, env!("CARGO_PKG_VERSION")))?;
+    write_text(about, &summary(&simulation.summary, &document.scene, &watch.origin(1)))?;
+    if let Some((picture, trace)) = picture.zip(trace) {
+        let (about, mechanism) = (caption(&document), &model.mechanism);
+        let figure = run_figure(&trace, &simulation.summary, mechanism, &about, picture.theme);
+        picture.write(plot, &figure)?;
+    }
     finish(sinks)?;
     if let Some(reason) = early_end(simulation.summary.outcome) {
         say(&format!("{}: {reason}", document.name));

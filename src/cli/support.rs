@@ -2,15 +2,47 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
+use cpu_time::ProcessTime;
 use interwell::mechanics::Mechanism;
-use interwell::output::{Sink, header, rows, same_target};
+use interwell::output::{Origin, Sink, header, rows, same_target};
 use interwell::scene::{Document, SceneError};
 use interwell::study::Table;
 
 use super::failure::Failure;
 use super::options::Common;
 use super::{interrupt, say};
+
+/// When a command's work began, by both clocks.
+#[derive(Debug, Clone, Copy)]
+pub struct Watch {
+    wall: Instant,
+    cpu: ProcessTime,
+}
+
+impl Watch {
+    /// Begins now.
+    pub fn start() -> Self {
+        Self { wall: Instant::now(), cpu: ProcessTime::now() }
+    }
+
+    /// Time on the wall since then, in s.
+    pub fn wall_s(&self) -> f64 {
+        self.wall.elapsed().as_secs_f64()
+    }
+
+    /// What this call of the program was, and how long it has worked on `jobs` threads.
+    pub fn origin(&self, jobs: usize) -> Origin {
+        Origin {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            arguments: std::env::args_os().skip(1).map(|own| own.to_string_lossy().into_owned()).collect(),
+            wall_s: self.wall_s(),
+            cpu_s: self.cpu.elapsed().as_secs_f64(),
+            jobs,
+        }
+    }
+}
 
 /// Rows that are turned into text at a time.
 const ROWS: usize = 1 << 15;

@@ -1,41 +1,53 @@
 //! `sweep`: a grid of runs, a row a cell, with progress on standard error.
 
 use std::io::IsTerminal;
-use std::path::Path;
-use std::time::Instant;
+use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
-use interwell::output::{header, rows};
+use interwell::output::{Overlay, can_show, header, is_regular, manifest, rows, sweep_figure};
 use interwell::scene::Document;
-use interwell::study::{Grid, Sweep, SweepEnd, Task};
+use interwell::study::{Grid, Sweep, SweepEnd, Table, Task, first_interwell, release_line};
 
 use super::failure::{Failure, wrong_cell};
 use super::options::SweepOptions;
-use super::support::{finish, load_with_mechanism, open, write_text};
+use super::picture::{Picture, caption};
+use super::support::{Watch, finish, load_with_mechanism, open, write_text};
 use super::{interrupt, say};
 
 /// Runs the grid and writes a row a cell.
 pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let common = &options.common;
-    let (document, _) = load_with_mechanism(&options.scene, common)?;
+    let picture = Picture::asked(&options.plot)?;
+    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
+    if picture.is_some() {
+        can_show(sweep.grid())?;
+    }
     let threads = common.jobs.map_or_else(cores, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool =
         pool.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot start {threads} threads: {error}")))?;
-    let mut sinks = open(&[&options.scene], [Some(("--out", &common.out))])?;
+    let beside = manifest_path(&common.out);
+    let beside = beside.as_deref().map(|path| ("the manifest of --out", path));
+    let outputs = [Some(("--out", &*common.out)), picture.map(|own| own.output()), beside];
+    let mut sinks = open(&[&options.scene], outputs)?;
+    let mut shown = picture.map(|_| Table::new());
 
     let bar = bar(sweep.grid().cells(), common.quiet, &common.out);
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
-    let begin = Instant::now();
+    let watch = Watch::start();
     let result = (|| {
         sweep.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
         write_text(&mut sinks[0], &header(&sweep.empty_table()))?;
-        let write = |table: &_| {
+        let write = |table: &Table| {
+            if let Some(shown) = &mut shown {
+                shown.append(table);
+            }
             write_text(&mut sinks[0], &rows(table, 0..usize::MAX))?;
             let Some(sink) = &mut sinks[0] else { return Ok(false) };
             sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
-            Ok(!sink.is_closed())
+            // Where the reader of a pipe has gone, a picture may still be wanted.
+            Ok(!sink.is_closed() || shown.is_some())
         };
         sweep.run(&pool, &task, write).map_err(|end| match end {
             SweepEnd::Cancelled => Failure::interrupted(),
@@ -44,6 +56,24 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     })();
     bar.finish_and_clear();
     let tally = result?;
+    if let Some((picture, rows)) = picture.zip(shown) {
+        let grid = sweep.grid();
+        let overlay = Overlay {
+            release: release_line(&document.scene, &mechanism, grid),
+            first_interwell: first_interwell(grid, &rows),
+        };
+        let figure =
+            sweep_figure(&rows, grid, &overlay, &document.scene, &caption(&document), picture.theme)?;
+        picture.write(&mut sinks[1], &figure)?;
+    }
+    if sinks[2].is_some() {
+        let data =
+            common.out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let grid = sweep.grid();
+        let origin = watch.origin(threads);
+        let text = manifest(&document.scene, &document.name, grid, &tally, &origin, &data);
+        write_text(&mut sinks[2], &text)?;
+    }
     finish(sinks)?;
     // Fewer cells than there are: the reader of a pipe has gone, which is no news to anyone.
     if !common.quiet && tally.cells == sweep.grid().cells() {
@@ -52,9 +82,18 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
             0 => String::new(),
             n => format!(", {n} ended early (see the column outcome)"),
         };
-        say(&format!("{cells} in {:.2} s{early}", begin.elapsed().as_secs_f64()));
+        say(&format!("{cells} in {:.2} s{early}", watch.wall_s()));
     }
     Ok(())
+}
+
+/// Where the manifest of the rows at `out` goes: beside them, where they are a regular file.
+fn manifest_path(out: &Path) -> Option<PathBuf> {
+    is_regular(out).then(|| {
+        let mut name = out.as_os_str().to_owned();
+        name.push(".json");
+        name.into()
+    })
 }
 
 fn cores() -> usize {

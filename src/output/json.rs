@@ -3,6 +3,7 @@
 
 use serde_json::{Value, json};
 
+use super::manifest::{Origin, seed};
 use crate::dynamics::{Ledger, Outcome, Summary};
 use crate::mechanics::{Landscape, Mechanism};
 use crate::scene::Scene;
@@ -10,7 +11,7 @@ use crate::study::small_amplitude_frequency;
 
 /// The summary of a run of `scene`, as text. A run that ended early has two keys more, `ended_at_s`
 /// and, where a budget ran out, `ended_after`, the impacts or steps made.
-pub fn summary(summary: &Summary, scene: &Scene, version: &str) -> String {
+pub fn summary(summary: &Summary, scene: &Scene, origin: &Origin) -> String {
     // Before the settled window began there is nothing to count in it.
     let settled = summary.rms_velocity.is_some();
     let count = |n: u64| settled.then_some(n);
@@ -50,7 +51,10 @@ pub fn summary(summary: &Summary, scene: &Scene, version: &str) -> String {
     add("ledger", summary.ledger.as_ref().map_or(Value::Null, ledger));
     add("energy_residual", json!(summary.ledger.map(|ledger| ledger.energy_residual)));
     add("scene", serde_json::to_value(scene).unwrap_or(Value::Null));
-    add("version", json!(version));
+    add("version", json!(origin.version));
+    add("arguments", json!(origin.arguments));
+    add("seed", seed(scene));
+    add("wall_s", json!(origin.wall_s));
     pretty(&object)
 }
 
@@ -112,7 +116,7 @@ pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
 }
 
 /// Numbers are in serde_json's shortest form; one that is not finite became `null` on its way in.
-fn pretty(value: &Value) -> String {
+pub(super) fn pretty(value: &Value) -> String {
     let mut text = serde_json::to_string_pretty(value).unwrap_or_default();
     text.push('\n');
     text

@@ -1,14 +1,21 @@
-//! A table in, bytes out: CSV, JSON, and the files and pipes that they go to.
+//! A table in, bytes out: CSV, JSON, pictures, and the files and pipes that they go to.
 //!
 //! Nothing here computes: a number is written in the shortest form that parses back to the same
 //! double, a missing one as an empty cell (CSV) or `null` (JSON).
 
 mod csv;
 mod json;
+mod manifest;
 mod number;
+mod plot;
 mod sink;
 
 pub use csv::{header, rows};
 pub use json::{landscape, summary};
+pub use manifest::{Origin, manifest};
 pub use number::push_number;
-pub use sink::{OpenError, Sink, same_target};
+pub use plot::{
+    Caption, Figure, Format, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, Theme, UnknownFormat,
+    can_show, curve_figure, run_figure, sweep_figure,
+};
+pub use sink::{OpenError, Sink, is_regular, same_target};

@@ -68,9 +68,7 @@ impl Sink {
     /// standard output. Nothing is changed at `path` until [`finish`](Self::finish), except where
     /// it is not a regular file.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
-        let is_stdout =
-            ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|s| path == Path::new(s));
-        if is_stdout {
+        if is_stdout(path) {
             let identity = Identity { stdout: true, path: None, inode: stdout_inode() };
             return Ok(Self::new("standard output".into(), Kind::Stdout, identity));
         }
@@ -87,8 +85,7 @@ impl Sink {
         {
             return Err(OpenError::IsFolder(path.to_owned()));
         }
-        let descriptor =
-            path.starts_with("/dev/fd") || path.starts_with("/proc/self/fd") || path == "/dev/stderr";
+        let descriptor = is_descriptor(path);
         if let Some(there) = there.as_ref().filter(|there| descriptor || !there.is_file()) {
             // A shell's `3>file` is the shell's to empty, and what stands in it stays.
             let mut open = fs::OpenOptions::new();
@@ -138,7 +135,12 @@ impl Sink {
 
     /// Appends `text`, which may stay in memory until [`flush`](Self::flush).
     pub fn put(&mut self, text: &str) -> io::Result<()> {
-        self.buffer.extend_from_slice(text.as_bytes());
+        self.put_bytes(text.as_bytes())
+    }
+
+    /// Appends bytes as [`put`](Self::put) does text.
+    pub fn put_bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.buffer.extend_from_slice(bytes);
         if self.buffer.len() >= BUFFER { self.flush() } else { Ok(()) }
     }
 
@@ -176,6 +178,23 @@ impl Sink {
             _ => Ok(()),
         }
     }
+}
+
+/// Whether an output at `path` would be a regular file, and not standard output, a device or a pipe.
+/// Nothing is opened: a pipe that is opened and closed is at its end.
+pub fn is_regular(path: &Path) -> bool {
+    let there = fs::metadata(follow_links(path));
+    !is_stdout(path) && there.map_or(true, |there| there.is_file() && !is_descriptor(path))
+}
+
+/// The names that the system gives to standard output.
+fn is_stdout(path: &Path) -> bool {
+    ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|own| path == Path::new(own))
+}
+
+/// The names that the system gives to what a shell has opened.
+fn is_descriptor(path: &Path) -> bool {
+    path.starts_with("/dev/fd") || path.starts_with("/proc/self/fd") || path == "/dev/stderr"
 }
 
 /// Whether two outputs would write over each other: both standard output, or one file by two names.

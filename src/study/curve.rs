@@ -42,7 +42,7 @@ fn default_range_mm(scene: &Scene, mechanism: &Mechanism) -> (f64, f64) {
     const MARGIN: f64 = 1.15;
     const PLAIN: f64 = 10.0;
     let equilibria = mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x.abs() * 1e3);
-    let farthest = equilibria.chain(stops_mm(&scene.stops)).fold(0.0, f64::max);
+    let farthest = equilibria.chain(stops_mm(&scene.stops).into_iter().flatten()).fold(0.0, f64::max);
     let reach = if farthest > 0.0 { two_digits_up(MARGIN * farthest) } else { PLAIN };
     let (left, right) = mechanism.curve.domain();
     ((-reach).max(left * 1e3), reach.min(right * 1e3))
@@ -72,13 +72,19 @@ pub fn metres(mm: f64) -> f64 {
     shifted.unwrap_or(mm / 1e3)
 }
 
-fn stops_mm(stops: &Stops) -> impl Iterator<Item = f64> {
-    let (left, right) = match *stops {
-        Stops::Rigid { travel_limit_mm, .. } => (Some(travel_limit_mm), None),
-        Stops::Uneven { left_mm, right_mm, .. } => (left_mm, right_mm),
-        Stops::None => (None, None),
-    };
-    left.into_iter().chain(right)
+/// Distances in mm of the left and the right stop from x = 0.
+fn stops_mm(stops: &Stops) -> [Option<f64>; 2] {
+    match *stops {
+        Stops::Rigid { travel_limit_mm, .. } => [Some(travel_limit_mm); 2],
+        Stops::Uneven { left_mm, right_mm, .. } => [left_mm, right_mm],
+        Stops::None => [None; 2],
+    }
+}
+
+/// Positions in m of the left and the right stop; NaN where there is none.
+pub fn stop_positions(scene: &Scene) -> (f64, f64) {
+    let [left, right] = stops_mm(&scene.stops).map(|stop| stop.map_or(f64::NAN, metres));
+    (-left, right)
 }
 
 /// `points` positions evenly from `range.0` to `range.1`, both ends exact and the middle exactly

@@ -39,6 +39,11 @@ impl Grid {
         Ok(Self { columns: column_names(&fields), axes, cells })
     }
 
+    /// The axes, slowest first.
+    pub fn axes(&self) -> &[Axis] {
+        &self.axes
+    }
+
     /// The names of the swept columns, slowest first.
     pub fn columns(&self) -> &[String] {
         &self.columns

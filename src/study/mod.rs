@@ -7,20 +7,26 @@
 mod curve;
 mod grid;
 mod inspect;
+mod map;
 mod simulate;
 mod sweep;
 mod table;
 mod times;
+mod trace;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-pub use curve::{OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency};
+pub use curve::{
+    OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency, stop_positions,
+};
 pub use grid::{Grid, GridError, MAX_CELLS};
 pub use inspect::inspect;
+pub use map::{first_interwell, release_line};
 pub use simulate::{Keep, Sampling, Simulation, sample_times, simulate};
 pub use sweep::{CellFaults, Sweep, SweepEnd, Tally};
 pub use table::{Column, Table, Values};
 pub use times::{MAX_SAMPLES, Step, TimesError, even_times, listed_times};
+pub use trace::{Trace, simulate_with_trace};
 
 /// How a study that takes long is watched and stopped.
 #[derive(Clone, Copy)]

@@ -69,7 +69,7 @@ pub fn simulate(model: &Model, keep: &Keep, cancel: Option<&AtomicBool>) -> Simu
 }
 
 /// The samples in the order of `times`; times that an early end left without one are left out.
-fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
+pub(super) fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
     let find = |t: &f64| {
         let at = samples.partition_point(|sample| sample.t < *t);
         samples.get(at).filter(|sample| sample.t == *t).copied()
@@ -77,7 +77,7 @@ fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
     times.iter().filter_map(find).collect()
 }
 
-fn samples_table(samples: &[Sample]) -> Table {
+pub(super) fn samples_table(samples: &[Sample]) -> Table {
     let numbers = |of: fn(&Sample) -> f64| Values::Numbers(samples.iter().map(of).collect());
     Table::new()
         .with("t_s", numbers(|s| s.t))
@@ -87,7 +87,7 @@ fn samples_table(samples: &[Sample]) -> Table {
         .with("phase", Values::Words(samples.iter().map(|s| s.phase.name()).collect()))
 }
 
-fn events_table(events: &[Event]) -> Table {
+pub(super) fn events_table(events: &[Event]) -> Table {
     let numbers = |of: fn(&Event) -> f64| Values::Numbers(events.iter().map(of).collect());
     Table::new()
         .with("t_s", numbers(|e| e.t))

@@ -4,6 +4,7 @@
 //! written, and what a cell gives depends on its own scene alone, so the bytes are the same for any
 //! number of threads.
 
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use rayon::ThreadPool;
@@ -44,12 +45,26 @@ pub enum SweepEnd<E> {
 }
 
 /// What a sweep came to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tally {
     /// Cells run.
     pub cells: u64,
     /// Cells whose run ended early, as their outcome says.
     pub ended_early: u64,
+    /// Cells by outcome.
+    pub outcomes: BTreeMap<&'static str, u64>,
+    /// Cells by regime; those that ended before their settled window, and those of one well, have none.
+    pub regimes: BTreeMap<&'static str, u64>,
+}
+
+impl Tally {
+    fn count(&mut self, row: &Summary) {
+        self.ended_early += u64::from(row.outcome != Outcome::Done);
+        *self.outcomes.entry(row.outcome.name()).or_default() += 1;
+        if row.rms_velocity.is_some() && !row.regime.name().is_empty() {
+            *self.regimes.entry(row.regime.name()).or_default() += 1;
+        }
+    }
 }
 
 /// Cells a thread gets per chunk: a chunk waits for its last cell, so this keeps that wait to some
@@ -120,8 +135,7 @@ impl Sweep {
                 return Err(SweepEnd::Cancelled);
             }
             tally.cells = end;
-            tally.ended_early +=
-                rows.iter().flatten().filter(|row| row.outcome != Outcome::Done).count() as u64;
+            rows.iter().flatten().for_each(|row| tally.count(row));
             if !write(&self.table(begin, &rows)).map_err(SweepEnd::Write)? {
                 break;
             }

@@ -38,29 +38,42 @@ pub struct Column {
     pub values: Values,
 }
 
+/// Endings of names with their units, the longest first: `_m_per_s2` also ends like a name in seconds.
+const UNITS: [(&str, &str); 17] = [
+    ("_m_per_s2", "m/s\u{b2}"),
+    ("_m_per_s", "m/s"),
+    ("_n_per_m3", "N/m\u{b3}"),
+    ("_n_per_m", "N/m"),
+    ("_n_per_m1_5", "N/m^1.5"),
+    ("_n_s_per_m", "N s/m"),
+    ("_s_per_m", "s/m"),
+    ("_gpa", "GPa"),
+    ("_deg", "\u{b0}"),
+    ("_mm", "mm"),
+    ("_mj", "mJ"),
+    ("_hz", "Hz"),
+    ("_g", "g"),
+    ("_j", "J"),
+    ("_m", "m"),
+    ("_n", "N"),
+    ("_s", "s"),
+];
+
 impl Column {
     /// The unit as a person writes it, read off the end of the name; empty for a pure number, a
     /// count or a word. The rule that every name carries its unit is what makes this possible.
     pub fn unit(&self) -> &'static str {
-        // Longest ending first: `_m_per_s2` also ends like a name in seconds.
-        const UNITS: [(&str, &str); 15] = [
-            ("_m_per_s2", "m/s\u{b2}"),
-            ("_m_per_s", "m/s"),
-            ("_n_per_m3", "N/m\u{b3}"),
-            ("_n_per_m", "N/m"),
-            ("_n_s_per_m", "N s/m"),
-            ("_gpa", "GPa"),
-            ("_deg", "\u{b0}"),
-            ("_mm", "mm"),
-            ("_mj", "mJ"),
-            ("_hz", "Hz"),
-            ("_g", "g"),
-            ("_j", "J"),
-            ("_m", "m"),
-            ("_n", "N"),
-            ("_s", "s"),
-        ];
         UNITS.iter().find(|(ending, _)| self.name.ends_with(ending)).map_or("", |(_, unit)| unit)
+    }
+
+    /// The name as a person writes it, with the unit: `travel limit, mm`.
+    pub fn label(&self) -> String {
+        let unit = self.unit();
+        let ending = UNITS.iter().find(|(ending, _)| self.name.ends_with(ending)).map_or("", |(e, _)| e);
+        let words = self.name.strip_suffix(ending).unwrap_or(&self.name).replace(['_', '.'], " ");
+        // The one name that is a letter.
+        let words = if words == "xi" { "damping ratio".to_owned() } else { words };
+        if unit.is_empty() { words } else { format!("{words}, {unit}") }
     }
 }
 
@@ -101,6 +114,22 @@ impl Table {
         match &self.column(name)?.values {
             Values::Numbers(values) => Some(values),
             _ => None,
+        }
+    }
+
+    /// Adds the rows of `more`, which has the same columns, below.
+    pub fn append(&mut self, more: &Self) {
+        if self.columns.is_empty() {
+            self.columns.clone_from(&more.columns);
+            return;
+        }
+        for (own, more) in self.columns.iter_mut().zip(&more.columns) {
+            match (&mut own.values, &more.values) {
+                (Values::Numbers(own), Values::Numbers(more)) => own.extend_from_slice(more),
+                (Values::Counts(own), Values::Counts(more)) => own.extend_from_slice(more),
+                (Values::Words(own), Values::Words(more)) => own.extend_from_slice(more),
+                _ => debug_assert!(false, "tables of one study have the same columns"),
+            }
         }
     }
 

@@ -55,7 +55,7 @@ fn without_headless_it_says_what_to_write() {
     refused(plain("--headless"), &["presets, check, curve, simulate or sweep"]);
     refused(headless("swep"), &["`swep`", "sweep"]);
     refused(headless("sweep --bogus"), &["--bogus"]);
-    refused(headless("simulate --plot a.png"), &["--plot"]);
+    refused(headless("check --plot a.png"), &["--plot"]);
     refused(plain("paper --headless sweep"), &["after"]);
 }
 
@@ -66,7 +66,7 @@ fn help_and_version() {
     for word in all {
         plain("--help").assert().success().stdout(contains(word));
     }
-    for word in ["--out", "--set", "--tolerance", "--jobs", "--quiet", "--over"] {
+    for word in ["--out", "--set", "--tolerance", "--jobs", "--quiet", "--over", "--plot", "--dark"] {
         headless("sweep --help").assert().success().stdout(contains(word));
     }
 }
@@ -191,7 +191,7 @@ fn simulate_events_and_summary() {
     let keys: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
     let expected = "final_x_m final_v_m_per_s rms_velocity_m_per_s regime crossings impacts releases max_abs_x_m \
         travel_m impact_share rested_share total_crossings total_impacts chatter_sums rests period outcome steps \
-        evaluations cpu_s ledger energy_residual scene version";
+        evaluations cpu_s ledger energy_residual scene version arguments seed wall_s";
     assert_eq!(keys.join(" "), expected);
     assert_eq!(value["outcome"], "done");
     assert_eq!(value["scene"]["mass_g"], 500.0);

@@ -7,6 +7,7 @@ mod impacts;
 mod layers;
 mod mechanics;
 mod oracles;
+mod plots;
 mod presets;
 mod scene;
 mod studies;

@@ -1,0 +1,95 @@
+//! What made this file? The manifest beside a sweep's rows, and what a summary says of its origin.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Map, Value, json};
+
+use super::json::pretty;
+use crate::scene::Scene;
+use crate::study::{Grid, Tally};
+
+/// Where a result came from, besides its scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Origin {
+    /// Version of the program.
+    pub version: String,
+    /// The arguments that it was called with.
+    pub arguments: Vec<String>,
+    /// Time on the wall in s.
+    pub wall_s: f64,
+    /// CPU time of all threads in s.
+    pub cpu_s: f64,
+    /// Threads.
+    pub jobs: usize,
+}
+
+/// The manifest of a sweep as text: a scene file with `scene_ron` as its text, swept over the axes, gives the
+/// same rows again. `scene_ron` has every argument applied and the swept fields at their unswept values.
+///
+/// `scene_name` is how messages call the scene, `data` the name of the file with the rows.
+pub fn manifest(
+    scene: &Scene,
+    scene_name: &str,
+    grid: &Grid,
+    tally: &Tally,
+    origin: &Origin,
+    data: &str,
+) -> String {
+    let axes: Vec<Value> = grid
+        .axes()
+        .iter()
+        .zip(grid.columns())
+        .map(|(axis, column)| json!({ "field": axis.field, "column": column, "values": axis.values }))
+        .collect();
+    let text = crate::scene::write(scene);
+    let counts = |counts: &BTreeMap<&'static str, u64>| -> Value {
+        counts.iter().map(|(word, n)| ((*word).to_owned(), json!(n))).collect::<Map<_, _>>().into()
+    };
+    pretty(&json!({
+        "program": "interwell",
+        "version": origin.version,
+        "command": "sweep",
+        "arguments": origin.arguments,
+        "data": data,
+        "scene_name": scene_name,
+        "title": scene.title,
+        "tolerance": scene.run.tolerance,
+        "seed": seed(scene),
+        "grid": axes,
+        "cells": tally.cells,
+        "outcomes": counts(&tally.outcomes),
+        "regimes": counts(&tally.regimes),
+        "jobs": origin.jobs,
+        "wall_s": origin.wall_s,
+        "cpu_s": origin.cpu_s,
+        "scene": serde_json::to_value(scene).unwrap_or(Value::Null),
+        "scene_ron": text,
+    }))
+}
+
+/// The seed of the scene's random numbers: null where it has none, a list where it has several.
+pub fn seed(scene: &Scene) -> Value {
+    let mut found = Vec::new();
+    collect(&serde_json::to_value(&scene.excitation).unwrap_or(Value::Null), &mut found);
+    match found.len() {
+        0 => Value::Null,
+        1 => found.swap_remove(0),
+        _ => Value::Array(found),
+    }
+}
+
+fn collect(value: &Value, found: &mut Vec<Value>) {
+    match value {
+        Value::Object(map) => {
+            for (key, value) in map {
+                if key == "seed" {
+                    found.push(value.clone());
+                } else {
+                    collect(value, found);
+                }
+            }
+        }
+        Value::Array(values) => values.iter().for_each(|value| collect(value, found)),
+        _ => {}
+    }
+}

@@ -1,0 +1,148 @@
+//! Where does an axis begin and end, and which numbers stand at it?
+
+/// A range of values with its ticks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Value at the left or lower end.
+    pub low: f64,
+    /// Value at the other end; above `low`.
+    pub high: f64,
+    /// Values that have a tick, with what stands at it.
+    pub ticks: Vec<(f64, String)>,
+    /// What the axis shows, with unit and power of ten.
+    pub label: String,
+}
+
+/// Values beyond this are drawn at it: no difference of two overflows.
+const LARGEST: f64 = 1e300;
+
+impl Axis {
+    /// An axis from the least to the greatest of `values`, with `margin` of that range added at both ends
+    /// and some `count` ticks. Values that are not finite do not count; a range of no length is widened.
+    pub fn around(values: impl IntoIterator<Item = f64>, margin: f64, count: usize, label: &str) -> Self {
+        let finite = values.into_iter().filter(|value| value.is_finite());
+        let (low, high) = finite
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+        if low > high {
+            return Self::between(0.0, 1.0, count, label);
+        }
+        let more = margin * (high - low);
+        Self::between(low - more, high + more, count, label)
+    }
+
+    /// An axis from `low` to `high` with some `count` ticks at 1, 2 or 5 times a power of ten.
+    pub fn between(low: f64, high: f64, count: usize, label: &str) -> Self {
+        let (low, high) = proper(low, high);
+        let step = step((high - low) / count.max(1) as f64);
+        // The common power of ten is taken out where plain numbers would be long.
+        let largest = low.abs().max(high.abs());
+        let power = largest.log10().floor() as i32;
+        let power = if (-3..5).contains(&power) { 0 } else { power };
+        let scale = 10_f64.powi(power);
+        let decimals = (power - (step.log10() + 1e-9).floor() as i32).clamp(0, 12) as usize;
+        // Numbers so large that a step is lost in their rounding get no ticks but their ends.
+        let ticks = if step > 8.0 * f64::EPSILON * largest {
+            let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
+            let number = |k: i64| {
+                let value = (first + k as f64) * step;
+                let text = format!("{:.decimals$}", value / scale);
+                // The sign of a zero says nothing, and a minus is longer than a hyphen.
+                let zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
+                let text = if zero { text.replace('-', "") } else { text.replace('-', "\u{2212}") };
+                (value.clamp(low, high), text)
+            };
+            (0..=(last - first).clamp(0.0, 40.0) as i64).map(number).collect()
+        } else {
+            [low, high].map(|value| (value, format!("{:.12}", value / scale))).into()
+        };
+        let label =
+            if power == 0 { label.to_owned() } else { format!("{label} (\u{d7}10{})", raised(power)) };
+        Self { low, high, ticks, label }
+    }
+
+    /// Where `value` stands between the ends: 0 at the lower, 1 at the upper.
+    pub fn share(&self, value: f64) -> f64 {
+        (value.clamp(-LARGEST, LARGEST) - self.low) / (self.high - self.low)
+    }
+
+    /// The axis without numbers at its ticks, and without a label.
+    #[must_use]
+    pub fn silent(mut self) -> Self {
+        self.ticks.iter_mut().for_each(|tick| tick.1.clear());
+        self.label.clear();
+        self
+    }
+}
+
+/// Two ends that are finite and apart.
+fn proper(low: f64, high: f64) -> (f64, f64) {
+    let tame = |value: f64| if value.is_finite() { value.clamp(-LARGEST, LARGEST) } else { 0.0 };
+    let (low, high) = (tame(low.min(high)), tame(low.max(high)));
+    let least = 1e-9 * low.abs().max(high.abs());
+    if high - low > least && high - low > 1e-290 {
+        return (low, high);
+    }
+    let half = if low == 0.0 || low.abs() < 1e-280 { 1.0 } else { 0.1 * low.abs() };
+    let middle = 0.5 * low + 0.5 * high;
+    (middle - half, middle + half)
+}
+
+/// The least of 1, 2, 5 times a power of ten that is not below `rough`.
+fn step(rough: f64) -> f64 {
+    let power = 10_f64.powi(rough.log10().floor() as i32);
+    let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * power >= rough * (1.0 - 1e-9));
+    factor.unwrap_or(10.0) * power
+}
+
+/// A whole number as an exponent.
+fn raised(power: i32) -> String {
+    let digit = |c: char| match c {
+        '-' => '\u{207b}',
+        '1' => '\u{b9}',
+        '2' => '\u{b2}',
+        '3' => '\u{b3}',
+        c => char::from_u32(0x2070 + c.to_digit(10).unwrap_or(0)).unwrap_or(c),
+    };
+    power.to_string().chars().map(digit).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(axis: &Axis) -> String {
+        axis.ticks.iter().map(|tick| tick.1.as_str()).collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn ticks_are_short_numbers() {
+        assert_eq!(numbers(&Axis::between(0.0, 2.0, 5, "")), "0.0 0.5 1.0 1.5 2.0");
+        assert_eq!(numbers(&Axis::between(-1.7, 1.7, 4, "")), "\u{2212}1 0 1");
+        assert_eq!(numbers(&Axis::between(0.0, 10.0, 5, "")), "0 2 4 6 8 10");
+        assert_eq!(numbers(&Axis::between(0.0, 1570.8, 5, "")), "0 500 1000 1500");
+        let small = Axis::between(0.0, 2e-9, 4, "x, m");
+        assert_eq!(
+            (numbers(&small), small.label.as_str()),
+            ("0.0 0.5 1.0 1.5 2.0".into(), "x, m (\u{d7}10\u{207b}\u{2079})")
+        );
+    }
+
+    #[test]
+    fn degenerate_ranges_become_ranges() {
+        let nan = f64::NAN;
+        let ends = [0.0, -0.0, 1.0, -3.0, 1e308, -1e308, 5e-324, 1e-300, 1e15, nan, f64::INFINITY];
+        for low in ends {
+            for high in ends.into_iter().chain([low * (1.0 + 1e-15), low + 1.0]) {
+                for count in [0, 1, 5, 12] {
+                    let axis = Axis::between(low, high, count, "x");
+                    assert!(axis.low < axis.high, "{low} {high}");
+                    assert!(!axis.ticks.is_empty() && axis.ticks.len() < 42, "{low} {high}: {axis:?}");
+                    let shares = axis.ticks.iter().map(|tick| axis.share(tick.0));
+                    assert!(shares.into_iter().all(|s| (-1e-9..=1.0 + 1e-9).contains(&s)), "{axis:?}");
+                }
+            }
+        }
+        assert_eq!(Axis::around([nan, nan], 0.1, 5, "").low, 0.0);
+        assert_eq!(Axis::around([3.0], 0.1, 5, "").ticks.len(), 3);
+    }
+}

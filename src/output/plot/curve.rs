@@ -1,0 +1,143 @@
+//! The picture of a mechanism: force and potential over displacement, with equilibria, kinks and stops.
+
+use super::axis::Axis;
+use super::figure::{Area, Figure, Point};
+use super::frame::Frame;
+use super::mark::{Caption, Marker, Sample, legend, marker};
+use super::style::{self, Theme};
+use crate::mechanics::{Landscape, Mechanism};
+use crate::numeric::short;
+use crate::study::Table;
+
+const LEFT: f64 = 160.0;
+const RIGHT: f64 = 1560.0;
+const GUTTER: f64 = 110.0;
+const TICKS: usize = 5;
+
+/// The picture of the curve in `table` (as [`curve`](crate::study::curve) gives it), with stops at these
+/// positions in m, NaN where there is none.
+pub fn curve_figure(
+    table: &Table,
+    mechanism: &Mechanism,
+    stops: (f64, f64),
+    caption: &Caption,
+    theme: &Theme,
+) -> Figure {
+    let mut figure = Figure::new(theme.paper);
+    let column = |name: &str| table.numbers(name).unwrap_or_default();
+    let x: Vec<f64> = column("x_m").iter().map(|x| x * 1e3).collect();
+    let pairs =
+        |y: &[f64], scale: f64| -> Vec<Point> { x.iter().zip(y).map(|(x, y)| (*x, y * scale)).collect() };
+    let (force, force_unit) = scaled(column("force_n"), &[(1.0, "N"), (1e-3, "mN")]);
+    let (potential, potential_unit) =
+        scaled(column("potential_j"), &[(1.0, "J"), (1e-3, "mJ"), (1e-6, "\u{b5}J")]);
+    let across = Axis::around(x.iter().copied(), 0.0, 9, "displacement, mm");
+    let landscape = &mechanism.landscape;
+    let inside = |at: f64| at * 1e3 >= across.low && at * 1e3 <= across.high;
+
+    let height = |values: &[f64], scale: f64, least: f64, label: &str| {
+        let (low, high) = telling(&x, values, landscape);
+        Axis::around([low * scale, high * scale, least], 0.08, TICKS, label)
+    };
+    let upper = Area::new(LEFT, 175.0, RIGHT, 520.0);
+    let lower = Area::new(LEFT, 550.0, RIGHT, 860.0);
+    let force_axis = height(column("force_n"), force, 0.0, &format!("force to hold, {force_unit}"));
+    let potential_axis =
+        height(column("potential_j"), potential, f64::NAN, &format!("potential, {potential_unit}"));
+    let framed = |area, x, y| Frame { gutter: Some(GUTTER), ..Frame::new(area, x, y) };
+    let frames = [
+        (framed(upper, across.clone().silent(), force_axis), pairs(column("force_n"), force), theme.ink),
+        (
+            framed(lower, across.clone(), potential_axis),
+            pairs(column("potential_j"), potential),
+            theme.second,
+        ),
+    ];
+    let kinks: Vec<f64> = landscape.kinks.iter().map(|kink| kink.x).filter(|x| inside(*x)).collect();
+    for (frame, line, ink) in &frames {
+        frame.grid(&mut figure, theme);
+        for (at, left) in [(stops.0, true), (stops.1, false)] {
+            if at.is_finite() {
+                frame.wall_across(&mut figure, at * 1e3, left, theme);
+            }
+        }
+        kinks
+            .iter()
+            .for_each(|x| frame.vertical(&mut figure, x * 1e3, style::THIN, theme.soft, Some(style::DOT)));
+        frame.path(&mut figure, line.iter().copied(), style::LINE + 0.8, *ink);
+    }
+    frames[0].0.horizontal(&mut figure, 0.0, style::THIN, theme.soft, None);
+    for equilibrium in landscape.equilibria.iter().filter(|equilibrium| inside(equilibrium.x)) {
+        let (shape, ink) = kind(equilibrium.stable, theme);
+        let x = equilibrium.x;
+        for (frame, y) in [(&frames[0].0, 0.0), (&frames[1].0, mechanism.curve.potential(x) * potential)] {
+            marker(&mut figure, shape, frame.place((x * 1e3, y)), style::MARKER + 2.0, ink, theme.ink);
+        }
+    }
+    frames.iter().for_each(|(frame, ..)| frame.axes(&mut figure, theme));
+
+    let mut entries = Vec::new();
+    let any = |stable: bool| landscape.equilibria.iter().any(|own| own.stable == stable && inside(own.x));
+    for (stable, words) in [(true, "stable equilibrium"), (false, "unstable equilibrium")] {
+        if any(stable) {
+            let (shape, ink) = kind(stable, theme);
+            entries.push((Sample::Marker(shape, ink), words));
+        }
+    }
+    if !kinks.is_empty() {
+        entries.push((Sample::Line(theme.soft, style::LINE, Some(style::DOT)), "kink of the force"));
+    }
+    if inside(stops.0) || inside(stops.1) {
+        entries.push((Sample::Patch(theme.wall_fill(), Some(theme.wall_hatch())), "stop"));
+    }
+    legend(&mut figure, theme, &entries, LEFT, RIGHT, 142.0);
+    caption.draw(&mut figure, theme, &subtitle(landscape), LEFT);
+    figure
+}
+
+fn kind(stable: bool, theme: &Theme) -> (Marker, style::Ink) {
+    if stable { (Marker::Disc, theme.stable) } else { (Marker::Triangle, theme.unstable) }
+}
+
+fn subtitle(landscape: &Landscape) -> String {
+    let mut parts = Vec::new();
+    if let Some(barrier) = landscape.barrier {
+        let wells = (short(barrier.left_well * 1e3), short(barrier.right_well * 1e3));
+        parts.push(format!("wells at {} and {} mm", wells.0.replace('-', "\u{2212}"), wells.1));
+        let (left, right) = (short(barrier.from_left_j * 1e3), short(barrier.from_right_j * 1e3));
+        parts.push(if left == right {
+            format!("barrier of {left} mJ")
+        } else {
+            format!("barrier of {left} mJ from the left, {right} mJ from the right")
+        });
+    } else if landscape.equilibria.is_empty() {
+        parts.push("no equilibrium".to_owned());
+    } else {
+        parts.push("one well".to_owned());
+    }
+    parts.join(", ")
+}
+
+/// The factor from SI and the name of the largest of `units` (each its size in SI, falling) in which the
+/// greatest value is 0.1 or more.
+fn scaled(values: &[f64], units: &[(f64, &'static str)]) -> (f64, &'static str) {
+    let greatest = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
+    let fits =
+        units.iter().find(|(size, _)| greatest >= 0.1 * size).or(units.last().filter(|_| greatest > 0.0));
+    fits.or(units.first()).map_or((1.0, ""), |(size, unit)| (1.0 / size, *unit))
+}
+
+/// The range of values that tells something. Beyond the outermost equilibrium a force may rise like a wall
+/// and press everything else flat: what lies there counts up to half the range between more on each side.
+fn telling(x: &[f64], values: &[f64], landscape: &Landscape) -> (f64, f64) {
+    let range = |from: f64, to: f64| {
+        let inside = x.iter().zip(values).filter(|(x, v)| **x >= from && **x <= to && v.is_finite());
+        inside.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, v)| (low.min(*v), high.max(*v)))
+    };
+    let (low, high) = range(f64::NEG_INFINITY, f64::INFINITY);
+    let ends = landscape.equilibria.first().zip(landscape.equilibria.last());
+    let Some((left, right)) = ends.filter(|(left, right)| left.x < right.x) else { return (low, high) };
+    let (inner_low, inner_high) = range(left.x * 1e3, right.x * 1e3);
+    let more = 0.5 * (inner_high - inner_low);
+    if more > 0.0 { (low.max(inner_low - more), high.min(inner_high + more)) } else { (low, high) }
+}

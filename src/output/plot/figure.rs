@@ -1,0 +1,262 @@
+//! What is on a picture? A list of plain shapes, in the order in which they are painted.
+//!
+//! The plots write down what they show; [`paint`](super::paint) turns that into pixels or SVG. So
+//! each plot is written once for both, and a test can read what a picture says.
+
+use super::font;
+use super::style::{Ink, SIZE};
+
+/// A place on the canvas: to the right and down from the upper left corner.
+pub type Point = (f64, f64);
+
+/// A rectangle by two corners, the first one above and to the left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Area {
+    /// Left edge.
+    pub left: f64,
+    /// Upper edge.
+    pub top: f64,
+    /// Right edge.
+    pub right: f64,
+    /// Lower edge.
+    pub bottom: f64,
+}
+
+impl Area {
+    /// The rectangle with these edges.
+    pub fn new(left: f64, top: f64, right: f64, bottom: f64) -> Self {
+        Self { left, top, right, bottom }
+    }
+
+    /// What this and `other` share; none where that is nothing.
+    pub fn common(self, other: Self) -> Option<Self> {
+        let (left, right) = (self.left.max(other.left), self.right.min(other.right));
+        let (top, bottom) = (self.top.max(other.top), self.bottom.min(other.bottom));
+        (left < right && top < bottom).then_some(Self { left, top, right, bottom })
+    }
+
+    /// The part of the segment from `a` to `b` that lies inside (Liang and Barsky 1984).
+    pub fn clip(self, a: Point, b: Point) -> Option<(Point, Point)> {
+        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+        let edges =
+            [(-dx, a.0 - self.left), (dx, self.right - a.0), (-dy, a.1 - self.top), (dy, self.bottom - a.1)];
+        for (towards, room) in edges {
+            if !(towards.is_finite() && room.is_finite()) || (towards == 0.0 && room < 0.0) {
+                return None;
+            }
+            if towards < 0.0 {
+                enter = enter.max(room / towards);
+            } else if towards > 0.0 {
+                leave = leave.min(room / towards);
+            }
+        }
+        let at = |share: f64| (a.0 + share * dx, a.1 + share * dy);
+        // Whole ends stay as they are, bit for bit: the next segment begins there.
+        let (from, to) = (if enter > 0.0 { at(enter) } else { a }, if leave < 1.0 { at(leave) } else { b });
+        (enter <= leave).then_some((from, to))
+    }
+}
+
+/// Where a text's given point lies on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// At its beginning.
+    Left,
+    /// In its middle.
+    Centre,
+    /// At its end.
+    Right,
+}
+
+/// A line of text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Text {
+    /// What it says.
+    pub words: String,
+    /// Where on the canvas; its height is that of the baseline.
+    pub at: Point,
+    /// Height of an em.
+    pub size: f64,
+    /// Colour.
+    pub ink: Ink,
+    /// Heavier letters.
+    pub bold: bool,
+    /// Which part of it is at `at`.
+    pub align: Align,
+    /// Read from below to above.
+    pub upright: bool,
+}
+
+/// One shape.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// A filled rectangle.
+    Rect(Area, Ink),
+    /// A line through points, with round ends and corners.
+    Line(Vec<Point>, f64, Ink),
+    /// A filled convex polygon.
+    Polygon(Vec<Point>, Ink),
+    /// A filled disc.
+    Disc(Point, f64, Ink),
+    /// A text.
+    Text(Text),
+}
+
+/// A picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// The shapes in the order in which they are painted.
+    pub shapes: Vec<Shape>,
+}
+
+impl Figure {
+    /// A canvas of this colour.
+    pub fn new(paper: Ink) -> Self {
+        Self { shapes: vec![Shape::Rect(Self::canvas(), paper)] }
+    }
+
+    /// The whole canvas.
+    pub fn canvas() -> Area {
+        Area::new(0.0, 0.0, f64::from(SIZE.0), f64::from(SIZE.1))
+    }
+
+    /// Adds a filled rectangle; what lies outside the canvas is cut off.
+    pub fn rect(&mut self, area: Area, ink: Ink) {
+        if let Some(area) = area.common(Self::canvas()) {
+            self.shapes.push(Shape::Rect(area, ink));
+        }
+    }
+
+    /// Adds a line; parts outside `within` and points that are not finite are left out.
+    pub fn line(&mut self, points: &[Point], width: f64, ink: Ink, within: Area) {
+        for part in clipped(points, within) {
+            self.shapes.push(Shape::Line(part, width, ink));
+        }
+    }
+
+    /// Adds a broken line with dashes and gaps of the given lengths.
+    pub fn dashed(&mut self, points: &[Point], width: f64, ink: Ink, dash: (f64, f64), within: Area) {
+        for part in clipped(points, within) {
+            for piece in dashes(&part, dash) {
+                self.shapes.push(Shape::Line(piece, width, ink));
+            }
+        }
+    }
+
+    /// Adds a filled convex polygon where all of it lies on the canvas.
+    pub fn polygon(&mut self, points: Vec<Point>, ink: Ink) {
+        if points.iter().all(|point| on_canvas(*point)) {
+            self.shapes.push(Shape::Polygon(points, ink));
+        }
+    }
+
+    /// Adds a filled disc where its centre lies on the canvas.
+    pub fn disc(&mut self, centre: Point, radius: f64, ink: Ink) {
+        if on_canvas(centre) {
+            self.shapes.push(Shape::Disc(centre, radius, ink));
+        }
+    }
+
+    /// Adds a text; control characters become blanks.
+    pub fn text(&mut self, mut text: Text) {
+        text.words = text.words.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        if on_canvas(text.at) && !text.words.trim().is_empty() {
+            self.shapes.push(Shape::Text(text));
+        }
+    }
+
+    /// Hatches `area` with lines that go up to the right, in step with every other hatching.
+    pub fn hatch(&mut self, area: Area, (step, width): (f64, f64), ink: Ink) {
+        let Some(area) = area.common(Self::canvas()) else { return };
+        // Lines x + y = k step.
+        let first = ((area.left + area.top) / step).ceil() as i64;
+        let last = ((area.right + area.bottom) / step).floor() as i64;
+        for k in first..=last {
+            let sum = k as f64 * step;
+            let line = [(sum - area.top, area.top), (sum - area.bottom, area.bottom)];
+            self.line(&line, width, ink, area);
+        }
+    }
+
+    /// Everything that can be read on the picture.
+    pub fn words(&self) -> impl Iterator<Item = &str> {
+        self.shapes.iter().filter_map(|shape| match shape {
+            Shape::Text(text) => Some(text.words.as_str()),
+            _ => None,
+        })
+    }
+}
+
+/// `words` cut so that they fit into `room`, with an ellipsis where they did not.
+pub fn fitted(words: &str, size: f64, bold: bool, room: f64) -> String {
+    // No line of text has more letters than this on the canvas.
+    let mut letters: Vec<char> = words.chars().take(400).collect();
+    if letters.len() == words.chars().count() && font::width(words, size, bold) <= room {
+        return words.to_owned();
+    }
+    loop {
+        let text: String = letters.iter().collect::<String>().trim_end().to_owned() + "\u{2026}";
+        if letters.is_empty() || font::width(&text, size, bold) <= room {
+            return text;
+        }
+        letters.pop();
+    }
+}
+
+fn on_canvas((x, y): Point) -> bool {
+    let canvas = Figure::canvas();
+    (canvas.left..=canvas.right).contains(&x) && (canvas.top..=canvas.bottom).contains(&y)
+}
+
+/// The parts of a line that lie inside.
+fn clipped(points: &[Point], within: Area) -> Vec<Vec<Point>> {
+    let mut parts: Vec<Vec<Point>> = Vec::new();
+    let mut end = None;
+    for pair in points.windows(2) {
+        let Some((from, to)) = within.clip(pair[0], pair[1]) else {
+            end = None;
+            continue;
+        };
+        match parts.last_mut().filter(|_| end == Some(from)) {
+            Some(part) => part.push(to),
+            None => parts.push(vec![from, to]),
+        }
+        end = Some(to);
+    }
+    parts
+}
+
+/// A line cut into dashes.
+fn dashes(points: &[Point], (on, off): (f64, f64)) -> Vec<Vec<Point>> {
+    let mut pieces = Vec::new();
+    let mut piece: Vec<Point> = points.first().copied().into_iter().collect();
+    let (mut drawing, mut left) = (true, on);
+    for pair in points.windows(2) {
+        let (mut from, to) = (pair[0], pair[1]);
+        loop {
+            let length = (to.0 - from.0).hypot(to.1 - from.1);
+            if length <= left {
+                left -= length;
+                if drawing {
+                    piece.push(to);
+                }
+                break;
+            }
+            let share = left / length;
+            from = (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1));
+            if drawing {
+                piece.push(from);
+                pieces.push(std::mem::take(&mut piece));
+            } else {
+                piece = vec![from];
+            }
+            drawing = !drawing;
+            left = if drawing { on } else { off };
+        }
+    }
+    if drawing && piece.len() > 1 {
+        pieces.push(piece);
+    }
+    pieces
+}

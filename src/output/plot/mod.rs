@@ -1,0 +1,61 @@
+//! Pictures: a table in, a PNG or an SVG out.
+//!
+//! A plot writes a [`Figure`], a list of plain shapes; [`Format::bytes`] paints it. Light or dark, the data and
+//! their places are the same, and the same data give the same bytes.
+
+mod axis;
+mod curve;
+mod figure;
+mod font;
+mod frame;
+mod map;
+mod mark;
+mod paint;
+mod run;
+mod style;
+mod sweep;
+
+use std::path::Path;
+
+pub use curve::curve_figure;
+pub use figure::Figure;
+pub use map::Overlay;
+pub use mark::Caption;
+pub use paint::PaintError;
+pub use run::run_figure;
+pub use style::Theme;
+pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_figure};
+
+/// A kind of file that holds a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Pixels.
+    Png,
+    /// Shapes.
+    Svg,
+}
+
+/// A file name that tells no kind of picture.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("a picture's name ends in .png or .svg")]
+pub struct UnknownFormat;
+
+impl Format {
+    /// The kind that the ending of a file's name asks for.
+    pub fn of(path: &Path) -> Result<Self, UnknownFormat> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("png") => Ok(Self::Png),
+            Some("svg") => Ok(Self::Svg),
+            _ => Err(UnknownFormat),
+        }
+    }
+
+    /// The picture as a file of this kind.
+    pub fn bytes(self, figure: &Figure) -> Result<Vec<u8>, PaintError> {
+        match self {
+            Self::Png => paint::png(figure),
+            Self::Svg => paint::svg(figure).map(String::into_bytes),
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! The picture of one run: displacement, velocity and base acceleration over time, and the phase portrait.
+
+use super::axis::Axis;
+use super::figure::{Align, Area, Figure, Point, Text};
+use super::font;
+use super::frame::Frame;
+use super::mark::{Caption, Sample, legend, marker, regime};
+use super::style::{self, Ink, Theme};
+use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
+use crate::mechanics::Mechanism;
+use crate::numeric::short;
+use crate::study::{Trace, Values};
+
+const LEFT: f64 = 150.0;
+const MIDDLE: f64 = 985.0;
+const GUTTER: f64 = 102.0;
+const PORTRAIT: Area = Area { left: 1150.0, top: 175.0, right: 1565.0, bottom: 600.0 };
+const PANELS: [(f64, f64); 3] = [(175.0, 425.0), (447.0, 657.0), (679.0, 869.0)];
+
+/// The picture of a run from its trace and its summary.
+pub fn run_figure(
+    trace: &Trace,
+    summary: &Summary,
+    mechanism: &Mechanism,
+    caption: &Caption,
+    theme: &Theme,
+) -> Figure {
+    let mut figure = Figure::new(theme.paper);
+    let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
+    let stable = mechanism.landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
+    let seen = Seen {
+        trace,
+        theme,
+        t: column("t_s"),
+        x: column("x_m"),
+        v: column("v_m_per_s"),
+        accel: column("base_accel_m_per_s2"),
+        wells: stable.map(|equilibrium| equilibrium.x).collect(),
+        speed: speed_unit(column("v_m_per_s").iter().copied()),
+    };
+    let reach = seen.panels(&mut figure);
+    seen.portrait(&mut figure);
+
+    let mut entries = Vec::new();
+    if trace.impacts.rows() > 0 {
+        entries.push((Sample::Ticks(theme.ink), "impact"));
+    }
+    if trace.rests.rows() > 0 {
+        entries.push((Sample::Patch(theme.rest, None), "at rest on a stop"));
+    }
+    if trace.stops.0.is_finite() || trace.stops.1.is_finite() {
+        entries.push((Sample::Patch(theme.wall_fill(), None), "stop"));
+    }
+    if seen.wells.iter().any(|well| (reach.low..=reach.high).contains(&(well * 1e3))) {
+        entries.push((Sample::Line(theme.stable, style::LINE, Some(style::DASH)), "well"));
+    }
+    legend(&mut figure, theme, &entries, LEFT, MIDDLE, 142.0);
+    account(&mut figure, summary, trace, seen.speed, theme);
+    caption.draw(&mut figure, theme, &subtitle(summary), LEFT);
+    figure
+}
+
+/// What a run's picture is drawn from. SI.
+struct Seen<'a> {
+    trace: &'a Trace,
+    theme: &'a Theme,
+    t: &'a [f64],
+    x: &'a [f64],
+    v: &'a [f64],
+    accel: &'a [f64],
+    wells: Vec<f64>,
+    /// Factor from m/s and name of the unit of speed.
+    speed: (f64, &'static str),
+}
+
+impl Seen<'_> {
+    /// The axis for these displacements. Stops count where the mass comes near them, so that a far one
+    /// does not press the motion flat.
+    fn displacement(&self, x: &[f64]) -> Axis {
+        let farthest = x.iter().map(|x| x.abs()).filter(|x| x.is_finite()).fold(0.0, f64::max);
+        let stops = [self.trace.stops.0, self.trace.stops.1];
+        let near = stops.into_iter().filter(|stop| stop.abs() <= 1.3 * farthest);
+        Axis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, 6, "displacement, mm")
+    }
+
+    fn velocity(&self, v: &[f64], count: usize) -> Axis {
+        let (scale, unit) = self.speed;
+        Axis::around(v.iter().map(|v| v * scale), 0.08, count, &format!("velocity, {unit}"))
+    }
+
+    /// Displacement, velocity and base acceleration over time; the axis of displacement.
+    fn panels(&self, figure: &mut Figure) -> Axis {
+        let Self { trace, theme, .. } = *self;
+        let time = Axis::between(0.0, trace.end, 6, "time, s");
+        let in_g = self.accel.iter().map(|a| a / STANDARD_GRAVITY);
+        let g_axis = Axis::around(in_g.chain([0.0]), 0.1, 4, "base accel., g");
+        let framed = |(top, bottom): (f64, f64), x, y| {
+            let frame = Frame::new(Area::new(LEFT, top, MIDDLE, bottom), x, y);
+            Frame { gutter: Some(GUTTER), ..frame }
+        };
+        let frames = [
+            framed(PANELS[0], time.clone().silent(), self.displacement(self.x)),
+            framed(PANELS[1], time.clone().silent(), self.velocity(self.v, 5)),
+            framed(PANELS[2], time, g_axis),
+        ];
+        for (frame, strength) in frames.iter().zip([1.0, 0.5, 0.5]) {
+            rests(figure, frame, trace, theme.rest.over(theme.paper, strength));
+            frame.grid(figure, theme);
+        }
+        frames[1].horizontal(figure, 0.0, style::THIN, theme.soft, None);
+        frames[2].horizontal(figure, 0.0, style::THIN, theme.soft, None);
+        for (stop, below) in [(trace.stops.0, true), (trace.stops.1, false)] {
+            if stop.is_finite() {
+                frames[0].wall_down(figure, stop * 1e3, below, theme);
+            }
+        }
+        for well in &self.wells {
+            frames[0].horizontal(figure, well * 1e3, style::LINE, theme.stable, Some(style::DASH));
+        }
+        let lines = [
+            (self.x, 1e3, theme.ink),
+            (self.v, self.speed.0, theme.second),
+            (self.accel, 1.0 / STANDARD_GRAVITY, theme.shaking),
+        ];
+        for (frame, (values, scale, ink)) in frames.iter().zip(lines) {
+            let pairs = self.t.iter().zip(values).map(|(t, value)| (*t, value * scale));
+            frame.dense_line(figure, pairs.filter(|pair| pair.1.is_finite()), style::FINE_LINE, ink);
+        }
+        impacts(figure, &frames[0], trace, theme);
+        frames.iter().for_each(|frame| frame.axes(figure, theme));
+        let [Frame { y, .. }, ..] = frames;
+        y
+    }
+
+    /// Velocity over displacement.
+    fn portrait(&self, figure: &mut Figure) {
+        let Self { trace, theme, .. } = *self;
+        let from = self.t.partition_point(|t| *t < trace.portrait_from);
+        let (x, v) = (&self.x[from..], &self.v[from..]);
+        let frame = Frame::new(PORTRAIT, self.displacement(x), self.velocity(v, 8));
+        frame.grid(figure, theme);
+        for (stop, left) in [(trace.stops.0, true), (trace.stops.1, false)] {
+            if stop.is_finite() {
+                frame.wall_across(figure, stop * 1e3, left, theme);
+            }
+        }
+        for well in &self.wells {
+            frame.vertical(figure, well * 1e3, style::LINE, theme.stable, Some(style::DASH));
+        }
+        let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0));
+        frame.path(figure, path, style::FINE_LINE, theme.second);
+        frame.axes(figure, theme);
+        let words = format!("phase portrait from {} s on", short(trace.portrait_from));
+        note(figure, &words, (PORTRAIT.left, 152.0), style::TICK, theme.ink, false);
+    }
+}
+
+/// The unit in which speeds up to those given are short numbers, with the factor from m/s.
+pub fn speed_unit(values: impl Iterator<Item = f64>) -> (f64, &'static str) {
+    let greatest = values.filter(|value| value.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
+    if greatest < 2.0 { (1e3, "mm/s") } else { (1.0, "m/s") }
+}
+
+fn words(values: Option<&Values>) -> &[&'static str] {
+    match values {
+        Some(Values::Words(words)) => words,
+        _ => &[],
+    }
+}
+
+/// Spans at rest, shaded; neighbours nearer than a part of a pixel are one.
+fn rests(figure: &mut Figure, frame: &Frame, trace: &Trace, ink: Ink) {
+    let from = trace.rests.numbers("from_s").unwrap_or_default();
+    let to = trace.rests.numbers("to_s").unwrap_or_default();
+    let mut open: Option<(f64, f64)> = None;
+    let mut shade = |span: Option<(f64, f64)>| {
+        if let Some((left, right)) = span {
+            let area = Area::new(left, frame.area.top, right, frame.area.bottom);
+            if let Some(area) = area.common(frame.area) {
+                figure.rect(area, ink);
+            }
+        }
+    };
+    for (from, to) in from.iter().zip(to) {
+        let (left, right) = (frame.across(*from), frame.across(*to));
+        open = match open {
+            Some((first, last)) if left - last < 0.7 => Some((first, right.max(last))),
+            other => {
+                shade(other);
+                Some((left, right))
+            }
+        };
+    }
+    shade(open);
+}
+
+/// A tick for each impact at the edge on its stop's side; of those that lie close, some.
+fn impacts(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
+    const TICK: f64 = 20.0;
+    /// So far apart the wall is still seen between them.
+    const APART: f64 = 4.5;
+    let times = trace.impacts.numbers("t_s").unwrap_or_default();
+    let sides = words(trace.impacts.column("side").map(|column| &column.values));
+    let mut last = [f64::NEG_INFINITY; 2];
+    for (t, side) in times.iter().zip(sides) {
+        let left = *side == "left";
+        let at = frame.across(*t);
+        if at - last[usize::from(left)] >= APART {
+            last[usize::from(left)] = at;
+            let edge = if left { frame.area.bottom } else { frame.area.top };
+            let inner = if left { edge - TICK } else { edge + TICK };
+            figure.line(&[(at, edge), (at, inner)], 2.0, theme.ink, frame.area);
+        }
+    }
+}
+
+fn reason(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Done => "done",
+        Outcome::LeftTable { .. } => "the mass left the force curve",
+        Outcome::ImpactBudget { .. } => "more impacts than one run may make",
+        Outcome::StepBudget { .. } => "more steps than one run may take",
+        Outcome::NotFinite { .. } => "a number was no longer finite",
+        Outcome::Cancelled { .. } => "told to stop",
+    }
+}
+
+fn subtitle(summary: &Summary) -> String {
+    match summary.outcome.ended_at() {
+        Some(at) => format!("ended early at {} s: {}", short(at), reason(summary.outcome)),
+        None => match (summary.regime.name(), summary.period) {
+            ("", _) => "one well or none: nothing to cross".to_owned(),
+            ("interwell", Some(1)) => "interwell: repeats in every forcing period".to_owned(),
+            ("interwell", Some(n)) => format!("interwell: repeats after {n} forcing periods"),
+            ("irregular", _) => "irregular: crosses without a period".to_owned(),
+            ("intrawell", _) => "intrawell: moves without crossing".to_owned(),
+            ("rest", _) => "at rest".to_owned(),
+            (other, _) => other.to_owned(),
+        },
+    }
+}
+
+/// Regime and numbers, under the phase portrait.
+fn account(figure: &mut Figure, summary: &Summary, trace: &Trace, (scale, unit): (f64, &str), theme: &Theme) {
+    let mut y = 738.0;
+    let name = summary.regime.name();
+    if summary.rms_velocity.is_some() && !name.is_empty() {
+        let (shape, ink) = regime(name, theme);
+        marker(figure, shape, (PORTRAIT.left + 14.0, y - 10.0), style::MARKER + 1.0, ink, theme.ink);
+        note(figure, name, (PORTRAIT.left + 42.0, y), style::SUBTITLE, theme.ink, true);
+        y += 40.0;
+    }
+    let mut lines = Vec::new();
+    if let Some(rms) = summary.rms_velocity {
+        lines.push(format!("settled, from {} s on:", short(trace.settle)));
+        lines.push(format!("RMS velocity {} {unit}", short(rms * scale)));
+    }
+    if summary.rms_velocity.is_some() {
+        let share = summary.rested_share.filter(|share| *share > 0.0);
+        lines.push(match name {
+            "" => format!("{} impacts", summary.impacts),
+            _ => format!("{} crossings, {} impacts", summary.crossings, summary.impacts),
+        });
+        lines.extend(share.map(|share| format!("at rest {:.0} % of the time", 100.0 * share)));
+    }
+    if trace.path.rows() > 0 && lines.is_empty() {
+        lines.push("ended before its settled window".to_owned());
+    }
+    for line in lines {
+        note(figure, &line, (PORTRAIT.left, y), style::TICK, theme.ink, false);
+        y += 36.0;
+    }
+}
+
+fn note(figure: &mut Figure, words: &str, at: Point, size: f64, ink: Ink, bold: bool) {
+    let room = f64::from(style::SIZE.0) - at.0 - 10.0;
+    let words = super::figure::fitted(words, size, bold, room);
+    debug_assert!(font::width(&words, size, bold) <= room + 1.0);
+    figure.text(Text { words, at, size, ink, bold, align: Align::Left, upright: false });
+}

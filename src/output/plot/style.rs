@@ -1,0 +1,176 @@
+//! Which colours, widths and sizes do the pictures have? All of them, and nothing else.
+//!
+//! Colours are those of Okabe and Ito (2008, "Color Universal Design"), one meaning each; what differs by colour also
+//! differs by shape, hatching or dashes. Sizes are in units of a canvas of 1600 by 1000, chosen so that
+//! the smallest text can still be read at half of it.
+
+/// A colour: red, green, blue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ink(pub u8, pub u8, pub u8);
+
+impl Ink {
+    /// This colour at `share` of its strength over `paper`.
+    pub fn over(self, paper: Ink, share: f64) -> Self {
+        let mix = |own: u8, under: u8| {
+            (f64::from(own) * share + f64::from(under) * (1.0 - share)).round().clamp(0.0, 255.0) as u8
+        };
+        Self(mix(self.0, paper.0), mix(self.1, paper.1), mix(self.2, paper.2))
+    }
+}
+
+/// Width and height of the canvas.
+pub const SIZE: (u32, u32) = (1600, 1000);
+
+/// Text sizes: the height of an em.
+pub const TITLE: f64 = 40.0;
+/// Below the title.
+pub const SUBTITLE: f64 = 28.0;
+/// What an axis shows.
+pub const AXIS: f64 = 29.0;
+/// Numbers at ticks, and legends.
+pub const TICK: f64 = 26.0;
+/// What was run.
+pub const FOOTER: f64 = 20.0;
+
+/// A data line.
+pub const LINE: f64 = 3.5;
+/// A data line where lines lie close.
+pub const FINE_LINE: f64 = 2.4;
+/// A line that tells where to look, such as the release over a map.
+pub const GUIDE: f64 = 5.0;
+/// A thin line: wells, zero.
+pub const THIN: f64 = 1.8;
+/// Frame and ticks.
+pub const FRAME: f64 = 2.0;
+/// Grid.
+pub const GRID: f64 = 1.2;
+/// Half the size of a marker.
+pub const MARKER: f64 = 9.0;
+/// Distance between the lines of a hatching, and their width.
+pub const HATCH: (f64, f64) = (11.0, 1.6);
+/// Thickness of a wall.
+pub const WALL: f64 = 30.0;
+/// Length of a tick.
+pub const TICK_LENGTH: f64 = 9.0;
+/// Dash and gap of a dashed line.
+pub const DASH: (f64, f64) = (18.0, 11.0);
+/// Dash and gap of a dotted line.
+pub const DOT: (f64, f64) = (3.0, 7.0);
+
+const ORANGE: Ink = Ink(0xe6, 0x9f, 0x00);
+const SKY: Ink = Ink(0x56, 0xb4, 0xe9);
+const GREEN: Ink = Ink(0x00, 0x9e, 0x73);
+const BLUE: Ink = Ink(0x00, 0x72, 0xb2);
+const VERMILION: Ink = Ink(0xd5, 0x5e, 0x00);
+const PURPLE: Ink = Ink(0xcc, 0x79, 0xa7);
+
+/// The colours of one picture by what they mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Theme {
+    /// Behind everything.
+    pub paper: Ink,
+    /// Text, frames, and the first line of a panel.
+    pub ink: Ink,
+    /// Text of less weight.
+    pub soft: Ink,
+    /// Grid lines.
+    pub grid: Ink,
+    /// Velocity, and potential.
+    pub second: Ink,
+    /// The shaking.
+    pub shaking: Ink,
+    /// Stops.
+    pub wall: Ink,
+    /// Stable equilibria.
+    pub stable: Ink,
+    /// Unstable equilibria.
+    pub unstable: Ink,
+    /// Time spent at rest, cells at rest.
+    pub rest: Ink,
+    /// The hatching over cells at rest.
+    pub rest_hatch: Ink,
+    /// The regimes `rest`, `intrawell`, `irregular`, `interwell`.
+    pub regimes: [Ink; 4],
+}
+
+impl Theme {
+    /// Dark on light, for paper and projectors.
+    pub const LIGHT: Self = Self {
+        paper: Ink(0xff, 0xff, 0xff),
+        ink: Ink(0x1a, 0x1a, 0x1a),
+        soft: Ink(0x5a, 0x5a, 0x5a),
+        grid: Ink(0xe0, 0xe0, 0xe0),
+        second: GREEN,
+        shaking: ORANGE,
+        wall: Ink(0x40, 0x40, 0x40),
+        stable: SKY,
+        unstable: ORANGE,
+        rest: Ink(0xe4, 0xe4, 0xe4),
+        rest_hatch: Ink(0x9a, 0x9a, 0x9a),
+        regimes: [Ink(0x80, 0x80, 0x80), BLUE, PURPLE, VERMILION],
+    };
+
+    /// Light on dark.
+    pub const DARK: Self = Self {
+        paper: Ink(0x14, 0x17, 0x1c),
+        ink: Ink(0xf2, 0xf2, 0xf2),
+        soft: Ink(0xb0, 0xb5, 0xbd),
+        grid: Ink(0x33, 0x38, 0x40),
+        second: Ink(0x1f, 0xc4, 0x93),
+        shaking: ORANGE,
+        wall: Ink(0xc8, 0xc8, 0xc8),
+        stable: SKY,
+        unstable: ORANGE,
+        rest: Ink(0x3a, 0x3f, 0x47),
+        rest_hatch: Ink(0x72, 0x78, 0x82),
+        regimes: [Ink(0x9a, 0x9a, 0x9a), Ink(0x2b, 0x95, 0xd6), PURPLE, Ink(0xf0, 0x73, 0x10)],
+    };
+
+    /// The inside of a wall.
+    pub fn wall_fill(&self) -> Ink {
+        self.wall.over(self.paper, 0.22)
+    }
+
+    /// The hatching of a wall.
+    pub fn wall_hatch(&self) -> Ink {
+        self.wall.over(self.paper, 0.6)
+    }
+
+    /// Light or dark.
+    pub fn of(dark: bool) -> &'static Self {
+        if dark { &Self::DARK } else { &Self::LIGHT }
+    }
+}
+
+/// White, for what lies over a map in either theme.
+pub const WHITE: Ink = Ink(0xff, 0xff, 0xff);
+/// Black, as the outline of what lies over a map.
+pub const BLACK: Ink = Ink(0, 0, 0);
+/// Interwell motion over a map.
+pub const OVER_MAP: Ink = VERMILION;
+
+/// The colour of `share` from 0 to 1 on the map's scale: viridis (van der Walt and Smith 2015), even steps of
+/// lightness that survive every kind of colour blindness and a black and white copy.
+pub fn viridis(share: f64) -> Ink {
+    const STOPS: [Ink; 16] = [
+        Ink(0x44, 0x01, 0x54),
+        Ink(0x48, 0x1a, 0x6c),
+        Ink(0x47, 0x2f, 0x7d),
+        Ink(0x41, 0x44, 0x87),
+        Ink(0x39, 0x56, 0x8c),
+        Ink(0x31, 0x68, 0x8e),
+        Ink(0x2a, 0x78, 0x8e),
+        Ink(0x23, 0x88, 0x8e),
+        Ink(0x1f, 0x98, 0x8b),
+        Ink(0x22, 0xa8, 0x84),
+        Ink(0x35, 0xb7, 0x79),
+        Ink(0x54, 0xc5, 0x68),
+        Ink(0x7a, 0xd1, 0x51),
+        Ink(0xa5, 0xdb, 0x36),
+        Ink(0xd2, 0xe2, 0x1b),
+        Ink(0xfd, 0xe7, 0x25),
+    ];
+    let place = if share.is_finite() { share.clamp(0.0, 1.0) * 15.0 } else { 0.0 };
+    let below = (place as usize).min(14);
+    STOPS[below + 1].over(STOPS[below], place - below as f64)
+}

@@ -1,0 +1,153 @@
+//! What is seen of one run? Its path sampled for the eye, with every jump of the velocity, and the spans at rest.
+//!
+//! A picture must be right however sparse the samples are that were asked for, so it has its own:
+//! the run is asked for both at once, and each gets its own back.
+
+use super::simulate::{Keep, Simulation, events_table, in_order, samples_table};
+use super::table::{Table, Values};
+use crate::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Sample, Side};
+
+/// One run as a picture shows it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trace {
+    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2` in order of time; at an impact the velocities before
+    /// and after it, without the base's acceleration.
+    pub path: Table,
+    /// `t_s,side` of every impact.
+    pub impacts: Table,
+    /// `from_s,to_s,side` of every span at rest on a stop.
+    pub rests: Table,
+    /// Time in s from which on the phase portrait is shown: the settled window, but no more than
+    /// some forcing periods of it.
+    pub portrait_from: f64,
+    /// Positions of the left and the right stop in m; NaN where there is none.
+    pub stops: (f64, f64),
+    /// Begin of the settled window in s.
+    pub settle: f64,
+    /// Time in s at which the run ended.
+    pub end: f64,
+}
+
+/// Samples over the whole run, at least and at most: some per column of a picture, and memory.
+const OVERVIEW: (f64, f64) = (8_000.0, 400_000.0);
+
+/// Samples in a period of the drive and in one of small oscillations.
+const PER_PERIOD: f64 = 80.0;
+
+/// Forcing periods in a phase portrait: as many as a period of the response may have.
+const PORTRAIT_PERIODS: f64 = 12.0;
+
+/// Samples in a phase portrait.
+const PORTRAIT: f64 = 24_000.0;
+
+/// Runs `model` once and keeps, besides what `keep` says, what a picture needs.
+pub fn simulate_with_trace(
+    model: &Model,
+    keep: &Keep,
+    cancel: Option<&std::sync::atomic::AtomicBool>,
+) -> (Simulation, Trace) {
+    let mut portrait_from = portrait_from(model);
+    let mut seen = picture_times(model, portrait_from, model.duration);
+    let times = ascending(seen.iter().chain(&keep.times).copied().collect());
+    let run = model.run(&Request { sample_times: &times, events: true, ledger: true, cancel });
+    let stop = |side: Option<f64>| side.unwrap_or(f64::NAN);
+    let stops = model.stops.map_or((f64::NAN, f64::NAN), |pair| {
+        (stop(pair.left.map(|own| own.x)), stop(pair.right.map(|own| own.x)))
+    });
+    let end = run.summary.outcome.ended_at().unwrap_or(model.duration);
+    let mut shown = in_order(&seen, &run.samples);
+    if end < model.duration && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
+        // It ended where hardly a sample had been asked for: the same run again, looked at more closely.
+        portrait_from = 0.0;
+        seen = picture_times(model, portrait_from, end);
+        shown = model.run(&Request { sample_times: &seen, events: false, ledger: false, cancel }).samples;
+    }
+    let trace = Trace {
+        path: path(&shown, &run.events, stops),
+        impacts: impacts(&run.events),
+        rests: rests(&run.events, run.samples.first(), end),
+        portrait_from,
+        stops,
+        settle: model.settle,
+        end,
+    };
+    let samples = samples_table(&in_order(&keep.times, &run.samples));
+    let events = events_table(if keep.events { &run.events } else { &[] });
+    (Simulation { samples, events, summary: run.summary }, trace)
+}
+
+fn portrait_from(model: &Model) -> f64 {
+    match model.forcing_period {
+        Some(period) => model.settle.max(model.duration - PORTRAIT_PERIODS * period).min(model.duration),
+        None => 0.0,
+    }
+}
+
+fn ascending(mut times: Vec<f64>) -> Vec<f64> {
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
+/// Even times up to `duration`, and closer ones over the phase portrait, in ascending order.
+fn picture_times(model: &Model, portrait_from: f64, duration: f64) -> Vec<f64> {
+    let swing = std::f64::consts::TAU * model.scales.time;
+    let fastest = model.forcing_period.map_or(swing, |period| period.min(swing));
+    let count = (duration / fastest * PER_PERIOD).clamp(OVERVIEW.0, OVERVIEW.1).floor();
+    let even = |from: f64, count: f64| {
+        let time = move |i: u32| (from + (duration - from) * f64::from(i) / count).min(duration);
+        (0..=count as u32).map(time)
+    };
+    ascending(even(0.0, count).chain(even(portrait_from, PORTRAIT)).collect())
+}
+
+/// Samples and impacts in order of time. A sample at an impact's instant is the state after it.
+fn path(samples: &[Sample], events: &[Event], stops: (f64, f64)) -> Table {
+    let mut rows: Vec<[f64; 4]> = Vec::with_capacity(samples.len());
+    let mut jumps = events.iter().filter(|event| event.kind == EventKind::Impact).peekable();
+    for sample in samples {
+        while let Some(jump) = jumps.next_if(|jump| jump.t <= sample.t) {
+            let x = if jump.side == Side::Left { stops.0 } else { stops.1 };
+            rows.push([jump.t, x, jump.v_in, f64::NAN]);
+            rows.push([jump.t, x, jump.v_out, f64::NAN]);
+        }
+        rows.push([sample.t, sample.x, sample.v, sample.base_accel]);
+    }
+    let column = |i: usize| Values::Numbers(rows.iter().map(|row| row[i]).collect());
+    Table::new()
+        .with("t_s", column(0))
+        .with("x_m", column(1))
+        .with("v_m_per_s", column(2))
+        .with("base_accel_m_per_s2", column(3))
+}
+
+fn impacts(events: &[Event]) -> Table {
+    let impacts = || events.iter().filter(|event| event.kind == EventKind::Impact);
+    Table::new()
+        .with("t_s", Values::Numbers(impacts().map(|event| event.t).collect()))
+        .with("side", Values::Words(impacts().map(|event| event.side.name()).collect()))
+}
+
+/// Spans from a rest to the release that follows, or to the end of the run.
+fn rests(events: &[Event], first: Option<&Sample>, end: f64) -> Table {
+    let mut spans: Vec<(f64, f64, Side)> = Vec::new();
+    let mut open = first.and_then(|sample| match sample.phase {
+        Phase::Free => None,
+        Phase::LeftStop => Some((sample.t, Side::Left)),
+        Phase::RightStop => Some((sample.t, Side::Right)),
+    });
+    for event in events {
+        match event.kind {
+            EventKind::Rest => open = open.or(Some((event.t, event.side))),
+            EventKind::Release => {
+                spans.extend(open.take().map(|(from, side)| (from, event.t, side)));
+            }
+            _ => {}
+        }
+    }
+    spans.extend(open.map(|(from, side)| (from, end, side)));
+    Table::new()
+        .with("from_s", Values::Numbers(spans.iter().map(|span| span.0).collect()))
+        .with("to_s", Values::Numbers(spans.iter().map(|span| span.1).collect()))
+        .with("side", Values::Words(spans.iter().map(|span| span.2.name()).collect()))
+}
