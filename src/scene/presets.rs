@@ -36,10 +36,10 @@ macro_rules! presets {
 
 presets! {
     "paper": "the prototype: travel limits inside the wells, and the map over limit and shaking";
-    "paper-unconstrained": "the prototype without stops: rattles at 1 g, crosses without rhythm from 1.24 g";
+    "paper-unconstrained": "the prototype without stops: rattles at 1 g, crosses from 1.24 g, mostly without rhythm";
     "paper-ramp": "the prototype, shaken from 0 to 2 g in five minutes: when it frees, when it crosses";
     "uneven-stops": "the prototype between unequal stops: two different rebounds, and the worse stop decides";
-    "walking": "the prototype carried by a walking person: crosses in nearly every step with stops at 0.6 mm";
+    "walking": "the prototype carried by a walking person: crosses in every step with stops at 0.6 mm";
     "random-shaking": "the prototype under noise: crosses at random with stops, and not without them";
     "nominal-cubic": "a textbook double well with the prototype's mass; its map has 41 x 101 cells";
     "monostable": "one well for comparison: nothing to cross, and stops only take away";
