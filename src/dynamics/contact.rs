@@ -1,9 +1,10 @@
 //! What happens where the mass touches a stop, a break or the end of the curve?
 
 use super::clock::Instant;
-use super::drive::{Drive, Fall, Press, SEARCH_STRIDES, Span};
+use super::composite::SEARCH_STRIDES;
+use super::drive::{Drive, Fall, Press, Span};
 use super::equation::{End, EndKind, FAR};
-use super::motion::{BY_ACCELERATION, BY_JERK, BY_SPEED, Contact, Flow, HELD, Motion, Touch};
+use super::motion::{BY_ACCELERATION, BY_JERK, BY_SPEED, Contact, Flow, HELD, Motion, Touch, UNDECIDED};
 use super::prepare::base_at;
 use super::result::{Outcome, Phase, Side};
 use crate::numeric::Scalar;
@@ -54,7 +55,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     }
 
     /// The mass stands at the stop of `end` with no speed: does it rest or leave? The first derivative of the
-    /// pressing acceleration that is not 0 (to the rounding of its terms) decides; if none is, it rests.
+    /// pressing acceleration that is not 0 (to the rounding of its terms) decides; if none is, nothing presses: it
+    /// stays there, free.
     fn settle(&mut self, end: End) {
         let rates = self.press(end);
         let stop_rounding = self.equation.stop(end).map_or(T::zero(), |s| s.press_rounding);
@@ -63,7 +65,10 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         for (order, rate) in (BY_ACCELERATION..).zip(rates) {
             let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
             if rate > size {
-                break;
+                self.contact = Contact::Resting(end);
+                self.touch = None;
+                self.record.rest(&self.at, side(end));
+                return;
             }
             if rate < -size {
                 self.touch = Some(Touch { end, order });
@@ -71,15 +76,15 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 return;
             }
         }
-        self.contact = Contact::Resting(end);
-        self.touch = None;
-        self.record.rest(&self.at, side(end));
+        self.touch = Some(Touch { end, order: UNDECIDED });
+        self.contact = Contact::Free;
     }
 
     /// The mass stands still until `until`.
     pub(super) fn stand(&mut self, until: Instant<T>, phase: Phase) {
         let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
-        self.record.stand(&self.at, &until, self.x, phase, |at| base_at(drive, &clock, segment, at, unit));
+        self.record
+            .stand(&self.at, &until, (self.x, self.v), phase, |at| base_at(drive, &clock, segment, at, unit));
         self.at = until;
     }
 
@@ -223,8 +228,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return false;
         }
         self.record.chatter_sum(&self.at, speed);
-        self.v = T::zero();
         self.stand(until, Phase::Free);
+        self.v = T::zero();
         self.steps += 1;
         self.contact = Contact::Resting(end);
         self.touch = None;

@@ -2,6 +2,7 @@
 
 mod base;
 mod clock;
+mod composite;
 mod contact;
 mod describe;
 mod drive;
@@ -15,6 +16,7 @@ mod result;
 mod scales;
 mod series;
 mod summary;
+mod tone;
 
 pub use base::STANDARD_GRAVITY;
 pub use model::{Model, Request};

@@ -63,6 +63,8 @@ pub(super) struct Touch {
 pub(super) const BY_SPEED: usize = 1;
 pub(super) const BY_ACCELERATION: usize = 2;
 pub(super) const BY_JERK: usize = 3;
+/// Nothing up to the fourth coefficient opens the gap: what follows decides.
+pub(super) const UNDECIDED: usize = 5;
 /// The surface is not there for one step: neither side of a break claims a mass that stands on it.
 pub(super) const HELD: usize = usize::MAX;
 
@@ -150,12 +152,13 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let unit = equation.unit;
         let x = T::of(model.start.0);
         let v = T::of(model.start.1 * unit);
+        let settings = Settings::new(model, unit, tolerance);
         Self {
             equation,
             drive,
             clock,
-            settings: Settings::new(model, unit, tolerance),
-            record: Recorder::new(model, clock, unit, request, (x, v)),
+            record: Recorder::new(model, clock, unit, settings.order, request, (x, v)),
+            settings,
             series: Series::new(),
             roll: D::Rolling::default(),
             segment: 0,
@@ -395,10 +398,11 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
 
     /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and
     /// rounding ask: the residual is what the first neglected terms leave.
-    fn step_holds(&self, h: T, (y, v, acceleration): (T, T, T)) -> bool {
+    fn step_holds(&mut self, h: T, (y, v, acceleration): (T, T, T)) -> bool {
         let arena = &self.equation.arenas[self.arena];
         let at = self.clock.advance(&self.at, h);
-        let base = self.drive.value(&self.clock, &at, self.segment, || self.series.base(h));
+        let series = &self.series;
+        let base = self.drive.value(&self.clock, &at, self.segment, || series.base(h), &mut self.roll);
         let sum = (acceleration + self.equation.damping * v) + base;
         let residual = (arena.force.at(y) + sum).abs() * h;
         let order = self.series.known - 1;

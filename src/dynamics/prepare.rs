@@ -2,12 +2,14 @@
 
 use super::base::{BaseMotion, BaseTone};
 use super::clock::{Clock, Instant};
-use super::drive::{Chirp, Composite, Drive, Line, Ramp, Sine, Still, Tone, TurnsPerCycle};
+use super::composite::{Chirp, Composite, Line};
+use super::drive::{Drive, Still};
 use super::equation::Equation;
 use super::model::{Model, Request};
 use super::motion::Motion;
 use super::result::Run;
 use super::series::ROOM;
+use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
 use crate::numeric::{Ratio, Scalar};
 use crate::scene::Record;
 

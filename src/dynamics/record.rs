@@ -5,7 +5,7 @@ use super::model::{Model, Request};
 use super::regime::{CrossingLog, Strobe};
 use super::result::{Event, EventKind, Phase, Sample, Side};
 use super::series::Series;
-use crate::numeric::{CompensatedSum, PolynomialRoots, Scalar};
+use crate::numeric::{CompensatedSum, GaussLegendre, PolynomialRoots, Scalar};
 
 /// Most crossings and stroboscopic states that are kept to tell the regime; a window of more is judged by
 /// its first ones.
@@ -76,6 +76,8 @@ pub(crate) struct Recorder<'a, T, const LEDGER: bool> {
     pub(super) next_strobe: Option<Instant<T>>,
     pub(super) strobe_cycles: i64,
     pub(super) counts: Counts,
+    /// What integrals over a step are taken with.
+    pub(super) rule: GaussLegendre<T>,
 }
 
 #[derive(Default, Clone, Copy)]
@@ -90,7 +92,14 @@ pub(super) struct Counts {
 }
 
 impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
-    pub fn new(model: &'a Model, clock: Clock<T>, unit: f64, request: &Request<'a>, start: (T, T)) -> Self {
+    pub fn new(
+        model: &'a Model,
+        clock: Clock<T>,
+        unit: f64,
+        order: usize,
+        request: &Request<'a>,
+        start: (T, T),
+    ) -> Self {
         let from = clock.at(model.settle);
         let (periods, cycles) = model.window_periods();
         let to = if periods > 0 {
@@ -125,6 +134,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             next_strobe: (periods > 0).then_some(from),
             strobe_cycles: cycles,
             counts: Counts::default(),
+            rule: GaussLegendre::new(order / 2 + 1),
         }
     }
 
@@ -147,7 +157,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         let overlap = self.overlap(&step.at, step.length);
         let full = overlap.is_some_and(|(from, to)| from == T::zero() && to == step.length);
         if LEDGER {
-            let (squared, av) = step.series.integrals::<true>(T::zero(), step.length);
+            let (squared, av) = step.series.integrals::<true>(&self.rule, T::zero(), step.length);
             self.whole.squared_velocity.add(squared);
             self.whole.work.add(-av);
             self.work_moved += av.to_f64().abs();
@@ -159,7 +169,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         }
         if let Some((from, to)) = overlap {
             if !LEDGER || !full {
-                let (squared, av) = step.series.integrals::<LEDGER>(from, to);
+                let (squared, av) = step.series.integrals::<LEDGER>(&self.rule, from, to);
                 self.settled.squared_velocity.add(squared);
                 self.settled.work.add(-av);
             }
@@ -317,12 +327,12 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     }
 
     /// Takes in a span in which the mass stands still at `x` (at rest on a stop, in an equilibrium, or in
-    /// the last, unresolved bounces of a chatter: `phase` free).
+    /// the last, unresolved bounces of a chatter: `phase` free, and `v` the speed at its first instant).
     pub fn stand(
         &mut self,
         at: &Instant<T>,
         until: &Instant<T>,
-        x: T,
+        (x, v): (T, T),
         phase: Phase,
         mut base: impl FnMut(&Instant<T>) -> f64,
     ) {
@@ -342,10 +352,11 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             self.strobe(x, T::zero());
         }
         if self.next_time < self.times.len() {
-            let end = self.clock.seconds(until);
+            let (begin, end) = (self.clock.seconds(at), self.clock.seconds(until));
             while let Some(t) = self.times.get(self.next_time).copied().filter(|t| *t < end) {
                 let base_accel = base(&self.clock.at(t));
-                self.samples.push(Sample { t, x: x.to_f64(), v: 0.0, base_accel, phase });
+                let v = if t <= begin { v.to_f64() / self.unit } else { 0.0 };
+                self.samples.push(Sample { t, x: x.to_f64(), v, base_accel, phase });
                 self.next_time += 1;
             }
         }

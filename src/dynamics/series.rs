@@ -9,7 +9,7 @@
 
 use super::drive::Drive;
 use super::equation::PieceForce;
-use crate::numeric::{Number, Scalar};
+use crate::numeric::{GaussLegendre, MOST_POINTS, Number, Scalar};
 
 /// The highest order of a step.
 pub(crate) const MAX_ORDER: usize = 32;
@@ -34,8 +34,6 @@ pub(crate) struct Series<T> {
     square: [T; ROOM],
     nested: [[T; ROOM]; ROWS],
     inverse: [T; ROOM],
-    /// 1/(k + 1).
-    share: [T; 2 * ROOM],
 }
 
 impl<T: Scalar> Series<T> {
@@ -44,21 +42,8 @@ impl<T: Scalar> Series<T> {
         for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
             *slot = T::of(1.0) / T::of((k * (k - 1)) as f64);
         }
-        let mut share = [T::zero(); 2 * ROOM];
-        for (k, slot) in share.iter_mut().enumerate() {
-            *slot = T::of(1.0) / T::of((k + 1) as f64);
-        }
         let zeros = [T::zero(); ROOM];
-        Self {
-            y: zeros,
-            a: zeros,
-            known: 0,
-            scaled: zeros,
-            square: zeros,
-            nested: [zeros; ROWS],
-            inverse,
-            share,
-        }
+        Self { y: zeros, a: zeros, known: 0, scaled: zeros, square: zeros, nested: [zeros; ROWS], inverse }
     }
 
     /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first
@@ -188,54 +173,41 @@ impl<T: Scalar> Series<T> {
     }
 
     /// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base
-    /// acceleration times velocity; of the full products of the step's own polynomials. (Truncated at their order
-    /// the products miss, on a long step under a fast drive, a thousand times the tolerance.)
-    pub fn integrals<const WORK: bool>(&self, from: T, to: T) -> (T, T) {
-        let n = self.known - 1;
-        let mut v = [T::zero(); ROOM];
-        for (k, slot) in v[..n].iter_mut().enumerate() {
-            *slot = self.y[k + 1] * T::of((k + 1) as f64);
+    /// acceleration times velocity; of the step's own polynomials by Gauss' rule. (Products truncated at their order
+    /// miss, on a long step under a fast drive, a thousand times the tolerance.)
+    pub fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
+        let length = to - from;
+        let count = rule.nodes().len();
+        let mut times = [T::zero(); MOST_POINTS];
+        for (time, node) in times.iter_mut().zip(rule.nodes()) {
+            *time = from + length * *node;
         }
-        let over = |coefficient: &dyn Fn(usize) -> T, count: usize| {
-            let mut integral = [T::zero(); 2 * ROOM];
-            for (k, slot) in integral[..count].iter_mut().enumerate() {
-                *slot = coefficient(k) * self.share[k];
+        let times = &times[..count];
+        let mut v = [T::zero(); MOST_POINTS];
+        for k in (1..self.known).rev() {
+            let c = self.y[k] * T::of(k as f64);
+            for (sum, t) in v[..count].iter_mut().zip(times) {
+                *sum = *sum * *t + c;
             }
-            let at = |t: T| integral[..count].iter().rev().fold(T::zero(), |sum, c| sum * t + *c) * t;
-            if from == T::zero() { at(to) } else { at(to) - at(from) }
-        };
-        let squared = over(&|k| square_within(&v[..n], k), 2 * n - 1);
-        if !WORK {
-            return (squared, T::zero());
         }
-        let a = &self.a[..(n - 1).max(SEEDED)];
-        (squared, over(&|k| product_within(a, &v[..n], k), a.len() + n - 1))
+        let mut squared = T::zero();
+        for (v, weight) in v.iter().zip(rule.weights()) {
+            squared += *v * *v * *weight;
+        }
+        let mut power = T::zero();
+        if WORK {
+            let mut a = [T::zero(); MOST_POINTS];
+            for c in self.a[..(self.known - 2).max(SEEDED)].iter().rev() {
+                for (sum, t) in a[..count].iter_mut().zip(times) {
+                    *sum = *sum * *t + *c;
+                }
+            }
+            for ((a, v), weight) in a.iter().zip(&v).zip(rule.weights()) {
+                power += *a * *v * *weight;
+            }
+        }
+        (squared * length, power * length)
     }
-}
-
-/// Coefficient `k` of the product of two polynomials with these coefficients.
-#[inline]
-fn product_within<T: Number>(a: &[T], b: &[T], k: usize) -> T {
-    let from = (k + 1).saturating_sub(b.len());
-    let to = k.min(a.len() - 1);
-    let mut sum = T::zero();
-    for (p, q) in a[from..=to].iter().zip(b[k - to..=k - from].iter().rev()) {
-        sum += *p * *q;
-    }
-    sum
-}
-
-/// Coefficient `k` of the square of a polynomial with these coefficients.
-#[inline]
-fn square_within<T: Number>(a: &[T], k: usize) -> T {
-    let from = (k + 1).saturating_sub(a.len());
-    let half = k.div_ceil(2); // pairs below the middle: from..half
-    let mut sum = T::zero();
-    for (p, q) in a[from..half].iter().zip(a[k + 1 - half..=k - from].iter().rev()) {
-        sum += *p * *q;
-    }
-    let twice = sum + sum;
-    if k.is_multiple_of(2) { twice + a[k / 2] * a[k / 2] } else { twice }
 }
 
 /// Sum of a\[i\] b\[k-i\] over i = 0..=k; two running sums, since one addition waits for the last.

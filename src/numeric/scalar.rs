@@ -97,7 +97,13 @@ impl Scalar for f64 {
     }
     #[inline(always)]
     fn floor(self) -> Self {
-        f64::floor(self)
+        // The library's is a call on a processor that is only promised SSE2.
+        if self.abs() < 4.0e18 {
+            let whole = self as i64 as f64;
+            if whole > self { whole - 1.0 } else { whole }
+        } else {
+            self
+        }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

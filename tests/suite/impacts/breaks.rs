@@ -145,7 +145,8 @@ fn leaving_the_known_range_ends_the_run_there_and_then() {
     let Outcome::LeftTable { at } = r.summary.outcome else { panic!("{:?}", r.summary) };
     assert!((at - 1.5).abs() < 1e-15 && r.summary.final_x == 0.75 && r.summary.final_v == 0.5);
     assert_eq!(r.samples.iter().map(|p| p.t).collect::<Vec<_>>(), [0.0, 0.5, 1.5]);
-    assert_eq!((r.summary.max_abs_x, r.summary.rms_velocity), (Some(0.75), Some(0.5)));
+    assert_eq!(r.summary.max_abs_x, Some(0.75));
+    assert!((r.summary.rms_velocity.unwrap() - 0.5).abs() < 1e-15);
     // a stop at the end of the range is reached first
     let mut s = free(0.0, 0.5, 4.0);
     s.stops = right_stop(750.0, 1.0);
