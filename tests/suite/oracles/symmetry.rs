@@ -44,12 +44,12 @@ fn chaos_is_mirrored_to_the_last_bit() {
     // amplitude, and by a phase half a turn on.
     let start = ["start.x_mm=300", "start.v_m_per_s=0.4"];
     let opposite = ["start.x_mm=-300", "start.v_m_per_s=-0.4"];
-    let base = preset("duffing", &start);
+    let base = preset("duffing-chaos", &start);
     let amplitude = "excitation.amplitude_g=-0.050985810648896415";
-    let run = mirror(&base, &preset("duffing", &[&opposite[..], &[amplitude]].concat()));
+    let run = mirror(&base, &preset("duffing-chaos", &[&opposite[..], &[amplitude]].concat()));
     assert!(run.summary.total_crossings > 100);
-    mirror(&base, &preset("duffing", &[&opposite[..], &["excitation.phase_deg=90"]].concat()));
-    mirror(&base, &preset("duffing", &[&opposite[..], &["excitation.phase_deg=-270"]].concat()));
+    mirror(&base, &preset("duffing-chaos", &[&opposite[..], &["excitation.phase_deg=90"]].concat()));
+    mirror(&base, &preset("duffing-chaos", &[&opposite[..], &["excitation.phase_deg=-270"]].concat()));
 }
 
 #[test]
