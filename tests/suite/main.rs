@@ -1,5 +1,8 @@
 //! One test binary; each module holds one kind of evidence.
 
+mod absent;
+#[path = "../../benches/by_hand/mod.rs"]
+mod by_hand;
 mod cli;
 mod convergence;
 mod drives;
