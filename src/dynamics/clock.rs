@@ -7,7 +7,7 @@
 //! Inside the integrator time is counted in a unit that is a power of two of a second, near the scene's
 //! time scale: the conversion is exact and Taylor coefficients stay near 1.
 
-use crate::numeric::{DoubleDouble, Scalar};
+use crate::numeric::{DoubleDouble, Number, Scalar};
 
 /// A point in time: whole cycles, and a phase in kernel time units, 0 <= phase < period.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +31,11 @@ impl<T: Scalar> Clock<T> {
     /// Preconditions: `frequency` in Hz above 0, `unit` in s a power of two.
     pub fn new(frequency: f64, unit: f64) -> Self {
         Self { frequency, unit, period: T::of(1.0) / T::of(frequency * unit) }
+    }
+
+    /// Seconds per kernel time unit.
+    pub fn unit(&self) -> f64 {
+        self.unit
     }
 
     /// Length of a cycle in kernel time units.
@@ -64,6 +69,12 @@ impl<T: Scalar> Clock<T> {
         let product = DoubleDouble::product(quotient, self.frequency);
         let rest = (cycles - product.high()) - product.low();
         quotient + (phase + rest / self.frequency)
+    }
+
+    /// Seconds of an instant, in twice the digits.
+    pub fn exact_seconds(&self, at: &Instant<T>) -> DoubleDouble {
+        let cycles = DoubleDouble::of(at.cycle as f64) / DoubleDouble::of(self.frequency);
+        cycles + at.phase.to_pair() * DoubleDouble::of(self.unit)
     }
 
     /// The instant `dt` >= 0 kernel time units later.

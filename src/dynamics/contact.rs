@@ -1,9 +1,10 @@
 //! What happens where the mass touches a stop, a break or the end of the curve?
 
 use super::clock::Instant;
-use super::drive::{Drive, Fall, Press, SEARCH_STRIDES, Span};
+use super::composite::SEARCH_STRIDES;
+use super::drive::{Drive, Fall, Press, Span};
 use super::equation::{End, EndKind, FAR};
-use super::motion::{BY_ACCELERATION, BY_JERK, BY_SPEED, Contact, Flow, HELD, Motion, Touch};
+use super::motion::{BY_ACCELERATION, BY_JERK, BY_SPEED, Contact, Flow, HELD, Motion, Touch, UNDECIDED};
 use super::prepare::base_at;
 use super::result::{Outcome, Phase, Side};
 use crate::numeric::Scalar;
@@ -38,7 +39,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             } else if outward < T::zero() {
                 self.touch = Some(Touch { end, order: BY_SPEED });
             } else {
-                self.touch = Some(Touch { end, order: BY_ACCELERATION });
+                self.balance(end);
             }
             return;
         }
@@ -54,7 +55,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     }
 
     /// The mass stands at the stop of `end` with no speed: does it rest or leave? The first derivative of the
-    /// pressing acceleration that is not 0 (to the rounding of its terms) decides; if none is, it rests.
+    /// pressing acceleration that is not 0 (to the rounding of its terms) decides; if none is, nothing presses: it
+    /// stays there, free.
     fn settle(&mut self, end: End) {
         let rates = self.press(end);
         let stop_rounding = self.equation.stop(end).map_or(T::zero(), |s| s.press_rounding);
@@ -63,7 +65,10 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         for (order, rate) in (BY_ACCELERATION..).zip(rates) {
             let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
             if rate > size {
-                break;
+                self.contact = Contact::Resting(end);
+                self.touch = None;
+                self.record.rest(&self.at, side(end));
+                return;
             }
             if rate < -size {
                 self.touch = Some(Touch { end, order });
@@ -71,15 +76,15 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 return;
             }
         }
-        self.contact = Contact::Resting(end);
-        self.touch = None;
-        self.record.rest(&self.at, side(end));
+        self.touch = Some(Touch { end, order: UNDECIDED });
+        self.contact = Contact::Free;
     }
 
     /// The mass stands still until `until`.
     pub(super) fn stand(&mut self, until: Instant<T>, phase: Phase) {
         let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
-        self.record.stand(&self.at, &until, self.x, phase, |at| base_at(drive, &clock, segment, at, unit));
+        self.record
+            .stand(&self.at, &until, (self.x, self.v), phase, |at| base_at(drive, &clock, segment, at, unit));
         self.at = until;
     }
 
@@ -163,6 +168,32 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.touch = Some(Touch { end: end.other(), order: BY_SPEED });
     }
 
+    /// The mass stands on the break at `end` of its arena with no speed: the first derivative of its motion that is
+    /// not 0 (to the rounding of its terms) chooses the side; where none is, it stays on this one.
+    fn balance(&mut self, end: End) {
+        let sign = end.sign::<T>();
+        let arena = &self.equation.arenas[self.arena];
+        let (force, _, rounding) = arena.force.value(arena.end(end).0 - arena.origin);
+        self.drive.seed(&self.clock, &self.at, self.segment, &mut self.series.a, &mut self.roll);
+        let a = &self.series.a;
+        let rates = [-(sign * (force + a[0])), -(sign * a[1]), -(sign * a[2])];
+        let rounding = rounding + a[0].abs() * T::of(4.0 * T::EPSILON);
+        self.v = T::zero();
+        self.touch = Some(Touch { end, order: HELD });
+        for (order, rate) in (BY_ACCELERATION..).zip(rates) {
+            let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
+            if rate > size {
+                self.enter_neighbour(end);
+                self.touch = Some(Touch { end: end.other(), order });
+                return;
+            }
+            if rate < -size {
+                self.touch = Some(Touch { end, order });
+                return;
+            }
+        }
+    }
+
     /// A pressed rebound, slow enough: sums what remains of the chatter in closed form. Expects the
     /// drive to be seeded.
     ///
@@ -197,8 +228,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return false;
         }
         self.record.chatter_sum(&self.at, speed);
-        self.v = T::zero();
         self.stand(until, Phase::Free);
+        self.v = T::zero();
         self.steps += 1;
         self.contact = Contact::Resting(end);
         self.touch = None;
@@ -222,11 +253,10 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             EndKind::Stop => self.settle(end), // a touch without speed is no impact
             EndKind::Break if outward > T::zero() => self.enter_neighbour(end),
             EndKind::Break => {
-                // A touch of the break: back inside, unless the acceleration leads out; where both sides lead
-                // out, by rounding, it stays on this side.
+                // A touch of the break; where both sides lead out, by rounding, it stays on this one.
                 self.v = T::zero();
                 if !at_once {
-                    self.touch = Some(Touch { end, order: BY_ACCELERATION });
+                    self.balance(end);
                 } else if self.turned_back {
                     self.touch = Some(Touch { end, order: HELD });
                 } else {

@@ -24,10 +24,11 @@ pub(crate) fn describe(model: &Model) -> Vec<String> {
         None => absent.push("stops"),
     }
     let drive = &model.drive;
+    let excitation_lines = lines.len();
     if drive.constant != 0.0 {
         lines.push(format!("constant base acceleration of {} m/s^2", short(drive.constant)));
     }
-    for tone in &drive.tones {
+    for tone in drive.tones.iter().filter(|t| !t.noise) {
         let size = match tone.ramp {
             Some((from, over)) => {
                 format!("{} to {} m/s^2 over {over} s", short(from), short(tone.amplitude))
@@ -36,13 +37,40 @@ pub(crate) fn describe(model: &Model) -> Vec<String> {
         };
         lines.push(format!("base acceleration: sine of {} Hz, amplitude {size}", short(tone.frequency)));
     }
-    if drive.tones.len() > 1 {
+    for noise in &drive.noises {
+        lines.push(format!(
+            "base acceleration: noise of {} m/s^2 rms from {} to {} Hz, {} sines, seed {}",
+            short(noise.rms),
+            short(noise.low),
+            short(noise.high),
+            noise.lines,
+            noise.seed
+        ));
+    }
+    for chirp in &drive.chirps {
+        lines.push(format!(
+            "base acceleration: chirp from {} to {} Hz over {} s, amplitude {} m/s^2",
+            short(chirp.from),
+            short(chirp.to),
+            short(chirp.over),
+            short(chirp.amplitude.abs())
+        ));
+    }
+    for record in &drive.records {
+        lines.push(format!(
+            "base acceleration: record of {} samples up to {} s, peak {} m/s^2",
+            record.times.len(),
+            short(record.times.last().copied().unwrap_or(0.0)),
+            short(record.peak())
+        ));
+    }
+    if drive.fastest().is_some() && drive.tones.iter().filter(|t| !t.noise).count() > 1 {
         lines.push(match model.forcing_period {
             Some(period) => format!("the excitation repeats after {} s", short(period)),
             None => "the excitation has no common period within reach".into(),
         });
     }
-    if drive.constant == 0.0 && drive.tones.is_empty() {
+    if excitation_lines == lines.len() {
         absent.push("excitation");
     }
     absent.push("transducer");

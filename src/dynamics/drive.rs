@@ -1,29 +1,20 @@
 //! How does the base accelerate, as a series about any instant?
 //!
 //! Three forms, one chosen per run, so that a scene pays only for what it names: a constant, one sine, a sum
-//! of tones of which some may be ramped. A tone is evaluated from the clock's exact phase at the start of a
+//! of anything. A tone is evaluated from the clock's exact phase at the start of a
 //! step and continued by its own series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so nothing drifts and no library
 //! function is called.
 
 use super::clock::{Clock, Instant};
-use super::series::{ROOM, SEEDED};
-use crate::numeric::{PolynomialRoots, Ratio, Scalar};
-
-/// How long a search for a release looks ahead at a time, in radians of the fastest tone, and the order of
-/// its series: the first neglected term, 2^27/27!, is below rounding.
-const SEARCH_RADIANS: f64 = 2.0;
-const SEARCH_ORDER: usize = 26;
-
-/// Strides of a search before it reports where it stands: longer than a common period of two or three
-/// tones of everyday frequencies.
-pub(crate) const SEARCH_STRIDES: u64 = 4096;
+use super::series::ROOM;
+use crate::numeric::Scalar;
 
 /// Acceleration of the base, in kernel units.
 pub(crate) trait Drive<T: Scalar> {
     /// State carried along a series.
     type Rolling: Default;
 
-    /// Fills the first [`SEEDED`] coefficients of `a`, at `at`.
+    /// Fills the first `SEEDED` coefficients of `a`, at `at`.
     fn seed(
         &self,
         clock: &Clock<T>,
@@ -33,8 +24,19 @@ pub(crate) trait Drive<T: Scalar> {
         roll: &mut Self::Rolling,
     );
 
-    /// Fills a\[k\], k >= [`SEEDED`], once each and in ascending order; `inverse[n]` is 1/(n(n-1)).
+    /// Fills a\[k\], k >= `SEEDED`, once each and in ascending order; `inverse[n]` is 1/(n(n-1)).
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling);
+
+    /// a(t) at `at` by itself, not by the series: what a step is checked against. A drive of many tones may
+    /// answer with `by_series`, the value of its series.
+    fn value(
+        &self,
+        clock: &Clock<T>,
+        at: &Instant<T>,
+        segment: usize,
+        by_series: impl Fn() -> T,
+        roll: &mut Self::Rolling,
+    ) -> T;
 
     /// The instant at which segment `segment` ends, where one follows.
     fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
@@ -63,7 +65,7 @@ pub(crate) enum Fall<T> {
 
 impl<T: Scalar> Fall<T> {
     /// At `fall` where that lies before the end of the span.
-    fn within(clock: &Clock<T>, fall: Instant<T>, until: &Instant<T>) -> Self {
+    pub fn within(clock: &Clock<T>, fall: Instant<T>, until: &Instant<T>) -> Self {
         if clock.between(&fall, until) > T::zero() { Self::At(fall) } else { Self::Never }
     }
 }
@@ -100,302 +102,14 @@ impl<T: Scalar> Drive<T> for Still<T> {
     }
     #[inline]
     fn extend(&self, _: usize, _: &mut [T; ROOM], _: &[T; ROOM], (): &mut ()) {}
+    #[inline]
+    fn value(&self, _: &Clock<T>, _: &Instant<T>, _: usize, _: impl Fn() -> T, (): &mut ()) -> T {
+        self.acceleration
+    }
     fn segment_end(&self, _: usize) -> Option<Instant<T>> {
         None
     }
     fn next_fall(&self, _: &Clock<T>, _: &Span<T>, _: Press<T>, (): &mut ()) -> Fall<T> {
         Fall::Never
-    }
-}
-
-/// Linear growth of a tone's amplitude from the run's start to an instant; constant from there.
-#[derive(Debug, Clone)]
-pub(crate) struct Ramp<T> {
-    /// Amplitude at time 0.
-    pub from: T,
-    /// Growth per kernel time unit.
-    pub rate: T,
-    /// The segment of the drive that begins where the ramp ends.
-    pub holds_from_segment: usize,
-}
-
-/// amplitude sin(2 pi (frequency t) + phase).
-#[derive(Debug, Clone)]
-pub(crate) struct Tone<T> {
-    /// Amplitude (that after the ramp, where there is one), any sign.
-    pub amplitude: T,
-    /// Turns per kernel time unit.
-    pub frequency: T,
-    /// This tone's frequency over the clock's.
-    pub ratio: TurnsPerCycle,
-    /// Phase at time 0 in turns, beyond the quarter.
-    pub phase: T,
-    /// A quarter turn ahead: a cosine.
-    pub quarter: bool,
-    /// Growth of the amplitude, where there is one.
-    pub ramp: Option<Ramp<T>>,
-}
-
-/// Turns that a tone makes in one cycle of the clock.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum TurnsPerCycle {
-    /// An exact ratio of the decimal frequencies.
-    Exact(Ratio),
-    /// No common measure within reach: the rounded quotient.
-    Rounded(f64),
-}
-
-impl TurnsPerCycle {
-    /// The turn that a tone is in at the start of a cycle, less whole turns.
-    #[inline]
-    fn fraction(self, cycle: i64) -> f64 {
-        match self {
-            Self::Exact(ratio) => ratio.fraction_of_multiple(cycle.unsigned_abs()),
-            Self::Rounded(ratio) => {
-                let turns = crate::numeric::DoubleDouble::product(cycle as f64, ratio);
-                (turns - turns.floor()).to_f64()
-            }
-        }
-    }
-}
-
-impl<T: Scalar> Tone<T> {
-    /// Value and time derivative per unit amplitude.
-    #[inline]
-    fn unit(&self, at: &Instant<T>) -> (T, T) {
-        let turns = at.phase * self.frequency + (T::of(self.ratio.fraction(at.cycle)) + self.phase);
-        let (s, c) = T::sin_cos_turns(turns);
-        let omega = T::tau() * self.frequency;
-        if self.quarter { (c, -(s * omega)) } else { (s, c * omega) }
-    }
-
-    /// -(2 pi frequency)^2.
-    #[inline]
-    fn curvature(&self) -> T {
-        let omega = T::tau() * self.frequency;
-        -(omega * omega)
-    }
-
-    /// Amplitude and its growth at an instant.
-    fn amplitude_at(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> (T, T) {
-        match &self.ramp {
-            Some(ramp) if segment < ramp.holds_from_segment => {
-                let start = Instant { cycle: 0, phase: T::zero() };
-                (ramp.from + ramp.rate * clock.between(&start, at), ramp.rate)
-            }
-            _ => (self.amplitude, T::zero()),
-        }
-    }
-
-    fn largest(&self) -> T {
-        match &self.ramp {
-            Some(ramp) => self.amplitude.abs().larger(ramp.from.abs()),
-            None => self.amplitude.abs(),
-        }
-    }
-}
-
-/// One sine. Its frequency is the clock's, so a fall repeats at one phase of the cycle.
-#[derive(Debug, Clone)]
-pub(crate) struct Sine<T> {
-    pub tone: Tone<T>,
-}
-
-impl<T: Scalar> Drive<T> for Sine<T> {
-    type Rolling = ();
-
-    #[inline]
-    fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], (): &mut ()) {
-        let (s, d) = self.tone.unit(at);
-        let w = self.tone.curvature();
-        a[0] = self.tone.amplitude * s;
-        a[1] = self.tone.amplitude * d;
-        a[2] = w * a[0] * T::of(0.5);
-        a[3] = w * a[1] / T::of(6.0);
-    }
-
-    #[inline]
-    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], (): &mut ()) {
-        a[k] = self.tone.curvature() * a[k - 2] * inverse[k];
-    }
-
-    fn segment_end(&self, _: usize) -> Option<Instant<T>> {
-        None
-    }
-
-    fn next_fall(
-        &self,
-        clock: &Clock<T>,
-        &Span { from, until, .. }: &Span<T>,
-        Press { threshold, sign }: Press<T>,
-        (): &mut (),
-    ) -> Fall<T> {
-        // threshold - b sin = 0 with sin rising through it (b > 0) or falling (b < 0).
-        let b = self.tone.amplitude * sign;
-        let height = threshold / b.abs();
-        if !(height.abs() < T::of(1.0)) {
-            return Fall::Never; // never reached, or touched without a change of sign
-        }
-        let mut turns = T::of(height.to_f64().asin() / std::f64::consts::TAU);
-        for _ in 0..3 {
-            // Newton: settles the last bits, and all of them in a longer number type
-            let (s, c) = T::sin_cos_turns(turns);
-            let slope = c * T::tau();
-            if slope.to_f64() > 1e-6 {
-                turns -= (s - height) / slope;
-            }
-        }
-        if b < T::zero() {
-            turns -= T::of(0.5);
-        }
-        let quarter = if self.tone.quarter { T::of(0.25) } else { T::zero() };
-        let mut turns = (turns - quarter) - self.tone.phase;
-        turns -= turns.floor();
-        let mut phase = turns / self.tone.frequency;
-        if phase >= clock.period() {
-            phase = T::zero();
-        }
-        let behind = from.phase - phase;
-        // A fall behind by no more than rounding is now.
-        let slack = clock.period() * T::of(8.0 * T::EPSILON);
-        let fall = if behind <= T::zero() {
-            Instant { cycle: from.cycle, phase }
-        } else if behind <= slack {
-            from
-        } else {
-            Instant { cycle: from.cycle + 1, phase }
-        };
-        Fall::within(clock, fall, &until)
-    }
-}
-
-/// A constant and any number of tones.
-#[derive(Debug, Clone)]
-pub(crate) struct Tones<T> {
-    pub constant: T,
-    pub tones: Vec<Tone<T>>,
-    /// Ends of the ramps, ascending.
-    pub segment_ends: Vec<Instant<T>>,
-    /// Cycles of the clock after which all tones are where they were, where that is known.
-    pub common_cycles: Option<i64>,
-}
-
-/// The last two coefficients of each tone's sine, its amplitude and growth.
-#[derive(Debug, Clone)]
-pub(crate) struct RollingTones<T> {
-    tones: Vec<[T; 4]>,
-}
-
-impl<T> Default for RollingTones<T> {
-    fn default() -> Self {
-        Self { tones: Vec::new() }
-    }
-}
-
-impl<T: Scalar> Drive<T> for Tones<T> {
-    type Rolling = RollingTones<T>;
-
-    fn seed(
-        &self,
-        clock: &Clock<T>,
-        at: &Instant<T>,
-        segment: usize,
-        a: &mut [T; ROOM],
-        roll: &mut Self::Rolling,
-    ) {
-        roll.tones.clear(); // keeps its room: nothing is allocated after the first call
-        let mut sums = [self.constant, T::zero(), T::zero(), T::zero()];
-        for tone in &self.tones {
-            let (s, d) = tone.unit(at);
-            let w = tone.curvature();
-            let unit = [s, d, w * s * T::of(0.5), w * d / T::of(6.0)];
-            let (amplitude, growth) = tone.amplitude_at(clock, at, segment);
-            for (k, sum) in sums.iter_mut().enumerate() {
-                *sum += amplitude * unit[k];
-                if k > 0 {
-                    *sum += growth * unit[k - 1];
-                }
-            }
-            roll.tones.push([unit[2], unit[3], amplitude, growth]);
-        }
-        a[..SEEDED].copy_from_slice(&sums);
-    }
-
-    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling) {
-        let mut sum = T::zero();
-        for (tone, [before, last, amplitude, growth]) in self.tones.iter().zip(&mut roll.tones) {
-            let next = tone.curvature() * *before * inverse[k];
-            sum += *amplitude * next + *growth * *last;
-            (*before, *last) = (*last, next);
-        }
-        a[k] = sum;
-    }
-
-    fn segment_end(&self, segment: usize) -> Option<Instant<T>> {
-        self.segment_ends.get(segment).copied()
-    }
-
-    fn next_fall(
-        &self,
-        clock: &Clock<T>,
-        &Span { from, until, segment }: &Span<T>,
-        Press { threshold, sign }: Press<T>,
-        roll: &mut Self::Rolling,
-    ) -> Fall<T> {
-        let mut reach = T::zero();
-        let mut fastest = T::zero();
-        for tone in &self.tones {
-            reach += tone.largest();
-            if tone.largest() > T::zero() {
-                fastest = fastest.larger(tone.frequency);
-            }
-        }
-        if threshold - sign * self.constant > reach || fastest == T::zero() {
-            return Fall::Never;
-        }
-        let stride = T::of(SEARCH_RADIANS) / (T::tau() * fastest);
-        let ramping = segment < self.segment_ends.len();
-        let mut at = from;
-        let mut a = [T::zero(); ROOM];
-        let mut inverse = [T::zero(); ROOM];
-        for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
-            *slot = T::of(1.0) / T::of((k * (k - 1)) as f64);
-        }
-        for _ in 0..SEARCH_STRIDES {
-            let left = clock.between(&at, &until);
-            if left <= T::zero() {
-                return Fall::Never;
-            }
-            let h = stride.smaller(left);
-            self.seed(clock, &at, segment, &mut a, roll);
-            for k in SEEDED..=SEARCH_ORDER {
-                self.extend(k, &mut a, &inverse, roll);
-            }
-            let mut g = [T::zero(); SEARCH_ORDER + 1];
-            let mut power = T::of(1.0);
-            for (k, slot) in g.iter_mut().enumerate() {
-                *slot = -(sign * a[k]) * power;
-                power = power * h;
-            }
-            g[0] += threshold;
-            if g[0] <= T::zero() {
-                if g[1] <= T::zero() {
-                    return Fall::At(at);
-                }
-                g[0] = T::of(f64::MIN_POSITIVE); // rounding: it rises, the fall comes later
-            }
-            if let Some(s) = PolynomialRoots::new(&g).first() {
-                let fall = clock.advance(&at, s * h);
-                return Fall::within(clock, fall, &until);
-            }
-            at = clock.advance(&at, h);
-            if let (false, Some(cycles)) = (ramping, self.common_cycles) {
-                // one common period without a fall: there is none
-                if at.cycle > from.cycle + cycles {
-                    return Fall::Never;
-                }
-            }
-        }
-        Fall::NotBefore(at)
     }
 }

@@ -30,8 +30,14 @@ impl<T: Scalar> PieceForce<T> {
         self.odd
     }
 
+    /// Force over mass at displacement `y` from the origin.
+    #[inline]
+    pub fn at(&self, y: T) -> T {
+        self.coefficients.iter().rev().fold(T::zero(), |sum, c| sum * y + *c)
+    }
+
     /// Force over mass and its slope at displacement `y` from the origin, and a bound of the rounding.
-    fn value(&self, y: T) -> (T, T, T) {
+    pub fn value(&self, y: T) -> (T, T, T) {
         let (mut f, mut slope, mut size) = (T::zero(), T::zero(), T::zero());
         for c in self.coefficients.iter().rev() {
             slope = slope * y + f;

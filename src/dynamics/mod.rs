@@ -1,6 +1,8 @@
 //! Motion: the equation of motion and its exact, event-driven integration.
 
+mod base;
 mod clock;
+mod composite;
 mod contact;
 mod describe;
 mod drive;
@@ -14,7 +16,9 @@ mod result;
 mod scales;
 mod series;
 mod summary;
+mod tone;
 
-pub use model::{Model, Request, STANDARD_GRAVITY};
+pub use base::STANDARD_GRAVITY;
+pub use model::{Model, Request};
 pub use result::*;
 pub use scales::Scales;

@@ -3,17 +3,12 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use super::base::BaseMotion;
 use super::result::Run;
 use super::scales::{Landmarks, Scales};
 use crate::mechanics::Mechanism;
-use crate::numeric::{DoubleDouble, Ratio};
-use crate::scene::{Damping, Excitation, Fault, Scene, Start, Stops};
-
-/// Standard gravity in m/s^2.
-pub const STANDARD_GRAVITY: f64 = 9.80665;
-
-/// The longest common period of several tones, in periods of the fastest.
-const LONGEST_COMMON_PERIOD: u64 = 10_000;
+use crate::numeric::DoubleDouble;
+use crate::scene::{Damping, Fault, Scene, Start, Stops};
 
 /// The most periods of the fastest tone that the clock counts exactly, about 2^53.
 const MOST_PERIODS: f64 = 9e15;
@@ -60,90 +55,6 @@ pub(crate) struct StopPair {
 pub(crate) struct StopAt {
     pub x: f64,
     pub restitution: f64,
-}
-
-/// Base acceleration in SI: a constant and tones.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct BaseMotion {
-    pub constant: f64,
-    pub tones: Vec<BaseTone>,
-}
-
-/// amplitude sin(2 pi frequency t + phase). SI.
-#[derive(Debug, Clone)]
-pub(crate) struct BaseTone {
-    pub amplitude: f64,
-    pub frequency: f64,
-    /// Phase in turns beyond the quarter, 0 <= phase < 1/4.
-    pub phase: f64,
-    /// A quarter turn ahead.
-    pub quarter: bool,
-    /// Amplitude at time 0 and length of the ramp in s.
-    pub ramp: Option<(f64, f64)>,
-}
-
-impl BaseMotion {
-    fn new(excitation: &Excitation) -> Self {
-        let mut motion = Self::default();
-        motion.add(excitation);
-        motion
-    }
-
-    fn add(&mut self, excitation: &Excitation) {
-        match excitation {
-            Excitation::None => {}
-            Excitation::Constant { accel_g } => self.constant += accel_g * STANDARD_GRAVITY,
-            Excitation::Sine { frequency_hz, amplitude_g, phase_deg } => {
-                // Exact: the remainder and the multiple of 90 degrees are.
-                let reduced = phase_deg.rem_euclid(360.0);
-                let quarters = (reduced / 90.0).floor();
-                let rest = reduced - 90.0 * quarters;
-                let quarters = quarters as i64 & 3;
-                let amplitude = amplitude_g * STANDARD_GRAVITY;
-                self.tones.push(BaseTone {
-                    amplitude: if quarters >= 2 { -amplitude } else { amplitude },
-                    frequency: *frequency_hz,
-                    phase: rest / 360.0,
-                    quarter: quarters % 2 == 1,
-                    ramp: None,
-                });
-            }
-            Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s } => self.tones.push(BaseTone {
-                amplitude: to_g * STANDARD_GRAVITY,
-                frequency: *frequency_hz,
-                phase: 0.0,
-                quarter: false,
-                ramp: Some((from_g * STANDARD_GRAVITY, *over_s)),
-            }),
-            Excitation::Sum(parts) => parts.iter().for_each(|part| self.add(part)),
-        }
-    }
-
-    /// The largest acceleration that the terms could add up to.
-    fn reach(&self) -> f64 {
-        let tones = self.tones.iter().map(|t| t.amplitude.abs().max(t.ramp.map_or(0.0, |r| r.0.abs())));
-        self.constant.abs() + tones.sum::<f64>()
-    }
-
-    /// Frequency of the fastest tone in Hz.
-    pub fn fastest(&self) -> Option<f64> {
-        self.tones.iter().map(|t| t.frequency).reduce(f64::max)
-    }
-
-    /// Periods of the fastest tone in the common period of all, where there is one within reach.
-    pub fn common_cycles(&self) -> Option<u64> {
-        let fastest = self.fastest()?;
-        let mut common: u64 = 1;
-        for tone in &self.tones {
-            let denominator = Ratio::of_decimals(tone.frequency, fastest)?.denominator;
-            let shared = crate::numeric::greatest_common_divisor(common.into(), denominator.into()) as u64;
-            common = (common / shared).checked_mul(denominator)?;
-            if common > LONGEST_COMMON_PERIOD {
-                return None;
-            }
-        }
-        Some(common)
-    }
 }
 
 /// What a run should keep.
@@ -194,7 +105,10 @@ impl Model {
                 (0.0, 0.0)
             }
         };
-        let drive = BaseMotion::new(&scene.excitation);
+        let drive = BaseMotion::new(&scene.excitation).unwrap_or_else(|found| {
+            faults.push(found);
+            BaseMotion::default()
+        });
         let periods = drive.fastest().unwrap_or(0.0) * scene.run.duration_s;
         if periods > MOST_PERIODS {
             faults.push(fault(
@@ -216,7 +130,7 @@ impl Model {
         let scales = scales(scene, mass, &mechanism, &drive, start);
         let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
         let on_a_stop = left.is_some_and(|s| s.x == start.0) || right.is_some_and(|s| s.x == start.0);
-        let motionless = scene.start == Start::Rest && !on_a_stop && drive.reach() == 0.0;
+        let motionless = scene.start == Start::Rest && !on_a_stop && drive.is_still();
         Ok(Self {
             mass,
             damping,
@@ -371,8 +285,7 @@ fn scales(scene: &Scene, mass: f64, mechanism: &Mechanism, drive: &BaseMotion, s
         start_distance: (start.0 - reference).abs(),
         start_speed: start.1.abs(),
         start_acceleration: curve.force(start.0).abs() / mass,
-        drive_acceleration: drive.reach(),
-        drive_rate: drive.fastest().unwrap_or(0.0) * std::f64::consts::TAU,
+        drive: drive.parts(),
         duration: scene.run.duration_s,
     })
 }

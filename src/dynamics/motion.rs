@@ -34,8 +34,19 @@ use crate::numeric::{PolynomialRoots, Scalar};
 const STEP_BUDGET: u64 = 20_000_000;
 const IMPACT_BUDGET: u64 = 2_000_000;
 
-/// The longest step, in units of the scene's time scale.
-const LONGEST_STEP: f64 = 8.0;
+/// The tolerance of a step relative to that of the scene: errors of some hundred steps add up, and even the energy
+/// of an undamped run of some hundred periods then stays within the tolerance. A fifth of it costs a tenth more.
+const LOCAL_SHARE: f64 = 0.02;
+
+/// How many times the neglected term that the step was chosen for the residual at its end may be. It is rarely above
+/// 3 where the coefficients tell the truth, and above 1e3 soon where they do not.
+const RESIDUAL: f64 = 20.0;
+
+/// Roundings of the terms that add up in a residual.
+const ROUNDINGS: f64 = 32.0;
+
+/// A step halved so often is no step.
+const MOST_HALVINGS: u32 = 200;
 
 /// Steps between two looks at the cancel flag.
 const CANCEL_STRIDE: u64 = 256;
@@ -52,6 +63,8 @@ pub(super) struct Touch {
 pub(super) const BY_SPEED: usize = 1;
 pub(super) const BY_ACCELERATION: usize = 2;
 pub(super) const BY_JERK: usize = 3;
+/// Nothing up to the fourth coefficient opens the gap: what follows decides.
+pub(super) const UNDECIDED: usize = 5;
 /// The surface is not there for one step: neither side of a break claims a mass that stands on it.
 pub(super) const HELD: usize = usize::MAX;
 
@@ -75,13 +88,10 @@ pub(super) struct Settings<T> {
 }
 
 impl<T: Scalar> Settings<T> {
-    /// The order is the cheapest one by measurement on the nominal cubic: about 4/3 coefficients a digit. The
-    /// local tolerance is a tenth of the one asked for, so that the error of a run of some hundred steps
-    /// stays near it.
+    /// The order is the cheapest one by measurement on the nominal cubic: about 5/4 coefficients a digit.
     fn new(model: &Model, unit: f64, tolerance: f64) -> Self {
-        let local = tolerance * 0.1;
-        let digits = -tolerance.log10();
-        let order = (5.0 + 1.25 * digits).round().clamp(8.0, MAX_ORDER as f64) as usize;
+        let local = tolerance * LOCAL_SHARE;
+        let order = (3.0 - 1.25 * local.log10()).round().clamp(8.0, MAX_ORDER as f64) as usize;
         let speed = model.scales.speed * unit;
         Self {
             order,
@@ -89,7 +99,7 @@ impl<T: Scalar> Settings<T> {
             tolerance_log2: local.log2(),
             speed: T::of(speed),
             speed_log2: fast_log2(speed),
-            longest: LONGEST_STEP * model.scales.time / unit,
+            longest: model.scales.longest_step / unit,
         }
     }
 }
@@ -118,6 +128,15 @@ pub(super) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     pub evaluations: u64,
 }
 
+/// A step that has been chosen.
+struct Step<T> {
+    length: T,
+    /// The instant at which it ends, where that is the end of the run or of the drive's segment.
+    arrival: Option<Instant<T>>,
+    /// Displacement from the piece's origin and velocity at its end.
+    end: (T, T),
+}
+
 /// Whether a step went on or the run ended.
 pub(super) type Flow = Option<Outcome>;
 
@@ -133,12 +152,13 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let unit = equation.unit;
         let x = T::of(model.start.0);
         let v = T::of(model.start.1 * unit);
+        let settings = Settings::new(model, unit, tolerance);
         Self {
             equation,
             drive,
             clock,
-            settings: Settings::new(model, unit, tolerance),
-            record: Recorder::new(model, clock, unit, request, (x, v)),
+            record: Recorder::new(model, clock, unit, settings.order, request, (x, v)),
+            settings,
             series: Series::new(),
             roll: D::Rolling::default(),
             segment: 0,
@@ -247,28 +267,9 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         }
 
         self.series.start(self.x - arena.origin, self.v);
-        let natural = self.expand(flight);
-        if !(natural > 0.0) {
+        let Some(Step { length: h, arrival, end }) = self.choose_step(flight, left) else {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
-        }
-        let mut h = T::of(natural);
-        if let Some(flight) = flight {
-            h = h.smaller(flight);
-        }
-        let mut arrives = None;
-        if left <= h {
-            h = left;
-            arrives = Some(self.end);
-        }
-        let mut segment_ends = false;
-        if let Some(border) = self.drive.segment_end(self.segment) {
-            let to_border = self.clock.between(&self.at, &border);
-            if to_border <= h {
-                h = to_border;
-                arrives = Some(border);
-                segment_ends = true;
-            }
-        }
+        };
 
         let bound = self.series.scale(h);
         let exit = self.find_exit(bound);
@@ -276,10 +277,9 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             Some((s, end)) => (s * h, Some(end)),
             None => (h, None),
         };
-        let v = self.series.velocity(length);
-        let x = match touched {
-            Some(end) => arena.end(end).0,
-            None => self.series.position(length) + arena.origin,
+        let (x, v) = match touched {
+            Some(end) => (arena.end(end).0, self.series.velocity(length)),
+            None => (end.0 + arena.origin, end.1),
         };
         if !(x.is_finite() && v.is_finite()) {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
@@ -298,51 +298,123 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         };
         let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
         self.record.step(&view, |at| base_at(drive, &clock, segment, at, unit));
-        self.at = match arrives {
-            Some(instant) if touched.is_none() => instant,
+        self.at = match arrival {
+            Some(arrival) if touched.is_none() => arrival,
             _ => self.clock.advance(&self.at, length),
         };
         self.x = x;
         self.v = v;
         self.touch = None;
         self.turned_back &= length == zero;
-        if segment_ends && touched.is_none() {
-            self.segment += 1;
-        }
         touched.and_then(|end| self.reach(end, length == zero))
     }
 
-    /// Extends the series as far as the step needs and returns the step's natural length (NaN where the
-    /// coefficients are not finite).
-    fn expand(&mut self, flight: Option<T>) -> f64 {
+    /// Extends the series as far as the step needs; none where the coefficients are not finite.
+    ///
+    /// Coefficients may vanish one after the other without the next one vanishing (a high power from its flat
+    /// middle, tones that cancel), and then the last ones promise too long a step. So each step is checked
+    /// against the equation of motion at its end, and halved until it holds.
+    fn choose_step(&mut self, flight: Option<T>, left: T) -> Option<Step<T>> {
+        let natural = |motion: &Self| {
+            let s = &motion.settings;
+            motion.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest)
+        };
+        let mut h = match flight {
+            Some(flight) if self.expand_for(flight) => flight,
+            _ => {
+                self.expand();
+                let natural = T::of(natural(self));
+                flight.map_or(natural, |flight| flight.smaller(natural))
+            }
+        };
+        let border = self.drive.segment_end(self.segment);
+        for _ in 0..MOST_HALVINGS {
+            if !(h > T::zero()) {
+                return None;
+            }
+            let mut arrival = None;
+            if left <= h {
+                h = left;
+                arrival = Some(self.end);
+            }
+            if let Some(border) = border {
+                let to_border = self.clock.between(&self.at, &border);
+                if to_border <= h {
+                    h = to_border;
+                    arrival = Some(border);
+                }
+            }
+            let end = self.series.state(h);
+            if self.step_holds(h, end) {
+                return Some(Step { length: h, arrival, end: (end.0, end.1) });
+            }
+            if self.series.known <= self.settings.order {
+                self.expand();
+                h = h.smaller(T::of(natural(self)));
+            } else {
+                h = h * T::of(0.5);
+            }
+        }
+        None
+    }
+
+    /// Extends the series to the full order.
+    fn expand(&mut self) {
+        while self.series.known <= self.settings.order {
+            self.push();
+        }
+    }
+
+    fn push(&mut self) {
         let arena = &self.equation.arenas[self.arena];
-        let damping = self.equation.damping;
-        let order = self.settings.order;
-        self.series.push(&arena.force, damping, self.drive, &mut self.roll);
-        if let Some(Touch { order: BY_JERK.., .. }) = self.touch {
+        self.series.push(&arena.force, self.equation.damping, self.drive, &mut self.roll);
+        if self.series.known == 3
+            && let Some(Touch { order: BY_JERK.., .. }) = self.touch
+        {
             self.series.y[2] = T::zero(); // a release: the net force is 0 by definition
         }
-        if let Some(flight) = flight {
-            // Stop once two terms in a row are negligible against the rebound's own speed.
-            let negligible = self.v.abs() * T::of(self.settings.tolerance * 0.1);
-            let mut power = flight;
-            let mut small = 0;
-            while self.series.known <= order {
-                self.series.push(&arena.force, damping, self.drive, &mut self.roll);
-                let k = self.series.known - 1;
-                power = power * flight;
+    }
+
+    /// Extends the series until two terms in a row are negligible over `flight`, against the rebound's own speed;
+    /// false where the full order is not enough for that.
+    fn expand_for(&mut self, flight: T) -> bool {
+        let negligible = self.v.abs() * T::of(self.settings.tolerance * 0.1);
+        let mut power = T::of(1.0);
+        let mut small = 0;
+        while self.series.known <= self.settings.order {
+            self.push();
+            let k = self.series.known - 1;
+            power = power * flight;
+            if k >= 3 {
                 let term = (self.series.y[k] * power).abs() * T::of(k as f64);
                 small = if term <= negligible { small + 1 } else { 0 };
                 if small == 2 {
-                    return flight.to_f64();
+                    return true;
                 }
             }
         }
-        while self.series.known <= order {
-            self.series.push(&arena.force, damping, self.drive, &mut self.roll);
+        false
+    }
+
+    /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and
+    /// rounding ask: the residual is what the first neglected terms leave.
+    fn step_holds(&mut self, h: T, (y, v, acceleration): (T, T, T)) -> bool {
+        let arena = &self.equation.arenas[self.arena];
+        let at = self.clock.advance(&self.at, h);
+        let series = &self.series;
+        let base = self.drive.value(&self.clock, &at, self.segment, || series.base(h), &mut self.roll);
+        let sum = (acceleration + self.equation.damping * v) + base;
+        let residual = (arena.force.at(y) + sum).abs() * h;
+        let order = self.series.known - 1;
+        let speed = if order < self.settings.order { self.v.abs() } else { self.settings.speed };
+        let allowed = T::of(RESIDUAL * order as f64 * self.settings.tolerance) * speed;
+        if residual <= allowed {
+            return true;
         }
-        let s = &self.settings;
-        self.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest)
+        // larger than asked for: rounding?
+        let (_, _, rounding) = arena.force.value(y);
+        let size = acceleration.abs() + (self.equation.damping * v).abs() + base.abs();
+        residual <= (rounding + size * T::of(T::EPSILON)) * h * T::of(ROUNDINGS)
     }
 
     /// The first contact with an end of the arena within the step, as a share of it.
@@ -355,11 +427,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             let sign = end.sign::<T>();
             let gap = sign * (arena.end(end).0 - self.x);
             let touch = self.touch.filter(|t| t.end == end);
-            if match touch {
-                Some(touch) => touch.order == HELD,
-                // beyond the surface only by rounding, after it was held, and on the way back
-                None => gap > bound || (gap < zero && sign * self.v <= zero),
-            } {
+            if touch.map_or(gap > bound, |touch| touch.order == HELD) {
                 continue;
             }
             let mut g = [zero; ROOM];
@@ -367,7 +435,9 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
                 *slot = -(sign * *c);
             }
             g[0] = gap;
-            let mut from = touch.map_or(0, |t| t.order.min(n - 1));
+            // Beyond the surface only by rounding, after it was held, and not on the way out: it is touched.
+            let returns = touch.is_none() && gap < zero && sign * self.v <= zero;
+            let mut from = if returns { BY_SPEED } else { touch.map_or(0, |t| t.order.min(n - 1)) };
             // A coefficient that is exactly 0 decides nothing.
             while from + 1 < n && g[from] == zero {
                 from += 1;

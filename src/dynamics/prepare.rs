@@ -1,13 +1,20 @@
 //! From a model to a run: the drive and the number type are chosen once, here.
 
+use super::base::{BaseMotion, BaseTone};
 use super::clock::{Clock, Instant};
-use super::drive::{Drive, Ramp, Sine, Still, Tone, Tones, TurnsPerCycle};
+use super::composite::{Chirp, Composite, Line};
+use super::drive::{Drive, Still};
 use super::equation::Equation;
-use super::model::{BaseMotion, Model, Request};
+use super::model::{Model, Request};
 use super::motion::Motion;
 use super::result::Run;
 use super::series::ROOM;
+use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
 use crate::numeric::{Ratio, Scalar};
+use crate::scene::Record;
+
+/// Cycle of the clock without a drive, in kernel time units.
+const SHORTEST_CYCLE: f64 = 1.0 / 65536.0;
 
 /// Runs the model in numbers of type `T`.
 pub(crate) fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64) -> Run {
@@ -18,7 +25,9 @@ pub(crate) fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64) -
     let mut run = match drive_kind(&model.drive) {
         Kind::Still => with_drive(model, request, tolerance, &equation, clock, &still(model, unit)),
         Kind::Sine => with_drive(model, request, tolerance, &equation, clock, &sine(model, unit)),
-        Kind::Tones => with_drive(model, request, tolerance, &equation, clock, &tones(model, unit, &clock)),
+        Kind::Composite => {
+            with_drive(model, request, tolerance, &equation, clock, &composite(model, unit, &clock))
+        }
     };
     run.summary.cpu_s = watch.elapsed().as_secs_f64();
     run
@@ -28,7 +37,7 @@ pub(crate) fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64) -
 pub(crate) fn base_acceleration(model: &Model, t: f64) -> f64 {
     let unit = model.scales.unit();
     let clock = clock::<f64>(model, unit);
-    let drive = tones(model, unit, &clock);
+    let drive = composite(model, unit, &clock);
     let at = clock.at(t);
     let segment = drive.segment_ends.iter().filter(|end| clock.between(end, &at) >= 0.0).count();
     base_at(&drive, &clock, segment, &at, unit)
@@ -49,20 +58,26 @@ pub(super) fn base_at<T: Scalar, D: Drive<T>>(
 enum Kind {
     Still,
     Sine,
-    Tones,
+    Composite,
 }
 
 fn drive_kind(drive: &BaseMotion) -> Kind {
     match drive.tones.as_slice() {
+        _ if !(drive.chirps.is_empty() && drive.records.is_empty()) => Kind::Composite,
         [] => Kind::Still,
         [tone] if drive.constant == 0.0 && tone.ramp.is_none() => Kind::Sine,
-        _ => Kind::Tones,
+        _ => Kind::Composite,
     }
 }
 
 fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
-    // without a drive: a cycle of 16 time units
-    Clock::new(model.drive.fastest().unwrap_or(1.0 / (16.0 * unit)), unit)
+    let frequency = model.drive.fastest().unwrap_or_else(|| {
+        // Without a drive: so short a cycle that its phase is exact, a power of two of the time unit, and not so
+        // many cycles that they could not be counted.
+        let units = model.duration / unit;
+        1.0 / (unit * SHORTEST_CYCLE.max((units.log2().ceil() - 50.0).exp2()))
+    });
+    Clock::new(frequency, unit)
 }
 
 fn still<T: Scalar>(model: &Model, unit: f64) -> Still<T> {
@@ -92,20 +107,84 @@ fn tone<T: Scalar>(drive: &BaseMotion, index: usize, unit: f64, holds_from_segme
     }
 }
 
-fn tones<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Tones<T> {
+fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite<T> {
     let drive = &model.drive;
-    let mut ends: Vec<f64> = drive.tones.iter().filter_map(|t| t.ramp.map(|r| r.1)).collect();
+    let square = unit * unit;
+    let ramps = drive.tones.iter().filter_map(|t| t.ramp.map(|r| r.1));
+    let chirps = drive.chirps.iter().map(|c| c.over);
+    let samples = drive.records.iter().flat_map(|r| r.times.iter().copied());
+    let outlasting = ramps.clone().any(|over| over > model.duration);
+    let mut ends: Vec<f64> =
+        ramps.chain(chirps).chain(samples).filter(|t| *t > 0.0 && *t <= model.duration).collect();
     ends.sort_by(f64::total_cmp);
     ends.dedup();
-    let after = |over: f64| ends.iter().take_while(|e| **e <= over).count();
-    Tones {
-        constant: T::of(drive.constant * (unit * unit)),
-        tones: (0..drive.tones.len())
-            .map(|i| tone(drive, i, unit, drive.tones[i].ramp.map_or(0, |r| after(r.1))))
-            .collect(),
+    // the segment that begins at a time
+    let segment = |time: f64| ends.partition_point(|end| *end <= time);
+    let holds_from = |over: f64| if over > model.duration { usize::MAX } else { segment(over) };
+    let tones: Vec<Tone<T>> = (0..drive.tones.len())
+        .map(|i| tone(drive, i, unit, drive.tones[i].ramp.map_or(0, |r| holds_from(r.1))))
+        .collect();
+    let chirps = drive.chirps.iter().map(|chirp| Chirp {
+        amplitude: T::of(chirp.amplitude * square),
+        from: chirp.from,
+        to: chirp.to,
+        over: chirp.over,
+        holds_from_segment: holds_from(chirp.over),
+    });
+    let records = drive.records.iter().map(|record| lines(record, model, unit, clock, segment));
+    let largest = |tone: &BaseTone| tone.amplitude.abs().max(tone.ramp.map_or(0.0, |r| r.0.abs()));
+    let reach = drive.tones.iter().map(largest).sum::<f64>()
+        + drive.chirps.iter().map(|c| c.amplitude.abs()).sum::<f64>()
+        + drive.records.iter().map(|r| r.peak()).sum::<f64>();
+    let moving = drive.tones.iter().filter(|t| largest(t) > 0.0).map(|t| t.frequency);
+    let sweeping = drive.chirps.iter().filter(|c| c.amplitude != 0.0).map(|c| c.from.max(c.to));
+    let fastest = moving.chain(sweeping).fold(0.0, f64::max) * unit;
+    Composite {
+        constant: T::of(drive.constant * square),
+        tones,
+        chirps: chirps.collect(),
+        records: records.collect(),
         segment_ends: ends.iter().map(|e| clock.at(*e)).collect(),
-        common_cycles: drive.common_cycles().map(|c| c as i64),
+        // a ramp that outlasts the run never lets it repeat
+        common_cycles: drive.common_cycles().map(|c| c as i64).filter(|_| !outlasting),
+        // a bound: rounding must not hide a fall
+        reach: T::of(reach * square * (1.0 + 1e-9)),
+        fastest: T::tau() * T::of(fastest),
     }
+}
+
+/// The lines between the samples of a record, as far as the run goes.
+fn lines<T: Scalar>(
+    record: &Record,
+    model: &Model,
+    unit: f64,
+    clock: &Clock<T>,
+    segment: impl Fn(f64) -> usize,
+) -> Vec<Line<T>> {
+    let (times, values) = (&record.times, &record.accelerations);
+    let square = unit * unit;
+    let zero_time = Instant { cycle: 0, phase: T::zero() };
+    let mut lines = Vec::new();
+    for i in 0..times.len() {
+        if times[i] > model.duration || times.get(i + 1).is_some_and(|next| *next <= 0.0) {
+            continue;
+        }
+        let first_segment = if times[i] <= 0.0 { 0 } else { segment(times[i]) };
+        let Some(next) = times.get(i + 1) else {
+            let at = clock.at(times[i].max(0.0));
+            lines.push(Line { first_segment, at, value: T::zero(), slope: T::zero() });
+            continue;
+        };
+        let slope = T::of(values[i + 1] - values[i]) / T::of(next - times[i]);
+        let (at, value) = if times[i] < 0.0 {
+            (zero_time, T::of(values[i]) - slope * T::of(times[i]))
+        } else {
+            (clock.at(times[i]), T::of(values[i]))
+        };
+        let (value, slope) = (value * T::of(square), slope * T::of(square * unit));
+        lines.push(Line { first_segment, at, value, slope });
+    }
+    lines
 }
 
 fn with_drive<T: Scalar, D: Drive<T>>(

@@ -5,7 +5,7 @@ use super::model::{Model, Request};
 use super::regime::{CrossingLog, Strobe};
 use super::result::{Event, EventKind, Phase, Sample, Side};
 use super::series::Series;
-use crate::numeric::{CompensatedSum, PolynomialRoots, Scalar};
+use crate::numeric::{CompensatedSum, GaussLegendre, PolynomialRoots, Scalar};
 
 /// Most crossings and stroboscopic states that are kept to tell the regime; a window of more is judged by
 /// its first ones.
@@ -76,6 +76,8 @@ pub(crate) struct Recorder<'a, T, const LEDGER: bool> {
     pub(super) next_strobe: Option<Instant<T>>,
     pub(super) strobe_cycles: i64,
     pub(super) counts: Counts,
+    /// What integrals over a step are taken with.
+    pub(super) rule: GaussLegendre<T>,
 }
 
 #[derive(Default, Clone, Copy)]
@@ -90,7 +92,14 @@ pub(super) struct Counts {
 }
 
 impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
-    pub fn new(model: &'a Model, clock: Clock<T>, unit: f64, request: &Request<'a>, start: (T, T)) -> Self {
+    pub fn new(
+        model: &'a Model,
+        clock: Clock<T>,
+        unit: f64,
+        order: usize,
+        request: &Request<'a>,
+        start: (T, T),
+    ) -> Self {
         let from = clock.at(model.settle);
         let (periods, cycles) = model.window_periods();
         let to = if periods > 0 {
@@ -125,6 +134,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             next_strobe: (periods > 0).then_some(from),
             strobe_cycles: cycles,
             counts: Counts::default(),
+            rule: GaussLegendre::new(order / 2 + 1),
         }
     }
 
@@ -147,7 +157,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         let overlap = self.overlap(&step.at, step.length);
         let full = overlap.is_some_and(|(from, to)| from == T::zero() && to == step.length);
         if LEDGER {
-            let (squared, av) = step.series.integrals::<true>(T::zero(), step.length);
+            let (squared, av) = step.series.integrals::<true>(&self.rule, T::zero(), step.length);
             self.whole.squared_velocity.add(squared);
             self.whole.work.add(-av);
             self.work_moved += av.to_f64().abs();
@@ -159,7 +169,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         }
         if let Some((from, to)) = overlap {
             if !LEDGER || !full {
-                let (squared, av) = step.series.integrals::<LEDGER>(from, to);
+                let (squared, av) = step.series.integrals::<LEDGER>(&self.rule, from, to);
                 self.settled.squared_velocity.add(squared);
                 self.settled.work.add(-av);
             }
@@ -211,6 +221,10 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             for k in 1..n {
                 slope[k - 1] = step.series.scaled[k] * T::of(k as f64);
             }
+            if slope[0] < T::zero() {
+                // a value of 0 counts as negative: the mirrored motion must be told the same
+                slope[..n - 1].iter_mut().for_each(|c| *c = -*c);
+            }
             PolynomialRoots::new(&slope[..n - 1]).each_sign_change(|s| {
                 let t = s * step.scaled_for;
                 if t >= from && t <= to {
@@ -229,61 +243,66 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         if end_side == self.barrier_side && gap.abs() > step.bound {
             return;
         }
-        if self.barrier_side == 0 {
-            self.barrier_side = end_side; // leaves the top on which it started
-            return;
-        }
         let n = step.series.known;
         let mut g = step.series.scaled;
-        let sign = T::of(f64::from(self.barrier_side));
-        g[0] = gap * sign;
-        for c in &mut g[1..n] {
-            *c = *c * sign;
+        g[0] = gap;
+        // A step that starts on the top leaves it by its first coefficient that is not 0.
+        let first = g[..n].iter().position(|c| *c != T::zero());
+        let Some(first) = first else { return };
+        let departs: i8 = if g[first] > T::zero() { 1 } else { -1 };
+        if self.barrier_side == 0 {
+            self.barrier_side = departs; // a start on the top is no crossing
         }
         let mut found = [T::zero(); super::series::ROOM];
         let mut count = 0;
-        if gap == T::zero() {
-            // The step starts on the top, reached at the end of the last one.
-            if end_side == -self.barrier_side {
-                count = 1;
+        if departs != self.barrier_side {
+            count = 1; // the top was reached at the end of the last step and is passed now, at 0
+        }
+        if departs < 0 {
+            for c in &mut g[first..n] {
+                *c = -*c;
             }
-        } else {
-            PolynomialRoots::new(&g[..n]).each_sign_change(|s| {
-                let t = s * step.scaled_for;
-                if t > step.length {
-                    return false;
-                }
-                found[count] = t;
-                count += 1;
-                count < found.len()
-            });
-            // The end decides the parity: rounding may put a root just beyond it.
-            if end_side != 0 && (count % 2 == 1) != (end_side != self.barrier_side) {
-                if count > 0 {
-                    count -= 1;
-                } else {
-                    found[0] = step.length;
-                    count = 1;
-                }
-            } else if end_side == 0 && count % 2 == 1 {
-                count -= 1; // on the top: the next step tells
+        }
+        PolynomialRoots::new(&g[first..n]).each_sign_change(|s| {
+            let t = s * step.scaled_for;
+            if t > step.length || count == found.len() {
+                return false;
+            }
+            found[count] = t;
+            count += 1;
+            true
+        });
+        // The end decides the parity: rounding may put a root just beyond it, or a touch of the top.
+        let odd = count % 2 == 1;
+        if end_side == 0 {
+            count -= usize::from(odd); // on the top: the next step tells
+        } else if odd != (end_side != self.barrier_side) {
+            if count > 0 {
+                count -= 1;
+            } else {
+                found[0] = step.length;
+                count = 1;
             }
         }
         for t in &found[..count] {
-            self.barrier_side = -self.barrier_side;
-            let at = self.clock.advance(&step.at, *t);
-            let v = step.series.velocity(*t).to_f64() / self.unit;
-            let side = if self.barrier_side > 0 { Side::Right } else { Side::Left };
-            self.counts.total_crossings += 1;
-            if self.in_window(&at) {
-                self.counts.crossings += 1;
-                if self.log.crossings.len() < KEPT && self.period > T::zero() {
-                    let time = (self.clock.between(&self.window.0, &at) / self.period).to_f64();
-                    self.log.crossings.push((time, side));
-                }
-            }
-            self.event(&at, EventKind::Crossing, side, v, v);
+            self.crossing(step, *t);
         }
+    }
+
+    fn crossing(&mut self, step: &StepView<T>, into: T) {
+        self.barrier_side = -self.barrier_side;
+        let at = self.clock.advance(&step.at, into);
+        let v = step.series.velocity(into).to_f64() / self.unit;
+        let side = if self.barrier_side > 0 { Side::Right } else { Side::Left };
+        self.counts.total_crossings += 1;
+        if self.in_window(&at) {
+            self.counts.crossings += 1;
+            if self.log.crossings.len() < KEPT && self.period > T::zero() {
+                let time = (self.clock.between(&self.window.0, &at) / self.period).to_f64();
+                self.log.crossings.push((time, side));
+            }
+        }
+        self.event(&at, EventKind::Crossing, side, v, v);
     }
 
     fn strobes(&mut self, step: &StepView<T>) {
@@ -308,12 +327,12 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     }
 
     /// Takes in a span in which the mass stands still at `x` (at rest on a stop, in an equilibrium, or in
-    /// the last, unresolved bounces of a chatter: `phase` free).
+    /// the last, unresolved bounces of a chatter: `phase` free, and `v` the speed at its first instant).
     pub fn stand(
         &mut self,
         at: &Instant<T>,
         until: &Instant<T>,
-        x: T,
+        (x, v): (T, T),
         phase: Phase,
         mut base: impl FnMut(&Instant<T>) -> f64,
     ) {
@@ -333,10 +352,11 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             self.strobe(x, T::zero());
         }
         if self.next_time < self.times.len() {
-            let end = self.clock.seconds(until);
+            let (begin, end) = (self.clock.seconds(at), self.clock.seconds(until));
             while let Some(t) = self.times.get(self.next_time).copied().filter(|t| *t < end) {
                 let base_accel = base(&self.clock.at(t));
-                self.samples.push(Sample { t, x: x.to_f64(), v: 0.0, base_accel, phase });
+                let v = if t <= begin { v.to_f64() / self.unit } else { 0.0 };
+                self.samples.push(Sample { t, x: x.to_f64(), v, base_accel, phase });
                 self.next_time += 1;
             }
         }

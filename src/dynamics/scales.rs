@@ -7,7 +7,9 @@
 //!   the barrier (one well: at it; none: at the start); without stiffness the drive's fastest tone;
 //!   without both, sqrt(acceleration over length), or speed over length;
 //! - length L: the largest of half the distance between the wells, the start's distance from the
-//!   barrier (or the single equilibrium, or 0), start speed over w, and drive acceleration over w^2;
+//!   barrier (or the single equilibrium, or 0), start speed over w, and the sum over the parts of
+//!   the drive of amplitude over w and the larger of w and the part's own rate (a fast part moves the mass that
+//!   far, by its first kick);
 //! - speed L w, time 1/w.
 
 /// Length in m, speed in m/s, time in s; all above 0 and finite.
@@ -19,10 +21,15 @@ pub struct Scales {
     pub speed: f64,
     /// Time in s.
     pub time: f64,
+    /// The longest step of the integrator in s: some radians of the rate; where nothing sets a rate, the run.
+    pub(crate) longest_step: f64,
 }
 
+/// The longest step in units of the time scale.
+const LONGEST_STEP: f64 = 8.0;
+
 /// What the rule looks at. All SI, magnitudes.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Landmarks {
     /// Largest stiffness magnitude over mass, 1/s^2.
     pub stiffness_over_mass: f64,
@@ -34,10 +41,8 @@ pub(crate) struct Landmarks {
     pub start_speed: f64,
     /// Acceleration by the mechanism at the start, m/s^2.
     pub start_acceleration: f64,
-    /// Sum of the drive's amplitudes, m/s^2.
-    pub drive_acceleration: f64,
-    /// Angular frequency of the drive's fastest tone, 1/s; 0 without one.
-    pub drive_rate: f64,
+    /// Amplitude in m/s^2 and angular frequency in 1/s of each part of the drive; a rate of 0 has none.
+    pub drive: Vec<(f64, f64)>,
     /// Duration of the run in s.
     pub duration: f64,
 }
@@ -46,14 +51,18 @@ impl Scales {
     pub(crate) fn new(l: &Landmarks) -> Self {
         let stiff = l.stiffness_over_mass.sqrt();
         let usable = |x: f64| x.is_finite() && x > 0.0;
-        let acceleration = l.start_acceleration.max(l.drive_acceleration);
-        let (length, rate) = if usable(stiff) || usable(l.drive_rate) {
-            let rate = if usable(stiff) { stiff } else { l.drive_rate };
+        let driven: f64 = l.drive.iter().map(|part| part.0).sum();
+        let fastest = l.drive.iter().map(|part| part.1).fold(0.0, f64::max);
+        let acceleration = l.start_acceleration.max(driven);
+        let rated = usable(stiff) || usable(fastest);
+        let (length, rate) = if rated {
+            let rate = if usable(stiff) { stiff } else { fastest };
+            let driven: f64 = l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum();
             let length = l
                 .half_distance
                 .max(l.start_distance)
                 .max(l.start_speed / rate)
-                .max(l.drive_acceleration / (rate * rate))
+                .max(driven)
                 .max(if usable(stiff) { 0.0 } else { l.start_acceleration / (rate * rate) });
             (length, rate)
         } else if usable(acceleration) {
@@ -68,7 +77,8 @@ impl Scales {
         };
         let length = if usable(length) { length } else { 1.0 };
         let rate = if usable(rate) { rate } else { 1.0 };
-        Self { length, speed: length * rate, time: 1.0 / rate }
+        let longest_step = if rated { LONGEST_STEP / rate } else { l.duration };
+        Self { length, speed: length * rate, time: 1.0 / rate, longest_step }
     }
 
     /// The power of two of a second nearest to the time scale.
@@ -89,8 +99,7 @@ mod tests {
             start_distance: 4e-3,
             start_speed: 0.2,
             start_acceleration: 12.0,
-            drive_acceleration: 9.8,
-            drive_rate: 18.8,
+            drive: vec![(9.8, 18.8), (0.5, 0.0)],
             duration: 10.0,
         };
         let (l, t) = (1e6, 1e-7);
@@ -100,8 +109,7 @@ mod tests {
             start_distance: base.start_distance * l,
             start_speed: base.start_speed * l / t,
             start_acceleration: base.start_acceleration * l / (t * t),
-            drive_acceleration: base.drive_acceleration * l / (t * t),
-            drive_rate: base.drive_rate / t,
+            drive: base.drive.iter().map(|(a, w)| (a * l / (t * t), w / t)).collect(),
             duration: base.duration * t,
         };
         for drop in 0..16 {
@@ -111,8 +119,7 @@ mod tests {
                     m.half_distance = 0.0;
                 }
                 if drop & 2 > 0 {
-                    m.drive_acceleration = 0.0;
-                    m.drive_rate = 0.0;
+                    m.drive.clear();
                 }
                 if drop & 4 > 0 {
                     m.start_distance = 0.0;
@@ -123,7 +130,7 @@ mod tests {
                 }
                 m
             };
-            let (a, b) = (Scales::new(&thin(base)), Scales::new(&thin(scaled)));
+            let (a, b) = (Scales::new(&thin(base.clone())), Scales::new(&thin(scaled.clone())));
             assert!(a.length > 0.0 && a.speed.is_finite() && a.time > 0.0, "{drop} {a:?}");
             if a.length != 1.0 {
                 assert!((b.length / a.length / l - 1.0).abs() < 1e-12, "{drop}");

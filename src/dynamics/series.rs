@@ -9,7 +9,7 @@
 
 use super::drive::Drive;
 use super::equation::PieceForce;
-use crate::numeric::{Number, Scalar};
+use crate::numeric::{GaussLegendre, MOST_POINTS, Number, Scalar};
 
 /// The highest order of a step.
 pub(crate) const MAX_ORDER: usize = 32;
@@ -155,34 +155,58 @@ impl<T: Scalar> Series<T> {
         sum
     }
 
-    /// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base
-    /// acceleration times velocity; from the step's own polynomials, truncated at their order.
-    pub fn integrals<const WORK: bool>(&self, from: T, to: T) -> (T, T) {
-        let n = self.known - 1;
-        let mut v = [T::zero(); ROOM];
-        for (k, slot) in v[..n].iter_mut().enumerate() {
-            *slot = self.y[k + 1] * T::of((k + 1) as f64);
+    /// Displacement from the piece's origin, velocity and acceleration at time `t` into the step.
+    #[inline]
+    pub fn state(&self, t: T) -> (T, T, T) {
+        let (mut y, mut v, mut half) = (T::zero(), T::zero(), T::zero());
+        for c in self.y[..self.known].iter().rev() {
+            half = half * t + v;
+            v = v * t + y;
+            y = y * t + *c;
         }
-        let mut squared = [T::zero(); ROOM];
-        let mut power = [T::zero(); ROOM];
-        for k in 0..n {
-            let share = T::of(1.0) / T::of((k + 1) as f64);
-            squared[k] = square(&v, k) * share;
-            if WORK {
-                power[k] = convolve(&self.a, &v, k) * share;
+        (y, v, half + half)
+    }
+
+    /// Acceleration of the base at time `t` into the step, by its series.
+    pub fn base(&self, t: T) -> T {
+        self.a[..(self.known - 2).max(SEEDED)].iter().rev().fold(T::zero(), |sum, c| sum * t + *c)
+    }
+
+    /// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base
+    /// acceleration times velocity; of the step's own polynomials by Gauss' rule. (Products truncated at their order
+    /// miss, on a long step under a fast drive, a thousand times the tolerance.)
+    pub fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
+        let length = to - from;
+        let count = rule.nodes().len();
+        let mut times = [T::zero(); MOST_POINTS];
+        for (time, node) in times.iter_mut().zip(rule.nodes()) {
+            *time = from + length * *node;
+        }
+        let times = &times[..count];
+        let mut v = [T::zero(); MOST_POINTS];
+        for k in (1..self.known).rev() {
+            let c = self.y[k] * T::of(k as f64);
+            for (sum, t) in v[..count].iter_mut().zip(times) {
+                *sum = *sum * *t + c;
             }
         }
-        let between = |c: &[T; ROOM]| {
-            let at = |t: T| {
-                let mut sum = T::zero();
-                for k in (0..n).rev() {
-                    sum = sum * t + c[k];
+        let mut squared = T::zero();
+        for (v, weight) in v.iter().zip(rule.weights()) {
+            squared += *v * *v * *weight;
+        }
+        let mut power = T::zero();
+        if WORK {
+            let mut a = [T::zero(); MOST_POINTS];
+            for c in self.a[..(self.known - 2).max(SEEDED)].iter().rev() {
+                for (sum, t) in a[..count].iter_mut().zip(times) {
+                    *sum = *sum * *t + *c;
                 }
-                sum * t
-            };
-            if from == T::zero() { at(to) } else { at(to) - at(from) }
-        };
-        (between(&squared), if WORK { between(&power) } else { T::zero() })
+            }
+            for ((a, v), weight) in a.iter().zip(&v).zip(rule.weights()) {
+                power += *a * *v * *weight;
+            }
+        }
+        (squared * length, power * length)
     }
 }
 

@@ -62,10 +62,14 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             let residual_j = ((work_j - damping_j) - impact_j) - stored_j;
             let moved =
                 (self.work_moved + self.peak_kinetic) * energy + damping_j + impact_j.abs() + stored_j.abs();
-            let energy_residual = if moved > 0.0 { residual_j.abs() / moved } else { 0.0 };
+            let energy_residual = match residual_j.abs() / moved {
+                _ if moved == 0.0 => 0.0,
+                share if share.is_finite() => share,
+                _ => f64::INFINITY, // the run blew up
+            };
             Ledger { work_j, damping_j, impact_j, stored_j, residual_j, energy_residual }
         });
-        let rms = (value(&self.settled.squared_velocity).max(0.0) / covered).sqrt() / self.unit;
+        let rms = (value(&self.settled.squared_velocity) / covered).sqrt() / self.unit;
         let travel = (self.high - self.low).to_f64();
         let scales = &self.model.scales;
         let moved = seen && travel > STILL * scales.length;
@@ -90,7 +94,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             summary: Summary {
                 final_x,
                 final_v,
-                rms_velocity: seen.then_some(rms),
+                rms_velocity: (seen && rms.is_finite()).then_some(rms),
                 regime,
                 crossings: self.counts.crossings,
                 impacts: self.counts.impacts,

@@ -33,7 +33,7 @@ impl Mechanism {
                 Ok(Self::new(ForceCurve::polynomial(&[0.0, *linear_n_per_m, 0.0, *cubic_n_per_m3])))
             }
             scene::Mechanism::DoubleWell { equilibrium_mm, barrier_mj } => {
-                Ok(Self::new(double_well(equilibrium_mm * 1e-3, barrier_mj * 1e-3)))
+                Ok(Self::new(double_well(equilibrium_mm / 1e3, barrier_mj / 1e3)))
             }
             scene::Mechanism::Polynomial { coefficients_si } => {
                 let terms = coefficients_si.iter().rposition(|c| *c != 0.0).map_or(0, |i| i + 1);

@@ -142,6 +142,12 @@ impl Scalar for DoubleDouble {
     fn to_f64(self) -> f64 {
         self.high + self.low
     }
+    fn to_pair(self) -> DoubleDouble {
+        self
+    }
+    fn of_pair(pair: DoubleDouble) -> Self {
+        pair
+    }
     fn abs(self) -> Self {
         if self.high < 0.0 || (self.high == 0.0 && self.low < 0.0) { -self } else { self }
     }

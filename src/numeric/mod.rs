@@ -3,6 +3,7 @@
 mod decimal;
 mod double_double;
 pub mod fit;
+mod quadrature;
 pub mod real_roots;
 mod roots;
 mod scalar;
@@ -12,6 +13,7 @@ mod sum;
 pub use decimal::Ratio;
 pub(crate) use decimal::greatest_common_divisor;
 pub use double_double::DoubleDouble;
+pub use quadrature::{GaussLegendre, MOST_POINTS};
 pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::{Number, Scalar};
 pub use short::short;

@@ -43,6 +43,17 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         sum
     }
 
+    /// Value, first and second derivative at `s`.
+    pub fn value_and_slopes(&self, s: T) -> (T, T, T) {
+        let (mut value, mut slope, mut half_curvature) = (T::zero(), T::zero(), T::zero());
+        for c in self.g.iter().rev() {
+            half_curvature = half_curvature * s + slope;
+            slope = slope * s + value;
+            value = value * s + *c;
+        }
+        (value, slope, half_curvature + half_curvature)
+    }
+
     /// The first s in (0, 1] where the polynomial, positive at 0, ceases to be positive; none where it
     /// stays positive. Located to the rounding of its own evaluation, relative to s.
     pub fn first(&self) -> Option<T> {

@@ -8,6 +8,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+use super::double_double::DoubleDouble;
+
 /// Ring operations without a branch.
 pub trait Number:
     Copy
@@ -37,6 +39,10 @@ pub trait Scalar: Number + PartialOrd + Div<Output = Self> {
     fn tau() -> Self;
     /// The nearest `f64`.
     fn to_f64(self) -> f64;
+    /// As a sum of two doubles: exact for both number types.
+    fn to_pair(self) -> DoubleDouble;
+    /// The nearest number to a sum of two doubles.
+    fn of_pair(pair: DoubleDouble) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
     /// Largest whole number that is not above.
@@ -79,13 +85,25 @@ impl Scalar for f64 {
     fn to_f64(self) -> f64 {
         self
     }
+    fn to_pair(self) -> DoubleDouble {
+        DoubleDouble::of(self)
+    }
+    fn of_pair(pair: DoubleDouble) -> Self {
+        pair.to_f64()
+    }
     #[inline(always)]
     fn abs(self) -> Self {
         f64::abs(self)
     }
     #[inline(always)]
     fn floor(self) -> Self {
-        f64::floor(self)
+        // The library's is a call on a processor that is only promised SSE2.
+        if self.abs() < 4.0e18 {
+            let whole = self as i64 as f64;
+            if whole > self { whole - 1.0 } else { whole }
+        } else {
+            self
+        }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

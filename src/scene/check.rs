@@ -29,6 +29,7 @@ pub fn check(scene: &Scene) -> Checked {
         stops("app.stops_when_on", stops_when_on, &mut checked);
     }
     relations(scene, &mut checked);
+    bands(&scene.excitation, "excitation", &mut checked);
     hints(scene, &mut checked);
     sweep(scene, &mut checked);
     checked
@@ -101,9 +102,12 @@ fn distances(stops: &Stops) -> (f64, f64) {
     }
 }
 
+fn known_bad(field: &str, checked: &Checked) -> bool {
+    checked.faults.iter().any(|fault| fault.field == field)
+}
+
 /// What two fields say together. A value that is out of its own range is not blamed twice.
 fn relations(scene: &Scene, checked: &mut Checked) {
-    let known_bad = |field: &str, checked: &Checked| checked.faults.iter().any(|fault| fault.field == field);
     if let Start::At { x_mm, .. } = scene.start {
         let (left, right) = distances(&scene.stops);
         let bad_stop = checked.faults.iter().any(|fault| fault.field.starts_with("stops"));
@@ -140,6 +144,28 @@ fn relations(scene: &Scene, checked: &mut Checked) {
     }
 }
 
+/// The bands of noise, wherever in a sum.
+fn bands(excitation: &Excitation, path: &str, checked: &mut Checked) {
+    match excitation {
+        Excitation::Noise { low_hz, high_hz, .. }
+            if low_hz >= high_hz
+                && !["low_hz", "high_hz"].iter().any(|end| known_bad(&format!("{path}.{end}"), checked)) =>
+        {
+            checked.fault(
+                format!("{path}.high_hz"),
+                number_text(*high_hz),
+                format!("must be above {path}.low_hz = {}", number_text(*low_hz)),
+            )
+        }
+        Excitation::Sum(terms) => {
+            for (i, term) in terms.iter().enumerate() {
+                bands(term, &format!("{path}.{i}"), checked);
+            }
+        }
+        _ => {}
+    }
+}
+
 /// What is valid and looks like a slip of units or of a zero.
 fn hints(scene: &Scene, checked: &mut Checked) {
     if !checked.faults.is_empty() {
@@ -164,11 +190,15 @@ fn hints(scene: &Scene, checked: &mut Checked) {
                 number_text(1.0 / frequency_hz)
             ));
         }
-        Excitation::AmplitudeRamp { over_s, .. } if over_s > duration_s => warnings.push(format!(
-            "excitation: the ramp takes {} s and the run ends after {} s, before its end",
-            number_text(over_s),
-            number_text(duration_s)
-        )),
+        Excitation::AmplitudeRamp { over_s, .. } | Excitation::Chirp { over_s, .. }
+            if over_s > duration_s =>
+        {
+            warnings.push(format!(
+                "excitation: the ramp takes {} s and the run ends after {} s, before its end",
+                number_text(over_s),
+                number_text(duration_s)
+            ))
+        }
         _ => {}
     };
     let mut terms = vec![&scene.excitation];

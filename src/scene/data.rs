@@ -9,7 +9,11 @@
 //! masses, lengths and times are scaled by anything from 1e-9 to 1e9 (a duration by 1e8), yet no
 //! product of them overflows.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Deserializer, Serialize};
+
+use super::record::Record;
 
 /// A scene: one mechanism, how it is shaken and stopped, and how long it runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -166,6 +170,42 @@ pub enum Excitation {
         /// Length of the ramp in s, 1e-15 to 1e15.
         over_s: f64,
     },
+    /// amplitude sin(2 pi (from t + (to - from) t^2/(2 over))), from `over` on at the frequency `to` without
+    /// a jump of phase.
+    Chirp {
+        /// Frequency at time 0 in Hz, 0 to 1e15.
+        from_hz: f64,
+        /// Frequency from the end of the chirp on, in Hz, 0 to 1e15.
+        to_hz: f64,
+        /// Length of the chirp in s, 1e-15 to 1e15.
+        over_s: f64,
+        /// Amplitude in g, any sign: -1e30 to 1e30.
+        amplitude_g: f64,
+    },
+    /// Band-limited noise: a sum of sines at random frequencies, one in each of `lines` equal parts of the band,
+    /// with random phases.
+    Noise {
+        /// Root mean square in g, 0 to 1e30.
+        rms_g: f64,
+        /// Lower end of the band in Hz, 0 to 1e15.
+        low_hz: f64,
+        /// Upper end of the band in Hz, 1e-15 to 1e15, above the lower.
+        high_hz: f64,
+        /// Seed of the random numbers; whole, 0 to 9007199254740992.
+        seed: u64,
+        /// Number of sines; whole, 1 to 4096.
+        #[serde(default = "default_lines")]
+        lines: u64,
+    },
+    /// A recorded acceleration: CSV with columns `t_s,accel_m_per_s2`, linear between samples, zero after
+    /// its end.
+    Recorded {
+        /// Path relative to the scene file, or the name of an embedded record.
+        path: String,
+        /// What the file holds, once a document has read it; no part of the text.
+        #[serde(skip)]
+        record: Option<Arc<Record>>,
+    },
     /// The sum of several excitations.
     Sum(Vec<Excitation>),
 }
@@ -285,6 +325,10 @@ fn some_stops<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Stops>, D::Er
 
 fn default_table_tolerance() -> f64 {
     1e-4
+}
+
+fn default_lines() -> u64 {
+    256
 }
 
 fn default_tolerance() -> f64 {

@@ -10,6 +10,7 @@ use super::fields::{Field, FieldPath, Slot, all_fields};
 use super::files::{Files, ReadError, read_text};
 use super::locate::Places;
 use super::presets::{self, PRESETS};
+use super::record;
 use super::text::{self, LARGEST_SCENE, clip, explain};
 
 /// How many faults an error names; the rest it counts. A list may hold a million NaN.
@@ -28,6 +29,8 @@ pub struct Document {
     pub files: Files,
     /// Fields that an argument changed, with that argument; the last one counts.
     assigned: Vec<(String, String)>,
+    /// What is wrong with the records that the excitation names.
+    unread: Vec<Fault>,
 }
 
 impl Document {
@@ -60,12 +63,14 @@ impl Document {
     /// Parses a scene; `name` is how messages call it. Ranges are left to [`check`](Self::check), so
     /// that an argument may still mend them.
     pub fn from_text(name: &str, text: &str, files: Files) -> Result<Self, SceneError> {
-        let scene = text::parse(text).map_err(|refusal| SceneError::Structure {
+        let mut scene = text::parse(text).map_err(|refusal| SceneError::Structure {
             name: name.to_owned(),
             place: refusal.place,
             problem: refusal.problem,
         })?;
-        Ok(Self { scene, name: name.to_owned(), text: text.to_owned(), files, assigned: Vec::new() })
+        let unread = record::attach(&mut scene.excitation, "excitation", &files);
+        let (name, text) = (name.to_owned(), text.to_owned());
+        Ok(Self { scene, name, text, files, assigned: Vec::new(), unread })
     }
 
     /// Applies `FIELD=VALUE` as given to `--set`: a number, or any value in RON
@@ -92,6 +97,9 @@ impl Document {
         match FieldPath::new(field).follow(&mut self.scene, |found| replace(found, value)) {
             Some(Ok(())) => {
                 self.assigned.push((field.to_owned(), clip(argument)));
+                if field.starts_with("excitation") {
+                    self.unread = record::attach(&mut self.scene.excitation, "excitation", &self.files);
+                }
                 Ok(())
             }
             Some(Err(problem)) => error(problem),
@@ -108,7 +116,10 @@ impl Document {
             let stranded = |field: &str| field.starts_with("sweep.") && field.ends_with(".field");
             checked.faults.retain(|fault| !stranded(&fault.field));
         }
+        checked.faults.extend(self.unread.iter().cloned());
         if checked.faults.is_empty() {
+            let duration = self.scene.run.duration_s;
+            checked.warnings.extend(record::warnings(&self.scene.excitation, duration));
             Ok(checked.warnings.iter().map(|warning| format!("{}: {warning}", self.name)).collect())
         } else {
             Err(self.error_from(checked.faults))
@@ -194,6 +205,11 @@ fn replace(found: Field<'_>, value: &str) -> Result<(), String> {
         Field::Number(_, Slot::Optional(number)) => {
             let written = parse_number(value).map(Some).or_else(|| text::options().from_str(value).ok());
             *number = written.ok_or_else(|| format!("`{}` is neither a number nor None", clip(value)))?;
+            Ok(())
+        }
+        Field::Number(_, Slot::Whole(number)) => {
+            let whole = value.trim().parse().ok();
+            *number = whole.ok_or_else(|| format!("`{}` is not a whole number from 0 up", clip(value)))?;
             Ok(())
         }
         Field::Text(text) => {

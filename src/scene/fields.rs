@@ -34,6 +34,7 @@ impl fmt::Display for Segment {
 pub(super) enum Slot<'a> {
     Required(&'a mut f64),
     Optional(&'a mut Option<f64>),
+    Whole(&'a mut u64),
 }
 
 impl Slot<'_> {
@@ -41,6 +42,7 @@ impl Slot<'_> {
         match self {
             Self::Required(number) => Some(**number),
             Self::Optional(number) => **number,
+            Self::Whole(number) => Some(**number as f64),
         }
     }
 
@@ -48,6 +50,7 @@ impl Slot<'_> {
         match self {
             Self::Required(number) => *number = value,
             Self::Optional(number) => *number = Some(value),
+            Self::Whole(number) => *number = value as u64, // checked to be whole where it came from
         }
     }
 }
@@ -85,6 +88,10 @@ fn number(v: &mut impl Visitor, spec: &'static Spec, value: &mut f64) {
 
 fn optional(v: &mut impl Visitor, spec: &'static Spec, value: &mut Option<f64>) {
     v.field(Segment::Name(spec.name), false, Field::Number(spec, Slot::Optional(value)));
+}
+
+fn whole(v: &mut impl Visitor, spec: &'static Spec, value: &mut u64) {
+    v.field(Segment::Name(spec.name), false, Field::Number(spec, Slot::Whole(value)));
 }
 
 fn leaf(v: &mut impl Visitor, name: &'static str, value: &mut dyn Assign) {
@@ -206,6 +213,22 @@ fn walk_excitation<V: Visitor>(excitation: &mut Excitation, v: &mut V) {
             number(v, &ranges::FROM_G, from_g);
             number(v, &ranges::TO_G, to_g);
             number(v, &ranges::OVER, over_s);
+        }
+        Excitation::Chirp { from_hz, to_hz, over_s, amplitude_g } => {
+            number(v, &ranges::FROM_HZ, from_hz);
+            number(v, &ranges::TO_HZ, to_hz);
+            number(v, &ranges::OVER, over_s);
+            number(v, &ranges::AMPLITUDE, amplitude_g);
+        }
+        Excitation::Noise { rms_g, low_hz, high_hz, seed, lines } => {
+            number(v, &ranges::RMS, rms_g);
+            number(v, &ranges::LOW_HZ, low_hz);
+            number(v, &ranges::HIGH_HZ, high_hz);
+            whole(v, &ranges::SEED, seed);
+            whole(v, &ranges::LINES, lines);
+        }
+        Excitation::Recorded { path, .. } => {
+            v.field(Segment::Name("path"), false, Field::Text(path));
         }
         Excitation::Sum(terms) => {
             for (i, term) in terms.iter_mut().enumerate() {

@@ -20,13 +20,16 @@ pub struct Files {
 /// Why a file that a scene names cannot be read. The messages name the file as it was looked for.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FileError {
-    /// No file there, nor an embedded table of that name.
-    #[error("no such file: {path}; embedded tables: {embedded}")]
+    /// No file there.
+    #[error(
+        "no such file: {path}{}",
+        if *.embedded { "; a scene file takes its tables from its own folder: `presets --write` puts this one there" } else { "" }
+    )]
     Missing {
         /// The path that was tried.
         path: String,
-        /// The names of the embedded tables.
-        embedded: String,
+        /// Whether an embedded table has the name that was asked for.
+        embedded: bool,
     },
     /// A relative path, but no folder to start from.
     #[error(
@@ -58,9 +61,8 @@ impl Files {
 
     /// The text of a file that a scene names.
     ///
-    /// An absolute path is read as it is. A relative one starts at the folder of the scene; where no
-    /// such file is there, or there is no folder, an embedded table of that very name is taken, so that
-    /// a preset keeps its table when its text is saved somewhere else.
+    /// An absolute path is read as it is. A relative one starts at the folder of the scene; where there is no
+    /// folder, it is the name of an embedded table.
     pub fn read(&self, path: &str) -> Result<String, FileError> {
         let embedded = || presets::TABLES.iter().find(|table| table.name == path);
         let names = || presets::TABLES.iter().map(|table| table.name).collect::<Vec<_>>().join(", ");
@@ -75,10 +77,9 @@ impl Files {
         let shown = tried.display().to_string();
         match read_text(&tried, LARGEST_TABLE) {
             Ok(text) => Ok(text),
-            Err(ReadError::Missing) => match embedded() {
-                Some(table) => Ok(table.text.to_owned()),
-                None => Err(FileError::Missing { path: shown, embedded: names() }),
-            },
+            Err(ReadError::Missing) => {
+                Err(FileError::Missing { path: shown, embedded: embedded().is_some() })
+            }
             Err(ReadError::Unusable(problem)) => Err(FileError::Unreadable { path: shown, problem }),
         }
     }

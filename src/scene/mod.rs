@@ -18,6 +18,7 @@
 
 mod axis;
 mod check;
+mod columns;
 mod data;
 mod decimal;
 mod document;
@@ -27,10 +28,12 @@ mod files;
 mod locate;
 mod presets;
 mod ranges;
+mod record;
 mod text;
 
 pub use axis::{Axis, LARGEST_AXIS, MOST_AXES, column_names};
 pub use check::{Checked, check, corners};
+pub use columns::{Columns, ColumnsError, MOST_ROWS, read_columns};
 pub use data::*;
 pub use document::Document;
 pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
@@ -39,4 +42,5 @@ pub use files::{FileError, Files, LARGEST_TABLE};
 pub use locate::{Place, Places};
 pub use presets::{PRESETS, Preset, TABLES, Table, export};
 pub use ranges::MAX_COEFFICIENTS;
+pub use record::{Record, RecordError};
 pub use text::{LARGEST_SCENE, write};

@@ -14,7 +14,7 @@ pub struct Preset {
     pub text: &'static str,
 }
 
-/// An embedded table.
+/// An embedded table or record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Table {
     /// The name by which a scene calls it.
@@ -36,15 +36,25 @@ macro_rules! presets {
 
 presets! {
     "paper": "the prototype: travel limits inside the wells, and the map over limit and shaking";
+    "paper-unconstrained": "the prototype without stops: rattles at 1 g, crosses from 1.24 g, mostly without rhythm";
+    "paper-ramp": "the prototype, shaken from 0 to 2 g in five minutes: when it frees, when it crosses";
+    "uneven-stops": "the prototype between unequal stops: two different rebounds, and the worse stop decides";
+    "walking": "the prototype carried by a walking person: crosses in every step with stops at 0.6 mm";
+    "random-shaking": "the prototype under noise: crosses at random with stops, and not without them";
     "nominal-cubic": "a textbook double well with the prototype's mass; its map has 41 x 101 cells";
+    "monostable": "one well for comparison: nothing to cross, and stops only take away";
     "bouncing-ball": "a ball that comes to rest after infinitely many bounces, at a time known exactly";
     "elastic-box": "a free mass between two perfect stops: nothing is lost, ever";
-    "duffing": "the periodically forced double well, with its published period doublings and chaos";
+    "duffing": "the periodically forced double well, with its published periods: 1, 2, 4, 5, chaos, 2";
+    "duffing-chaos": "the same double well where it never repeats: chaos, and averages that hold";
+    "period-adding": "the same double well just touching a stop: one light impact in 6, 5, 4, 3, 2 periods";
 }
 
-/// The embedded tables.
-pub static TABLES: &[Table] =
-    &[Table { name: "force_dl2.7.csv", text: include_str!("../../assets/force_dl2.7.csv") }];
+/// The embedded tables and records.
+pub static TABLES: &[Table] = &[
+    Table { name: "force_dl2.7.csv", text: include_str!("../../assets/force_dl2.7.csv") },
+    Table { name: "walking.csv", text: include_str!("../../assets/walking.csv") },
+];
 
 /// Names of all presets, with commas.
 pub(super) fn names() -> String {

@@ -12,17 +12,23 @@ pub const MAX_COEFFICIENTS: usize = 16;
 pub(super) struct Range {
     pub low: f64,
     pub high: f64,
+    /// Only whole numbers are valid.
+    pub whole: bool,
 }
 
 impl Range {
     pub(super) fn contains(&self, value: f64) -> bool {
-        self.low <= value && value <= self.high
+        self.low <= value && value <= self.high && (!self.whole || value.fract() == 0.0)
     }
 }
 
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} to {}", number_text(self.low), number_text(self.high))
+        if self.whole {
+            write!(f, "whole, {} to {}", self.low, self.high)
+        } else {
+            write!(f, "{} to {}", number_text(self.low), number_text(self.high))
+        }
     }
 }
 
@@ -48,7 +54,11 @@ pub(super) struct Spec {
 }
 
 const fn spec(name: &'static str, low: f64, high: f64, remedy: &'static str) -> Spec {
-    Spec { name, range: Range { low, high }, remedy }
+    Spec { name, range: Range { low, high, whole: false }, remedy }
+}
+
+const fn whole(spec: Spec) -> Spec {
+    Spec { range: Range { whole: true, ..spec.range }, ..spec }
 }
 
 const LENGTH: (f64, f64) = (1e-15, 1e15);
@@ -56,12 +66,14 @@ const COEFFICIENT: (f64, f64) = (-1e200, 1e200);
 const ACCELERATION: (f64, f64) = (-1e30, 1e30);
 
 macro_rules! specs {
-    ($($constant:ident = $name:literal, $low:expr, $high:expr, $remedy:literal;)*) => {
-        $(pub(super) static $constant: Spec = spec($name, $low, $high, $remedy);)*
+    ($($constant:ident = $($kind:ident)? $name:literal, $low:expr, $high:expr, $remedy:literal;)*) => {
+        $(pub(super) static $constant: Spec = specs!(@ $($kind)? spec($name, $low, $high, $remedy));)*
         /// All rows, for the test that compares them with the documentation.
         #[cfg(test)]
         pub(super) static ALL: &[&Spec] = &[$(&$constant),*];
     };
+    (@ $spec:expr) => { $spec };
+    (@ whole $spec:expr) => { whole($spec) };
 }
 
 specs! {
@@ -91,6 +103,13 @@ specs! {
     FROM_G = "from_g", ACCELERATION.0, ACCELERATION.1, "give an amplitude in g, of either sign or 0";
     TO_G = "to_g", ACCELERATION.0, ACCELERATION.1, "give an amplitude in g, of either sign or 0";
     OVER = "over_s", 1e-15, 1e15, "give the length of the ramp in s; use `Sine` for an amplitude that stays";
+    FROM_HZ = "from_hz", 0.0, 1e15, "give the frequency at the beginning in Hz, such as 1";
+    TO_HZ = "to_hz", 0.0, 1e15, "give the frequency at the end in Hz, such as 10";
+    RMS = "rms_g", 0.0, ACCELERATION.1, "give a root mean square in g, such as 0.5";
+    LOW_HZ = "low_hz", 0.0, 1e15, "give the lower end of the band in Hz, such as 1";
+    HIGH_HZ = "high_hz", 1e-15, 1e15, "give the upper end of the band in Hz, such as 10";
+    SEED = whole "seed", 0.0, 9_007_199_254_740_992.0, "give a whole number; another one gives another noise of the same kind";
+    LINES = whole "lines", 1.0, 4096.0, "256 sines look like noise for some minutes";
     X = "x_mm", -1e15, 1e15, "give a displacement in mm";
     V = "v_m_per_s", -1e30, 1e30, "give a velocity in m/s";
     DURATION = "duration_s", 1e-15, 1e9, "give how long to run in s, such as 10";
@@ -121,7 +140,7 @@ mod tests {
             if line.starts_with("#[") {
                 continue;
             }
-            let numeric = [": f64,", ": Option<f64>,", ": Vec<f64>,", "Ratio(f64),"];
+            let numeric = [": f64,", ": u64,", ": Option<f64>,", ": Vec<f64>,", "Ratio(f64),"];
             if numeric.iter().any(|ending| line.ends_with(ending)) {
                 let name = line.trim_start_matches("pub ").split(':').next().unwrap_or_default();
                 let name = if name == "Ratio(f64)," { "xi" } else { name };
@@ -141,7 +160,7 @@ mod tests {
     #[test]
     fn ends_are_inside_and_nan_is_not() {
         for spec in ALL {
-            let Range { low, high } = spec.range;
+            let Range { low, high, .. } = spec.range;
             assert!(spec.range.contains(low) && spec.range.contains(high));
             for outside in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, low.next_down(), high.next_up()] {
                 assert!(!spec.range.contains(outside), "{} takes {outside}", spec.name);

@@ -1,7 +1,11 @@
 //! One test binary; each module holds one kind of evidence.
 
+mod absent;
+#[path = "../../benches/by_hand/mod.rs"]
+mod by_hand;
 mod cli;
 mod convergence;
+mod drives;
 mod impacts;
 mod layers;
 mod mechanics;
@@ -10,3 +14,4 @@ mod plots;
 mod presets;
 mod scene;
 mod studies;
+mod support;

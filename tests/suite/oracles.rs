@@ -1,1 +1,11 @@
-//! oracles
+//! Problems with exact answers, each asserted to the digits that its conditioning allows.
+
+mod ball;
+mod consistent;
+mod demanding;
+mod forced;
+mod free;
+mod late;
+mod ledger;
+mod linear;
+mod symmetry;

@@ -27,16 +27,16 @@ fn a_scene_is_found_or_the_message_says_what_there_is() {
 }
 
 #[test]
-fn tables_are_found_beside_the_scene_then_among_the_embedded_ones() {
+fn tables_are_found_beside_the_scene_or_for_a_preset_among_the_embedded_ones() {
     let folder = tempfile::tempdir().unwrap();
     let beside = Files::beside(&folder.path().join("scene.ron"));
     let error = |files: &Files, path: &str| files.read(path).unwrap_err().to_string();
     std::fs::write(folder.path().join("own.csv"), "x_m,force_n\n").unwrap();
     assert_eq!(beside.read("own.csv").unwrap(), "x_m,force_n\n");
-    assert_eq!(beside.read("force_dl2.7.csv").unwrap(), TABLES[0].text);
+    assert!(error(&beside, "force_dl2.7.csv").contains("takes its tables from its own folder"));
     std::fs::write(folder.path().join("force_dl2.7.csv"), "mine").unwrap();
     assert_eq!(beside.read("force_dl2.7.csv").unwrap(), "mine");
-    assert!(error(&beside, "gone.csv").contains("gone.csv; embedded tables: force_dl2.7.csv"));
+    assert!(error(&beside, "gone.csv").ends_with("gone.csv"));
     assert!(error(&beside, ".").contains("is a directory"));
     std::fs::write(folder.path().join("bin.csv"), b"\xff").unwrap();
     assert!(error(&beside, "bin.csv").contains("bin.csv: is not text"));

@@ -105,6 +105,14 @@ fn every_excitation_reads_and_writes() {
         ("Sine(frequency_hz: 3, amplitude_g: -1)", sine(0.0)),
         ("Sine(frequency_hz: 3, amplitude_g: -1, phase_deg: 90)", sine(90.0)),
         ("AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 2, over_s: 10)", ramp.clone()),
+        (
+            "Chirp(from_hz: 1, to_hz: 9, over_s: 5, amplitude_g: 0.5)",
+            Excitation::Chirp { from_hz: 1.0, to_hz: 9.0, over_s: 5.0, amplitude_g: 0.5 },
+        ),
+        (
+            "Noise(rms_g: 0.5, low_hz: 1, high_hz: 9, seed: 7)",
+            Excitation::Noise { rms_g: 0.5, low_hz: 1.0, high_hz: 9.0, seed: 7, lines: 256 },
+        ),
         ("Sum([])", Excitation::Sum(vec![])),
         (
             "Sum([Constant(accel_g: 0.1), Sum([Sine(frequency_hz: 3, amplitude_g: -1)]), None])",
@@ -159,11 +167,14 @@ fn structural_errors_have_a_place_and_the_known_names() {
             "s.ron:6:12: stops: unknown choice `Hertz` in Stops; known: None, Rigid, Uneven",
         ),
         (
-            ("excitation", "Sum([\n  Chirp(from_hz: 1)])"),
-            "s.ron:7:3: excitation.0: unknown choice `Chirp` in Excitation; known: None, Constant, Sine, AmplitudeRamp, Sum",
+            ("excitation", "Sum([\n  Shock(peak_g: 1)])"),
+            "s.ron:7:3: excitation.0: unknown choice `Shock` in Excitation; known: None, Constant, Sine, AmplitudeRamp, Chirp, Noise, Recorded, Sum",
         ),
-        (("excitation", "Noise(seed: 1)"), "unknown choice `Noise` in Excitation; known: None, "),
-        (("excitation", "Recorded(path: \"a\")"), "unknown choice `Recorded` in Excitation; known: None, "),
+        (("excitation", "Noise(seed: 1)"), "`rms_g` is missing in Noise"),
+        (
+            ("excitation", "Recorded(path: \"a\", record: None)"),
+            "unknown field `record` in Recorded; known: path",
+        ),
         (
             ("stops", "Rigid(\n  travel_mm: 1)"),
             "s.ron:7:3: unknown field `travel_mm` in Rigid; known: travel_limit_mm, restitution",

@@ -1,0 +1,223 @@
+//! The motion of a mass on an odd cubic, with a sine or with no drive at all, and with nothing to touch, written
+//! out by hand: what the general path of `dynamics` must come down to where a scene names nothing else.
+//!
+//! The arithmetic is that of the general path, operation for operation, so the end of the run is the same bit for
+//! bit: series, step rule, the check of each step and the clock are the method. What is left out is what the scene
+//! does not name: stops and their search, breaks, segments of a drive, records, events, samples, budgets, the
+//! cancel flag, the order of the force, and, where it has no drive, the sine.
+
+use std::f64::consts::TAU;
+
+use interwell::dynamics::Model;
+use interwell::numeric::Scalar;
+
+const ROOM: usize = 34;
+
+/// A run to write out by hand.
+#[derive(Debug, Clone, Copy)]
+pub struct Problem {
+    unit: f64,
+    linear: f64,
+    cubic: f64,
+    damping: f64,
+    /// Amplitude and turns per time unit.
+    sine: Option<(f64, f64)>,
+    x: f64,
+    v: f64,
+    cycles: i64,
+    period: f64,
+    order: usize,
+    tolerance: f64,
+    speed: f64,
+    longest: f64,
+}
+
+/// How it ended. SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End {
+    pub x: f64,
+    pub v: f64,
+    pub steps: u64,
+}
+
+impl Problem {
+    /// The run of a model of an odd cubic; `sine` is amplitude in g and frequency in Hz, `start` displacement in m and
+    /// velocity in m/s. The duration must be a whole number of periods (without a sine, of 2^-16 time units).
+    pub fn new(model: &Model, sine: Option<(f64, f64)>, start: (f64, f64)) -> Self {
+        let unit = model.scales.time.log2().round().exp2();
+        let [0.0, linear, 0.0, cubic] = model.mechanism.curve.pieces()[0].coefficients[..] else {
+            panic!("not an odd cubic");
+        };
+        let square = (unit * unit) / model.mass;
+        let frequency = sine.map_or(1.0 / (unit * (1.0 / 65536.0)), |s| s.1);
+        let cycles = model.duration * frequency;
+        assert_eq!(cycles.fract(), 0.0, "not a whole number of periods");
+        let local = model.tolerance * 0.02;
+        Self {
+            unit,
+            linear: linear * square,
+            cubic: cubic * square,
+            damping: (model.damping * unit) / model.mass,
+            sine: sine.map(|(g, f)| (g * interwell::dynamics::STANDARD_GRAVITY * (unit * unit), f * unit)),
+            x: start.0,
+            v: start.1 * unit,
+            cycles: cycles as i64,
+            period: 1.0 / (frequency * unit),
+            order: (3.0 - 1.25 * local.log10()).round().clamp(8.0, 32.0) as usize,
+            tolerance: local,
+            speed: model.scales.speed * unit,
+            longest: 8.0 * model.scales.time / unit,
+        }
+    }
+
+    /// Runs it.
+    pub fn run(&self) -> End {
+        match self.sine {
+            Some((amplitude, frequency)) => self.fly::<true>(amplitude, frequency),
+            None => self.fly::<false>(0.0, 0.0),
+        }
+    }
+
+    fn fly<const DRIVEN: bool>(&self, amplitude: f64, frequency: f64) -> End {
+        let &Self { linear, cubic, damping, period, order, .. } = self;
+        let omega = TAU * frequency;
+        let curvature = -(omega * omega);
+        let mut inverse = [0.0; ROOM];
+        for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
+            *slot = 1.0 / (k * (k - 1)) as f64;
+        }
+        let (mut y, mut a) = ([0.0; ROOM], [0.0; ROOM]);
+        let (mut square, mut nested) = ([0.0; ROOM], [0.0; ROOM]);
+        let (speed_log2, tolerance_log2) = (fast_log2(self.speed), self.tolerance.log2());
+        let (mut cycle, mut phase) = (0, 0.0);
+        let (mut x, mut v) = (self.x, self.v);
+        let mut steps = 0;
+        loop {
+            let left = (self.cycles - cycle) as f64 * period + (0.0 - phase);
+            if !(left > 0.0) {
+                break;
+            }
+            if DRIVEN {
+                let (s, c) = f64::sin_cos_turns(phase * frequency);
+                a[0] = amplitude * s;
+                a[1] = amplitude * (c * omega);
+                a[2] = curvature * a[0] * 0.5;
+                a[3] = curvature * a[1] / 6.0;
+            }
+            y[0] = x;
+            y[1] = v;
+            for k in 0..order - 1 {
+                if DRIVEN && k >= 4 {
+                    a[k] = curvature * a[k - 2] * inverse[k];
+                }
+                square[k] = square_of(&y, k);
+                nested[k] = if k == 0 { cubic * square[k] + linear } else { cubic * square[k] };
+                let force = convolve(&nested, &y, k);
+                let drag = damping * (k + 1) as f64 * y[k + 1];
+                let sum = if DRIVEN { (drag + force) + a[k] } else { drag + force };
+                y[k + 2] = -sum * inverse[k + 2];
+            }
+
+            let mut radius = f64::INFINITY;
+            for j in order - 3..=order {
+                let size = y[j].abs() * j as f64;
+                if size > 1e-300 {
+                    radius = radius.min((speed_log2 - fast_log2(size)) / (j - 1) as f64);
+                }
+            }
+            let log2 = radius + tolerance_log2 / order as f64;
+            let mut h = if log2 < 1000.0 { fast_exp2(log2).min(self.longest) } else { self.longest };
+
+            let (position, velocity, next) = loop {
+                let last = left <= h;
+                if last {
+                    h = left;
+                }
+                let (mut position, mut velocity, mut half) = (0.0, 0.0, 0.0);
+                for c in y[..=order].iter().rev() {
+                    half = half * h + velocity;
+                    velocity = velocity * h + position;
+                    position = position * h + *c;
+                }
+                let acceleration = half + half;
+                let (mut next_cycle, mut next_phase) = (cycle, phase + h);
+                if next_phase >= period {
+                    let whole = (next_phase / period).floor();
+                    next_phase -= whole * period;
+                    next_cycle += whole as i64;
+                    if next_phase >= period {
+                        next_phase -= period;
+                        next_cycle += 1;
+                    }
+                    if next_phase < 0.0 {
+                        next_phase = 0.0;
+                    }
+                }
+                let base =
+                    if DRIVEN { amplitude * f64::sin_cos_turns(next_phase * frequency).0 } else { 0.0 };
+                let sum = (acceleration + damping * velocity) + base;
+                let force = ((cubic * position) * position + linear) * position;
+                let residual = (force + sum).abs() * h;
+                let next = if last { (self.cycles, 0.0) } else { (next_cycle, next_phase) };
+                if residual <= (20.0 * order as f64 * self.tolerance) * self.speed {
+                    break (position, velocity, next);
+                }
+                let size = position.abs();
+                let rounding = ((cubic.abs() * size) * size + linear.abs()) * size * (2.0 * f64::EPSILON);
+                let others = acceleration.abs() + (damping * velocity).abs() + base.abs();
+                if residual <= (rounding + others * f64::EPSILON) * h * 32.0 {
+                    break (position, velocity, next);
+                }
+                h *= 0.5;
+            };
+            steps += 1;
+            (x, v) = (position, velocity);
+            (cycle, phase) = next;
+        }
+        End { x, v: v / self.unit, steps }
+    }
+}
+
+#[inline]
+fn convolve(a: &[f64; ROOM], b: &[f64; ROOM], k: usize) -> f64 {
+    let (mut even, mut odd) = (0.0, 0.0);
+    let mut pairs = a[..=k].iter().zip(b[..=k].iter().rev());
+    while let Some((p, q)) = pairs.next() {
+        even += p * q;
+        if let Some((p, q)) = pairs.next() {
+            odd += p * q;
+        }
+    }
+    even + odd
+}
+
+#[inline]
+fn square_of(a: &[f64; ROOM], k: usize) -> f64 {
+    let half = k.div_ceil(2);
+    let (mut even, mut odd) = (0.0, 0.0);
+    let mut pairs = a[..half].iter().zip(a[k + 1 - half..=k].iter().rev());
+    while let Some((p, q)) = pairs.next() {
+        even += p * q;
+        if let Some((p, q)) = pairs.next() {
+            odd += p * q;
+        }
+    }
+    let twice = (even + odd) + (even + odd);
+    if k.is_multiple_of(2) { twice + a[k / 2] * a[k / 2] } else { twice }
+}
+
+#[inline]
+fn fast_log2(x: f64) -> f64 {
+    let bits = x.to_bits();
+    let exponent = (bits >> 52) as i64 - 1023;
+    let m = f64::from_bits((bits & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000) - 1.0;
+    exponent as f64 + m * (1.3465 - 0.3465 * m)
+}
+
+#[inline]
+fn fast_exp2(x: f64) -> f64 {
+    let whole = x.floor();
+    let f = x - whole;
+    let mantissa = 1.0 + f * (0.6565 + 0.3435 * f);
+    f64::from_bits(((whole as i64 + 1023).clamp(1, 2046) as u64) << 52) * mantissa
+}

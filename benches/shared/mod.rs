@@ -1,0 +1,78 @@
+//! How long does it take, on a machine that others use too?
+//!
+//! Time is the CPU time of the thread, read inside the process: a wall clock counts what others do meanwhile, and
+//! the start of the process. Each figure is the median of many, and what is compared is run in turn, so that a
+//! slow second slows both. (Criterion and divan measure by the wall clock and show no error beside the time.)
+
+// Each bench uses its part.
+#![allow(dead_code)]
+
+use std::hint::black_box;
+use std::sync::Arc;
+
+use cpu_time::ThreadTime;
+use interwell::dynamics::Model;
+use interwell::mechanics::Mechanism;
+use interwell::scene::Document;
+
+/// `many` under `cargo bench`; 1 where the benches are only tried, as `cargo test --benches` does.
+pub fn rounds(many: usize) -> usize {
+    if is_measured() { many } else { 1 }
+}
+
+/// Whether `cargo bench` runs this.
+pub fn is_measured() -> bool {
+    std::env::args().any(|argument| argument == "--bench")
+}
+
+/// A built-in scene with fields changed, each as `FIELD=VALUE`.
+pub fn document(name: &str, changes: &[&str]) -> Document {
+    let mut document = Document::load(name).unwrap();
+    for change in changes {
+        document.set(change).unwrap();
+    }
+    document.check().unwrap();
+    document
+}
+
+/// The same as run.
+pub fn model(name: &str, changes: &[&str]) -> Model {
+    let document = document(name, changes);
+    let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+    Model::build(&document.scene, Arc::new(mechanism)).unwrap()
+}
+
+/// CPU time of `work` in s.
+pub fn cpu<R>(work: impl FnOnce() -> R) -> f64 {
+    let watch = ThreadTime::now();
+    black_box(work());
+    watch.elapsed().as_secs_f64()
+}
+
+/// The median of some numbers; sorts them.
+pub fn median(values: &mut [f64]) -> f64 {
+    quantile(values, 0.5)
+}
+
+/// The value that the share `q` of them does not exceed; sorts them.
+pub fn quantile(values: &mut [f64], q: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[((values.len() - 1) as f64 * q).round() as usize]
+}
+
+/// Median CPU time in s of each of two pieces of work, and the median of the ratio of the second to the first over
+/// pairs run one after the other, in alternating order.
+pub fn compare<A, B>(pairs: usize, mut a: impl FnMut() -> A, mut b: impl FnMut() -> B) -> (f64, f64, f64) {
+    let (mut of_a, mut of_b) = (Vec::new(), Vec::new());
+    for pair in 0..pairs {
+        if pair % 2 == 0 {
+            of_a.push(cpu(&mut a));
+            of_b.push(cpu(&mut b));
+        } else {
+            of_b.push(cpu(&mut b));
+            of_a.push(cpu(&mut a));
+        }
+    }
+    let mut ratios: Vec<f64> = of_a.iter().zip(&of_b).map(|(a, b)| b / a).collect();
+    (median(&mut of_a), median(&mut of_b), median(&mut ratios))
+}

@@ -1,0 +1,135 @@
+//! Error against cost, as the README's table: `cargo bench --bench work_precision`.
+//!
+//! Three problems of the preset `nominal-cubic`, ten seconds each:
+//!
+//! - P1: no stops, 1.1 g. Error: final displacement over the well's distance, against the same run in some 31 digits.
+//! - P2: stops at 4 mm, 1.5 g: 780 impacts down to 1 um/s and 60 rests. Error: the worse of the times of the impacts
+//!   above 1 cm/s, in forcing periods, and the relative error of the RMS velocity, against the run in some 31 digits.
+//! - P3: its map, 41 travel limits by 101 amplitudes. Error: that of the RMS velocity, relative, against the same
+//!   map at a tighter tolerance; the median over the cells that move, and the 99 % quantile over those of them that
+//!   are not irregular, since the median does not see the cells near a threshold.
+
+mod shared;
+
+use interwell::dynamics::{Event, EventKind, Model, Regime, Request, Run, Summary};
+use interwell::scene::Document;
+use interwell::study::Grid;
+
+const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
+
+/// Tolerance of the runs in some 31 digits.
+const REFERENCE: f64 = 1e-27;
+
+/// Tolerance of the map that maps are compared with: the tightest that rounding leaves a meaning.
+const MAP_REFERENCE: f64 = 1e-13;
+
+/// Runs of P1 and P2 at each tolerance, and maps at each.
+const RUNS: usize = 301;
+const MAPS: usize = 3;
+
+/// Distance of the wells from the top between them, m.
+const WELL: f64 = 7e-3;
+
+fn main() {
+    println!("| problem | tolerance | error | 99 % of cells | steps | CPU |");
+    println!("| --- | --- | --- | --- | --- | --- |");
+    runs();
+    map();
+}
+
+fn runs() {
+    let free = shared::model("nominal-cubic", &["stops=None", "excitation.amplitude_g=1.1"]);
+    let stopped = shared::model("nominal-cubic", &[]);
+    let kept = Request { events: true, ..Request::default() };
+    let mut rows = Vec::new();
+    for (name, model) in [("P1, no stops", free), ("P2, stops", stopped)] {
+        let exact = model.run_reference(&kept, REFERENCE);
+        for tolerance in TOLERANCES {
+            let mut model = model.clone();
+            model.tolerance = tolerance;
+            let run = model.run(&kept);
+            let error = match name {
+                "P1, no stops" => (run.summary.final_x - exact.summary.final_x).abs() / WELL,
+                _ => late(&model, &run, &exact).max(relative(&run.summary, &exact.summary)),
+            };
+            let row = format!("| {name} | {tolerance:.0e} | {error:.1e} | | {} |", run.summary.steps);
+            rows.push((row, model, Vec::new()));
+        }
+    }
+    for _ in 0..shared::rounds(RUNS) {
+        for (_, model, times) in &mut rows {
+            times.push(model.run(&Request::default()).summary.cpu_s);
+        }
+    }
+    for (row, _, times) in &mut rows {
+        println!("{row} {:.0} us |", shared::median(times) * 1e6);
+    }
+}
+
+/// The worst time error of the impacts above 1 cm/s, in forcing periods; infinite where one is missing.
+fn late(model: &Model, run: &Run, exact: &Run) -> f64 {
+    let times = |run: &Run| -> Vec<f64> {
+        let hard = |e: &&Event| e.kind == EventKind::Impact && e.v_in.abs() > 1e-2;
+        run.events.iter().filter(hard).map(|e| e.t).collect()
+    };
+    let (mine, exact) = (times(run), times(exact));
+    if mine.len() != exact.len() {
+        return f64::INFINITY;
+    }
+    let period = model.forcing_period.unwrap();
+    mine.iter().zip(&exact).map(|(a, b)| (a - b).abs() / period).fold(0.0, f64::max)
+}
+
+fn relative(summary: &Summary, exact: &Summary) -> f64 {
+    (summary.rms_velocity.unwrap() / exact.rms_velocity.unwrap() - 1.0).abs()
+}
+
+fn map() {
+    let mut models = cells(&shared::document("nominal-cubic", &[]));
+    if !shared::is_measured() {
+        models = models.into_iter().step_by(97).collect();
+    }
+    let mut at = |tolerance: f64| -> Vec<Summary> {
+        let run = |model: &mut Model| {
+            model.tolerance = tolerance;
+            model.run(&Request::default()).summary
+        };
+        models.iter_mut().map(run).collect()
+    };
+    let exact = at(MAP_REFERENCE);
+    let mut maps: Vec<Vec<Vec<Summary>>> = TOLERANCES.map(|_| Vec::new()).into();
+    for _ in 0..shared::rounds(MAPS) {
+        for (tolerance, maps) in TOLERANCES.iter().zip(&mut maps) {
+            maps.push(at(*tolerance));
+        }
+    }
+    for (tolerance, maps) in TOLERANCES.iter().zip(&maps) {
+        let errors = |counts: fn(Regime) -> bool| -> Vec<f64> {
+            let cells = maps[0].iter().zip(&exact).filter(|cell| counts(cell.1.regime));
+            cells.map(|(cell, exact)| relative(cell, exact)).collect()
+        };
+        let middle = shared::median(&mut errors(|regime| regime != Regime::Rest));
+        let most =
+            shared::quantile(&mut errors(|regime| !matches!(regime, Regime::Rest | Regime::Irregular)), 0.99);
+        let steps: u64 = maps[0].iter().map(|cell| cell.steps).sum();
+        // the median of each cell by itself, so that a pause in one map does not count
+        let cpu: f64 = (0..exact.len())
+            .map(|i| shared::median(&mut maps.iter().map(|map| map[i].cpu_s).collect::<Vec<f64>>()))
+            .sum();
+        println!("| P3, map | {tolerance:.0e} | {middle:.1e} | {most:.1e} | {steps} | {cpu:.2} s |");
+    }
+}
+
+/// The cells of a scene's own sweep.
+fn cells(document: &Document) -> Vec<Model> {
+    let grid = Grid::new(document.axes::<&str>(&[]).unwrap()).unwrap();
+    let mechanism =
+        interwell::mechanics::Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+    let mechanism = std::sync::Arc::new(mechanism);
+    let mut scene = document.scene.clone();
+    let cell = |index| {
+        grid.apply(index, &mut scene);
+        Model::build(&scene, mechanism.clone()).unwrap()
+    };
+    (0..grid.cells()).map(cell).collect()
+}

@@ -1,0 +1,138 @@
+//! Which base acceleration does a recorded file hold?
+//!
+//! A record is read once, when a document is read or changed, and then travels with its scene, so that the
+//! cells of a sweep share it.
+
+use std::sync::Arc;
+
+use super::columns::{ColumnsError, MOST_ROWS, read_columns};
+use super::data::Excitation;
+use super::error::Fault;
+use super::files::Files;
+
+const TIME: &str = "t_s";
+const ACCELERATION: &str = "accel_m_per_s2";
+
+/// A step longer than this many times the usual one is called a gap.
+const GAP: f64 = 5.0;
+
+/// Samples of base acceleration, linear between them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// Times in s, strictly increasing; at least two.
+    pub times: Vec<f64>,
+    /// Accelerations in m/s^2, one for each time.
+    pub accelerations: Vec<f64>,
+}
+
+/// What is wrong with the text of a record.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RecordError {
+    /// The columns cannot be read.
+    #[error(transparent)]
+    Columns(#[from] ColumnsError),
+    /// Fewer than two samples.
+    #[error("has {0} rows of numbers; a record needs at least 2")]
+    TooFew(usize),
+    /// A time that is not after the one before it.
+    #[error(
+        "line {line}: {TIME} = {time:e} does not come after {before:e}; times must increase from row to row"
+    )]
+    NotAfter {
+        /// Line of the later row.
+        line: usize,
+        /// Its time.
+        time: f64,
+        /// The time before it.
+        before: f64,
+    },
+}
+
+impl Record {
+    /// Reads the text of a record: CSV with the columns `t_s,accel_m_per_s2` among others.
+    pub fn parse(text: &str) -> Result<Self, RecordError> {
+        let columns = read_columns(text, [TIME, ACCELERATION], MOST_ROWS)?;
+        if columns.rows.len() < 2 {
+            return Err(RecordError::TooFew(columns.rows.len()));
+        }
+        for (i, pair) in columns.rows.windows(2).enumerate() {
+            let (before, time) = (pair[0][0], pair[1][0]);
+            if time <= before {
+                return Err(RecordError::NotAfter { line: columns.lines[i + 1], time, before });
+            }
+        }
+        let (times, accelerations) = columns.rows.iter().map(|row| (row[0], row[1])).unzip();
+        Ok(Self { times, accelerations })
+    }
+
+    /// Remarks for a run of `duration` s, each a clause that continues the file's name.
+    pub fn warnings(&self, duration: f64) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
+        if first > 0.0 {
+            warnings.push(format!("begins at {first} s; the base stands still until then"));
+        }
+        if last < duration {
+            warnings.push(format!(
+                "ends at {last} s, before the run does at {duration} s; the base stands still from there"
+            ));
+        }
+        let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let (longest, at) =
+            steps.iter().zip(&self.times).fold((0.0, 0.0), |worst: (f64, f64), (step, at)| {
+                if *step > worst.0 { (*step, *at) } else { worst }
+            });
+        let middle = steps.len() / 2;
+        let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+        if longest > GAP * usual {
+            warnings.push(format!(
+                "has a gap of {longest} s after {at} s, where its usual step is {usual} s; it is bridged by a straight line"
+            ));
+        }
+        warnings
+    }
+
+    /// The largest magnitude in m/s^2.
+    pub fn peak(&self) -> f64 {
+        self.accelerations.iter().fold(0.0, |peak, a| a.abs().max(peak))
+    }
+}
+
+/// Reads the records that an excitation names and attaches them to it; what cannot be read is a fault and
+/// stays without a record. `path` is the excitation's own.
+pub(super) fn attach(excitation: &mut Excitation, path: &str, files: &Files) -> Vec<Fault> {
+    match excitation {
+        Excitation::Recorded { path: file, record } => {
+            let read = files.read(file).map_err(|e| e.to_string());
+            match read.and_then(|text| Record::parse(&text).map_err(|e| e.to_string())) {
+                Ok(found) => {
+                    *record = Some(Arc::new(found));
+                    Vec::new()
+                }
+                Err(problem) => {
+                    *record = None;
+                    vec![Fault { field: format!("{path}.path"), value: file.clone(), problem }]
+                }
+            }
+        }
+        Excitation::Sum(terms) => terms
+            .iter_mut()
+            .enumerate()
+            .flat_map(|(i, term)| attach(term, &format!("{path}.{i}"), files))
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Remarks on the records of an excitation in a run of `duration` s.
+pub(super) fn warnings(excitation: &Excitation, duration: f64) -> Vec<String> {
+    match excitation {
+        Excitation::Recorded { path, record: Some(record) } => record
+            .warnings(duration)
+            .into_iter()
+            .map(|warning| format!("the record {path} {warning}"))
+            .collect(),
+        Excitation::Sum(terms) => terms.iter().flat_map(|term| warnings(term, duration)).collect(),
+        _ => Vec::new(),
+    }
+}

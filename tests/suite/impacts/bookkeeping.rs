@@ -1,0 +1,171 @@
+//! Samples at events, windows and their counts, watching without touching.
+
+use interwell::dynamics::{EventKind, Phase, Request, Run};
+
+use super::random::{assert_mirrored, mirrored};
+use super::scenes::*;
+
+fn p2() -> interwell::scene::Scene {
+    nominal_scene(4.0, 0.36, sine(3.0, 1.5 * 9.80665, 0.0), 10.0)
+}
+
+#[test]
+fn a_sample_at_an_events_instant_is_the_state_after_it() {
+    let s = p2();
+    let m = model(&s);
+    let events = m.run(&full(&[])).events;
+    // the last impact before a closed-form sum: its rebound is not resolved any more
+    let unresolved = 1e-6 * m.scales.speed;
+    let times: Vec<f64> = events.iter().map(|e| e.t).collect();
+    let r = m.run(&full(&times));
+    assert_eq!(r.samples.len(), times.len());
+    let mut seen = [0; 4];
+    for (e, p) in events.iter().zip(&r.samples) {
+        assert_eq!(e.t, p.t);
+        let sign = if e.side == interwell::dynamics::Side::Left { -1.0 } else { 1.0 };
+        match e.kind {
+            EventKind::Impact => {
+                // the time in s is rounded to an ulp: so far the mass may have gone, at some 10 m/s^2
+                let late = 2.0 * f64::EPSILON * e.t;
+                let gone = e.v_out.abs() * late + 1e-18;
+                assert!(
+                    sign * p.x <= 4e-3 && sign * p.x >= 4e-3 - gone && p.phase == Phase::Free,
+                    "{e:?} {p:?}"
+                );
+                let summed = e.v_out.abs() < unresolved && p.v == 0.0;
+                assert!(summed || (p.v - e.v_out).abs() <= 30.0 * late, "{e:?} {p:?}");
+            }
+            EventKind::Rest => {
+                assert!(p.x == sign * 4e-3 && p.v == 0.0 && p.phase != Phase::Free, "{e:?} {p:?}");
+            }
+            EventKind::Release => {
+                assert!(p.x == sign * 4e-3 && p.v.abs() < 1e-25 && p.phase == Phase::Free, "{e:?} {p:?}");
+            }
+            EventKind::Crossing => {
+                let late = 4.0 * f64::EPSILON * e.t;
+                assert!(p.x.abs() <= e.v_out.abs() * late + 1e-17, "{e:?} {p:?}");
+                assert!((p.v - e.v_out).abs() <= 30.0 * late, "{e:?} {p:?}");
+            }
+        }
+        seen[e.kind as usize] += 1;
+    }
+    assert!(seen.iter().all(|n| *n >= 50), "{seen:?}");
+}
+
+#[test]
+fn samples_at_0_during_rests_and_at_the_end() {
+    let s = p2();
+    let m = model(&s);
+    let times = dense(10.0, 5000);
+    let r = m.run(&full(&times));
+    assert_eq!(r.samples.len(), times.len());
+    let (first, last) = (r.samples[0], r.samples.last().unwrap());
+    assert_eq!((first.t, first.x, first.v, first.phase), (0.0, 4e-3, 0.0, Phase::RightStop));
+    assert_eq!((last.t, last.x, last.v), (10.0, r.summary.final_x, r.summary.final_v));
+    for p in &r.samples {
+        assert_eq!(p.base_accel, m.base_acceleration(p.t));
+        let last = r.events.iter().rfind(|e| e.t <= p.t).unwrap();
+        assert_eq!(p.phase != Phase::Free, last.kind == EventKind::Rest, "{p:?} {last:?}");
+        assert!(p.x.abs() <= 4e-3);
+    }
+}
+
+/// Counts over [settle, settle + n T) from the list of events, with the share of the time at rest.
+fn counted(r: &Run, from: f64, to: f64) -> (u64, u64, u64, f64) {
+    let within = |kind| r.events.iter().filter(|e| e.kind == kind && e.t >= from && e.t < to).count() as u64;
+    let mut rested = 0.0;
+    let mut since: Option<f64> = None;
+    for e in &r.events {
+        match e.kind {
+            EventKind::Rest => since = Some(e.t),
+            EventKind::Release => rested += (e.t.min(to) - since.take().unwrap().max(from)).max(0.0),
+            _ => {}
+        }
+    }
+    rested += since.map_or(0.0, |t| (to - t.max(from)).max(0.0));
+    (within(EventKind::Impact), within(EventKind::Crossing), within(EventKind::Release), rested / (to - from))
+}
+
+#[test]
+fn the_windows_counts_are_those_of_the_events() {
+    for (settle, n) in [(0.0, 30.0), (5.0, 15.0), (4.321, 17.0), (9.9, 0.0)] {
+        let mut s = p2();
+        s.run.settle_s = Some(settle);
+        let r = run(&s);
+        let to = if n > 0.0 { settle + n / 3.0 } else { 10.0 };
+        let (impacts, crossings, releases, rested) = counted(&r, settle, to);
+        let u = &r.summary;
+        assert_eq!((u.impacts, u.crossings, u.releases), (impacts, crossings, releases), "{settle}");
+        assert!((u.rested_share.unwrap() - rested).abs() < 1e-12, "{settle}: {:?} {rested}", u.rested_share);
+    }
+}
+
+#[test]
+fn the_rms_of_the_window_is_that_of_the_samples() {
+    let mut s = p2();
+    s.run.settle_s = Some(4.321);
+    let m = model(&s);
+    // midpoints of 2e5 intervals over 17 periods
+    let (from, n) = (4.321, 200_000);
+    let step = 17.0 / 3.0 / f64::from(n);
+    let times: Vec<f64> = (0..n).map(|i| from + (f64::from(i) + 0.5) * step).collect();
+    let r = m.run(&full(&times));
+    let mean = r.samples.iter().map(|p| p.v * p.v).sum::<f64>() / f64::from(n);
+    let highest = r.samples.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
+    // each impact leaves an error of a step
+    assert!((r.summary.rms_velocity.unwrap() / mean.sqrt() - 1.0).abs() < 2e-4);
+    assert!(r.summary.max_abs_x.unwrap() >= highest && highest <= 4e-3);
+}
+
+#[test]
+fn a_stop_that_is_never_reached_leaves_every_bit_alone() {
+    let times = dense(10.0, 1000);
+    let without = {
+        let mut s = p2();
+        s.stops = interwell::scene::Stops::None;
+        s.start = at(7.0, 0.0);
+        s.excitation = sine(3.0, 1.1 * 9.80665, 0.0);
+        s
+    };
+    let a = model(&without).run(&full(&times));
+    let beyond = a.summary.max_abs_x.unwrap() * (1.0 + 1e-9) * 1e3;
+    for limit in [beyond, beyond * 1.5, 1e6] {
+        let mut with = without.clone();
+        with.stops = rigid(limit, 0.36);
+        let b = model(&with).run(&full(&times));
+        assert_eq!((&a.samples, &a.events), (&b.samples, &b.events), "{limit}");
+        assert_eq!(a.summary.rms_velocity, b.summary.rms_velocity);
+        assert_eq!(a.summary.steps, b.summary.steps);
+    }
+}
+
+#[test]
+fn watching_changes_nothing() {
+    let m = model(&p2());
+    let watched = m.run(&full(&dense(10.0, 3000)));
+    let bare = m.run(&Request::default());
+    assert!(bare.samples.is_empty() && bare.events.is_empty() && bare.summary.ledger.is_none());
+    let (a, b) = (&watched.summary, &bare.summary);
+    assert_eq!(
+        (a.final_x, a.final_v, a.steps, a.evaluations),
+        (b.final_x, b.final_v, b.steps, b.evaluations)
+    );
+    assert_eq!((a.impacts, a.crossings, a.rests, a.regime), (b.impacts, b.crossings, b.rests, b.regime));
+    assert_eq!((a.rms_velocity, a.max_abs_x, a.period), (b.rms_velocity, b.max_abs_x, b.period));
+    assert_eq!(watched.summary.rms_velocity, m.run(&full(&[])).summary.rms_velocity);
+}
+
+#[test]
+fn the_mirrored_scene_gives_the_mirrored_run_bit_for_bit() {
+    let times = dense(10.0, 2000);
+    let s = p2();
+    let mut s = s.clone();
+    s.start = at(4.0, 0.0);
+    let a = model(&s).run(&full(&times));
+    assert!(a.events.len() > 800);
+    assert_mirrored(&a, &model(&mirrored(&s)).run(&full(&times)));
+    // 180 degrees are the same as a negative amplitude
+    let mut turned = mirrored(&s);
+    turned.excitation = sine(3.0, 1.5 * 9.80665, 180.0);
+    assert_mirrored(&a, &model(&turned).run(&full(&times)));
+}

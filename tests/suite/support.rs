@@ -1,0 +1,89 @@
+//! What the numerical tests share: a scene's text made into a run, and comparisons that show their digits.
+
+use std::sync::Arc;
+
+use interwell::dynamics::{Event, EventKind, Model, Request, Run};
+use interwell::mechanics::Mechanism;
+use interwell::scene::{Document, Files};
+
+/// The model of a document that must be without faults.
+fn build(document: &Document) -> Model {
+    document.check().unwrap();
+    let mechanism = Arc::new(Mechanism::build(&document.scene.mechanism, &document.files).unwrap());
+    Model::build(&document.scene, mechanism).unwrap()
+}
+
+/// The model of a scene's text, `title` left out.
+pub fn model(text: &str) -> Model {
+    let text = format!("(title: \"test\", {text})");
+    build(&Document::from_text("test", &text, Files::default()).unwrap_or_else(|e| panic!("{e}\n{text}")))
+}
+
+/// The unit double well, m = 1, F = x^3 - x, with the other fields in `rest`.
+pub fn unit_well(rest: &str) -> Model {
+    model(&format!("mass_g: 1000, mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1), {rest}"))
+}
+
+/// A built-in scene with fields changed, each as `FIELD=VALUE`.
+pub fn preset(name: &str, changes: &[&str]) -> Model {
+    let mut document = Document::load(name).unwrap();
+    for change in changes {
+        document.set(change).unwrap();
+    }
+    build(&document)
+}
+
+/// A run with events and ledger.
+pub fn run(model: &Model) -> Run {
+    run_at(model, &[])
+}
+
+/// A run with events, ledger, and samples at `times`, ascending.
+pub fn run_at(model: &Model, times: &[f64]) -> Run {
+    model.run(&Request { sample_times: times, events: true, ledger: true, cancel: None })
+}
+
+/// The events of one kind.
+pub fn of_kind(run: &Run, kind: EventKind) -> Vec<Event> {
+    run.events.iter().filter(|e| e.kind == kind).copied().collect()
+}
+
+/// `count` times, `step` apart, from `step` on.
+pub fn every(step: f64, count: usize) -> Vec<f64> {
+    (1..=count).map(|i| step * i as f64).collect()
+}
+
+/// Asserts |value - exact| <= bound.
+#[track_caller]
+pub fn near(value: f64, exact: f64, bound: f64) {
+    let error = (value - exact).abs();
+    assert!(error <= bound, "{value:?} is {error:.2e} from {exact:?}, allowed {bound:.1e}");
+}
+
+/// Asserts |value - exact| <= bound |exact|.
+#[track_caller]
+pub fn near_relative(value: f64, exact: f64, bound: f64) {
+    let error = (value / exact - 1.0).abs();
+    assert!(error <= bound, "{value:?} is {error:.2e} from {exact:?}, relatively; allowed {bound:.1e}");
+}
+
+/// Asserts that two runs are the same bit for bit in everything but the CPU time.
+#[track_caller]
+pub fn same_bits(a: &Run, b: &Run) {
+    let bare = |run: &Run| {
+        let mut run = run.clone();
+        run.summary.cpu_s = 0.0;
+        run
+    };
+    assert_eq!(bare(a), bare(b));
+}
+
+/// The complete elliptic integral K of modulus k, given k^2 in [0, 1): pi over twice the arithmetic-geometric
+/// mean of 1 and sqrt(1 - k^2) (Gauss), good to some ulps.
+pub fn elliptic_k(k_squared: f64) -> f64 {
+    let (mut a, mut b) = (1.0, (1.0 - k_squared).sqrt());
+    for _ in 0..12 {
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+    }
+    std::f64::consts::FRAC_PI_2 / a
+}
