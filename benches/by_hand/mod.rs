@@ -3,13 +3,14 @@
 //!
 //! The arithmetic is that of the general path, operation for operation, so the end of the run is the same bit for
 //! bit: series, step rule, the check of each step and the clock are the method. What is left out is what the scene
-//! does not name: stops and their search, breaks, segments of a drive, records, events, samples, budgets, the
-//! cancel flag, the order of the force, and, where it has no drive, the sine.
+//! does not name: stops and their search, breaks, segments of a drive, statistics, events, samples, budgets, the
+//! cancel flag, the order of the force, and, where it has no drive, the sine. Crossings, which every run with a
+//! well counts, can be counted here too.
 
 use std::f64::consts::TAU;
 
 use interwell::dynamics::Model;
-use interwell::numeric::Scalar;
+use interwell::numeric::{PolynomialRoots, Scalar};
 
 const ROOM: usize = 34;
 
@@ -38,6 +39,8 @@ pub struct End {
     pub x: f64,
     pub v: f64,
     pub steps: u64,
+    /// Passages of x = 0, where they are counted.
+    pub crossings: u64,
 }
 
 impl Problem {
@@ -70,15 +73,23 @@ impl Problem {
         }
     }
 
-    /// Runs it.
+    /// Runs it, the motion alone.
     pub fn run(&self) -> End {
         match self.sine {
-            Some((amplitude, frequency)) => self.fly::<true>(amplitude, frequency),
-            None => self.fly::<false>(0.0, 0.0),
+            Some((amplitude, frequency)) => self.fly::<true, false>(amplitude, frequency),
+            None => self.fly::<false, false>(0.0, 0.0),
         }
     }
 
-    fn fly<const DRIVEN: bool>(&self, amplitude: f64, frequency: f64) -> End {
+    /// Runs it and counts the passages of x = 0.
+    pub fn run_counting(&self) -> End {
+        match self.sine {
+            Some((amplitude, frequency)) => self.fly::<true, true>(amplitude, frequency),
+            None => self.fly::<false, true>(0.0, 0.0),
+        }
+    }
+
+    fn fly<const DRIVEN: bool, const COUNT: bool>(&self, amplitude: f64, frequency: f64) -> End {
         let &Self { linear, cubic, damping, period, order, .. } = self;
         let omega = TAU * frequency;
         let curvature = -(omega * omega);
@@ -90,15 +101,17 @@ impl Problem {
         let (mut square, mut nested) = ([0.0; ROOM], [0.0; ROOM]);
         let (speed_log2, tolerance_log2) = (fast_log2(self.speed), self.tolerance.log2());
         let (mut cycle, mut phase) = (0, 0.0);
+        let mut turned = (0.0, 1.0); // sine and cosine of the drive where a step starts
         let (mut x, mut v) = (self.x, self.v);
         let mut steps = 0;
+        let mut crossings = 0;
         loop {
             let left = (self.cycles - cycle) as f64 * period + (0.0 - phase);
             if !(left > 0.0) {
                 break;
             }
             if DRIVEN {
-                let (s, c) = f64::sin_cos_turns(phase * frequency);
+                let (s, c) = turned;
                 a[0] = amplitude * s;
                 a[1] = amplitude * (c * omega);
                 a[2] = curvature * a[0] * 0.5;
@@ -119,8 +132,8 @@ impl Problem {
             }
 
             let mut radius = f64::INFINITY;
-            for j in order - 3..=order {
-                let size = y[j].abs() * j as f64;
+            for (j, c) in (order - 3..).zip(&y[order - 3..=order]) {
+                let size = c.abs() * j as f64;
                 if size > 1e-300 {
                     radius = radius.min((speed_log2 - fast_log2(size)) / (j - 1) as f64);
                 }
@@ -128,7 +141,7 @@ impl Problem {
             let log2 = radius + tolerance_log2 / order as f64;
             let mut h = if log2 < 1000.0 { fast_exp2(log2).min(self.longest) } else { self.longest };
 
-            let (position, velocity, next) = loop {
+            let (h, position, velocity, next) = loop {
                 let last = left <= h;
                 if last {
                     h = left;
@@ -153,29 +166,61 @@ impl Problem {
                         next_phase = 0.0;
                     }
                 }
-                let base =
-                    if DRIVEN { amplitude * f64::sin_cos_turns(next_phase * frequency).0 } else { 0.0 };
+                if DRIVEN {
+                    turned = f64::sin_cos_turns(next_phase * frequency);
+                }
+                let base = if DRIVEN { amplitude * turned.0 } else { 0.0 };
                 let sum = (acceleration + damping * velocity) + base;
                 let force = ((cubic * position) * position + linear) * position;
                 let residual = (force + sum).abs() * h;
                 let next = if last { (self.cycles, 0.0) } else { (next_cycle, next_phase) };
                 if residual <= (20.0 * order as f64 * self.tolerance) * self.speed {
-                    break (position, velocity, next);
+                    break (h, position, velocity, next);
                 }
                 let size = position.abs();
                 let rounding = ((cubic.abs() * size) * size + linear.abs()) * size * (2.0 * f64::EPSILON);
                 let others = acceleration.abs() + (damping * velocity).abs() + base.abs();
                 if residual <= (rounding + others * f64::EPSILON) * h * 32.0 {
-                    break (position, velocity, next);
+                    break (h, position, velocity, next);
                 }
                 h *= 0.5;
             };
             steps += 1;
+            if COUNT {
+                crossings += passages(&y[..=order], h, position);
+            }
             (x, v) = (position, velocity);
             (cycle, phase) = next;
         }
-        End { x, v: v / self.unit, steps }
+        End { x, v: v / self.unit, steps, crossings }
     }
+}
+
+/// Passages of 0 within a step of length `h` that ends at `end`.
+#[inline]
+fn passages(y: &[f64], h: f64, end: f64) -> u64 {
+    let mut scaled = [0.0; ROOM];
+    let (mut power, mut bound) = (1.0, 0.0);
+    scaled[0] = y[0];
+    for (slot, c) in scaled[1..].iter_mut().zip(&y[1..]) {
+        power *= h;
+        *slot = c * power;
+        bound += slot.abs();
+    }
+    let passed = (y[0] > 0.0) != (end > 0.0);
+    if !passed && y[0].abs() > bound {
+        return 0;
+    }
+    if y[0] < 0.0 {
+        scaled.iter_mut().for_each(|c| *c = -*c);
+    }
+    let mut count = 0;
+    PolynomialRoots::new(&scaled[..y.len()]).each_sign_change(|_| {
+        count += 1;
+        true
+    });
+    // The ends decide the parity: rounding may put a root just beyond one.
+    if (count % 2 == 1) == passed { count } else { count.max(1) - 1 + u64::from(passed && count == 0) }
 }
 
 #[inline]

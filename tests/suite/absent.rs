@@ -19,8 +19,11 @@ fn the_general_path_is_the_hand_written_one_bit_for_bit() {
             for (drive, excitation) in [(sine, Some((1.1, 3.0))), (still, None)] {
                 let model = preset("nominal-cubic", &[well, &[drive, at, &tolerance]].concat());
                 let summary = model.run(&Request::default()).summary;
-                let general = End { x: summary.final_x, v: summary.final_v, steps: summary.steps };
-                assert_eq!(general, Problem::new(&model, excitation, start).run(), "{well:?} {drive}");
+                let (x, v) = (summary.final_x, summary.final_v);
+                let general = End { x, v, steps: summary.steps, crossings: summary.total_crossings };
+                let by_hand = Problem::new(&model, excitation, start);
+                assert_eq!(general, by_hand.run_counting(), "{well:?} {drive}");
+                assert_eq!(End { crossings: 0, ..general }, by_hand.run(), "{well:?} {drive}");
                 assert!(general.steps > 100);
             }
         }
