@@ -115,6 +115,35 @@ fn chaos_has_averages_that_hold() {
 }
 
 #[test]
+fn the_older_scenes_do_what_their_notes_say() {
+    // paper: rattles without stops; the least shaking that crosses from rest, in steps of 0.01 g, is below the
+    // 1.24 g of the unstopped prototype with stops at 2.6 mm and above it from 2.65 mm to 7 mm.
+    let paper = |stops: &str, amplitude: f64| {
+        summary("paper", &[stops, &format!("excitation.amplitude_g={amplitude}")])
+    };
+    assert_eq!(paper("stops=None", 1.0).regime, Regime::Intrawell);
+    assert_eq!(paper("stops=None", 1.23).total_crossings, 0);
+    assert!(paper("stops=None", 1.24).total_crossings > 0);
+    assert_eq!(paper("stops.travel_limit_mm=2.6", 1.23).regime, Regime::Interwell);
+    for limit in [2.65, 3.0, 4.0, 5.0, 6.0, 6.5, 7.0] {
+        let crossings = paper(&format!("stops.travel_limit_mm={limit}"), 1.24).total_crossings;
+        assert_eq!(crossings, 0, "{limit}");
+    }
+    // nominal-cubic: impacts above 1 um/s in ten seconds, at any tolerance
+    for change in ["run.tolerance=1e-9", "run.tolerance=1e-12"] {
+        let run = run(&preset("nominal-cubic", &[change]));
+        let faster = of_kind(&run, EventKind::Impact).iter().filter(|event| event.v_in.abs() > 1e-6).count();
+        assert_eq!(faster, 780);
+    }
+    // elastic-box: the first wall, and what is lost at a restitution of 0.9
+    near(run(&preset("elastic-box", &[])).events[0].t, 0.2, 1e-15);
+    let lossy = run(&preset("elastic-box", &["stops.restitution=0.9", "run.duration_s=0.5"]));
+    near_relative(lossy.events[0].v_out.powi(2) / lossy.events[0].v_in.powi(2), 0.81, 1e-14);
+    // duffing: over and back once in five periods
+    assert_eq!(summary("duffing", &[]).crossings, 100 / 5 * 2);
+}
+
+#[test]
 fn without_stops_the_prototype_rattles_up_to_1_23_g() {
     let own = summary("paper-unconstrained", &[]);
     near(own.max_abs_x.unwrap() - own.travel.unwrap(), 5.437_31e-3, 1e-8);
