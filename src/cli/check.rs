@@ -1,5 +1,7 @@
 //! `check`: is this scene right, and what does it model?
 
+use std::path::PathBuf;
+
 use interwell::study::inspect;
 
 use super::failure::Failure;
@@ -12,7 +14,7 @@ use interwell::scene::SceneError;
 pub fn run(options: &CheckOptions) -> Result<(), Failure> {
     let paper = ["paper".to_owned()];
     let scenes = if options.scenes.is_empty() { &paper[..] } else { &options.scenes[..] };
-    let names: Vec<&str> = scenes.iter().map(String::as_str).collect();
+    let names: Vec<PathBuf> = scenes.iter().map(PathBuf::from).collect();
     let mut sinks = open(&names, [Some(("--out", &options.common.out))])?;
     let mut wrong = Vec::new();
     for spec in scenes {
@@ -33,7 +35,7 @@ pub fn run(options: &CheckOptions) -> Result<(), Failure> {
 }
 
 fn report(spec: &str, common: &Common) -> Result<String, SceneError> {
-    let (document, warnings) = load(spec, common)?;
+    let (document, warnings) = load(spec, common, None)?;
     let mechanism = mechanism(&document)?;
     let lines = inspect(&document.scene, &mechanism).map_err(|faults| document.error_from(faults))?;
     let mut text = format!("{}: {}\n", document.name, document.scene.title);

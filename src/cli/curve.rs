@@ -6,7 +6,7 @@ use interwell::study::{curve, default_positions, even_positions, metres, stop_po
 use super::failure::Failure;
 use super::options::CurveOptions;
 use super::picture::{Picture, caption};
-use super::support::{finish, load_with_mechanism, numbers, open, write_table, write_text};
+use super::support::{finish, inputs, load_with_mechanism, numbers, open, write_table, write_text};
 
 const POINTS: u32 = 401;
 
@@ -17,7 +17,7 @@ const PICTURE_POINTS: usize = 3001;
 pub fn run(options: &CurveOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
-    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
+    let (document, mechanism) = load_with_mechanism(&options.scene, common, None)?;
     let points = options.points.unwrap_or(POINTS) as usize;
     let range = options.range_mm.as_deref().map(range).transpose()?;
     let even = |points: usize| match range {
@@ -31,7 +31,7 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
     let table = curve(&mechanism, positions)?;
     let landscape_path = options.landscape.as_deref().map(|path| ("--landscape", path));
     let mut sinks = open(
-        &[&options.scene],
+        &inputs(&options.scene, &document),
         [Some(("--out", &common.out)), landscape_path, picture.map(|own| own.output())],
     )?;
     write_table(&mut sinks[0], &table)?;

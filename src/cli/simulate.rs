@@ -7,7 +7,7 @@ use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_tra
 use super::failure::Failure;
 use super::options::SimulateOptions;
 use super::picture::{Picture, caption};
-use super::support::{Watch, finish, load_with_mechanism, numbers, open, write_table, write_text};
+use super::support::{Watch, finish, inputs, load_with_mechanism, numbers, open, write_table, write_text};
 use super::{interrupt, say};
 
 /// Runs the scene and writes samples, events and summary.
@@ -23,13 +23,13 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
         }
         (None, None) => Sampling::Default,
     };
-    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
+    let (document, mechanism) = load_with_mechanism(&options.scene, common, None)?;
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
     let times = sample_times(&document.scene, &model, &sampling)?;
     let events = options.events.as_deref().map(|path| ("--events", path));
     let summary_path = options.summary.as_deref().map(|path| ("--summary", path));
     let outputs = [Some(("--out", &*common.out)), events, summary_path, picture.map(|own| own.output())];
-    let mut sinks = open(&[&options.scene], outputs)?;
+    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
 
     let cancel = interrupt::listen();
     let watch = Watch::start();

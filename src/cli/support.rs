@@ -1,6 +1,6 @@
 //! What several commands need: the scene as arguments changed it, its mechanism, lists of numbers, outputs.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -47,8 +47,13 @@ impl Watch {
 /// Rows that are turned into text at a time.
 const ROWS: usize = 1 << 15;
 
-/// The scene called `spec` with `--set` and `--tolerance` applied and checked, and its warnings.
-pub fn load(spec: &str, common: &Common) -> Result<(Document, Vec<String>), SceneError> {
+/// The scene called `spec` with `--set` and `--tolerance` applied and checked, and its warnings. For a sweep `over`
+/// holds its arguments: then the first cell is checked, since the scene's own value of a swept field is never run.
+pub fn load(
+    spec: &str,
+    common: &Common,
+    over: Option<&[String]>,
+) -> Result<(Document, Vec<String>), SceneError> {
     let mut document = Document::load(spec)?;
     for argument in &common.set {
         document.set(argument)?;
@@ -56,8 +61,24 @@ pub fn load(spec: &str, common: &Common) -> Result<(Document, Vec<String>), Scen
     if let Some(tolerance) = &common.tolerance {
         document.assign("run.tolerance", tolerance, &format!("--tolerance {tolerance}"))?;
     }
-    let warnings = document.check()?;
+    let warnings = match over {
+        None => document.check()?,
+        Some(over) => {
+            let mut first_cell = document.clone();
+            for axis in document.axes(over)? {
+                axis.apply(&mut first_cell.scene, 0);
+            }
+            first_cell.check()?
+        }
+    };
     Ok((document, warnings))
+}
+
+/// The files that a scene is made of: its own and those that it names.
+pub fn inputs(spec: &str, document: &Document) -> Vec<PathBuf> {
+    let mut inputs = document.named_files();
+    inputs.push(spec.into());
+    inputs
 }
 
 /// The scene's mechanism.
@@ -67,8 +88,12 @@ pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, SceneError> {
 }
 
 /// Loads the scene and its mechanism and prints the warnings of both.
-pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc<Mechanism>), Failure> {
-    let (document, mut warnings) = load(spec, common)?;
+pub fn load_with_mechanism(
+    spec: &str,
+    common: &Common,
+    over: Option<&[String]>,
+) -> Result<(Document, Arc<Mechanism>), Failure> {
+    let (document, mut warnings) = load(spec, common, over)?;
     let mechanism = mechanism(&document)?;
     let fit = mechanism.curve.fit().into_iter().flat_map(|fit| &fit.warnings);
     warnings.extend(fit.map(|warning| format!("{}: {warning}", document.name)));
@@ -87,21 +112,21 @@ pub fn numbers(option: &str, text: &str, separator: char) -> Result<Vec<f64>, Fa
     text.split(separator).map(number).collect()
 }
 
-/// Opens the outputs, each given with its option, before any work is done for them. None may be the
-/// file of one of the scenes, and no two the same.
+/// Opens the outputs, each given with its option, before any work is done for them. None may be one of the
+/// `inputs` (a scene's file, or a table or record that it names), and no two the same.
 pub fn open<const N: usize>(
-    scenes: &[&str],
+    inputs: &[PathBuf],
     outputs: [Option<(&str, &Path)>; N],
 ) -> Result<[Option<Sink>; N], Failure> {
     let place = |path: &Path| std::fs::canonicalize(path).ok();
-    let scenes: Vec<_> = scenes.iter().filter_map(|scene| place(Path::new(scene))).collect();
+    let inputs: Vec<_> = inputs.iter().filter_map(|input| place(input)).collect();
     let mut sinks = [const { None::<Sink> }; N];
     for (i, output) in outputs.iter().enumerate() {
         let Some((option, path)) = output else { continue };
-        if place(path).is_some_and(|path| path.is_file() && scenes.contains(&path)) {
+        if place(path).is_some_and(|path| path.is_file() && inputs.contains(&path)) {
             let path = path.display();
             return Err(Failure::argument(format!(
-                "{option} {path} would overwrite the scene: name another file"
+                "{option} {path} would overwrite the scene or a file that it reads: name another file"
             )));
         }
         let sink = Sink::open(path)?;

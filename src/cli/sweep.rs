@@ -11,14 +11,14 @@ use interwell::study::{Grid, Sweep, SweepEnd, Table, Task, first_interwell, rele
 use super::failure::{Failure, wrong_cell};
 use super::options::SweepOptions;
 use super::picture::{Picture, caption};
-use super::support::{Watch, finish, load_with_mechanism, open, write_text};
+use super::support::{Watch, finish, inputs, load_with_mechanism, open, write_text};
 use super::{interrupt, say};
 
 /// Runs the grid and writes a row a cell.
 pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
-    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
+    let (document, mechanism) = load_with_mechanism(&options.scene, common, Some(&options.over))?;
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
     if picture.is_some() {
         can_show(sweep.grid())?;
@@ -30,7 +30,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let beside = manifest_path(&common.out);
     let beside = beside.as_deref().map(|path| ("the manifest of --out", path));
     let outputs = [Some(("--out", &*common.out)), picture.map(|own| own.output()), beside];
-    let mut sinks = open(&[&options.scene], outputs)?;
+    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
 
     let bar = bar(sweep.grid().cells(), common.quiet, &common.out);

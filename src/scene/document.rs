@@ -1,10 +1,10 @@
 //! A scene with where it came from, so that everything said about it can name file and line.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::axis::{Axis, MOST_AXES, repeated, unknown};
 use super::check::{check, corners};
-use super::data::Scene;
+use super::data::{Mechanism, Scene};
 use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 use super::fields::{Field, FieldPath, Slot, all_fields};
 use super::files::{Files, ReadError, read_text};
@@ -105,6 +105,16 @@ impl Document {
             Some(Err(problem)) => error(problem),
             None => error(unknown("field", field, &all_fields(&self.scene))),
         }
+    }
+
+    /// Where the files lie that the scene names: its table and its records.
+    pub fn named_files(&self) -> Vec<PathBuf> {
+        let table = match &self.scene.mechanism {
+            Mechanism::Table { path, .. } => Some(path.as_str()),
+            _ => None,
+        };
+        let named = table.into_iter().chain(record::paths(&self.scene.excitation));
+        named.filter_map(|path| self.files.place(path)).collect()
     }
 
     /// Checks the scene: all faults at once as an error, or the warnings, each with the file's name.

@@ -59,6 +59,15 @@ impl Files {
         Self { folder: Some(folder) }
     }
 
+    /// Where a file that a scene names lies; none for an embedded one.
+    pub fn place(&self, path: &str) -> Option<PathBuf> {
+        match &self.folder {
+            _ if Path::new(path).is_absolute() => Some(PathBuf::from(path)),
+            Some(folder) => Some(folder.join(path)),
+            None => None,
+        }
+    }
+
     /// The text of a file that a scene names.
     ///
     /// An absolute path is read as it is. A relative one starts at the folder of the scene; where there is no
@@ -66,13 +75,9 @@ impl Files {
     pub fn read(&self, path: &str) -> Result<String, FileError> {
         let embedded = || presets::TABLES.iter().find(|table| table.name == path);
         let names = || presets::TABLES.iter().map(|table| table.name).collect::<Vec<_>>().join(", ");
-        let tried = match &self.folder {
-            _ if Path::new(path).is_absolute() => PathBuf::from(path),
-            Some(folder) => folder.join(path),
-            None => {
-                let missing = || FileError::NoFolder { path: path.to_owned(), embedded: names() };
-                return embedded().map(|table| table.text.to_owned()).ok_or_else(missing);
-            }
+        let Some(tried) = self.place(path) else {
+            let missing = || FileError::NoFolder { path: path.to_owned(), embedded: names() };
+            return embedded().map(|table| table.text.to_owned()).ok_or_else(missing);
         };
         let shown = tried.display().to_string();
         match read_text(&tried, LARGEST_TABLE) {

@@ -136,3 +136,12 @@ pub(super) fn warnings(excitation: &Excitation, duration: f64) -> Vec<String> {
         _ => Vec::new(),
     }
 }
+
+/// The paths of the records of an excitation, as written.
+pub(super) fn paths(excitation: &Excitation) -> Vec<&str> {
+    match excitation {
+        Excitation::Recorded { path, .. } => vec![path],
+        Excitation::Sum(terms) => terms.iter().flat_map(paths).collect(),
+        _ => Vec::new(),
+    }
+}

@@ -285,3 +285,36 @@ fn options_stand_anywhere_and_values_may_be_negative() {
     headless(shifted).assert().success().stdout(contains("\n0,-0.003,").or(contains("\n0,-3e-3,")));
     headless("presets --out -").assert().success().stdout(starts_with("paper"));
 }
+
+#[test]
+fn a_table_that_a_scene_reads_is_not_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), "x_m,force_n\n-2,-6\n-1,0\n0,0\n1,0\n2,6\n").unwrap();
+    let scene = "(title: \"t\", mass_g: 1, mechanism: Table(path: \"t.csv\"), run: (duration_s: 1))";
+    std::fs::write(folder.path().join("s.ron"), scene).unwrap();
+    let out = assert_cmd::Command::new(env!("CARGO_BIN_EXE_interwell"))
+        .current_dir(folder.path())
+        .args(["--headless", "curve", "s.ron", "--points", "3", "--out", "t.csv"])
+        .output()
+        .unwrap();
+    assert_eq!(out.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&out.stderr).contains("would overwrite"));
+    assert!(std::fs::read_to_string(folder.path().join("t.csv")).unwrap().ends_with("2,6\n"));
+}
+
+#[test]
+fn a_sweep_judges_its_cells_and_not_the_scene_that_it_starts_from() {
+    let run = |arguments: &[&str]| {
+        assert_cmd::Command::new(env!("CARGO_BIN_EXE_interwell"))
+            .args(["--headless", "sweep", "nominal-cubic", "--quiet"])
+            .args(arguments)
+            .output()
+            .unwrap()
+    };
+    let outside = "start=At(x_mm:5,v_m_per_s:0)";
+    let good = run(&["--set", outside, "--over", "stops.travel_limit_mm=6:8:1"]);
+    assert_eq!(good.status.code(), Some(0), "{}", String::from_utf8_lossy(&good.stderr));
+    assert_eq!(String::from_utf8_lossy(&good.stdout).lines().count(), 4);
+    let bad = run(&["--set", outside, "--over", "stops.travel_limit_mm=4:8:1"]);
+    assert_eq!(bad.status.code(), Some(2));
+}
