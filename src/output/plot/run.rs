@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
 use super::frame::Frame;
-use super::mark::{Caption, Sample, legend, marker, regime};
+use super::mark::{Caption, Marker, Sample, legend, marker, regime};
 use super::style::{self, Ink, Theme};
 use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
 use crate::mechanics::Mechanism;
@@ -77,9 +77,14 @@ impl Seen<'_> {
     /// The axis for these displacements. Stops count where the mass comes near them, so that a far one
     /// does not press the motion flat.
     fn displacement(&self, x: &[f64]) -> Axis {
-        let farthest = x.iter().map(|x| x.abs()).filter(|x| x.is_finite()).fold(0.0, f64::max);
+        const NEAR: f64 = 0.4;
+        let finite = x.iter().filter(|x| x.is_finite());
+        let (low, high) =
+            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+        // A mass that does not move is shown between all that it could move to.
+        let room = if low < high { NEAR * (high - low) } else { 3.0 * high.abs() };
         let stops = [self.trace.stops.0, self.trace.stops.1];
-        let near = stops.into_iter().filter(|stop| stop.abs() <= 1.3 * farthest);
+        let near = stops.into_iter().filter(|stop| (low - room..=high + room).contains(stop));
         Axis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, 6, "displacement, mm")
     }
 
@@ -149,10 +154,19 @@ impl Seen<'_> {
         }
         let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0));
         frame.path(figure, path, style::FINE_LINE, theme.second);
+        if let (Some(x), true, true) = (x.first(), still(x), still(v)) {
+            let at = frame.place((x * 1e3, 0.0));
+            marker(figure, Marker::Disc, at, style::MARKER, theme.second, theme.ink);
+        }
         frame.axes(figure, theme);
         let words = format!("phase portrait from {} s on", short(trace.portrait_from));
         note(figure, &words, (PORTRAIT.left, 152.0), style::TICK, theme.ink, false);
     }
+}
+
+/// Whether all values are the first one.
+fn still(values: &[f64]) -> bool {
+    values.iter().all(|value| *value == values[0])
 }
 
 /// The unit in which speeds up to those given are short numbers, with the factor from m/s.
