@@ -72,7 +72,9 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         let rms = (value(&self.settled.squared_velocity) / covered).sqrt() / self.unit;
         let travel = (self.high - self.low).to_f64();
         let scales = &self.model.scales;
-        let moved = seen && travel > STILL * scales.length;
+        let counts = &self.counts;
+        let left = counts.crossings + counts.impacts + counts.releases > 0;
+        let moved = seen && (left || travel > STILL * scales.length);
         let work = value(&self.settled.work);
         let impact_share = (LEDGER && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
         let regime = if self.model.one_well {
