@@ -360,9 +360,12 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
 
     /// Extends the series to the full order.
     fn expand(&mut self) {
-        while self.series.known <= self.settings.order {
+        while self.series.known < 3 {
             self.push();
         }
+        let arena = &self.equation.arenas[self.arena];
+        let order = self.settings.order;
+        self.series.extend_to(order, &arena.force, self.equation.damping, self.drive, &mut self.roll);
     }
 
     fn push(&mut self) {

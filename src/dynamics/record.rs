@@ -76,8 +76,9 @@ pub(crate) struct Recorder<'a, T, const LEDGER: bool> {
     pub(super) next_strobe: Option<Instant<T>>,
     pub(super) strobe_cycles: i64,
     pub(super) counts: Counts,
-    /// What integrals over a step are taken with.
-    pub(super) rule: GaussLegendre<T>,
+    /// What integrals over a step are taken with, made for the first of them, and the order of the series.
+    pub(super) rule: Option<GaussLegendre<T>>,
+    pub(super) order: usize,
 }
 
 #[derive(Default, Clone, Copy)]
@@ -134,7 +135,8 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             next_strobe: (periods > 0).then_some(from),
             strobe_cycles: cycles,
             counts: Counts::default(),
-            rule: GaussLegendre::new(order / 2 + 1),
+            rule: None,
+            order,
         }
     }
 
@@ -155,9 +157,12 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     #[inline]
     pub fn step(&mut self, step: &StepView<T>, mut base: impl FnMut(&Instant<T>) -> f64) {
         let overlap = self.overlap(&step.at, step.length);
+        if self.rule.is_none() && (LEDGER || overlap.is_some()) {
+            self.rule = Some(GaussLegendre::new(self.order / 2 + 1));
+        }
         let full = overlap.is_some_and(|(from, to)| from == T::zero() && to == step.length);
-        if LEDGER {
-            let (squared, av) = step.series.integrals::<true>(&self.rule, T::zero(), step.length);
+        if LEDGER && let Some(rule) = &self.rule {
+            let (squared, av) = step.series.integrals::<true>(rule, T::zero(), step.length);
             self.whole.squared_velocity.add(squared);
             self.whole.work.add(-av);
             self.work_moved += av.to_f64().abs();
@@ -168,8 +173,10 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             }
         }
         if let Some((from, to)) = overlap {
-            if !LEDGER || !full {
-                let (squared, av) = step.series.integrals::<LEDGER>(&self.rule, from, to);
+            if (!LEDGER || !full)
+                && let Some(rule) = &self.rule
+            {
+                let (squared, av) = step.series.integrals::<LEDGER>(rule, from, to);
                 self.settled.squared_velocity.add(squared);
                 self.settled.work.add(-av);
             }

@@ -68,6 +68,42 @@ impl<T: Scalar> Series<T> {
         self.known += 1;
     }
 
+    /// Adds coefficients up to `order`: what [`Self::push`] does, with the shape of the force decided once.
+    pub fn extend_to<D: Drive<T>>(
+        &mut self,
+        order: usize,
+        force: &PieceForce<T>,
+        damping: T,
+        drive: &D,
+        roll: &mut D::Rolling,
+    ) {
+        let c = force.coefficients();
+        let from = self.known - 2;
+        let Self { y, a, square: squares, nested, inverse, .. } = self;
+        let known = from..order - 1;
+        match c {
+            [c0] => recur(known, y, a, inverse, damping, drive, roll, |k, _| at_zero(k, *c0)),
+            [c0, c1] => {
+                recur(known, y, a, inverse, damping, drive, roll, |k, y| at_zero(k, *c0) + *c1 * y[k]);
+            }
+            [_, c1, _, c3] if force.is_odd() => {
+                let row = &mut nested[0];
+                recur(known, y, a, inverse, damping, drive, roll, |k, y| {
+                    squares[k] = square(y, k);
+                    row[k] = *c3 * squares[k] + at_zero(k, *c1);
+                    convolve(row, y, k)
+                });
+            }
+            _ => {
+                while self.known <= order {
+                    self.push(force, damping, drive, roll);
+                }
+                return;
+            }
+        }
+        self.known = order + 1;
+    }
+
     /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones have been asked for before.
     #[inline]
     fn force_coefficient(&mut self, force: &PieceForce<T>, k: usize) -> T {
@@ -207,6 +243,35 @@ impl<T: Scalar> Series<T> {
             }
         }
         (squared * length, power * length)
+    }
+}
+
+/// `value` in the constant term, 0 elsewhere.
+#[inline(always)]
+fn at_zero<T: Number>(k: usize, value: T) -> T {
+    if k == 0 { value } else { T::zero() }
+}
+
+/// The recurrence of the equation of motion over the orders `known`, the force's coefficients by `force`.
+#[allow(clippy::too_many_arguments)] // fields borrowed apart, so that `force` may hold the others
+#[inline(always)]
+fn recur<T: Scalar, D: Drive<T>>(
+    known: std::ops::Range<usize>,
+    y: &mut [T; ROOM],
+    a: &mut [T; ROOM],
+    inverse: &[T; ROOM],
+    damping: T,
+    drive: &D,
+    roll: &mut D::Rolling,
+    mut force: impl FnMut(usize, &[T; ROOM]) -> T,
+) {
+    for k in known {
+        if k >= SEEDED {
+            drive.extend(k, a, inverse, roll);
+        }
+        let f = force(k, y);
+        let drag = damping * T::of((k + 1) as f64) * y[k + 1];
+        y[k + 2] = -((drag + f) + a[k]) * inverse[k + 2];
     }
 }
 
