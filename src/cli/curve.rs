@@ -35,7 +35,7 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
         [Some(("--out", &common.out)), landscape_path, picture.map(|own| own.output())],
     )?;
     write_table(&mut sinks[0], &table)?;
-    write_text(&mut sinks[1], &landscape(&mechanism, document.scene.mass_g * 1e-3))?;
+    write_text(&mut sinks[1], &landscape(&mechanism, document.scene.mass_g / 1e3))?;
     if let Some(picture) = picture {
         // The picture shows the curve however few positions were asked for.
         let table = curve(&mechanism, even(PICTURE_POINTS))?;

@@ -31,6 +31,14 @@ pub(crate) struct StepView<'a, T> {
     pub v: T,
 }
 
+impl<T: Scalar> StepView<'_, T> {
+    /// Displacement at time `t` into the step, never beyond the arena by the rounding of its origin.
+    fn x_at(&self, t: T) -> T {
+        let x = self.series.position(t) + self.origin;
+        x.larger(self.limits.0).smaller(self.limits.1)
+    }
+}
+
 /// Sums over an interval of time.
 #[derive(Clone)]
 pub(super) struct Sums<T> {
@@ -196,7 +204,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
                 let into = self.clock.between(&step.at, &instant).larger(T::zero()).smaller(step.length);
                 self.samples.push(Sample {
                     t,
-                    x: (step.series.position(into) + step.origin).to_f64(),
+                    x: step.x_at(into).to_f64(),
                     v: step.series.velocity(into).to_f64() / self.unit,
                     base_accel: base(&instant),
                     phase: Phase::Free,
@@ -213,11 +221,11 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         };
         let start = step.series.y[0] + step.origin;
         if full {
-            widen(start);
+            widen(step.x_at(T::zero()));
             widen(step.x);
         } else {
-            widen(step.series.position(from) + step.origin);
-            widen(step.series.position(to) + step.origin);
+            widen(step.x_at(from));
+            widen(step.x_at(to));
         }
         let highest = (start + step.bound).smaller(step.limits.1);
         let lowest = (start - step.bound).larger(step.limits.0);
@@ -235,7 +243,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             PolynomialRoots::new(&slope[..n - 1]).each_sign_change(|s| {
                 let t = s * step.scaled_for;
                 if t >= from && t <= to {
-                    let x = step.series.position(t) + step.origin;
+                    let x = step.x_at(t);
                     self.low = self.low.smaller(x);
                     self.high = self.high.larger(x);
                 }
@@ -318,7 +326,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             if into >= step.length {
                 return;
             }
-            let x = step.series.position(into) + step.origin;
+            let x = step.x_at(into);
             let v = step.series.velocity(into);
             self.strobe(x, v);
         }

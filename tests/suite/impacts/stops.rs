@@ -229,3 +229,17 @@ fn a_start_at_the_barrier_top_is_no_crossing() {
     }
     assert!(r.events.first().is_none_or(|e| e.side == Side::Right), "{:?}", r.events);
 }
+
+#[test]
+fn a_stop_in_a_piece_with_an_origin_of_its_own_is_never_passed_by_rounding() {
+    // |x| never beyond the stop to the last bit, and the reach is the stop's own number
+    for limit in [1.7, 2.3, 3.1, 6.9] {
+        let m = crate::support::preset(
+            "paper",
+            &[&format!("stops.travel_limit_mm={limit}"), "excitation.amplitude_g=1.8"],
+        );
+        let r = crate::support::run_at(&m, &crate::support::every(0.0007, 14_000));
+        assert_eq!(r.summary.max_abs_x, Some(limit / 1e3));
+        assert!(r.samples.iter().all(|s| s.x.abs() <= limit / 1e3));
+    }
+}
