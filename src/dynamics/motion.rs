@@ -25,7 +25,7 @@ use super::model::{Model, Request};
 use super::prepare::base_at;
 use super::record::{Recorder, StepView};
 use super::result::{Outcome, Phase, Run};
-use super::series::{MAX_ORDER, ROOM, Series, fast_log2};
+use super::series::{MAX_ORDER, ROOM, Series, State, fast_log2};
 use super::summary::Ending;
 use crate::numeric::{PolynomialRoots, Scalar};
 
@@ -133,8 +133,8 @@ struct Step<T> {
     length: T,
     /// The instant at which it ends, where that is the end of the run or of the drive's segment.
     arrival: Option<Instant<T>>,
-    /// Displacement from the piece's origin and velocity at its end.
-    end: (T, T),
+    /// What the polynomial says of its end.
+    end: State<T>,
 }
 
 /// Whether a step went on or the run ended.
@@ -271,15 +271,14 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
         };
 
-        let bound = self.series.scale(h);
-        let exit = self.find_exit(bound);
+        let exit = self.find_exit(h, end.bound);
         let (length, touched) = match exit {
             Some((s, end)) => (s * h, Some(end)),
             None => (h, None),
         };
         let (x, v) = match touched {
             Some(end) => (arena.end(end).0, self.series.velocity(length)),
-            None => (end.0 + arena.origin, end.1),
+            None => (end.y + arena.origin, end.v),
         };
         if !(x.is_finite() && v.is_finite()) {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
@@ -289,9 +288,9 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             series: &self.series,
             origin: arena.origin,
             at: self.at,
-            scaled_for: h,
+            whole: h,
             length,
-            bound,
+            bound: end.bound,
             limits: (arena.low, arena.high),
             x,
             v,
@@ -345,8 +344,8 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
                 }
             }
             let end = self.series.state(h);
-            if self.step_holds(h, end) {
-                return Some(Step { length: h, arrival, end: (end.0, end.1) });
+            if self.step_holds(h, &end) {
+                return Some(Step { length: h, arrival, end });
             }
             if self.series.known <= self.settings.order {
                 self.expand();
@@ -360,7 +359,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
 
     /// Extends the series to the full order.
     fn expand(&mut self) {
-        while self.series.known < 3 {
+        if let (2, Some(Touch { order: BY_JERK.., .. })) = (self.series.known, self.touch) {
             self.push();
         }
         let arena = &self.equation.arenas[self.arena];
@@ -401,7 +400,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
 
     /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and
     /// rounding ask: the residual is what the first neglected terms leave.
-    fn step_holds(&mut self, h: T, (y, v, acceleration): (T, T, T)) -> bool {
+    fn step_holds(&mut self, h: T, &State { y, v, acceleration, .. }: &State<T>) -> bool {
         let arena = &self.equation.arenas[self.arena];
         let at = self.clock.advance(&self.at, h);
         let series = &self.series;
@@ -421,7 +420,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
     }
 
     /// The first contact with an end of the arena within the step, as a share of it.
-    fn find_exit(&mut self, bound: T) -> Option<(T, End)> {
+    fn find_exit(&mut self, h: T, bound: T) -> Option<(T, End)> {
         let zero = T::zero();
         let arena = &self.equation.arenas[self.arena];
         let n = self.series.known;
@@ -434,7 +433,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
                 continue;
             }
             let mut g = [zero; ROOM];
-            for (slot, c) in g[1..n].iter_mut().zip(&self.series.scaled[1..n]) {
+            for (slot, c) in g[1..n].iter_mut().zip(&self.series.scaled(h)[1..n]) {
                 *slot = -(sign * *c);
             }
             g[0] = gap;

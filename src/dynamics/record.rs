@@ -18,9 +18,9 @@ pub(crate) struct StepView<'a, T> {
     pub origin: T,
     /// When the step starts.
     pub at: Instant<T>,
-    /// Length that `series.scaled` is for.
-    pub scaled_for: T,
-    /// Length that is kept, up to `scaled_for`.
+    /// Length of the step as it was chosen.
+    pub whole: T,
+    /// Length that is kept, up to the whole.
     pub length: T,
     /// Bound of |x - x(start)| over the step.
     pub bound: T,
@@ -233,15 +233,16 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             // A turning point inside may lie beyond both ends.
             let n = step.series.known;
             let mut slope = [T::zero(); super::series::ROOM];
-            for k in 1..n {
-                slope[k - 1] = step.series.scaled[k] * T::of(k as f64);
+            let scaled = step.series.scaled(step.whole);
+            for (k, slot) in (1..n).zip(slope.iter_mut()) {
+                *slot = scaled[k] * T::of(k as f64);
             }
             if slope[0] < T::zero() {
                 // a value of 0 counts as negative: the mirrored motion must be told the same
                 slope[..n - 1].iter_mut().for_each(|c| *c = -*c);
             }
             PolynomialRoots::new(&slope[..n - 1]).each_sign_change(|s| {
-                let t = s * step.scaled_for;
+                let t = s * step.whole;
                 if t >= from && t <= to {
                     let x = step.x_at(t);
                     self.low = self.low.smaller(x);
@@ -259,7 +260,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             return;
         }
         let n = step.series.known;
-        let mut g = step.series.scaled;
+        let mut g = step.series.scaled(step.whole);
         g[0] = gap;
         // A step that starts on the top leaves it by its first coefficient that is not 0.
         let first = g[..n].iter().position(|c| *c != T::zero());
@@ -279,7 +280,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             }
         }
         PolynomialRoots::new(&g[first..n]).each_sign_change(|s| {
-            let t = s * step.scaled_for;
+            let t = s * step.whole;
             if t > step.length || count == found.len() {
                 return false;
             }

@@ -29,11 +29,20 @@ pub(crate) struct Series<T> {
     pub a: [T; ROOM],
     /// Number of coefficients of y that are known.
     pub known: usize,
-    /// The step's own coefficients y\[k\] h^k, filled by [`Self::scale`].
-    pub scaled: [T; ROOM],
     square: [T; ROOM],
     nested: [[T; ROOM]; ROWS],
     inverse: [T; ROOM],
+}
+
+/// Where a step's polynomial leads.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct State<T> {
+    /// Displacement from the piece's origin.
+    pub y: T,
+    pub v: T,
+    pub acceleration: T,
+    /// Sum of the magnitudes of the terms above the constant: the mass is never further from the start.
+    pub bound: T,
 }
 
 impl<T: Scalar> Series<T> {
@@ -43,7 +52,7 @@ impl<T: Scalar> Series<T> {
             *slot = T::of(1.0) / T::of((k * (k - 1)) as f64);
         }
         let zeros = [T::zero(); ROOM];
-        Self { y: zeros, a: zeros, known: 0, scaled: zeros, square: zeros, nested: [zeros; ROWS], inverse }
+        Self { y: zeros, a: zeros, known: 0, square: zeros, nested: [zeros; ROWS], inverse }
     }
 
     /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first
@@ -156,19 +165,17 @@ impl<T: Scalar> Series<T> {
         if log2 < 1000.0 { fast_exp2(log2).min(cap) } else { cap }
     }
 
-    /// Fills `scaled` for a step of length `h` and returns the sum of the magnitudes above the constant.
+    /// The step's own coefficients y\[k\] h^k.
     #[inline]
-    pub fn scale(&mut self, h: T) -> T {
+    pub fn scaled(&self, h: T) -> [T; ROOM] {
+        let mut scaled = [T::zero(); ROOM];
+        scaled[0] = self.y[0];
         let mut power = T::of(1.0);
-        let mut bound = T::zero();
-        self.scaled[0] = self.y[0];
-        for k in 1..self.known {
+        for (slot, c) in scaled[1..self.known].iter_mut().zip(&self.y[1..self.known]) {
             power = power * h;
-            let term = self.y[k] * power;
-            self.scaled[k] = term;
-            bound += term.abs();
+            *slot = *c * power;
         }
-        bound
+        scaled
     }
 
     /// Displacement from the piece's origin at time `t` into the step.
@@ -191,16 +198,21 @@ impl<T: Scalar> Series<T> {
         sum
     }
 
-    /// Displacement from the piece's origin, velocity and acceleration at time `t` into the step.
+    /// The state at time `t` into the step, and a bound of the way up to there.
     #[inline]
-    pub fn state(&self, t: T) -> (T, T, T) {
-        let (mut y, mut v, mut half) = (T::zero(), T::zero(), T::zero());
-        for c in self.y[..self.known].iter().rev() {
+    pub fn state(&self, t: T) -> State<T> {
+        let zero = T::zero();
+        let (mut y, mut v, mut half, mut bound) = (zero, zero, zero, zero);
+        for c in self.y[1..self.known].iter().rev() {
             half = half * t + v;
             v = v * t + y;
             y = y * t + *c;
+            bound = bound * t + c.abs();
         }
-        (y, v, half + half)
+        half = half * t + v;
+        v = v * t + y;
+        y = y * t + self.y[0];
+        State { y, v, acceleration: half + half, bound: bound * t }
     }
 
     /// Acceleration of the base at time `t` into the step, by its series.
