@@ -425,6 +425,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let arena = &self.equation.arenas[self.arena];
         let n = self.series.known;
         let mut first: Option<(T, End)> = None;
+        let mut scaled = None;
         for end in [End::Low, End::High] {
             let sign = end.sign::<T>();
             let gap = sign * (arena.end(end).0 - self.x);
@@ -433,7 +434,8 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
                 continue;
             }
             let mut g = [zero; ROOM];
-            for (slot, c) in g[1..n].iter_mut().zip(&self.series.scaled(h)[1..n]) {
+            let scaled = scaled.get_or_insert_with(|| self.series.scaled(h));
+            for (slot, c) in g[1..n].iter_mut().zip(&scaled[1..n]) {
                 *slot = -(sign * *c);
             }
             g[0] = gap;
