@@ -20,6 +20,9 @@ pub struct Trace {
     /// Time in s from which on the phase portrait is shown: the settled window, but no more than
     /// some forcing periods of it.
     pub portrait_from: f64,
+    /// Time in s from which on the motion is shown over time: of a long run under a drive that repeats, its last
+    /// forcing periods, since all of it would be a filled band.
+    pub shown_from: f64,
     /// Positions of the left and the right stop in m; NaN where there is none.
     pub stops: (f64, f64),
     /// Begin of the settled window in s.
@@ -36,6 +39,10 @@ const PER_PERIOD: f64 = 80.0;
 
 /// Forcing periods in a phase portrait: as many as a period of the response may have.
 const PORTRAIT_PERIODS: f64 = 12.0;
+
+/// A run of more forcing periods than this is a filled band over time; then so many of its last ones are shown.
+const BAND_PERIODS: f64 = 60.0;
+const SHOWN_PERIODS: f64 = 24.0;
 
 /// Samples in a phase portrait.
 const PORTRAIT: f64 = 24_000.0;
@@ -75,6 +82,7 @@ pub fn simulate_with_trace(
         impacts: impacts(&run.events),
         rests: rests(&run.events, run.samples.first(), end),
         portrait_from,
+        shown_from: if end < model.duration { 0.0 } else { shown_from(model) },
         stops,
         settle: model.settle,
         end,
@@ -88,6 +96,16 @@ fn portrait_from(model: &Model) -> f64 {
     match model.forcing_period {
         Some(period) => model.settle.max(model.duration - PORTRAIT_PERIODS * period).min(model.duration),
         None => 0.0,
+    }
+}
+
+fn shown_from(model: &Model) -> f64 {
+    let repeats = model.drive.tones.iter().all(|tone| tone.ramp.is_none());
+    match model.forcing_period {
+        Some(period) if repeats && model.duration > BAND_PERIODS * period => {
+            model.duration - SHOWN_PERIODS * period
+        }
+        _ => 0.0,
     }
 }
 

@@ -96,7 +96,8 @@ impl Seen<'_> {
     /// Displacement, velocity and base acceleration over time; the axis of displacement.
     fn panels(&self, figure: &mut Figure) -> Axis {
         let Self { trace, theme, .. } = *self;
-        let time = Axis::between(0.0, trace.end, 6, "time, s");
+        let time = Axis::between(trace.shown_from, trace.end, 6, "time, s");
+        let first = self.t.partition_point(|t| *t < trace.shown_from);
         let in_g = self.accel.iter().map(|a| a / STANDARD_GRAVITY);
         let g_axis = Axis::around(in_g.chain([0.0]), 0.1, 4, "base accel., g");
         let framed = |(top, bottom): (f64, f64), x, y| {
@@ -128,7 +129,7 @@ impl Seen<'_> {
             (self.accel, 1.0 / STANDARD_GRAVITY, theme.shaking),
         ];
         for (frame, (values, scale, ink)) in frames.iter().zip(lines) {
-            let pairs = self.t.iter().zip(values).map(|(t, value)| (*t, value * scale));
+            let pairs = self.t.iter().zip(values).skip(first).map(|(t, value)| (*t, value * scale));
             frame.dense_line(figure, pairs.filter(|pair| pair.1.is_finite()), style::FINE_LINE, ink);
         }
         impacts(figure, &frames[0], trace, theme);
@@ -216,7 +217,7 @@ fn impacts(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
     let times = trace.impacts.numbers("t_s").unwrap_or_default();
     let sides = words(trace.impacts.column("side").map(|column| &column.values));
     let mut last = [f64::NEG_INFINITY; 2];
-    for (t, side) in times.iter().zip(sides) {
+    for (t, side) in times.iter().zip(sides).filter(|impact| *impact.0 >= trace.shown_from) {
         let left = *side == "left";
         let at = frame.across(*t);
         if at - last[usize::from(left)] >= APART {
