@@ -2,6 +2,7 @@
 
 mod curve;
 mod fit;
+pub mod flexure;
 mod landscape;
 mod local;
 mod table;

@@ -13,7 +13,7 @@ mod sum;
 pub use decimal::Ratio;
 pub(crate) use decimal::greatest_common_divisor;
 pub use double_double::DoubleDouble;
-pub use quadrature::{GaussLegendre, MOST_POINTS};
+pub use quadrature::{GaussLegendre, MOST_POINTS, even_half};
 pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::{Number, Scalar};
 pub use short::short;

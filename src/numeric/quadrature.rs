@@ -21,24 +21,9 @@ impl<T: Scalar> GaussLegendre<T> {
     /// Legendre polynomials from the usual cosine guess.
     pub fn new(points: usize) -> Self {
         let points = points.clamp(1, MOST_POINTS);
-        let (one, half) = (T::of(1.0), T::of(0.5));
         let mut rule = Self { points, nodes: [T::zero(); MOST_POINTS], weights: [T::zero(); MOST_POINTS] };
         for i in 0..points {
-            let angle = std::f64::consts::PI * (i as f64 + 0.75) / (points as f64 + 0.5);
-            let mut x = T::of(angle.cos());
-            let mut slope = one;
-            for _ in 0..8 {
-                let (mut value, mut before) = (one, T::zero());
-                for n in 1..=points {
-                    let next = (T::of((2 * n - 1) as f64) * x * value - T::of((n - 1) as f64) * before)
-                        / T::of(n as f64);
-                    (before, value) = (value, next);
-                }
-                slope = T::of(points as f64) * (x * value - before) / (x * x - one);
-                x -= value / slope;
-            }
-            rule.nodes[i] = half - half * x;
-            rule.weights[i] = one / ((one - x * x) * slope * slope);
+            (rule.nodes[i], rule.weights[i]) = point_and_weight(points, i);
         }
         rule
     }
@@ -52,6 +37,36 @@ impl<T: Scalar> GaussLegendre<T> {
     pub fn weights(&self) -> &[T] {
         &self.weights[..self.points]
     }
+}
+
+/// Point `i` of `points` on \[0, 1], ascending, and its weight.
+fn point_and_weight<T: Scalar>(points: usize, i: usize) -> (T, T) {
+    let (one, half) = (T::of(1.0), T::of(0.5));
+    let angle = std::f64::consts::PI * (i as f64 + 0.75) / (points as f64 + 0.5);
+    let mut x = T::of(angle.cos());
+    let mut slope = one;
+    for _ in 0..8 {
+        let (mut value, mut before) = (one, T::zero());
+        for n in 1..=points {
+            let next =
+                (T::of((2 * n - 1) as f64) * x * value - T::of((n - 1) as f64) * before) / T::of(n as f64);
+            (before, value) = (value, next);
+        }
+        slope = T::of(points as f64) * (x * value - before) / (x * x - one);
+        x -= value / slope;
+    }
+    (half - half * x, one / ((one - x * x) * slope * slope))
+}
+
+/// The half of a rule with 2 `half` points on \[-1, 1] that lies at x > 0: its points, descending, and weights,
+/// whose sum is 1. It integrates an even function from 0 to 1, exactly up to degree 4 `half` - 1.
+pub fn even_half(half: usize) -> Vec<(f64, f64)> {
+    (0..half)
+        .map(|i| {
+            let (node, weight) = point_and_weight::<f64>(2 * half, i);
+            (1.0 - 2.0 * node, 2.0 * weight)
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -74,5 +89,15 @@ mod tests {
             sum += *w * *x * *x;
         }
         assert!((sum * DoubleDouble::of(3.0) - DoubleDouble::of(1.0)).to_f64().abs() < 1e-29);
+    }
+
+    #[test]
+    fn the_half_rule_integrates_even_powers() {
+        for half in [1, 5, 40] {
+            for power in (0..4 * half as i32).step_by(2) {
+                let sum: f64 = even_half(half).iter().map(|(x, w)| w * x.powi(power)).sum();
+                assert!((sum * f64::from(power + 1) - 1.0).abs() < 1e-12, "{half} {power} {sum}");
+            }
+        }
     }
 }

@@ -1,0 +1,89 @@
+//! In which functions is a flexure's rotation written?
+//!
+//! Integrated Legendre polynomials: each vanishes at both clamps and their slopes are orthonormal, so that the
+//! bending stiffness is a multiple of the identity. A flexure's rotation has an even part about its
+//! middle (the sway between the shuttle and the frame) and an odd one (the bump); the two never meet in the
+//! linear terms, and every integral is taken over one half.
+
+use crate::numeric::even_half;
+
+/// The functions and where they are sampled; xi runs over \[-1, 1] along a flexure.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Basis {
+    /// Functions of each parity.
+    pub modes: usize,
+    /// Weights of the points at xi > 0; their sum is 1.
+    pub weights: Vec<f64>,
+    /// Values of the even functions, `modes` for each point.
+    pub even: Vec<f64>,
+    /// Values of the odd functions, `modes` for each point.
+    pub odd: Vec<f64>,
+}
+
+impl Basis {
+    /// `modes` functions of each parity, with twice as many points on the half: products of two functions and
+    /// a weight as wiggly as both are integrated exactly.
+    pub fn new(modes: usize) -> Self {
+        let rule = even_half(2 * modes);
+        let (mut even, mut odd) = (Vec::new(), Vec::new());
+        let mut row = vec![0.0; 2 * modes];
+        for (xi, _) in &rule {
+            functions(*xi, &mut row);
+            even.extend(row.iter().step_by(2));
+            odd.extend(row.iter().skip(1).step_by(2));
+        }
+        Self { modes, weights: rule.iter().map(|(_, w)| *w).collect(), even, odd }
+    }
+
+    /// Coefficients of the odd function sin(pi (1 + xi)), by orthogonality of the slopes: the
+    /// rotation of the first buckling mode between clamps.
+    pub fn first_buckling_mode(&self) -> Vec<f64> {
+        use std::f64::consts::PI;
+        // Enough points for a cosine of one period whatever the number of modes.
+        let rule = even_half(2 * self.modes.max(16));
+        let mut sum = vec![0.0; self.modes];
+        let mut row = vec![0.0; 2 * self.modes];
+        for (xi, weight) in rule {
+            slopes(xi, &mut row);
+            let slope = PI * (PI * (1.0 + xi)).cos();
+            for (s, f) in sum.iter_mut().zip(row.iter().skip(1).step_by(2)) {
+                *s += 2.0 * weight * slope * f;
+            }
+        }
+        sum
+    }
+
+    /// How much shorter than its arc, as a part of it, a flexure with this odd rotation is.
+    pub fn shortening(&self, odd: &[f64]) -> f64 {
+        let rows = self.odd.chunks_exact(self.modes).zip(&self.weights);
+        rows.map(|(row, weight)| {
+            let angle: f64 = row.iter().zip(odd).map(|(f, a)| f * a).sum();
+            let sine = (0.5 * angle).sin();
+            2.0 * weight * sine * sine
+        })
+        .sum()
+    }
+}
+
+/// The values at `xi` of as many functions as `row` holds: even, odd, even, ...
+pub(super) fn functions(xi: f64, row: &mut [f64]) {
+    // The integral of P_k from -1 is (P_{k+1} - P_{k-1})/(2k + 1), k = 1, 2, ...
+    let (mut before, mut now) = (1.0, xi);
+    for (i, value) in row.iter_mut().enumerate() {
+        let k = (i + 1) as f64;
+        let next = ((2.0 * k + 1.0) * xi * now - k * before) / (k + 1.0);
+        *value = (next - before) / (2.0 * (2.0 * k + 1.0)).sqrt();
+        (before, now) = (now, next);
+    }
+}
+
+/// The derivatives with respect to xi of the [`functions`]: orthonormal over \[-1, 1].
+pub(super) fn slopes(xi: f64, row: &mut [f64]) {
+    let (mut before, mut now) = (1.0, xi);
+    for (i, value) in row.iter_mut().enumerate() {
+        let k = (i + 1) as f64;
+        *value = (0.5 * (2.0 * k + 1.0)).sqrt() * now;
+        let next = ((2.0 * k + 1.0) * xi * now - k * before) / (k + 1.0);
+        (before, now) = (now, next);
+    }
+}

@@ -1,0 +1,246 @@
+//! What holds along one flexure? The geometrically exact beam (Reissner 1972, "On one-dimensional finite-strain
+//! beam theory: the plane problem"), in weak form.
+//!
+//! With theta the rotation of the cross-section, (H, Q) the constant force on the cut (axial, lateral; H
+//! positive in tension), N = H cos theta + Q sin theta, V = -H sin theta + Q cos theta, axial strain N/EA and shear
+//! strain V/GA_s:
+//!
+//! ```text
+//! EI (theta - theta_0)'' + V + kappa N V = 0,   kappa = 1/EA - 1/GA_s,   theta = 0 at both ends
+//! y(L) = int sin theta + N/EA sin theta + V/GA_s cos theta = x
+//! u    = int 1 - cos theta - N/EA cos theta + V/GA_s sin theta          (shortening)
+//! ```
+//!
+//! All three are derivatives of one potential of theta, H and Q, so that the tables below are symmetric and
+//! shortening and deflection are far more exact than theta itself.
+//!
+//! **The bump.** Split theta = even + odd about the middle. Where the flexure carries a bump, the odd part is written
+//! as sqrt(q) psi with the leading coefficient of psi set to 1 and the odd equations divided by sqrt(q): everything is
+//! then analytic in q, the square of the bump's amplitude, and regular where the bump vanishes. With the
+//! coefficients themselves as unknowns the equations are singular there, and a second, unstable solution waits beside.
+
+use super::basis::Basis;
+
+/// One flexure of a group, in the scaled units of the mechanism.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Beam {
+    /// Number of equal flexures.
+    pub count: f64,
+    /// Length.
+    pub length: f64,
+    /// EI.
+    pub bending: f64,
+    /// 1/EA.
+    pub stretch: f64,
+    /// 1/GA_s.
+    pub shear: f64,
+    /// Coefficients of the rotation of the stress-free flexure; empty where it is straight.
+    pub natural: Vec<f64>,
+    /// How much shorter than its arc the stress-free flexure is.
+    pub natural_shortening: f64,
+}
+
+/// What the odd part of a flexure's rotation is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// None.
+    Straight,
+    /// A bump that may point either way: sqrt(q) psi.
+    Bump,
+    /// A bump that an initial bow gave its side: plain coefficients.
+    Bowed,
+}
+
+/// The state of one flexure: coefficients of its rotation and the force on its cut.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rotation<'a> {
+    pub shape: Shape,
+    /// Coefficients of the even part.
+    pub even: &'a [f64],
+    /// Coefficients of psi, or of the odd part itself; empty where it is straight.
+    pub odd: &'a [f64],
+    /// The square of the bump's amplitude; 1 where it is bowed.
+    pub q: f64,
+    /// Axial force H, positive in tension.
+    pub axial: f64,
+    /// Lateral force Q.
+    pub lateral: f64,
+}
+
+/// The equations of one flexure and their derivatives. The odd rows are divided by sqrt(q).
+#[derive(Debug, Clone, Default)]
+pub(super) struct Terms {
+    pub modes: usize,
+    /// Residual of the moment equation, even and odd part.
+    pub even: Vec<f64>,
+    pub odd: Vec<f64>,
+    /// Derivatives of the even residual by the even coefficients, of the odd by the odd, and of the odd (rows) by
+    /// the even (columns); row by row.
+    pub even_even: Vec<f64>,
+    pub odd_odd: Vec<f64>,
+    pub odd_even: Vec<f64>,
+    /// Derivatives of the residuals by H, Q and q.
+    pub even_by: [Vec<f64>; 3],
+    pub odd_by: [Vec<f64>; 3],
+    /// Deflection y(L) and shortening u.
+    pub deflection: f64,
+    pub shortening: f64,
+    /// du/dH (negative), du/dQ = -dy/dH, and dy/dQ at fixed rotation.
+    pub shortening_by_axial: f64,
+    pub shortening_by_lateral: f64,
+    pub deflection_by_lateral: f64,
+    /// Strain energy.
+    pub energy: f64,
+    /// Deflection of the middle beyond the sway's, divided by sqrt(q).
+    pub bump: f64,
+}
+
+/// cos(sqrt(q) psi), sin(sqrt(q) psi)/sqrt(q) and the derivative of the latter by q: analytic, also for q < 0.
+fn odd_functions(q: f64, psi: f64) -> (f64, f64, f64) {
+    let square = q * psi * psi;
+    if square.abs() <= 1.0 {
+        let (mut cosine, mut sine, mut by_q) = (0.0, 0.0, 0.0);
+        // Terms (-square)^k/(2k)!; the last one is below 1/20!.
+        let mut term = 1.0;
+        for k in 0..11 {
+            let k = f64::from(k);
+            cosine += term;
+            sine += term / (2.0 * k + 1.0);
+            by_q -= term / (2.0 * (2.0 * k + 1.0) * (2.0 * k + 3.0));
+            term *= -square / ((2.0 * k + 1.0) * (2.0 * k + 2.0));
+        }
+        (cosine, psi * sine, psi * psi * psi * by_q)
+    } else if q > 0.0 {
+        let root = q.sqrt();
+        let (sine, cosine) = (root * psi).sin_cos();
+        (cosine, sine / root, (psi * cosine - sine / root) / (2.0 * q))
+    } else {
+        let root = (-q).sqrt();
+        let (sine, cosine) = ((root * psi).sinh(), (root * psi).cosh());
+        (cosine, sine / root, (psi * cosine - sine / root) / (2.0 * q))
+    }
+}
+
+impl Beam {
+    /// Evaluates the equations. Method: Gauss-Legendre quadrature of the products over one half.
+    pub fn terms(&self, basis: &Basis, state: &Rotation) -> Terms {
+        let n = basis.modes;
+        let odd_modes = if state.shape == Shape::Straight { 0 } else { n };
+        let kappa = self.stretch - self.shear;
+        let (h, lateral, q) = (state.axial, state.lateral, state.q);
+        let bend = self.bending * 2.0 / self.length;
+        let mut t = Terms {
+            modes: n,
+            even: state.even.iter().map(|a| bend * a).collect(),
+            odd: state.odd.iter().map(|a| bend * a).collect(),
+            even_even: vec![0.0; n * n],
+            odd_odd: vec![0.0; n * n],
+            odd_even: vec![0.0; odd_modes * n],
+            even_by: std::array::from_fn(|_| vec![0.0; n]),
+            odd_by: std::array::from_fn(|_| vec![0.0; odd_modes]),
+            ..Terms::default()
+        };
+        let mut bending_square: f64 = state.even.iter().map(|a| a * a).sum();
+        if state.shape == Shape::Bowed {
+            for ((residual, a), natural) in t.odd.iter_mut().zip(state.odd).zip(&self.natural) {
+                *residual -= bend * natural;
+                bending_square += (a - natural) * (a - natural);
+            }
+        } else {
+            bending_square += q * state.odd.iter().map(|a| a * a).sum::<f64>();
+        }
+        t.energy = self.bending / self.length * bending_square
+            + 0.25 * self.length * (h * h + lateral * lateral) * (self.stretch + self.shear);
+        t.shortening = -0.5 * self.length * h * (self.stretch + self.shear) - self.natural_shortening;
+        t.deflection = 0.5 * self.length * lateral * (self.stretch + self.shear);
+        t.shortening_by_axial = -0.5 * self.length * (self.stretch + self.shear);
+        t.deflection_by_lateral = -t.shortening_by_axial;
+        for i in 0..n {
+            t.even_even[i * n + i] = bend;
+            t.odd_odd[i * n + i] = bend;
+        }
+        for (point, weight) in basis.weights.iter().enumerate() {
+            let even = &basis.even[point * n..(point + 1) * n];
+            let odd = &basis.odd[point * n..(point + 1) * n];
+            let weight = weight * self.length;
+            let angle: f64 = dot(even, state.even);
+            let psi: f64 = if odd_modes > 0 { dot(odd, state.odd) } else { 0.0 };
+            let (sine, cosine) = angle.sin_cos();
+            let (c, s, s_by_q) = odd_functions(q, psi);
+            let (cosine_2, sine_2) = (cosine * cosine - sine * sine, 2.0 * sine * cosine);
+            // Of the doubled odd part: its cosine, and its sine over sqrt(q).
+            let (c_2, s_2) = (1.0 - 2.0 * q * s * s, 2.0 * s * c);
+            // N and V of the even part alone, and from them N^2 - V^2 and 2 N V.
+            let normal = h * cosine + lateral * sine;
+            let shear = -h * sine + lateral * cosine;
+            let difference = normal * normal - shear * shear;
+            let product = 2.0 * normal * shear;
+            let even_load = c * shear + 0.5 * kappa * c_2 * product;
+            let odd_load = -s * normal - 0.5 * kappa * s_2 * difference;
+            let even_weight = c * normal + kappa * c_2 * difference;
+            let odd_weight = s * shear + kappa * s_2 * product;
+            // Half of N^2 - V^2, and the tension's share of the deflection, rotate by the doubled angle.
+            let along = 0.5 * (h * cosine_2 + lateral * sine_2);
+            let across = 0.5 * (h * sine_2 - lateral * cosine_2);
+            let half = odd_functions(q, 0.5 * psi).1;
+            let half_sine = (0.5 * angle).sin();
+            let lost = 2.0 * half_sine * half_sine + cosine * q * 2.0 * half * half;
+            t.deflection += weight * (c * sine + kappa * c_2 * across);
+            t.shortening += weight * (lost - kappa * c_2 * along);
+            t.shortening_by_axial -= 0.5 * weight * kappa * c_2 * cosine_2;
+            t.shortening_by_lateral -= 0.5 * weight * kappa * c_2 * sine_2;
+            t.deflection_by_lateral -= 0.5 * weight * kappa * c_2 * cosine_2;
+            t.energy += 0.25 * weight * kappa * c_2 * difference;
+            t.bump -= 0.5 * weight * (s * cosine + kappa * s_2 * along);
+            let by_axial = cosine * shear - sine * normal;
+            let by_lateral = sine * shear + cosine * normal;
+            let even_by = [
+                -c * sine + kappa * c_2 * by_axial,
+                c * cosine + kappa * c_2 * by_lateral,
+                -0.5 * psi * (s * shear + kappa * s_2 * product),
+            ];
+            let odd_by = [
+                -s * cosine - kappa * s_2 * (normal * cosine + shear * sine),
+                -s * sine - kappa * s_2 * (normal * sine - shear * cosine),
+                -s_by_q * normal - kappa * (s_by_q * c - 0.5 * psi * s * s) * difference,
+            ];
+            for i in 0..n {
+                let value = weight * even[i];
+                t.even[i] -= value * even_load;
+                for (table, factor) in t.even_by.iter_mut().zip(even_by) {
+                    table[i] -= value * factor;
+                }
+                let weighted = value * even_weight;
+                for j in 0..=i {
+                    t.even_even[i * n + j] += weighted * even[j];
+                }
+                let weighted = weight * odd[i] * even_weight;
+                for j in 0..=i {
+                    t.odd_odd[i * n + j] += weighted * odd[j];
+                }
+            }
+            for i in 0..odd_modes {
+                let value = weight * odd[i];
+                t.odd[i] -= value * odd_load;
+                for (table, factor) in t.odd_by.iter_mut().zip(odd_by) {
+                    table[i] -= value * factor;
+                }
+                let weighted = value * odd_weight;
+                for j in 0..n {
+                    t.odd_even[i * n + j] += weighted * even[j];
+                }
+            }
+        }
+        for i in 0..n {
+            for j in 0..i {
+                t.even_even[j * n + i] = t.even_even[i * n + j];
+                t.odd_odd[j * n + i] = t.odd_odd[i * n + j];
+            }
+        }
+        t
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

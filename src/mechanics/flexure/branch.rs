@@ -1,0 +1,337 @@
+//! Which stable shapes does the mechanism pass through as x grows from 0?
+//!
+//! A chain of segments in x. Within a segment the same flexures carry a bump and everything is analytic in x; it ends
+//! where a bump vanishes (or, in a soft mechanism, appears): a pitchfork, at which the slope of the force jumps. The
+//! pitchfork is a regular solution of the equations in the square of the bump's amplitude, so it is found like any
+//! other state, to rounding; every state on the way is tested for stability, so that the S-shaped branch that
+//! continues the taut one inwards is never taken.
+
+use super::beam::Shape;
+use super::equilibrium::{Point, Prescribed, stays_straight};
+use super::solver::{Lost, Solver};
+
+/// The march gives up when its step has been halved this often.
+const MOST_HALVINGS: u32 = 40;
+
+/// States on the way to one that no guess leads to.
+const MOST_APPROACHES: u32 = 200;
+
+/// States that a guess is interpolated from.
+const GUESS_POINTS: usize = 6;
+
+/// How far beyond the last kink the curve reaches, as a multiple of the kink's position.
+const BEYOND_KINK: f64 = 1.15;
+
+/// How far it reaches at least, as a part of the shortest flexure.
+const LEAST_REACH: f64 = 0.1;
+
+/// More kinks than any two groups of flexures have; a chain that has not ended by then goes in circles.
+const MOST_SEGMENTS: usize = 8;
+
+/// A range of x over which the same flexures carry a bump.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Segment {
+    pub from: f64,
+    pub to: f64,
+    /// Solved states, ascending in x.
+    pub points: Vec<Point>,
+}
+
+impl Segment {
+    /// A guess for the state at `x` from the nearest ones.
+    pub fn guess(&self, x: f64) -> Point {
+        let mut nearest: Vec<&Point> = self.points.iter().collect();
+        nearest.sort_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()));
+        nearest.truncate(GUESS_POINTS);
+        Point::between(&nearest, x, self.from == 0.0)
+    }
+
+    /// The state at `x`: one that is known, or a fresh solution, which is kept.
+    pub fn at(&mut self, solver: &mut Solver, x: f64) -> Result<Point, Lost> {
+        let place = self.points.partition_point(|p| p.x < x);
+        if let Some(known) = self.points.get(place).filter(|p| p.x == x) {
+            return Ok(known.clone());
+        }
+        let point = match solver.solve(&self.guess(x), Prescribed::Displacement(x)) {
+            Ok(point) => point,
+            Err(lost) => self.approach(solver, x).ok_or(lost)?,
+        };
+        self.points.insert(place, point.clone());
+        Ok(point)
+    }
+
+    /// The state at `x` by way of others, from the nearest that is known: beside a rounded kink an interpolated guess
+    /// leads astray.
+    fn approach(&self, solver: &mut Solver, x: f64) -> Option<Point> {
+        let mut from = self.points.iter().min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()))?.clone();
+        let mut step = x - from.x;
+        for _ in 0..MOST_APPROACHES {
+            let to = if step.abs() >= (x - from.x).abs() { x } else { from.x + step };
+            match solver.solve(&from, Prescribed::Displacement(to)) {
+                Ok(point) if to == x => return Some(point),
+                Ok(point) => (from, step) = (point, 2.0 * step),
+                Err(_) => step *= 0.5,
+            }
+        }
+        None
+    }
+}
+
+/// The chain of segments from 0 to the end of the curve.
+pub(super) fn trace(solver: &mut Solver) -> Result<Vec<Segment>, Lost> {
+    let bow = solver.bow;
+    solver.set_bow([0.0; 2]);
+    let start = start(solver)?;
+    let least = LEAST_REACH * solver.shortest();
+    let plain = chain(solver, start, least)?;
+    if bow == [0.0; 2] {
+        return Ok(plain);
+    }
+    // A bow rounds the kink away; the flexures without it say how far the curve has to reach.
+    solver.set_bow(bow);
+    let start = bowed_start(solver, &plain[0].points[0])?;
+    chain(solver, start, plain[plain.len() - 1].to)
+}
+
+/// The segments from `start` to beyond the last kink, and to `least` at least.
+fn chain(solver: &mut Solver, mut start: Point, least: f64) -> Result<Vec<Segment>, Lost> {
+    let mut segments: Vec<Segment> = Vec::new();
+    loop {
+        let from = start.x;
+        let end = (BEYOND_KINK * from).max(least);
+        let buckled = start.shapes.contains(&Shape::Bump);
+        let (segment, next) = if buckled {
+            march(solver, start, 0.35 * (solver.taut_at() - from).abs().max(0.02 * end), None)?
+        } else {
+            let part = if start.shapes.contains(&Shape::Bowed) { 0.1 } else { 0.25 };
+            march(solver, start, part * (end - from), Some(end))?
+        };
+        segments.push(segment);
+        match next {
+            Some(point) if segments.len() < MOST_SEGMENTS => start = point,
+            Some(point) => return Err(Lost::Unstable { x: point.x }),
+            None => return Ok(segments),
+        }
+    }
+}
+
+/// The stable state at x = 0: straight, or with the bumps that lower the energy.
+fn start(solver: &mut Solver) -> Result<Point, Lost> {
+    let straight = solver.straight();
+    let stays = solver.terms(&straight).each_ref().map(stays_straight);
+    if stays == [true, true] {
+        return solver.solve(&straight, Prescribed::Displacement(0.0));
+    }
+    // The group that buckles under the smaller total load takes the preload; both, where the load of the other
+    // is reached as well.
+    let first = if solver.buckling_load(0) < solver.buckling_load(1) { 0 } else { 1 };
+    let mut lost = Lost::Unstable { x: 0.0 };
+    for bumps in [[first == 0, first == 1], [true, true], [first == 1, first == 0]] {
+        match buckled(solver, &straight, bumps) {
+            Ok(point) if point.q.iter().all(|q| *q >= 0.0) && solver.is_stable(&point) => return Ok(point),
+            Ok(_) => {}
+            Err(found) => lost = found,
+        }
+    }
+    Err(lost)
+}
+
+/// A state at x = 0 with these groups buckled; the preload is raised from a smaller one where the iteration does not
+/// reach it at once.
+fn buckled(solver: &mut Solver, straight: &Point, bumps: [bool; 2]) -> Result<Point, Lost> {
+    let preload = solver.preload;
+    let shapes = bumps.map(|b| if b { Shape::Bump } else { Shape::Straight });
+    let loads: Vec<f64> = (0..2).filter(|g| bumps[*g]).map(|g| solver.buckling_load(g)).collect();
+    let load = loads.iter().sum::<f64>() / loads.len() as f64;
+    let mut reached = None::<(f64, Point)>;
+    let mut target = preload;
+    let mut lost = Lost::Unstable { x: 0.0 };
+    for _ in 0..MOST_HALVINGS {
+        let guess = reached.as_ref().map_or_else(
+            || {
+                let mut point = solver.reshaped(straight, shapes);
+                point.compression = load;
+                let left = (target - load * solver.compliance()).max(0.0) / loads.len() as f64;
+                for g in (0..2).filter(|g| bumps[*g]) {
+                    point.q[g] = solver.bump_of_shortening(g, left);
+                }
+                point
+            },
+            |(_, point)| point.clone(),
+        );
+        solver.preload = target;
+        let solved = solver.solve(&guess, Prescribed::Displacement(0.0));
+        solver.preload = preload;
+        match solved {
+            Ok(point) if target == preload => return Ok(point),
+            Ok(point) => {
+                reached = Some((target, point));
+                target = preload;
+            }
+            Err(found) => {
+                lost = found;
+                target = 0.5 * (target + reached.as_ref().map_or(0.0, |(p, _)| *p));
+            }
+        }
+    }
+    Err(lost)
+}
+
+/// The state at x = 0 of bowed flexures, from that of straight ones; the bow grows from nothing where need be.
+fn bowed_start(solver: &mut Solver, plain: &Point) -> Result<Point, Lost> {
+    let whole = solver.bow;
+    let mut guess = solver.straight().padded(plain.even[0].len());
+    if plain.shapes.contains(&Shape::Bump) {
+        guess.compression = plain.compression;
+        for g in 0..2 {
+            guess.odd[g] = plain.odd[g].clone();
+            guess.q[g] = plain.q[g];
+            if guess.shapes[g] == Shape::Bowed {
+                let size = plain.q[g].max(0.0).sqrt();
+                guess.odd[g].iter_mut().for_each(|a| *a *= size);
+                guess.odd[g].resize(plain.even[0].len(), 0.0);
+                guess.q[g] = 1.0;
+            } else {
+                guess.shapes[g] = plain.shapes[g];
+            }
+        }
+    }
+    let (mut reached, mut share) = (0.0, 1.0);
+    let mut lost = Lost::Unstable { x: 0.0 };
+    for _ in 0..MOST_HALVINGS {
+        solver.set_bow(whole.map(|b| b * share));
+        let solved = solver.solve(&guess, Prescribed::Displacement(0.0));
+        solver.set_bow(whole);
+        match solved {
+            Ok(point) if share == 1.0 => {
+                // A bow takes up preload: the other group may not have to buckle any more.
+                let changed = changed(solver, &point);
+                if changed == [false, false] {
+                    return Ok(point);
+                }
+                let mut shapes = point.shapes;
+                for g in (0..2).filter(|g| changed[*g]) {
+                    shapes[g] = if shapes[g] == Shape::Bump { Shape::Straight } else { Shape::Bump };
+                }
+                guess = solver.reshaped(&point, shapes);
+            }
+            Ok(point) => (guess, reached, share) = (point, share, 1.0),
+            Err(found) => {
+                lost = found;
+                share = 0.5 * (share + reached);
+            }
+        }
+    }
+    Err(lost)
+}
+
+/// Follows the states from `start` to `end`, or until a bump vanishes or appears. Returns the segment, and the
+/// state that the next one begins with.
+fn march(
+    solver: &mut Solver,
+    start: Point,
+    mut step: f64,
+    end: Option<f64>,
+) -> Result<(Segment, Option<Point>), Lost> {
+    let from = start.x;
+    // Where a bump would have to be even if both flexures lay flat.
+    let far = 4.0 * (solver.taut_at() + solver.shortest());
+    let mut segment = Segment { from, to: from, points: vec![start] };
+    let mut halvings = 0;
+    loop {
+        let last = segment.points[segment.points.len() - 1].x;
+        let x = match end {
+            Some(end) if last + 1.01 * step >= end => end,
+            _ => last + step,
+        };
+        if x > far {
+            return Err(Lost::Unstable { x });
+        }
+        let guess = if halvings % 2 == 0 {
+            segment.guess(x)
+        } else {
+            segment.points[segment.points.len() - 1].clone()
+        };
+        match solver.solve(&guess, Prescribed::Displacement(x)) {
+            Err(lost) => {
+                halvings += 1;
+                step *= 0.5;
+                if halvings > MOST_HALVINGS || last + step == last {
+                    return Err(lost);
+                }
+            }
+            Ok(point) => {
+                let changed = changed(solver, &point);
+                if changed != [false, false] {
+                    return pitchfork(solver, segment, &point, changed);
+                }
+                if !solver.is_stable(&point) {
+                    return Err(Lost::Unstable { x });
+                }
+                segment.points.push(point);
+                segment.to = x;
+                if Some(x) == end {
+                    return Ok((segment, None));
+                }
+                step *= 1.5;
+            }
+        }
+    }
+}
+
+/// Which groups do not have the shape any more that `point` gives them: a bump that has vanished goes on with a
+/// negative square, one that has to appear lowers the energy of the straight flexure.
+fn changed(solver: &mut Solver, point: &Point) -> [bool; 2] {
+    let terms = solver.terms(point);
+    std::array::from_fn(|g| match point.shapes[g] {
+        Shape::Straight => !stays_straight(&terms[g]),
+        Shape::Bump => point.q[g] < 0.0,
+        Shape::Bowed => false,
+    })
+}
+
+/// Ends a segment at the first pitchfork between its last state and `beyond`.
+fn pitchfork(
+    solver: &mut Solver,
+    mut segment: Segment,
+    beyond: &Point,
+    changed: [bool; 2],
+) -> Result<(Segment, Option<Point>), Lost> {
+    let last = segment.points[segment.points.len() - 1].clone();
+    let mut first: Option<(usize, Point)> = None;
+    let mut lost = Lost::Unstable { x: beyond.x };
+    for g in (0..2).filter(|g| changed[*g]) {
+        let vanishes = beyond.shapes[g] == Shape::Bump;
+        let mut shapes = beyond.shapes;
+        shapes[g] = Shape::Bump;
+        let x = if vanishes {
+            // q falls about evenly in x^2.
+            let part = last.q[g] / (last.q[g] - beyond.q[g]);
+            (last.x * last.x + part * (beyond.x * beyond.x - last.x * last.x)).sqrt()
+        } else {
+            0.5 * (last.x + beyond.x)
+        };
+        let mut known = segment.clone();
+        known.points.push(beyond.clone());
+        let guess = solver.reshaped(&known.guess(x), shapes);
+        match solver.solve(&guess, Prescribed::BumpVanishes(g)) {
+            Ok(kink) => {
+                let within = kink.x >= segment.from && kink.x <= beyond.x;
+                if within && first.as_ref().is_none_or(|(_, other)| kink.x < other.x) {
+                    first = Some((g, kink));
+                }
+            }
+            Err(found) => lost = found,
+        }
+    }
+    let (g, kink) = first.ok_or(lost)?;
+    // The kink as each side sees it; both share force and position.
+    let mut shapes = kink.shapes;
+    shapes[g] = Shape::Straight;
+    let straight = solver.reshaped(&kink, shapes);
+    let straight = solver.solve(&straight, Prescribed::Displacement(kink.x))?;
+    let (inner, outer) = if beyond.shapes[g] == Shape::Bump { (kink, straight) } else { (straight, kink) };
+    segment.to = inner.x;
+    segment.points.push(inner);
+    Ok((segment, Some(outer)))
+}

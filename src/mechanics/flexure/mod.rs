@@ -1,0 +1,342 @@
+//! What force does a buckled flexure mechanism exert?
+//!
+//! `count` parallel flexures hold the shuttle on one side, one or more buckling flexures on the other; all are clamped at both
+//! ends, the shuttle does not rotate and is free axially. A preload pushes the two groups together: the buckling
+//! flexures bulge, and the sway of all of them has two stable sides. The curve ends in a kink where the bulge is used up and
+//! the flexures are taut.
+//!
+//! Method: geometrically exact beams (Reissner 1972) in a spectral discretisation ([`basis`]), the equilibrium
+//! equations of all of them at once ([`equilibrium`]), the stable branch with its kinks ([`branch`]), and
+//! from a few dozen states the piecewise polynomial ([`pieces`]).
+
+mod basis;
+mod beam;
+mod branch;
+mod equilibrium;
+mod pieces;
+mod shape;
+mod solver;
+
+use beam::{Beam, Shape};
+use branch::Segment;
+use equilibrium::{Point, Prescribed};
+use pieces::{Scale, Stretch};
+use shape::Bent;
+use solver::{Lost, Solver};
+
+use super::curve::{ForceCurve, Piece};
+
+/// Shear coefficient of a rectangular section.
+const SHEAR_FACTOR: f64 = 5.0 / 6.0;
+
+/// The coefficients that a rotation may leave out, as this many times the root of the tolerance: the force then has a
+/// hundredth of the tolerance from there.
+const TAIL: f64 = 0.3;
+
+/// The same for a state that a person asks for, and for those that a curve is compared with.
+const FINE_TAIL: f64 = 1e-6;
+
+/// Flexures that are alike and share both ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// How many, 1 or more.
+    pub count: usize,
+    /// Length of each in m, along the flexure.
+    pub length: f64,
+    /// Width of each in m, across the plane of motion.
+    pub width: f64,
+}
+
+/// The geometry and material of a mechanism, in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Geometry {
+    /// By how much the two groups are pushed together axially, from their stress-free lengths, in m.
+    pub preload: f64,
+    /// Thickness of all flexures in m.
+    pub thickness: f64,
+    /// Young's modulus in Pa.
+    pub young: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// Whether the strips are so wide that they cannot contract sideways: E/(1 - poisson^2) in place of E.
+    pub plane_strain: bool,
+    /// Deflection in m of the middle of the stress-free buckling flexure: a bow of the first buckling mode.
+    pub initial_bow: f64,
+    /// Stress in Pa at which the flexures yield.
+    pub yield_stress: f64,
+    /// The flexures that guide the shuttle.
+    pub parallel: Group,
+    /// The flexures that bulge.
+    pub buckling: Group,
+}
+
+/// How far the force curve is from fresh solutions at points that it was not made of.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Accuracy {
+    /// Error of the force between the kinks, relative to its largest magnitude between the wells.
+    pub force: f64,
+    /// Error of the potential there, relative to the barrier; to the largest potential where there is none.
+    pub potential: f64,
+    /// Error of the stiffness there, relative to its magnitude at x = 0.
+    pub stiffness: f64,
+    /// Error of the force elsewhere, relative to the larger of that largest magnitude and the force itself.
+    pub outer_force: f64,
+    /// Equilibria solved for.
+    pub solves: usize,
+    /// Functions of each parity that the most demanding of them needed.
+    pub modes: usize,
+}
+
+/// Why no curve could be computed; x in m.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum FlexureError {
+    /// Newton's iteration came to no end.
+    #[error(
+        "the equilibrium of the flexures at x = {} mm was not found (residual {residual:.1e}): try a smaller preload or \
+         other proportions",
+        crate::numeric::short(x * 1e3)
+    )]
+    NotConverged {
+        /// Position in m.
+        x: f64,
+        /// Size of the last step, relative to the unknowns.
+        residual: f64,
+    },
+    /// No stable equilibrium could be followed.
+    #[error(
+        "the flexures have no stable shape of this kind at x = {} mm: try a smaller preload or other proportions",
+        crate::numeric::short(x * 1e3)
+    )]
+    Unstable {
+        /// Position in m.
+        x: f64,
+    },
+}
+
+/// The centre line of one flexure of a group; all of a group are alike.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CentreLine {
+    /// `parallel` or `buckling`.
+    pub flexure: &'static str,
+    /// Arc length s from the clamp on the frame and the position px (axial), py (lateral), each in m. With a shuttle of no
+    /// width the parallel flexures are clamped at (0, 0), the buckling ones at their common stress-free length less the
+    /// preload.
+    pub points: Vec<[f64; 3]>,
+}
+
+/// The mechanism held at one x.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Position in m.
+    pub x: f64,
+    /// Force dV/dx in N.
+    pub force: f64,
+    /// Potential in J, 0 at x = 0.
+    pub potential: f64,
+    /// Stiffness in N/m; at a kink that of its inner side.
+    pub stiffness: f64,
+    /// Axial force in N that the groups exchange, positive in compression.
+    pub axial: f64,
+    /// Deflection in m of the middle of a bulging flexure beyond its sway.
+    pub bump: f64,
+    /// Largest bending stress in Pa.
+    pub max_stress: f64,
+    /// Shapes of the two groups.
+    pub lines: Vec<CentreLine>,
+}
+
+/// A solved mechanism: what its force curve was made from.
+#[derive(Debug, Clone)]
+pub struct Flexures {
+    geometry: Geometry,
+    accuracy: Accuracy,
+    solver: Solver,
+    segments: Vec<Segment>,
+    units: Units,
+}
+
+/// Everything else follows from the geometry and the tolerance that the accuracy shows.
+impl PartialEq for Flexures {
+    fn eq(&self, other: &Self) -> bool {
+        self.geometry == other.geometry && self.accuracy == other.accuracy
+    }
+}
+
+/// Length and force of the scaled equations: those of one buckling flexure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Units {
+    length: f64,
+    force: f64,
+}
+
+impl Flexures {
+    /// Solves the mechanism.
+    ///
+    /// Returns its force curve, odd bit for bit, with the flexures behind it. The domain reaches 1.15 times the
+    /// last kink, and a tenth of the shortest flexure at least; breaks are the kinks, and joints of pieces that meet
+    /// smoothly.
+    ///
+    /// Preconditions: sizes above 0, a preload from 0 to half of the shorter flexure, a thickness of at most a tenth of it.
+    ///
+    /// Guarantee: force and potential within `tolerance` (1e-6 to 1e-9) and stiffness within 100 times it at the points
+    /// that were looked at, relative to what [`Accuracy`] says. A preload up to a quarter of the shorter flexure
+    /// solves; beyond, the stable branch may end, which is an error.
+    ///
+    /// `tolerance` trades time for closeness; at 1e-8 it takes milliseconds.
+    pub fn solve(geometry: &Geometry, tolerance: f64) -> Result<(ForceCurve, Self), FlexureError> {
+        let (mut solver, units) = scaled(geometry, TAIL * tolerance.sqrt());
+        let lost = |lost: Lost| match lost {
+            Lost::NotConverged { x, residual } => {
+                FlexureError::NotConverged { x: x * units.length, residual }
+            }
+            Lost::Unstable { x } => FlexureError::Unstable { x: x * units.length },
+        };
+        let mut segments = branch::trace(&mut solver).map_err(lost)?;
+        let scale = Scale::of(&segments);
+        let stretches = pieces::fit(&mut solver, &mut segments, scale, tolerance).map_err(lost)?;
+        let curve = curve(&stretches, units);
+        let accuracy = Accuracy { solves: solver.solves, modes: solver.most_modes, ..Accuracy::default() };
+        let mut own = Self { geometry: geometry.clone(), accuracy, solver, segments, units };
+        own.measure(&curve, &stretches, scale);
+        Ok((curve, own))
+    }
+
+    /// The geometry that was solved.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// How good the curve is, measured at fresh solutions that it was not made of.
+    pub fn accuracy(&self) -> &Accuracy {
+        &self.accuracy
+    }
+
+    /// The mechanism held at `x` in m, solved for afresh; within the domain of the curve.
+    pub fn state(&self, x: f64) -> Result<State, FlexureError> {
+        let mut solver = self.solver.clone();
+        solver.tail = FINE_TAIL;
+        let distance = x.abs() / self.units.length;
+        let last = self.segments.len() - 1;
+        let segment = &self.segments[self.segments.partition_point(|s| s.to < distance).min(last)];
+        let mut point = solver
+            .solve(&segment.guess(distance), Prescribed::Displacement(distance))
+            .map_err(|_| FlexureError::NotConverged { x, residual: f64::NAN })?;
+        if x < 0.0 {
+            point.x = -point.x;
+            point.force = -point.force;
+            point.lateral = point.lateral.map(|q| -q);
+            point.even.iter_mut().flatten().for_each(|a| *a = -*a);
+        }
+        Ok(self.described(&mut solver, &point, x))
+    }
+
+    fn described(&self, solver: &mut Solver, point: &Point, x: f64) -> State {
+        let Units { length, force } = self.units;
+        let system = solver.system(point.even[0].len()).clone();
+        let terms = system.terms(point);
+        let bump = (0..2).fold(0.0_f64, |most, g| {
+            let size = if point.shapes[g] == Shape::Straight { 0.0 } else { point.q[g].max(0.0).sqrt() };
+            most.max((terms[g].bump * size).abs())
+        });
+        let bent: [Bent; 2] = std::array::from_fn(|g| Bent::of(&system.beams[g], point, g));
+        let curvature = bent[0].curvature().max(bent[1].curvature()) / length;
+        let clamp = (0..2).map(|g| system.beams[g].length - system.beams[g].natural_shortening).sum::<f64>()
+            - system.preload;
+        let line = |g: usize, flexure: &'static str| CentreLine {
+            flexure,
+            points: bent[g]
+                .line()
+                .into_iter()
+                .map(|[s, along, across]| {
+                    let along = if g == 0 { along } else { clamp - along };
+                    [s * length, along * length, across * length]
+                })
+                .collect(),
+        };
+        State {
+            x,
+            force: point.force * force,
+            potential: (point.energy - self.segments[0].points[0].energy) * force * length,
+            stiffness: point.stiffness * force / length,
+            axial: point.compression * force,
+            bump: bump * length,
+            max_stress: bending_modulus(&self.geometry) * 0.5 * self.geometry.thickness * curvature,
+            lines: vec![line(0, "parallel"), line(1, "buckling")],
+        }
+    }
+
+    /// Compares the curve with the fresh states of its pieces.
+    fn measure(&mut self, curve: &ForceCurve, stretches: &[Stretch], scale: Scale) {
+        let Units { length, force } = self.units;
+        let start = self.segments[0].points[0].energy;
+        let unit = force * length;
+        let deepest =
+            self.segments.iter().flat_map(|s| &s.points).fold(0.0_f64, |m, p| m.max(start - p.energy));
+        for point in stretches.iter().flat_map(|s| &s.checks) {
+            let x = point.x * length;
+            let missed = (curve.force(x) / force - point.force).abs() / scale.force.max(point.force.abs());
+            let level = if deepest > 0.0 { deepest } else { (point.energy - start).abs() };
+            let potential = (curve.potential(x) / unit - (point.energy - start)).abs() / level;
+            let stiffness = (curve.stiffness(x) * length / force - point.stiffness).abs() / scale.stiffness;
+            let own = &mut self.accuracy;
+            if point.x <= scale.inside {
+                own.force = own.force.max(missed);
+                own.potential = own.potential.max(potential);
+                own.stiffness = own.stiffness.max(stiffness);
+            } else {
+                own.outer_force = own.outer_force.max(missed);
+            }
+        }
+    }
+}
+
+fn bending_modulus(geometry: &Geometry) -> f64 {
+    let Geometry { young, poisson, plane_strain, .. } = geometry;
+    if *plane_strain { young / (1.0 - poisson * poisson) } else { *young }
+}
+
+/// The equations in units of one buckling flexure: its length, and its EI over that length squared.
+fn scaled(geometry: &Geometry, tail: f64) -> (Solver, Units) {
+    let Geometry { thickness, young, poisson, .. } = *geometry;
+    let modulus = bending_modulus(geometry);
+    let shear_modulus = young / (2.0 * (1.0 + poisson));
+    let bending = |group: &Group| modulus * group.width * thickness.powi(3) / 12.0;
+    let length = geometry.buckling.length;
+    let force = bending(&geometry.buckling) / (length * length);
+    let beam = |group: &Group| Beam {
+        count: group.count as f64,
+        length: group.length / length,
+        bending: bending(group) / (force * length * length),
+        stretch: force / (modulus * group.width * thickness),
+        shear: force / (SHEAR_FACTOR * shear_modulus * group.width * thickness),
+        natural: Vec::new(),
+        natural_shortening: 0.0,
+    };
+    let bow = std::f64::consts::PI * geometry.initial_bow / length;
+    let beams = [beam(&geometry.parallel), beam(&geometry.buckling)];
+    (Solver::new(beams, geometry.preload / length, [0.0, bow], tail), Units { length, force })
+}
+
+/// The whole curve from its right half.
+fn curve(stretches: &[Stretch], units: Units) -> ForceCurve {
+    let piece = |stretch: &Stretch| {
+        let mut power = 1.0;
+        let coefficients = stretch.coefficients.iter().map(|c| {
+            let own = c * units.force / power;
+            power *= units.length;
+            own
+        });
+        Piece {
+            origin: stretch.origin * units.length,
+            coefficients: coefficients.collect(),
+            potential_at_origin: 0.0,
+        }
+    };
+    let right: Vec<Piece> = stretches.iter().map(piece).collect();
+    let ends: Vec<f64> = stretches.iter().map(|s| s.to * units.length).collect();
+    let (breaks, end) = (&ends[..ends.len() - 1], ends[ends.len() - 1]);
+    let left = right.iter().skip(1).rev().map(Piece::mirrored);
+    let pieces: Vec<Piece> = left.chain(right.iter().cloned()).collect();
+    let all: Vec<f64> = breaks.iter().rev().map(|b| -b).chain(breaks.iter().copied()).collect();
+    ForceCurve::from_pieces(pieces, all, (-end, end), true, None)
+}

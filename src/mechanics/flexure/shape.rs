@@ -1,0 +1,78 @@
+//! How do the flexures look, and how hard are they bent?
+
+use std::f64::consts::PI;
+
+use super::basis::{functions, slopes};
+use super::beam::{Beam, Shape};
+use super::equilibrium::Point;
+use crate::numeric::GaussLegendre;
+
+/// Points of a centre line.
+const LINE_POINTS: usize = 65;
+
+/// Places at which the curvature is looked at, dense at the clamps, where it is largest on the taut branch.
+const CURVATURE_POINTS: usize = 257;
+
+/// One flexure of a group, as bent.
+pub(super) struct Bent<'a> {
+    pub beam: &'a Beam,
+    /// Coefficients of the whole rotation, even and odd in turn.
+    rotation: Vec<f64>,
+    axial: f64,
+    lateral: f64,
+}
+
+impl<'a> Bent<'a> {
+    pub fn of(beam: &'a Beam, point: &Point, group: usize) -> Self {
+        let size = if point.shapes[group] == Shape::Bump { point.q[group].max(0.0).sqrt() } else { 1.0 };
+        let mut rotation = vec![0.0; 2 * point.even[group].len()];
+        for (i, a) in point.even[group].iter().enumerate() {
+            rotation[2 * i] = *a;
+        }
+        for (i, a) in point.odd[group].iter().enumerate() {
+            rotation[2 * i + 1] = size * a;
+        }
+        Self { beam, rotation, axial: -point.compression / beam.count, lateral: point.lateral[group] }
+    }
+
+    /// Points s, axial and lateral position along the flexure from its clamp on the frame, in scaled units.
+    pub fn line(&self) -> Vec<[f64; 3]> {
+        let rule = GaussLegendre::<f64>::new(4);
+        let mut row = vec![0.0; self.rotation.len()];
+        let mut points = vec![[0.0; 3]];
+        let mut at = [0.0; 2];
+        for i in 1..LINE_POINTS {
+            let knot = |i: usize| 0.5 - 0.5 * (PI * i as f64 / (LINE_POINTS - 1) as f64).cos();
+            let (from, to) = (knot(i - 1), knot(i));
+            for (node, weight) in rule.nodes().iter().zip(rule.weights()) {
+                functions(2.0 * (from + (to - from) * node) - 1.0, &mut row);
+                let angle: f64 = row.iter().zip(&self.rotation).map(|(f, a)| f * a).sum();
+                let (sine, cosine) = angle.sin_cos();
+                let stretch = 1.0 + self.beam.stretch * (self.axial * cosine + self.lateral * sine);
+                let shear = self.beam.shear * (self.lateral * cosine - self.axial * sine);
+                let ds = weight * (to - from) * self.beam.length;
+                at[0] += ds * (stretch * cosine - shear * sine);
+                at[1] += ds * (stretch * sine + shear * cosine);
+            }
+            points.push([to * self.beam.length, at[0], at[1]]);
+        }
+        points
+    }
+
+    /// The largest change of curvature from the stress-free flexure.
+    pub fn curvature(&self) -> f64 {
+        let mut row = vec![0.0; self.rotation.len()];
+        let mut bend = self.rotation.clone();
+        for (i, natural) in self.beam.natural.iter().enumerate() {
+            if let Some(b) = bend.get_mut(2 * i + 1) {
+                *b -= natural;
+            }
+        }
+        let places = (0..CURVATURE_POINTS).map(|i| (PI * i as f64 / (CURVATURE_POINTS - 1) as f64).cos());
+        places.fold(0.0, |most: f64, xi| {
+            slopes(xi, &mut row);
+            let slope: f64 = row.iter().zip(&bend).map(|(f, a)| f * a).sum();
+            most.max((slope * 2.0 / self.beam.length).abs())
+        })
+    }
+}
