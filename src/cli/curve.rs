@@ -17,7 +17,7 @@ const PICTURE_POINTS: usize = 3001;
 pub fn run(options: &CurveOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
-    let (document, mechanism) = load_with_mechanism(&options.scene, common, None)?;
+    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let points = options.points.unwrap_or(POINTS) as usize;
     let range = options.range_mm.as_deref().map(range).transpose()?;
     let even = |points: usize| match range {

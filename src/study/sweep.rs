@@ -5,6 +5,7 @@
 //! number of threads.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use rayon::ThreadPool;
@@ -14,7 +15,7 @@ use super::Task;
 use super::grid::Grid;
 use super::table::{Table, Values};
 use crate::dynamics::{Model, Outcome, Request, Summary};
-use crate::mechanics::Mechanism;
+use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
 
 /// A scene, the grid over it, and the mechanisms that its cells share.
@@ -23,7 +24,47 @@ pub struct Sweep {
     base: Scene,
     files: Files,
     grid: Grid,
-    mechanisms: Vec<OnceLock<Result<Arc<Mechanism>, Fault>>>,
+    mechanisms: Vec<OnceLock<Built>>,
+    /// Mechanisms built so far.
+    built: AtomicU64,
+}
+
+/// The mechanism of a cell, or why it has none.
+type Built = Result<Arc<Mechanism>, BuildError>;
+
+/// What one cell came to.
+#[derive(Debug, Clone, Copy)]
+enum Cell {
+    /// It was run.
+    Ran(Summary),
+    /// Its mechanism is right and was not solved: there is nothing to run.
+    NotConverged,
+    /// It was not run, because the sweep was told to stop.
+    NotRun,
+}
+
+impl Cell {
+    /// The word in the CSV.
+    fn outcome(&self) -> &'static str {
+        match self {
+            Self::Ran(summary) => summary.outcome.name(),
+            Self::NotConverged => "not_converged",
+            Self::NotRun => "",
+        }
+    }
+
+    fn summary(&self) -> Option<&Summary> {
+        match self {
+            Self::Ran(summary) => Some(summary),
+            Self::NotConverged | Self::NotRun => None,
+        }
+    }
+
+    /// The summary of a run that reached its settled window. Earlier there are no numbers there, and
+    /// counts of 0 would lie.
+    fn settled(&self) -> Option<&Summary> {
+        self.summary().filter(|summary| summary.rms_velocity.is_some())
+    }
 }
 
 /// What is wrong with one cell.
@@ -47,10 +88,14 @@ pub enum SweepEnd<E> {
 /// What a sweep came to.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tally {
-    /// Cells run.
+    /// Cells run, those without a solved mechanism among them.
     pub cells: u64,
     /// Cells whose run ended early, as their outcome says.
     pub ended_early: u64,
+    /// Cells whose mechanism was not solved.
+    pub not_converged: u64,
+    /// Mechanisms built: one for each combination of the swept fields of the mechanism, however many cells share it.
+    pub mechanisms: u64,
     /// Cells by outcome.
     pub outcomes: BTreeMap<&'static str, u64>,
     /// Cells by regime; those that ended before their settled window, and those of one well, have none.
@@ -58,10 +103,11 @@ pub struct Tally {
 }
 
 impl Tally {
-    fn count(&mut self, row: &Summary) {
-        self.ended_early += u64::from(row.outcome != Outcome::Done);
-        *self.outcomes.entry(row.outcome.name()).or_default() += 1;
-        if row.rms_velocity.is_some() && !row.regime.name().is_empty() {
+    fn count(&mut self, cell: &Cell) {
+        self.ended_early += u64::from(cell.summary().is_some_and(|row| row.outcome != Outcome::Done));
+        self.not_converged += u64::from(matches!(cell, Cell::NotConverged));
+        *self.outcomes.entry(cell.outcome()).or_default() += 1;
+        if let Some(row) = cell.settled().filter(|row| !row.regime.name().is_empty()) {
             *self.regimes.entry(row.regime.name()).or_default() += 1;
         }
     }
@@ -81,7 +127,7 @@ impl Sweep {
         let base = Scene { notes: String::new(), sweep: Vec::new(), app: None, ..base.clone() };
         let kept = Some(grid.mechanisms()).filter(|n| *n <= KEPT_MECHANISMS).unwrap_or(0);
         let mechanisms = (0..kept).map(|_| OnceLock::new()).collect();
-        Self { base, files: files.clone(), grid, mechanisms }
+        Self { base, files: files.clone(), grid, mechanisms, built: AtomicU64::new(0) }
     }
 
     /// The grid.
@@ -94,15 +140,25 @@ impl Sweep {
         self.table(0, &[])
     }
 
-    /// Builds every cell without running it; the first one that is wrong, with all its
-    /// faults. A cancelled check finds nothing.
+    /// The mechanism of the first cell, or why it has none. Where no axis changes the mechanism, it is that of
+    /// every cell.
+    pub fn first_mechanism(&self) -> Result<Arc<Mechanism>, BuildError> {
+        let mut scene = self.base.clone();
+        self.grid.apply(0, &mut scene);
+        self.mechanism(0, &scene)
+    }
+
+    /// Builds every cell without running it; the first one that is wrong, with all its faults. A mechanism that is
+    /// not solved is no fault but an outcome. A cancelled check finds nothing.
     pub fn validate(&self, pool: &ThreadPool, task: &Task) -> Result<(), CellFaults> {
         let faults = |scene: &mut Scene, index: u64| {
             if task.is_cancelled() {
                 return None;
             }
-            let faults = self.model(index, scene).err()?;
-            Some(CellFaults { cell: self.grid.describe(index), faults })
+            match self.model(index, scene)? {
+                Ok(_) => None,
+                Err(faults) => Some(CellFaults { cell: self.grid.describe(index), faults }),
+            }
         };
         let cells = (0..self.grid.cells()).into_par_iter();
         let first = pool
@@ -124,18 +180,18 @@ impl Sweep {
             let begin = tally.cells;
             let end = (begin + chunk).min(self.grid.cells());
             let run = |scene: &mut Scene, offset: usize| {
-                let summary = self.run_cell(begin + offset as u64, scene, task);
+                let cell = self.run_cell(begin + offset as u64, scene, task);
                 (task.tick)();
-                summary
+                cell
             };
             let cells = (0..(end - begin) as usize).into_par_iter().with_max_len(1);
-            let rows: Vec<Option<Summary>> =
-                pool.install(|| cells.map_init(|| self.base.clone(), run).collect());
+            let rows: Vec<Cell> = pool.install(|| cells.map_init(|| self.base.clone(), run).collect());
             if task.is_cancelled() {
                 return Err(SweepEnd::Cancelled);
             }
             tally.cells = end;
-            rows.iter().flatten().for_each(|row| tally.count(row));
+            rows.iter().for_each(|row| tally.count(row));
+            tally.mechanisms = self.built.load(Ordering::Relaxed);
             if !write(&self.table(begin, &rows)).map_err(SweepEnd::Write)? {
                 break;
             }
@@ -143,54 +199,61 @@ impl Sweep {
         Ok(tally)
     }
 
-    fn run_cell(&self, index: u64, scene: &mut Scene, task: &Task) -> Option<Summary> {
+    fn run_cell(&self, index: u64, scene: &mut Scene, task: &Task) -> Cell {
         if task.is_cancelled() {
-            return None;
+            return Cell::NotRun;
         }
-        let model = self.model(index, scene).ok()?;
         let request = Request { cancel: Some(task.cancel), ..Request::default() };
-        Some(model.run(&request).summary)
+        match self.model(index, scene) {
+            Some(Ok(model)) => Cell::Ran(model.run(&request).summary),
+            // Not after the sweep has been validated.
+            Some(Err(_)) => Cell::NotRun,
+            None => Cell::NotConverged,
+        }
     }
 
-    fn model(&self, index: u64, scene: &mut Scene) -> Result<Model, Vec<Fault>> {
+    /// The model of a cell, or its faults; none where its mechanism was not solved.
+    fn model(&self, index: u64, scene: &mut Scene) -> Option<Result<Model, Vec<Fault>>> {
         self.grid.apply(index, scene);
-        Model::build(scene, self.mechanism(index, scene)?)
+        match self.mechanism(index, scene) {
+            Ok(mechanism) => Some(Model::build(scene, mechanism)),
+            Err(BuildError::Wrong(fault)) => Some(Err(vec![fault])),
+            Err(BuildError::Unsolved(_)) => None,
+        }
     }
 
-    fn mechanism(&self, index: u64, scene: &Scene) -> Result<Arc<Mechanism>, Vec<Fault>> {
-        let build = || Mechanism::build(&scene.mechanism, &self.files).map(Arc::new);
-        let built = match self.mechanisms.get(self.grid.mechanism(index) as usize) {
+    fn mechanism(&self, index: u64, scene: &Scene) -> Built {
+        let build = || {
+            self.built.fetch_add(1, Ordering::Relaxed);
+            Mechanism::build(&scene.mechanism, &self.files).map(Arc::new)
+        };
+        match self.mechanisms.get(self.grid.mechanism(index) as usize) {
             Some(place) => place.get_or_init(build).clone(),
             None => build(),
-        };
-        built.map_err(|fault| vec![fault])
+        }
     }
 
     /// The rows of the cells from `begin` on.
-    fn table(&self, begin: u64, rows: &[Option<Summary>]) -> Table {
+    fn table(&self, begin: u64, rows: &[Cell]) -> Table {
         let mut table = Table::new();
         for (i, column) in self.grid.columns().iter().enumerate() {
             let value = |row: usize| self.grid.values(begin + row as u64).nth(i).unwrap_or(f64::NAN);
             table = table.with(column, Values::Numbers((0..rows.len()).map(value).collect()));
         }
-        // A run that ended before its settled window has no numbers there, and counts of 0 would lie.
-        let settled = |row: &Option<Summary>| row.filter(|summary| summary.rms_velocity.is_some());
         let numbers = |of: fn(&Summary) -> Option<f64>| {
-            Values::Numbers(rows.iter().map(|r| r.as_ref().and_then(of).unwrap_or(f64::NAN)).collect())
+            Values::Numbers(rows.iter().map(|row| row.summary().and_then(of).unwrap_or(f64::NAN)).collect())
         };
         let counts = |of: fn(&Summary) -> Option<u64>| {
-            Values::Counts(rows.iter().map(|row| settled(row).as_ref().and_then(of)).collect())
+            Values::Counts(rows.iter().map(|row| row.settled().and_then(of)).collect())
         };
-        let words = |of: &dyn Fn(&Option<Summary>) -> Option<&'static str>| {
-            Values::Words(rows.iter().map(|row| of(row).unwrap_or("")).collect())
-        };
+        let words = |of: fn(&Cell) -> &'static str| Values::Words(rows.iter().map(of).collect());
         table
             .with("rms_velocity_m_per_s", numbers(|s| s.rms_velocity))
-            .with("regime", words(&|row| settled(row).map(|s| s.regime.name())))
+            .with("regime", words(|row| row.settled().map_or("", |s| s.regime.name())))
             .with("crossings", counts(|s| Some(s.crossings)))
             .with("impacts", counts(|s| Some(s.impacts)))
             .with("max_abs_x_m", numbers(|s| s.max_abs_x))
             .with("period", counts(|s| s.period.map(u64::from)))
-            .with("outcome", words(&|row| row.map(|s| s.outcome.name())))
+            .with("outcome", words(Cell::outcome))
     }
 }

@@ -1,7 +1,8 @@
 //! Statics: force curves, fitted tables, landscapes.
 
 use interwell::mechanics::{
-    Equilibrium, ForceCurve, Kink, Landscape, Mechanism, Piece, Table, TableError, fit, force_scale,
+    BuildError, Equilibrium, ForceCurve, Kink, Landscape, Mechanism, Piece, Table, TableError, fit,
+    force_scale,
 };
 use interwell::scene::{self, ColumnsError, Files};
 use proptest::prelude::*;
@@ -10,6 +11,13 @@ const PROTOTYPE: &str = include_str!("../../assets/force_dl2.7.csv");
 
 fn build(described: scene::Mechanism) -> Mechanism {
     Mechanism::build(&described, &Files::default()).unwrap()
+}
+
+fn fault_of(described: &scene::Mechanism) -> scene::Fault {
+    match Mechanism::build(described, &Files::default()) {
+        Err(BuildError::Wrong(fault)) => fault,
+        other => panic!("{other:?}"),
+    }
 }
 
 fn polynomial(coefficients: &[f64]) -> Mechanism {
@@ -197,7 +205,7 @@ fn no_force_and_a_constant_force_have_no_landscape() {
 #[test]
 fn too_many_coefficients_are_a_fault() {
     let described = scene::Mechanism::Polynomial { coefficients_si: vec![1.0; 17] };
-    let fault = Mechanism::build(&described, &Files::default()).unwrap_err();
+    let fault = fault_of(&described);
     assert_eq!(fault.field, "mechanism.coefficients_si");
 }
 
@@ -244,7 +252,7 @@ fn the_presets_table_is_the_embedded_one() {
     let described = scene::Mechanism::Table { path: "force_dl2.7.csv".into(), tolerance: 1e-4 };
     assert_eq!(build(described).curve, Mechanism::from_table(PROTOTYPE, 1e-4).unwrap().curve);
     let described = scene::Mechanism::Table { path: "nowhere.csv".into(), tolerance: 1e-4 };
-    let fault = Mechanism::build(&described, &Files::default()).unwrap_err();
+    let fault = fault_of(&described);
     assert_eq!((fault.field.as_str(), fault.value.as_str()), ("mechanism.path", "nowhere.csv"));
 }
 
