@@ -184,3 +184,23 @@ pub fn finish<const N: usize>(mut sinks: [Option<Sink>; N]) -> Result<(), Failur
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interwell::mechanics::FlexureError;
+    use interwell::scene::Fault;
+
+    #[test]
+    fn a_geometry_without_a_solution_is_a_failed_run_and_no_wrong_scene() {
+        let document = Document::load("paper").unwrap();
+        let error = FlexureError::NotConverged { x: 1.5e-3, residual: 0.25 };
+        let failure = unbuilt(&document, error.into());
+        assert!(matches!(failure, Failure::Failed(_)));
+        let text = failure.to_string();
+        assert!(text.starts_with("built-in paper: ") && text.lines().count() == 1, "{text}");
+        assert!(text.contains("1.5 mm") && text.contains("0.25") | text.contains("2.5e-1"), "{text}");
+        let fault = Fault { field: "mechanism".into(), value: "v".into(), problem: "p".into() };
+        assert!(matches!(unbuilt(&document, fault.into()), Failure::Wrong(_)));
+    }
+}

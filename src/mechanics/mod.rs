@@ -10,7 +10,7 @@ mod table;
 pub use curve::{FitReport, ForceCurve, Piece};
 pub use fit::{fit, force_scale};
 pub use flexure::{FlexureError, Flexures};
-pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, Landscape};
+pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Landscape};
 pub use table::{FEWEST_POINTS, MOST_POINTS, Table, TableError};
 
 use std::sync::Arc;

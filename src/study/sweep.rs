@@ -257,3 +257,44 @@ impl Sweep {
             .with("outcome", words(Cell::outcome))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::FlexureError;
+    use crate::scene::Document;
+    use std::sync::atomic::AtomicBool;
+
+    #[test]
+    fn a_mechanism_that_was_not_solved_is_an_outcome_of_its_cells() {
+        let mut document = Document::load("nominal-cubic").unwrap();
+        document.set("run.duration_s=1").unwrap();
+        document.set("run.settle_s=0").unwrap();
+        let over = ["mechanism.linear_n_per_m=-40,-30", "excitation.amplitude_g=0.5,1,1.5"];
+        let grid = Grid::new(document.axes(&over).unwrap()).unwrap();
+        let sweep = Sweep::new(&document.scene, &document.files, grid);
+        let error = FlexureError::NotConverged { x: 1e-3, residual: 1.0 };
+        sweep.mechanisms[1].set(Err(error.into())).unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let cancel = AtomicBool::new(false);
+        let task = Task { tick: &|| (), cancel: &cancel };
+        sweep.validate(&pool, &task).unwrap();
+        let mut rows = Table::new();
+        let write = |table: &Table| {
+            rows.append(table);
+            Ok::<_, ()>(true)
+        };
+        let tally = sweep.run(&pool, &task, write).unwrap();
+        assert_eq!((tally.cells, tally.ended_early, tally.not_converged, tally.mechanisms), (6, 0, 3, 1));
+        assert_eq!(tally.outcomes, BTreeMap::from([("done", 3), ("not_converged", 3)]));
+        let words = |name: &str| rows.column(name).unwrap().values.clone();
+        let outcomes = [["done"; 3], ["not_converged"; 3]].concat();
+        assert_eq!(words("outcome"), Values::Words(outcomes));
+        assert!(rows.numbers("rms_velocity_m_per_s").unwrap()[3..].iter().all(|speed| speed.is_nan()));
+        assert!(rows.numbers("max_abs_x_m").unwrap()[3..].iter().all(|x| x.is_nan()));
+        for name in ["crossings", "impacts", "period"] {
+            assert!(matches!(words(name), Values::Counts(counts) if counts[3..] == [None; 3]), "{name}");
+        }
+        assert!(matches!(words("regime"), Values::Words(words) if words[3..] == [""; 3]));
+    }
+}
