@@ -1,11 +1,6 @@
 //! What do the flexures look like, and how hard are they pressed and bent, with the shuttle at x?
 //!
 //! Unlike the force curve, which is a polynomial, every position here is a solution of its own.
-//!
-//! Centre lines are drawn in the frame's coordinates, with a shuttle of no width: the parallel flexures are clamped at
-//! (0, 0) and reach the shuttle at (L_p - u, x), u being their shortening; the buckling ones are clamped at
-//! (L_p + L_b - preload, 0) and reach the same point of the shuttle. So px runs along the flexures and py with x.
-//! s is the length along a flexure from its clamp in the frame.
 
 use super::Task;
 use super::curve::{OutsideCurve, check_positions, curve};
@@ -67,6 +62,11 @@ pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Result<Table, Outs
 
 /// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point after point; `flexure` is `parallel` or
 /// `buckling`, one of each standing for its group.
+///
+/// px and py are coordinates of the frame, drawn with a shuttle of no width: the parallel flexures are clamped at (0, 0)
+/// and reach the shuttle at (L_p - u, x), u being their shortening; the buckling ones are clamped at
+/// (L_p + L_b - preload, 0) and reach the same point of the shuttle. So px runs along the flexures and py with x. s is
+/// the length along a flexure from its clamp in the frame.
 pub fn shapes(states: &[State]) -> Table {
     let mut words = Vec::new();
     let mut numbers = [const { Vec::new() }; 4];

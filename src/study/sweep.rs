@@ -34,36 +34,21 @@ type Built = Result<Arc<Mechanism>, BuildError>;
 
 /// What one cell came to.
 #[derive(Debug, Clone, Copy)]
-enum Cell {
-    /// It was run.
-    Ran(Summary),
-    /// Its mechanism is right and was not solved: there is nothing to run.
-    NotConverged,
-    /// It was not run, because the sweep was told to stop.
-    NotRun,
+struct Cell {
+    /// The word in the CSV; empty where the sweep was told to stop before the cell was run.
+    outcome: &'static str,
+    /// The summary of its run; none where there was nothing to run.
+    summary: Option<Summary>,
 }
 
+/// The outcome of a cell whose mechanism is right and was not solved.
+const NOT_CONVERGED: &str = "not_converged";
+
 impl Cell {
-    /// The word in the CSV.
-    fn outcome(&self) -> &'static str {
-        match self {
-            Self::Ran(summary) => summary.outcome.name(),
-            Self::NotConverged => "not_converged",
-            Self::NotRun => "",
-        }
-    }
-
-    fn summary(&self) -> Option<&Summary> {
-        match self {
-            Self::Ran(summary) => Some(summary),
-            Self::NotConverged | Self::NotRun => None,
-        }
-    }
-
     /// The summary of a run that reached its settled window. Earlier there are no numbers there, and
     /// counts of 0 would lie.
     fn settled(&self) -> Option<&Summary> {
-        self.summary().filter(|summary| summary.rms_velocity.is_some())
+        self.summary.as_ref().filter(|summary| summary.rms_velocity.is_some())
     }
 }
 
@@ -104,9 +89,9 @@ pub struct Tally {
 
 impl Tally {
     fn count(&mut self, cell: &Cell) {
-        self.ended_early += u64::from(cell.summary().is_some_and(|row| row.outcome != Outcome::Done));
-        self.not_converged += u64::from(matches!(cell, Cell::NotConverged));
-        *self.outcomes.entry(cell.outcome()).or_default() += 1;
+        self.ended_early += u64::from(cell.summary.is_some_and(|row| row.outcome != Outcome::Done));
+        self.not_converged += u64::from(cell.outcome == NOT_CONVERGED);
+        *self.outcomes.entry(cell.outcome).or_default() += 1;
         if let Some(row) = cell.settled().filter(|row| !row.regime.name().is_empty()) {
             *self.regimes.entry(row.regime.name()).or_default() += 1;
         }
@@ -200,15 +185,19 @@ impl Sweep {
     }
 
     fn run_cell(&self, index: u64, scene: &mut Scene, task: &Task) -> Cell {
+        let not_run = |outcome| Cell { outcome, summary: None };
         if task.is_cancelled() {
-            return Cell::NotRun;
+            return not_run("");
         }
         let request = Request { cancel: Some(task.cancel), ..Request::default() };
         match self.model(index, scene) {
-            Some(Ok(model)) => Cell::Ran(model.run(&request).summary),
+            Some(Ok(model)) => {
+                let summary = model.run(&request).summary;
+                Cell { outcome: summary.outcome.name(), summary: Some(summary) }
+            }
             // Not after the sweep has been validated.
-            Some(Err(_)) => Cell::NotRun,
-            None => Cell::NotConverged,
+            Some(Err(_)) => not_run(""),
+            None => not_run(NOT_CONVERGED),
         }
     }
 
@@ -241,7 +230,9 @@ impl Sweep {
             table = table.with(column, Values::Numbers((0..rows.len()).map(value).collect()));
         }
         let numbers = |of: fn(&Summary) -> Option<f64>| {
-            Values::Numbers(rows.iter().map(|row| row.summary().and_then(of).unwrap_or(f64::NAN)).collect())
+            Values::Numbers(
+                rows.iter().map(|row| row.summary.as_ref().and_then(of).unwrap_or(f64::NAN)).collect(),
+            )
         };
         let counts = |of: fn(&Summary) -> Option<u64>| {
             Values::Counts(rows.iter().map(|row| row.settled().and_then(of)).collect())
@@ -254,7 +245,7 @@ impl Sweep {
             .with("impacts", counts(|s| Some(s.impacts)))
             .with("max_abs_x_m", numbers(|s| s.max_abs_x))
             .with("period", counts(|s| s.period.map(u64::from)))
-            .with("outcome", words(Cell::outcome))
+            .with("outcome", words(|row| row.outcome))
     }
 }
 

@@ -188,7 +188,7 @@ fn a_damping_ratio_is_told_in_all_its_meanings() {
         let document = Document::load(name).unwrap();
         let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
         let lines = inspect(&document.scene, &Arc::new(mechanism)).unwrap();
-        let ratio = lines.iter().filter(|line| line.contains("ratio")).collect::<Vec<_>>();
+        let ratio = lines.iter().filter(|line| line.contains("ratio ")).collect::<Vec<_>>();
         assert!(ratio.len() == 1 && !ratio[0].contains("kink"), "{ratio:?}");
     }
 }

@@ -155,3 +155,15 @@ fn line(figure: &mut Figure, rows: &Table, x: &str, theme: &Theme) {
     }
     legend(figure, theme, &entries, LEFT, RIGHT, 146.0);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_legend_says_why_a_cell_has_no_speed() {
+        assert_eq!(missing_words(&["done", "left_table"]), "ended early");
+        assert_eq!(missing_words(&["done", "not_converged"]), "flexures not solved");
+        assert_eq!(missing_words(&["step_budget", "not_converged"]), "ended early or not solved");
+    }
+}
