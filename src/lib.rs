@@ -42,8 +42,7 @@
 //! document.check()?;
 //!
 //! // As run: SI units, one force curve, nothing left to check.
-//! let mechanism = Mechanism::build(&document.scene.mechanism, &document.files)
-//!     .map_err(|fault| document.error_from(vec![fault]))?;
+//! let mechanism = Mechanism::build(&document.scene.mechanism, &document.files)?;
 //! let model = Model::build(&document.scene, Arc::new(mechanism))
 //!     .map_err(|faults| document.error_from(faults))?;
 //!
@@ -57,7 +56,7 @@
 //! let ledger = run.summary.ledger.unwrap();
 //! assert!(ledger.impact_j > 0.9 * ledger.work_j);
 //! assert!(ledger.energy_residual < 1e-9);
-//! # Ok::<(), interwell::scene::SceneError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # The layers

@@ -8,7 +8,6 @@ use super::failure::Failure;
 use super::options::{CheckOptions, Common};
 use super::say;
 use super::support::{finish, load, mechanism, open, write_text};
-use interwell::scene::SceneError;
 
 /// Reports every scene; the ones that are wrong on standard error, after which the command has failed.
 pub fn run(options: &CheckOptions) -> Result<(), Failure> {
@@ -29,12 +28,17 @@ pub fn run(options: &CheckOptions) -> Result<(), Failure> {
         // The last one is printed by whoever prints the failure.
         Some(last) => {
             wrong.iter().for_each(|error| say(&format!("error: {error}")));
-            Err(last.into())
+            // One wrong scene among those that failed makes the arguments wrong.
+            let any_wrong = wrong.iter().any(|error| matches!(error, Failure::Wrong(_)));
+            Err(match last {
+                Failure::Failed(error) if any_wrong => Failure::Wrong(error),
+                last => last,
+            })
         }
     }
 }
 
-fn report(spec: &str, common: &Common) -> Result<String, SceneError> {
+fn report(spec: &str, common: &Common) -> Result<String, Failure> {
     let (document, warnings) = load(spec, common, None)?;
     let mechanism = mechanism(&document)?;
     let lines = inspect(&document.scene, &mechanism).map_err(|faults| document.error_from(faults))?;

@@ -1,39 +1,65 @@
-//! `curve`: force, potential and stiffness of the mechanism.
+//! `curve`: force, potential and stiffness of the mechanism, and what its flexures do.
 
+use interwell::mechanics::Mechanism;
+use interwell::mechanics::flexure::State;
 use interwell::output::{curve_figure, landscape};
-use interwell::study::{curve, default_positions, even_positions, metres, stop_positions};
+use interwell::study::{
+    StatesError, Task, curve, default_positions, even_positions, flexures_at, full_curve, metres, shapes,
+    states, stop_positions, stress_warning,
+};
 
 use super::failure::Failure;
 use super::options::CurveOptions;
 use super::picture::{Picture, caption};
 use super::support::{finish, inputs, load_with_mechanism, numbers, open, write_table, write_text};
+use super::{interrupt, say};
 
 const POINTS: u32 = 401;
+
+/// Positions at which the flexures are drawn: each is some hundred rows.
+const SHAPES: u32 = 21;
 
 /// Points of the picture: more than it has columns.
 const PICTURE_POINTS: usize = 3001;
 
-/// Writes the curve as CSV and, where asked for, the landscape as JSON.
+/// Writes the curve as CSV and, where asked for, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &CurveOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
-    let (document, mechanism) = load_with_mechanism(&options.scene, common, None)?;
-    let points = options.points.unwrap_or(POINTS) as usize;
+    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let range = options.range_mm.as_deref().map(range).transpose()?;
     let even = |points: usize| match range {
         Some(range) => even_positions(range, points).into_iter().map(metres).collect(),
         None => default_positions(&document.scene, &mechanism, points),
     };
-    let positions = match &options.at_mm {
-        Some(text) => numbers("--at-mm", text, ',')?.into_iter().map(metres).collect(),
-        None => even(points),
+    let listed = options.at_mm.as_deref().map(|text| numbers("--at-mm", text, ',')).transpose()?;
+    let listed: Option<Vec<f64>> = listed.map(|mm| mm.into_iter().map(metres).collect());
+    let positions = |points: u32| match &listed {
+        Some(listed) => listed.clone(),
+        None => even(options.points.unwrap_or(points) as usize),
     };
-    let table = curve(&mechanism, positions)?;
+    let table = curve(&mechanism, positions(POINTS))?;
+    for (asked, option) in [(options.full, "--full"), (options.shapes.is_some(), "--shapes")] {
+        if asked {
+            flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
+        }
+    }
     let landscape_path = options.landscape.as_deref().map(|path| ("--landscape", path));
+    let shapes_path = options.shapes.as_deref().map(|path| ("--shapes", path));
     let mut sinks = open(
         &inputs(&options.scene, &document),
-        [Some(("--out", &common.out)), landscape_path, picture.map(|own| own.output())],
+        [Some(("--out", &common.out)), landscape_path, picture.map(|own| own.output()), shapes_path],
     )?;
+    let table = if options.full {
+        let rows = solved(&mechanism, &positions(POINTS), &document.name, "--full")?;
+        let warning = mechanism.flexures.as_ref().and_then(|own| stress_warning(own, &rows));
+        if let Some(warning) = warning.filter(|_| !common.quiet) {
+            say(&format!("warning: {}: {warning}", document.name));
+        }
+        full_curve(&mechanism, &rows)?
+    } else {
+        table
+    };
     write_table(&mut sinks[0], &table)?;
     write_text(&mut sinks[1], &landscape(&mechanism, document.scene.mass_g / 1e3))?;
     if let Some(picture) = picture {
@@ -43,7 +69,32 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
         let figure = curve_figure(&table, &mechanism, stops, &caption(&document), picture.theme);
         picture.write(&mut sinks[2], &figure)?;
     }
+    if shapes_path.is_some() {
+        let drawn = solved(&mechanism, &positions(SHAPES), &document.name, "--shapes")?;
+        write_table(&mut sinks[3], &shapes(&drawn))?;
+    }
     finish(sinks)
+}
+
+/// The flexures at these positions in m, unless Ctrl-C comes first; `scene` and `option` are what an error names.
+fn solved(
+    mechanism: &Mechanism,
+    positions: &[f64],
+    scene: &str,
+    option: &str,
+) -> Result<Vec<State>, Failure> {
+    let task = Task { tick: &|| (), cancel: interrupt::listen() };
+    states(mechanism, positions, &task).map_err(|error| unknown(scene, option, error))
+}
+
+/// What is said where the flexures are not known.
+fn unknown(scene: &str, option: &str, error: StatesError) -> Failure {
+    match error {
+        StatesError::NoFlexures => Failure::argument(format!("{option}: {scene}: {error}")),
+        StatesError::Outside(error) => error.into(),
+        StatesError::Unsolved(_) => Failure::Failed(anyhow::anyhow!("{scene}: {error}")),
+        StatesError::Cancelled => Failure::interrupted(),
+    }
 }
 
 fn range(text: &str) -> Result<(f64, f64), Failure> {

@@ -140,11 +140,11 @@ pub struct CurveOptions {
     #[arg(value_name = "SCENE", default_value = "paper")]
     pub scene: String,
 
-    /// From A to B in mm [default: a little beyond equilibria and stops]
+    /// From A to B in mm [default: a little beyond equilibria and stops, where the curve reaches as far]
     #[arg(long, value_name = "A:B", allow_hyphen_values = true, conflicts_with = "at_mm")]
     pub range_mm: Option<String>,
 
-    /// Number of rows over the range [default: 401]
+    /// Number of positions over the range [default: 401, for --shapes 21]
     #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "at_mm",
           value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
     pub points: Option<u32>,
@@ -152,6 +152,18 @@ pub struct CurveOptions {
     /// At these positions in mm, in this order
     #[arg(long, value_name = "X1,X2,..", allow_hyphen_values = true)]
     pub at_mm: Option<String>,
+
+    /// Of flexures: more columns, axial_n (compression of the buckling flexures together), bump_m (height of their
+    /// bump) and max_stress_pa (largest bending stress), each row solved afresh; warns where the stress exceeds
+    /// mechanism.yield_gpa
+    #[arg(long)]
+    pub full: bool,
+
+    /// Of flexures: write centre lines as CSV x_m,flexure,s_m,px_m,py_m. In the frame, with a shuttle of no width:
+    /// a parallel flexure is clamped at (0, 0) and ends at (its length less the shortening, x); a buckling one is
+    /// clamped at (both lengths less the preload, 0) and ends at the same place
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub shapes: Option<PathBuf>,
 
     /// Write equilibria, barrier, force extrema and kinks as JSON
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]

@@ -23,7 +23,7 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
         }
         (None, None) => Sampling::Default,
     };
-    let (document, mechanism) = load_with_mechanism(&options.scene, common, None)?;
+    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
     let times = sample_times(&document.scene, &model, &sampling)?;
     let events = options.events.as_deref().map(|path| ("--events", path));

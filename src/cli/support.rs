@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
-use interwell::mechanics::Mechanism;
+use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Origin, Sink, header, rows, same_target};
 use interwell::scene::{Document, SceneError};
 use interwell::study::Table;
@@ -82,25 +82,36 @@ pub fn inputs(spec: &str, document: &Document) -> Vec<PathBuf> {
 }
 
 /// The scene's mechanism.
-pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, SceneError> {
+pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
     let built = Mechanism::build(&document.scene.mechanism, &document.files);
-    built.map(Arc::new).map_err(|fault| document.error_from(vec![fault]))
+    built.map(Arc::new).map_err(|error| unbuilt(document, error))
+}
+
+/// What is said where the mechanism of `document` cannot be built: a wrong scene is the writer's to mend, flexures that
+/// are right and are not solved are a run that failed.
+pub fn unbuilt(document: &Document, error: BuildError) -> Failure {
+    match error {
+        BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
+        BuildError::Unsolved(error) => Failure::Failed(anyhow::anyhow!("{}: {error}", document.name)),
+    }
 }
 
 /// Loads the scene and its mechanism and prints the warnings of both.
-pub fn load_with_mechanism(
-    spec: &str,
-    common: &Common,
-    over: Option<&[String]>,
-) -> Result<(Document, Arc<Mechanism>), Failure> {
-    let (document, mut warnings) = load(spec, common, over)?;
+pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc<Mechanism>), Failure> {
+    let (document, warnings) = load(spec, common, None)?;
     let mechanism = mechanism(&document)?;
-    let fit = mechanism.curve.fit().into_iter().flat_map(|fit| &fit.warnings);
-    warnings.extend(fit.map(|warning| format!("{}: {warning}", document.name)));
-    if !common.quiet {
-        warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
-    }
+    warn(&document, common, &warnings, Some(&mechanism));
     Ok((document, mechanism))
+}
+
+/// Prints the warnings of a scene and of its mechanism, unless told to be quiet.
+pub fn warn(document: &Document, common: &Common, warnings: &[String], mechanism: Option<&Mechanism>) {
+    if common.quiet {
+        return;
+    }
+    warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+    let fit = mechanism.and_then(|own| own.curve.fit()).into_iter().flat_map(|fit| &fit.warnings);
+    fit.for_each(|warning| say(&format!("warning: {}: {warning}", document.name)));
 }
 
 /// The numbers of `A,B,C` as given to `option`; NaN and infinities pass, for their reader to judge.
@@ -172,4 +183,24 @@ pub fn finish<const N: usize>(mut sinks: [Option<Sink>; N]) -> Result<(), Failur
         sink.finish().map_err(|error| Failure::writing(&name, error))?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interwell::mechanics::FlexureError;
+    use interwell::scene::Fault;
+
+    #[test]
+    fn a_geometry_without_a_solution_is_a_failed_run_and_no_wrong_scene() {
+        let document = Document::load("paper").unwrap();
+        let error = FlexureError::NotConverged { x: 1.5e-3, residual: 0.25 };
+        let failure = unbuilt(&document, error.into());
+        assert!(matches!(failure, Failure::Failed(_)));
+        let text = failure.to_string();
+        assert!(text.starts_with("built-in paper: ") && text.lines().count() == 1, "{text}");
+        assert!(text.contains("1.5 mm") && text.contains("0.25") | text.contains("2.5e-1"), "{text}");
+        let fault = Fault { field: "mechanism".into(), value: "v".into(), problem: "p".into() };
+        assert!(matches!(unbuilt(&document, fault.into()), Failure::Wrong(_)));
+    }
 }

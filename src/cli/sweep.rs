@@ -2,8 +2,10 @@
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Overlay, can_show, header, is_regular, manifest, rows, sweep_figure};
 use interwell::scene::Document;
 use interwell::study::{Grid, Sweep, SweepEnd, Table, Task, first_interwell, release_line};
@@ -11,15 +13,17 @@ use interwell::study::{Grid, Sweep, SweepEnd, Table, Task, first_interwell, rele
 use super::failure::{Failure, wrong_cell};
 use super::options::SweepOptions;
 use super::picture::{Picture, caption};
-use super::support::{Watch, finish, inputs, load_with_mechanism, open, write_text};
+use super::support::{Watch, finish, inputs, load, open, unbuilt, warn, write_text};
 use super::{interrupt, say};
 
 /// Runs the grid and writes a row a cell.
 pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
-    let (document, mechanism) = load_with_mechanism(&options.scene, common, Some(&options.over))?;
+    let (document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
+    let mechanism = first_mechanism(&document, &sweep)?;
+    warn(&document, common, &warnings, mechanism.as_deref());
     if picture.is_some() {
         can_show(sweep.grid())?;
     }
@@ -59,7 +63,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     if let Some((picture, rows)) = picture.zip(shown) {
         let grid = sweep.grid();
         let overlay = Overlay {
-            release: release_line(&document.scene, &mechanism, grid),
+            release: mechanism.and_then(|own| release_line(&document.scene, &own, grid)),
             first_interwell: first_interwell(grid, &rows),
         };
         let figure =
@@ -78,13 +82,27 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     // Fewer cells than there are: the reader of a pipe has gone, which is no news to anyone.
     if !common.quiet && tally.cells == sweep.grid().cells() {
         let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
-        let early = match tally.ended_early {
-            0 => String::new(),
-            n => format!(", {n} ended early (see the column outcome)"),
+        let early = match (tally.ended_early, tally.not_converged) {
+            (0, 0) => String::new(),
+            (n, 0) => format!(", {n} ended early (see the column outcome)"),
+            (0, n) => format!(", {n} without a solution of the flexures (see the column outcome)"),
+            (n, m) => format!(
+                ", {n} ended early and {m} without a solution of the flexures (see the column outcome)"
+            ),
         };
         say(&format!("{cells} in {:.2} s{early}", watch.wall_s()));
     }
     Ok(())
+}
+
+/// The mechanism of the sweep's first cell. Where it was not solved: none, if the mechanism is swept, since that is an
+/// outcome of the cell; an error, if it is that of every cell.
+fn first_mechanism(document: &Document, sweep: &Sweep) -> Result<Option<Arc<Mechanism>>, Failure> {
+    match sweep.first_mechanism() {
+        Ok(mechanism) => Ok(Some(mechanism)),
+        Err(BuildError::Unsolved(_)) if sweep.grid().changes_mechanism() => Ok(None),
+        Err(error) => Err(unbuilt(document, error)),
+    }
 }
 
 /// Where the manifest of the rows at `out` goes: beside them, where they are a regular file.

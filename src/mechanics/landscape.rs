@@ -17,6 +17,10 @@ const KINK: f64 = 1e-6;
 /// interval, or both.
 const AT_BREAK: f64 = 1e-10;
 
+/// A kink is beside a well up to this part of the well's distance from the barrier (from x = 0 where there is none): a
+/// pluck that is small against the well then swings over both sides of it.
+const BESIDE: f64 = 0.01;
+
 /// A place where the restoring force vanishes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equilibrium {
@@ -63,6 +67,17 @@ pub struct Kink {
     pub stiffness_left: f64,
     /// Stiffness just right of it in N/m.
     pub stiffness_right: f64,
+}
+
+/// A kink so near to a well that a small pluck swings over both of its sides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KinkAtWell {
+    /// Position of the kink in m.
+    pub x: f64,
+    /// Stiffness in N/m on the side towards the barrier, above 0; of a kink in the middle of a single well the smaller.
+    pub inner: f64,
+    /// Stiffness in N/m on the other side, above 0.
+    pub outer: f64,
 }
 
 /// Equilibria, barrier, force extrema and kinks of one force curve, each from left to right.
@@ -121,17 +136,8 @@ impl Landscape {
     /// None where no equilibrium is stable or this stiffness is not above 0.
     pub fn damping_stiffness(&self) -> Option<f64> {
         let well = self.right_stable()?;
-        let middle = self.barrier.map_or(0.0, |b| b.x);
-        let beyond = |kink: &&Kink| {
-            (middle < kink.x && kink.x <= well.x && kink.stiffness_left > 0.0)
-                || (middle > kink.x && kink.x >= well.x && kink.stiffness_right > 0.0)
-        };
-        let nearest = self
-            .kinks
-            .iter()
-            .filter(beyond)
-            .min_by(|a, b| (a.x - well.x).abs().total_cmp(&(b.x - well.x).abs()));
-        let stiffness = match nearest {
+        let middle = self.middle();
+        let stiffness = match self.damping_kink() {
             Some(kink) if well.x >= middle => kink.stiffness_left,
             Some(kink) => kink.stiffness_right,
             None if well.x > middle => well.stiffness_left,
@@ -139,6 +145,43 @@ impl Landscape {
             None => well.stiffness_left.min(well.stiffness_right),
         };
         (stiffness > 0.0).then_some(stiffness)
+    }
+
+    /// The kink whose inner slope [`damping_stiffness`](Self::damping_stiffness) is; none where that is the slope at
+    /// the equilibrium itself.
+    pub fn damping_kink(&self) -> Option<&Kink> {
+        let well = self.right_stable()?;
+        let middle = self.middle();
+        let beyond = |kink: &&Kink| {
+            (middle < kink.x && kink.x <= well.x && kink.stiffness_left > 0.0)
+                || (middle > kink.x && kink.x >= well.x && kink.stiffness_right > 0.0)
+        };
+        nearest(self.kinks.iter().filter(beyond), well.x)
+    }
+
+    /// The kink beside the right-most stable equilibrium, on either side of it, where there is one within 1 % of its
+    /// distance from the barrier, and the force rises on both sides of that kink: there *the* stiffness of the well
+    /// is a matter of definition.
+    pub fn kink_at_right_well(&self) -> Option<KinkAtWell> {
+        let well = self.right_stable()?;
+        let middle = self.middle();
+        let near = BESIDE * (well.x - middle).abs();
+        let beside = |kink: &&Kink| {
+            (kink.x - well.x).abs() <= near && kink.stiffness_left > 0.0 && kink.stiffness_right > 0.0
+        };
+        let kink = nearest(self.kinks.iter().filter(beside), well.x)?;
+        let (left, right) = (kink.stiffness_left, kink.stiffness_right);
+        let (inner, outer) = match well.x {
+            x if x > middle => (left, right),
+            x if x < middle => (right, left),
+            _ => (left.min(right), left.max(right)),
+        };
+        Some(KinkAtWell { x: kink.x, inner, outer })
+    }
+
+    /// Position in m of the barrier, or 0 where there is none: what a well's inner side looks towards.
+    fn middle(&self) -> f64 {
+        self.barrier.map_or(0.0, |barrier| barrier.x)
     }
 
     /// Takes rounding out of the symmetry of an odd curve: the left half becomes the mirror image of the right.
@@ -160,6 +203,10 @@ impl Landscape {
             |k| Kink { x: -k.x, stiffness_left: k.stiffness_right, stiffness_right: k.stiffness_left },
         );
     }
+}
+
+fn nearest<'a>(kinks: impl Iterator<Item = &'a Kink>, x: f64) -> Option<&'a Kink> {
+    kinks.min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()))
 }
 
 /// Keeps what stands at x >= 0 and puts its mirror image before it.

@@ -9,10 +9,14 @@ mod table;
 
 pub use curve::{FitReport, ForceCurve, Piece};
 pub use fit::{fit, force_scale};
-pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, Landscape};
+pub use flexure::{FlexureError, Flexures};
+pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Landscape};
 pub use table::{FEWEST_POINTS, MOST_POINTS, Table, TableError};
 
-use crate::scene::{self, Fault, Files};
+use std::sync::Arc;
+
+use self::flexure::{Geometry, Group};
+use crate::scene::{self, Fault, Files, FlexureGroup};
 
 /// A mechanism as run: its force curve and what follows from it.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,15 +25,60 @@ pub struct Mechanism {
     pub curve: ForceCurve,
     /// Its equilibria, barrier, extrema and kinks.
     pub landscape: Landscape,
+    /// The flexures behind the curve, where there are such.
+    pub flexures: Option<Arc<Flexures>>,
 }
+
+/// Why a mechanism has no force curve.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BuildError {
+    /// The scene or a file that it names is wrong.
+    #[error("{} = {}: {}", .0.field, .0.value, .0.problem)]
+    Wrong(Fault),
+    /// The scene is right, and its flexures were not solved.
+    #[error(transparent)]
+    Unsolved(#[from] FlexureError),
+}
+
+impl From<Fault> for BuildError {
+    fn from(fault: Fault) -> Self {
+        Self::Wrong(fault)
+    }
+}
+
+/// Error of the force of flexures, relative to its maximum between the wells. The same for every
+/// study: far below what a beam leaves out of a real flexure, so that nobody need think of it.
+const FLEXURE_TOLERANCE: f64 = 1e-8;
 
 impl Mechanism {
     /// Builds the curve that a scene describes; the scene has passed its range check.
     ///
-    /// Polynomials enter exactly, as one piece; a table is read from `files` and fitted. The fault of a table
-    /// names `mechanism.path`; that of a polynomial with too many terms `mechanism.coefficients_si`.
-    pub fn build(described: &scene::Mechanism, files: &Files) -> Result<Self, Fault> {
+    /// Polynomials enter exactly, as one piece; a table is read from `files` and fitted; flexures are solved, which
+    /// takes the longest by far. The fault of a table names `mechanism.path`; that of a polynomial with too many terms
+    /// `mechanism.coefficients_si`.
+    pub fn build(described: &scene::Mechanism, files: &Files) -> Result<Self, BuildError> {
         match described {
+            scene::Mechanism::Flexures {
+                preload_mm,
+                thickness_mm,
+                young_gpa,
+                parallel,
+                buckling,
+                poisson,
+                plane_strain,
+                initial_bow_mm,
+                yield_gpa,
+            } => Self::from_flexures(&Geometry {
+                preload: preload_mm / 1e3,
+                thickness: thickness_mm / 1e3,
+                young: young_gpa * 1e9,
+                poisson: *poisson,
+                plane_strain: *plane_strain,
+                initial_bow: initial_bow_mm / 1e3,
+                yield_stress: yield_gpa * 1e9,
+                parallel: group(parallel),
+                buckling: group(buckling),
+            }),
             scene::Mechanism::Cubic { linear_n_per_m, cubic_n_per_m3 } => {
                 Ok(Self::new(ForceCurve::polynomial(&[0.0, *linear_n_per_m, 0.0, *cubic_n_per_m3])))
             }
@@ -39,11 +88,11 @@ impl Mechanism {
             scene::Mechanism::Polynomial { coefficients_si } => {
                 let terms = coefficients_si.iter().rposition(|c| *c != 0.0).map_or(0, |i| i + 1);
                 if terms > ForceCurve::MAX_COEFFICIENTS {
-                    return Err(Fault {
+                    return Err(BuildError::Wrong(Fault {
                         field: "mechanism.coefficients_si".into(),
                         value: format!("{terms} coefficients"),
                         problem: format!("at most {} are possible", ForceCurve::MAX_COEFFICIENTS),
-                    });
+                    }));
                 }
                 Ok(Self::new(ForceCurve::polynomial(coefficients_si)))
             }
@@ -51,7 +100,7 @@ impl Mechanism {
                 let fault =
                     |problem: String| Fault { field: "mechanism.path".into(), value: path.clone(), problem };
                 let text = files.read(path).map_err(|e| fault(e.to_string()))?;
-                Self::from_table(&text, *tolerance).map_err(fault)
+                Ok(Self::from_table(&text, *tolerance).map_err(fault)?)
             }
         }
     }
@@ -64,16 +113,30 @@ impl Mechanism {
         fit(&table, tolerance).map(Self::new)
     }
 
+    /// Solves flexures; all in SI.
+    ///
+    /// Fails where the solver does not converge.
+    fn from_flexures(geometry: &Geometry) -> Result<Self, BuildError> {
+        let (curve, flexures) = Flexures::solve(geometry, FLEXURE_TOLERANCE)?;
+        Ok(Self { flexures: Some(Arc::new(flexures)), ..Self::new(curve) })
+    }
+
     /// A mechanism with this curve.
     pub fn new(curve: ForceCurve) -> Self {
         let landscape = Landscape::of(&curve);
-        Self { curve, landscape }
+        Self { curve, landscape, flexures: None }
     }
 
     /// The stiffness in N/m that a damping ratio refers to; see [`Landscape::damping_stiffness`].
     pub fn damping_stiffness(&self) -> Option<f64> {
         self.landscape.damping_stiffness()
     }
+}
+
+fn group(described: &FlexureGroup) -> Group {
+    let FlexureGroup { count, length_mm, width_mm } = *described;
+    // The range of the count is far below any limit of an index.
+    Group { count: count as usize, length: length_mm / 1e3, width: width_mm / 1e3 }
 }
 
 /// The quartic potential barrier ((x/x_e)^2 - 1)^2 up to a constant, both in SI.

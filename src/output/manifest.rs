@@ -57,6 +57,7 @@ pub fn manifest(
         "seed": seed(scene),
         "grid": axes,
         "cells": tally.cells,
+        "mechanisms": tally.mechanisms,
         "outcomes": counts(&tally.outcomes),
         "regimes": counts(&tally.regimes),
         "jobs": origin.jobs,

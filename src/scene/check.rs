@@ -9,6 +9,7 @@ use super::data::*;
 use super::error::Fault;
 use super::fields::{Field, FieldPath, for_each};
 use super::ranges::{MAX_COEFFICIENTS, number_text};
+use super::shape;
 
 /// What a check found.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -36,7 +37,12 @@ pub fn check(scene: &Scene) -> Checked {
 }
 
 impl Checked {
-    fn fault(&mut self, field: impl Into<String>, value: impl Into<String>, problem: impl Into<String>) {
+    pub(super) fn fault(
+        &mut self,
+        field: impl Into<String>,
+        value: impl Into<String>,
+        problem: impl Into<String>,
+    ) {
         self.faults.push(Fault { field: field.into(), value: value.into(), problem: problem.into() });
     }
 }
@@ -66,7 +72,7 @@ fn mechanism(mechanism: &Mechanism, checked: &mut Checked) {
         Mechanism::Table { path, .. } if path.trim().is_empty() => {
             checked.fault("mechanism.path", "\"\"", "name a CSV file with the columns x_m,force_n");
         }
-        _ => {}
+        _ => shape::check(mechanism, checked),
     }
 }
 
@@ -102,7 +108,8 @@ fn distances(stops: &Stops) -> (f64, f64) {
     }
 }
 
-fn known_bad(field: &str, checked: &Checked) -> bool {
+/// Whether a field has been found at fault already: it is not blamed twice.
+pub(super) fn known_bad(field: &str, checked: &Checked) -> bool {
     checked.faults.iter().any(|fault| fault.field == field)
 }
 
@@ -171,6 +178,7 @@ fn hints(scene: &Scene, checked: &mut Checked) {
     if !checked.faults.is_empty() {
         return;
     }
+    shape::hints(&scene.mechanism, &mut checked.warnings);
     let Run { duration_s, settle_s, .. } = scene.run;
     if let Damping::Ratio(xi) = scene.damping
         && xi > 1.0

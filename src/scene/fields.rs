@@ -158,8 +158,29 @@ fn walk(scene: &mut Scene, v: &mut impl Visitor) {
     });
 }
 
-fn walk_mechanism(mechanism: &mut Mechanism, v: &mut impl Visitor) {
+fn walk_mechanism<V: Visitor>(mechanism: &mut Mechanism, v: &mut V) {
     match mechanism {
+        Mechanism::Flexures {
+            preload_mm,
+            thickness_mm,
+            young_gpa,
+            parallel,
+            buckling,
+            poisson,
+            plane_strain,
+            initial_bow_mm,
+            yield_gpa,
+        } => {
+            number(v, &ranges::PRELOAD, preload_mm);
+            number(v, &ranges::THICKNESS, thickness_mm);
+            number(v, &ranges::YOUNG, young_gpa);
+            within(v, Segment::Name("parallel"), parallel, walk_group);
+            within(v, Segment::Name("buckling"), buckling, walk_group);
+            number(v, &ranges::POISSON, poisson);
+            leaf(v, "plane_strain", plane_strain);
+            number(v, &ranges::BOW, initial_bow_mm);
+            number(v, &ranges::YIELD, yield_gpa);
+        }
         Mechanism::Cubic { linear_n_per_m, cubic_n_per_m3 } => {
             number(v, &ranges::LINEAR, linear_n_per_m);
             number(v, &ranges::CUBIC, cubic_n_per_m3);
@@ -181,6 +202,12 @@ fn walk_mechanism(mechanism: &mut Mechanism, v: &mut impl Visitor) {
             number(v, &ranges::TABLE_TOLERANCE, tolerance);
         }
     }
+}
+
+fn walk_group<V: Visitor>(group: &mut FlexureGroup, v: &mut V) {
+    whole(v, &ranges::COUNT, &mut group.count);
+    number(v, &ranges::FLEXURE_LENGTH, &mut group.length_mm);
+    number(v, &ranges::WIDTH, &mut group.width_mm);
 }
 
 fn walk_stops(stops: &mut Stops, v: &mut impl Visitor) {

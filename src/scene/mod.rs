@@ -29,6 +29,7 @@ mod locate;
 mod presets;
 mod ranges;
 mod record;
+mod shape;
 mod text;
 
 pub use axis::{Axis, LARGEST_AXIS, MOST_AXES, column_names};

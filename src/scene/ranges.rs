@@ -62,6 +62,7 @@ const fn whole(spec: Spec) -> Spec {
 }
 
 const LENGTH: (f64, f64) = (1e-15, 1e15);
+const MODULUS: (f64, f64) = (1e-60, 1e60);
 const COEFFICIENT: (f64, f64) = (-1e200, 1e200);
 const ACCELERATION: (f64, f64) = (-1e30, 1e30);
 
@@ -78,6 +79,15 @@ macro_rules! specs {
 
 specs! {
     MASS = "mass_g", 1e-15, 1e15, "give the proof mass in grams, such as 15.2";
+    PRELOAD = "preload_mm", 0.0, LENGTH.1, "give the shortening of the flexures in mm, such as 2.7; 0 makes one well";
+    THICKNESS = "thickness_mm", LENGTH.0, LENGTH.1, "give the thickness of the flexures in mm, such as 0.1";
+    YOUNG = "young_gpa", MODULUS.0, MODULUS.1, "give Young's modulus in GPa, such as 190 for spring steel";
+    COUNT = whole "count", 1.0, 64.0, "give the number of flexures side by side";
+    FLEXURE_LENGTH = "length_mm", LENGTH.0, LENGTH.1, "give the length of each flexure in mm, such as 26";
+    WIDTH = "width_mm", LENGTH.0, LENGTH.1, "give the width of each flexure in mm, such as 20";
+    POISSON = "poisson", 0.0, 0.49, "metals have some 0.3";
+    BOW = "initial_bow_mm", 0.0, LENGTH.1, "give the bow in mm, such as 0.05; 0 is a straight flexure";
+    YIELD = "yield_gpa", MODULUS.0, MODULUS.1, "give the bending stress that is allowed in GPa, such as 2";
     LINEAR = "linear_n_per_m", COEFFICIENT.0, COEFFICIENT.1, "give a finite stiffness in N/m; negative makes two wells";
     CUBIC = "cubic_n_per_m3", COEFFICIENT.0, COEFFICIENT.1, "give a finite stiffness in N/m^3; positive makes two wells";
     EQUILIBRIUM = "equilibrium_mm", LENGTH.0, LENGTH.1, "give the distance of the wells from the middle in mm, such as 7";

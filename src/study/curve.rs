@@ -19,11 +19,8 @@ pub struct OutsideCurve {
 
 /// The table `x_m,force_n,potential_j,stiffness_n_per_m` at these positions in m, in their order.
 pub fn curve(mechanism: &Mechanism, positions: Vec<f64>) -> Result<Table, OutsideCurve> {
+    check_positions(mechanism, &positions)?;
     let curve = &mechanism.curve;
-    let domain = curve.domain();
-    if let Some(&x) = positions.iter().find(|x| !(x.is_finite() && **x >= domain.0 && **x <= domain.1)) {
-        return Err(OutsideCurve { x, domain });
-    }
     let column = |of: &dyn Fn(f64) -> f64| Values::Numbers(positions.iter().map(|x| of(*x)).collect());
     let force = column(&|x| curve.force(x));
     let potential = column(&|x| curve.potential(x));
@@ -33,6 +30,15 @@ pub fn curve(mechanism: &Mechanism, positions: Vec<f64>) -> Result<Table, Outsid
         .with("force_n", force)
         .with("potential_j", potential)
         .with("stiffness_n_per_m", stiffness))
+}
+
+/// Whether the curve is known at all of these positions in m.
+pub(super) fn check_positions(mechanism: &Mechanism, positions: &[f64]) -> Result<(), OutsideCurve> {
+    let domain = mechanism.curve.domain();
+    match positions.iter().find(|x| !(x.is_finite() && **x >= domain.0 && **x <= domain.1)) {
+        Some(&x) => Err(OutsideCurve { x, domain }),
+        None => Ok(()),
+    }
 }
 
 /// The range in mm that shows what matters: 1.15 times as far as the outermost equilibrium or stop,
@@ -112,7 +118,7 @@ mod tests {
 
     fn cubic() -> Mechanism {
         let curve = ForceCurve::polynomial(&[0.0, -40.0, 0.0, 8e5]);
-        Mechanism { curve, landscape: Landscape::default() }
+        Mechanism { curve, landscape: Landscape::default(), flexures: None }
     }
 
     #[test]

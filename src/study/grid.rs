@@ -74,6 +74,11 @@ impl Grid {
         self.axes.iter().zip(self.places(index)).for_each(|(axis, place)| axis.apply(scene, place));
     }
 
+    /// Whether the cells have different mechanisms.
+    pub fn changes_mechanism(&self) -> bool {
+        self.axes.iter().any(|axis| changes_mechanism(&axis))
+    }
+
     /// The number of different mechanisms among the cells.
     pub fn mechanisms(&self) -> u64 {
         self.axes.iter().filter(changes_mechanism).map(|axis| axis.values.len() as u64).product()

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::curve::small_amplitude_frequency;
 use crate::dynamics::Model;
+use crate::mechanics::flexure::{Accuracy, Geometry, Group};
 use crate::mechanics::{Equilibrium, Landscape, Mechanism};
 use crate::numeric::short;
 use crate::scene::{Damping, Fault, Scene};
@@ -15,28 +16,92 @@ use crate::scene::{Damping, Fault, Scene};
 pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>, Vec<Fault>> {
     let model = Model::build(scene, Arc::clone(mechanism))?;
     let mut lines = model.describe();
-    lines.push(force_curve(mechanism));
+    if let Some(own) = &mechanism.flexures {
+        lines.extend(flexures(own.geometry()));
+        lines.push(accuracy(mechanism, own.accuracy()));
+    } else {
+        lines.push(force_curve(mechanism));
+    }
     lines.extend(damping(scene, &model));
     lines.extend(landscape(&mechanism.landscape, model.mass));
     Ok(lines)
 }
 
-fn force_curve(mechanism: &Mechanism) -> String {
+/// What the flexures are and which beams model them.
+fn flexures(geometry: &Geometry) -> [String; 2] {
+    let mm = |metres: f64| short(metres * 1e3);
+    let group = |kind: &str, Group { count, length, width }: &Group| {
+        format!("{count} {kind}, {} mm long and {} mm wide", mm(*length), mm(*width))
+    };
+    let modulus = if geometry.plane_strain {
+        "plane strain, E/(1 - poisson^2) in place of E"
+    } else {
+        "E as it stands"
+    };
+    let bow = match geometry.initial_bow {
+        0.0 => "straight when free".to_owned(),
+        bow => format!("with a stress-free bow of {} mm in the buckling ones", mm(bow)),
+    };
+    [
+        format!(
+            "flexures: {}; {}; all {} mm thick and {bow}; preload {} mm",
+            group("parallel", &geometry.parallel),
+            group("buckling", &geometry.buckling),
+            mm(geometry.thickness),
+            mm(geometry.preload)
+        ),
+        format!(
+            "beam theory: planar, geometrically exact (Reissner), with stretching and shear, clamped at both ends to \
+             frame and to a shuttle that does not turn; E = {} GPa, Poisson's ratio {}, {modulus}; left out: the \
+             lateral strain of wide strips in bending, yielding, the mass of the flexures",
+            short(geometry.young / 1e9),
+            short(geometry.poisson)
+        ),
+    ]
+}
+
+/// How good the curve of solved flexures is. What does not exist, such as a barrier, has no error.
+fn accuracy(mechanism: &Mechanism, accuracy: &Accuracy) -> String {
+    let parts = [
+        (accuracy.force, "of the largest inner force"),
+        (accuracy.potential, "of the barrier"),
+        (accuracy.stiffness, "of the stiffness at x = 0"),
+        (
+            accuracy.outer_force,
+            if accuracy.force.is_finite() { "of the force further out" } else { "of the force" },
+        ),
+    ];
+    let parts = parts.into_iter().filter(|(error, _)| error.is_finite());
+    let parts: Vec<String> = parts.map(|(error, of)| format!("{} {of}", short(error))).collect();
+    format!(
+        "force curve: {}, from {} solutions with {} modes a flexure; against fresh solutions off by at most {}",
+        pieces_and_reach(mechanism),
+        accuracy.solves,
+        accuracy.modes,
+        parts.join(", ")
+    )
+}
+
+fn pieces_and_reach(mechanism: &Mechanism) -> String {
     let curve = &mechanism.curve;
     let pieces = match curve.pieces().len() {
         1 => "one polynomial".to_owned(),
         n => format!("{n} polynomials"),
     };
     let (left, right) = curve.domain();
-    let reach = if left.is_finite() || right.is_finite() {
-        format!(", from {} to {} mm", short(left * 1e3), short(right * 1e3))
+    if left.is_finite() || right.is_finite() {
+        format!("{pieces}, from {} to {} mm", short(left * 1e3), short(right * 1e3))
     } else {
-        String::new()
-    };
-    match curve.fit() {
-        None => format!("force curve: {pieces}{reach}, exact"),
+        pieces
+    }
+}
+
+fn force_curve(mechanism: &Mechanism) -> String {
+    let pieces = pieces_and_reach(mechanism);
+    match mechanism.curve.fit() {
+        None => format!("force curve: {pieces}, exact"),
         Some(fit) => format!(
-            "force curve: {pieces}{reach} through {} samples; off by at most {} N ({} of {} N) at x = {} mm",
+            "force curve: {pieces} through {} samples; off by at most {} N ({} of {} N) at x = {} mm",
             fit.samples,
             short(fit.worst_n),
             short(fit.worst_n / fit.scale_n),
@@ -46,15 +111,49 @@ fn force_curve(mechanism: &Mechanism) -> String {
     }
 }
 
-/// k and c of a damping ratio.
-fn damping(scene: &Scene, model: &Model) -> Option<String> {
-    let Damping::Ratio(xi) = scene.damping else { return None };
-    let stiffness = model.mechanism.damping_stiffness()?;
-    Some(format!(
-        "damping ratio {xi}: with k = {} N/m, c = 2 xi sqrt(k m) = {} N s/m",
-        short(stiffness),
+/// k and c of a damping ratio: those that are used and, where the well lies beside a kink, those that other readings of
+/// the same ratio give.
+fn damping(scene: &Scene, model: &Model) -> Vec<String> {
+    let Damping::Ratio(xi) = scene.damping else { return Vec::new() };
+    let landscape = &model.mechanism.landscape;
+    let Some(used) = landscape.damping_stiffness() else { return Vec::new() };
+    let beside = landscape.kink_at_right_well();
+    let kink = beside.map(|kink| kink.x).or(landscape.damping_kink().map(|kink| kink.x));
+    let place = kink.zip(landscape.right_stable()).map(|(kink, well)| {
+        let away = short((well.x - kink).abs() * 1e6);
+        format!(
+            ", the slope just inside the kink at {} mm ({away} um from the equilibrium)",
+            short(kink * 1e3)
+        )
+    });
+    let mut lines = vec![format!(
+        "damping ratio {xi}: with k = {} N/m{}, c = 2 xi sqrt(k m) = {} N s/m",
+        short(used),
+        place.unwrap_or_default(),
         short(model.damping)
-    ))
+    )];
+    let Some(kink) = beside.filter(|kink| short(kink.inner) != short(kink.outer)) else { return lines };
+    lines[0] += ", which is used";
+    let coefficient = |stiffness: f64| 2.0 * xi * (stiffness * model.mass).sqrt();
+    let pluck =
+        Equilibrium { x: kink.x, stable: true, stiffness_left: kink.inner, stiffness_right: kink.outer };
+    let mixed = small_amplitude_frequency(model.mass, &pluck).map(|frequency| {
+        let stiffness = model.mass * (std::f64::consts::TAU * frequency).powi(2);
+        format!(
+            "; with the mixed period of a small pluck over it ({} Hz, as of {} N/m) c = {} N s/m",
+            short(frequency),
+            short(stiffness),
+            short(coefficient(stiffness))
+        )
+    });
+    lines.push(format!(
+        "the same ratio with the slope just outside the kink, {} N/m, would be c = {} N s/m{}; a `Coefficient` leaves no \
+         choice",
+        short(kink.outer),
+        short(coefficient(kink.outer)),
+        mixed.unwrap_or_default()
+    ));
+    lines
 }
 
 fn landscape(landscape: &Landscape, mass: f64) -> Vec<String> {

@@ -5,6 +5,7 @@
 //! the command line ask the same studies and show the same tables.
 
 mod curve;
+mod flexures;
 mod grid;
 mod inspect;
 mod map;
@@ -19,6 +20,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub use curve::{
     OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency, stop_positions,
 };
+pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
 pub use inspect::inspect;
 pub use map::{first_interwell, release_line};

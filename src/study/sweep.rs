@@ -5,6 +5,7 @@
 //! number of threads.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use rayon::ThreadPool;
@@ -14,7 +15,7 @@ use super::Task;
 use super::grid::Grid;
 use super::table::{Table, Values};
 use crate::dynamics::{Model, Outcome, Request, Summary};
-use crate::mechanics::Mechanism;
+use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
 
 /// A scene, the grid over it, and the mechanisms that its cells share.
@@ -23,7 +24,32 @@ pub struct Sweep {
     base: Scene,
     files: Files,
     grid: Grid,
-    mechanisms: Vec<OnceLock<Result<Arc<Mechanism>, Fault>>>,
+    mechanisms: Vec<OnceLock<Built>>,
+    /// Mechanisms built so far.
+    built: AtomicU64,
+}
+
+/// The mechanism of a cell, or why it has none.
+type Built = Result<Arc<Mechanism>, BuildError>;
+
+/// What one cell came to.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    /// The word in the CSV; empty where the sweep was told to stop before the cell was run.
+    outcome: &'static str,
+    /// The summary of its run; none where there was nothing to run.
+    summary: Option<Summary>,
+}
+
+/// The outcome of a cell whose mechanism is right and was not solved.
+const NOT_CONVERGED: &str = "not_converged";
+
+impl Cell {
+    /// The summary of a run that reached its settled window. Earlier there are no numbers there, and
+    /// counts of 0 would lie.
+    fn settled(&self) -> Option<&Summary> {
+        self.summary.as_ref().filter(|summary| summary.rms_velocity.is_some())
+    }
 }
 
 /// What is wrong with one cell.
@@ -47,10 +73,14 @@ pub enum SweepEnd<E> {
 /// What a sweep came to.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tally {
-    /// Cells run.
+    /// Cells run, those without a solved mechanism among them.
     pub cells: u64,
     /// Cells whose run ended early, as their outcome says.
     pub ended_early: u64,
+    /// Cells whose mechanism was not solved.
+    pub not_converged: u64,
+    /// Mechanisms built: one for each combination of the swept fields of the mechanism, however many cells share it.
+    pub mechanisms: u64,
     /// Cells by outcome.
     pub outcomes: BTreeMap<&'static str, u64>,
     /// Cells by regime; those that ended before their settled window, and those of one well, have none.
@@ -58,10 +88,11 @@ pub struct Tally {
 }
 
 impl Tally {
-    fn count(&mut self, row: &Summary) {
-        self.ended_early += u64::from(row.outcome != Outcome::Done);
-        *self.outcomes.entry(row.outcome.name()).or_default() += 1;
-        if row.rms_velocity.is_some() && !row.regime.name().is_empty() {
+    fn count(&mut self, cell: &Cell) {
+        self.ended_early += u64::from(cell.summary.is_some_and(|row| row.outcome != Outcome::Done));
+        self.not_converged += u64::from(cell.outcome == NOT_CONVERGED);
+        *self.outcomes.entry(cell.outcome).or_default() += 1;
+        if let Some(row) = cell.settled().filter(|row| !row.regime.name().is_empty()) {
             *self.regimes.entry(row.regime.name()).or_default() += 1;
         }
     }
@@ -71,8 +102,9 @@ impl Tally {
 /// per cent of the chunk even where one cell takes several times the others.
 const CELLS_PER_THREAD: u64 = 256;
 
-/// Mechanisms kept for the whole sweep, about 1 kB each; beyond that each cell builds its own.
-const KEPT_MECHANISMS: u64 = 65_536;
+/// Mechanisms kept for the whole sweep, up to some 50 kB each (flexures with their states); beyond that each cell
+/// builds its own.
+const KEPT_MECHANISMS: u64 = 4096;
 
 impl Sweep {
     /// A sweep of `grid` over `base`, which has passed its check, as have the grid's corners.
@@ -81,7 +113,7 @@ impl Sweep {
         let base = Scene { notes: String::new(), sweep: Vec::new(), app: None, ..base.clone() };
         let kept = Some(grid.mechanisms()).filter(|n| *n <= KEPT_MECHANISMS).unwrap_or(0);
         let mechanisms = (0..kept).map(|_| OnceLock::new()).collect();
-        Self { base, files: files.clone(), grid, mechanisms }
+        Self { base, files: files.clone(), grid, mechanisms, built: AtomicU64::new(0) }
     }
 
     /// The grid.
@@ -94,15 +126,25 @@ impl Sweep {
         self.table(0, &[])
     }
 
-    /// Builds every cell without running it; the first one that is wrong, with all its
-    /// faults. A cancelled check finds nothing.
+    /// The mechanism of the first cell, or why it has none. Where no axis changes the mechanism, it is that of
+    /// every cell.
+    pub fn first_mechanism(&self) -> Result<Arc<Mechanism>, BuildError> {
+        let mut scene = self.base.clone();
+        self.grid.apply(0, &mut scene);
+        self.mechanism(0, &scene)
+    }
+
+    /// Builds every cell without running it; the first one that is wrong, with all its faults. A mechanism that is
+    /// not solved is no fault but an outcome. A cancelled check finds nothing.
     pub fn validate(&self, pool: &ThreadPool, task: &Task) -> Result<(), CellFaults> {
         let faults = |scene: &mut Scene, index: u64| {
             if task.is_cancelled() {
                 return None;
             }
-            let faults = self.model(index, scene).err()?;
-            Some(CellFaults { cell: self.grid.describe(index), faults })
+            match self.model(index, scene)? {
+                Ok(_) => None,
+                Err(faults) => Some(CellFaults { cell: self.grid.describe(index), faults }),
+            }
         };
         let cells = (0..self.grid.cells()).into_par_iter();
         let first = pool
@@ -124,18 +166,18 @@ impl Sweep {
             let begin = tally.cells;
             let end = (begin + chunk).min(self.grid.cells());
             let run = |scene: &mut Scene, offset: usize| {
-                let summary = self.run_cell(begin + offset as u64, scene, task);
+                let cell = self.run_cell(begin + offset as u64, scene, task);
                 (task.tick)();
-                summary
+                cell
             };
             let cells = (0..(end - begin) as usize).into_par_iter().with_max_len(1);
-            let rows: Vec<Option<Summary>> =
-                pool.install(|| cells.map_init(|| self.base.clone(), run).collect());
+            let rows: Vec<Cell> = pool.install(|| cells.map_init(|| self.base.clone(), run).collect());
             if task.is_cancelled() {
                 return Err(SweepEnd::Cancelled);
             }
             tally.cells = end;
-            rows.iter().flatten().for_each(|row| tally.count(row));
+            rows.iter().for_each(|row| tally.count(row));
+            tally.mechanisms = self.built.load(Ordering::Relaxed);
             if !write(&self.table(begin, &rows)).map_err(SweepEnd::Write)? {
                 break;
             }
@@ -143,54 +185,108 @@ impl Sweep {
         Ok(tally)
     }
 
-    fn run_cell(&self, index: u64, scene: &mut Scene, task: &Task) -> Option<Summary> {
+    fn run_cell(&self, index: u64, scene: &mut Scene, task: &Task) -> Cell {
+        let not_run = |outcome| Cell { outcome, summary: None };
         if task.is_cancelled() {
-            return None;
+            return not_run("");
         }
-        let model = self.model(index, scene).ok()?;
         let request = Request { cancel: Some(task.cancel), ..Request::default() };
-        Some(model.run(&request).summary)
+        match self.model(index, scene) {
+            Some(Ok(model)) => {
+                let summary = model.run(&request).summary;
+                Cell { outcome: summary.outcome.name(), summary: Some(summary) }
+            }
+            // Not after the sweep has been validated.
+            Some(Err(_)) => not_run(""),
+            None => not_run(NOT_CONVERGED),
+        }
     }
 
-    fn model(&self, index: u64, scene: &mut Scene) -> Result<Model, Vec<Fault>> {
+    /// The model of a cell, or its faults; none where its mechanism was not solved.
+    fn model(&self, index: u64, scene: &mut Scene) -> Option<Result<Model, Vec<Fault>>> {
         self.grid.apply(index, scene);
-        Model::build(scene, self.mechanism(index, scene)?)
+        match self.mechanism(index, scene) {
+            Ok(mechanism) => Some(Model::build(scene, mechanism)),
+            Err(BuildError::Wrong(fault)) => Some(Err(vec![fault])),
+            Err(BuildError::Unsolved(_)) => None,
+        }
     }
 
-    fn mechanism(&self, index: u64, scene: &Scene) -> Result<Arc<Mechanism>, Vec<Fault>> {
-        let build = || Mechanism::build(&scene.mechanism, &self.files).map(Arc::new);
-        let built = match self.mechanisms.get(self.grid.mechanism(index) as usize) {
+    fn mechanism(&self, index: u64, scene: &Scene) -> Built {
+        let build = || {
+            self.built.fetch_add(1, Ordering::Relaxed);
+            Mechanism::build(&scene.mechanism, &self.files).map(Arc::new)
+        };
+        match self.mechanisms.get(self.grid.mechanism(index) as usize) {
             Some(place) => place.get_or_init(build).clone(),
             None => build(),
-        };
-        built.map_err(|fault| vec![fault])
+        }
     }
 
     /// The rows of the cells from `begin` on.
-    fn table(&self, begin: u64, rows: &[Option<Summary>]) -> Table {
+    fn table(&self, begin: u64, rows: &[Cell]) -> Table {
         let mut table = Table::new();
         for (i, column) in self.grid.columns().iter().enumerate() {
             let value = |row: usize| self.grid.values(begin + row as u64).nth(i).unwrap_or(f64::NAN);
             table = table.with(column, Values::Numbers((0..rows.len()).map(value).collect()));
         }
-        // A run that ended before its settled window has no numbers there, and counts of 0 would lie.
-        let settled = |row: &Option<Summary>| row.filter(|summary| summary.rms_velocity.is_some());
         let numbers = |of: fn(&Summary) -> Option<f64>| {
-            Values::Numbers(rows.iter().map(|r| r.as_ref().and_then(of).unwrap_or(f64::NAN)).collect())
+            Values::Numbers(
+                rows.iter().map(|row| row.summary.as_ref().and_then(of).unwrap_or(f64::NAN)).collect(),
+            )
         };
         let counts = |of: fn(&Summary) -> Option<u64>| {
-            Values::Counts(rows.iter().map(|row| settled(row).as_ref().and_then(of)).collect())
+            Values::Counts(rows.iter().map(|row| row.settled().and_then(of)).collect())
         };
-        let words = |of: &dyn Fn(&Option<Summary>) -> Option<&'static str>| {
-            Values::Words(rows.iter().map(|row| of(row).unwrap_or("")).collect())
-        };
+        let words = |of: fn(&Cell) -> &'static str| Values::Words(rows.iter().map(of).collect());
         table
             .with("rms_velocity_m_per_s", numbers(|s| s.rms_velocity))
-            .with("regime", words(&|row| settled(row).map(|s| s.regime.name())))
+            .with("regime", words(|row| row.settled().map_or("", |s| s.regime.name())))
             .with("crossings", counts(|s| Some(s.crossings)))
             .with("impacts", counts(|s| Some(s.impacts)))
             .with("max_abs_x_m", numbers(|s| s.max_abs_x))
             .with("period", counts(|s| s.period.map(u64::from)))
-            .with("outcome", words(&|row| row.map(|s| s.outcome.name())))
+            .with("outcome", words(|row| row.outcome))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::FlexureError;
+    use crate::scene::Document;
+    use std::sync::atomic::AtomicBool;
+
+    #[test]
+    fn a_mechanism_that_was_not_solved_is_an_outcome_of_its_cells() {
+        let mut document = Document::load("nominal-cubic").unwrap();
+        document.set("run.duration_s=1").unwrap();
+        document.set("run.settle_s=0").unwrap();
+        let over = ["mechanism.linear_n_per_m=-40,-30", "excitation.amplitude_g=0.5,1,1.5"];
+        let grid = Grid::new(document.axes(&over).unwrap()).unwrap();
+        let sweep = Sweep::new(&document.scene, &document.files, grid);
+        let error = FlexureError::NotConverged { x: 1e-3, residual: 1.0 };
+        sweep.mechanisms[1].set(Err(error.into())).unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let cancel = AtomicBool::new(false);
+        let task = Task { tick: &|| (), cancel: &cancel };
+        sweep.validate(&pool, &task).unwrap();
+        let mut rows = Table::new();
+        let write = |table: &Table| {
+            rows.append(table);
+            Ok::<_, ()>(true)
+        };
+        let tally = sweep.run(&pool, &task, write).unwrap();
+        assert_eq!((tally.cells, tally.ended_early, tally.not_converged, tally.mechanisms), (6, 0, 3, 1));
+        assert_eq!(tally.outcomes, BTreeMap::from([("done", 3), ("not_converged", 3)]));
+        let words = |name: &str| rows.column(name).unwrap().values.clone();
+        let outcomes = [["done"; 3], ["not_converged"; 3]].concat();
+        assert_eq!(words("outcome"), Values::Words(outcomes));
+        assert!(rows.numbers("rms_velocity_m_per_s").unwrap()[3..].iter().all(|speed| speed.is_nan()));
+        assert!(rows.numbers("max_abs_x_m").unwrap()[3..].iter().all(|x| x.is_nan()));
+        for name in ["crossings", "impacts", "period"] {
+            assert!(matches!(words(name), Values::Counts(counts) if counts[3..] == [None; 3]), "{name}");
+        }
+        assert!(matches!(words("regime"), Values::Words(words) if words[3..] == [""; 3]));
     }
 }

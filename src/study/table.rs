@@ -39,7 +39,7 @@ pub struct Column {
 }
 
 /// Endings of names with their units, the longest first: `_m_per_s2` also ends like a name in seconds.
-const UNITS: [(&str, &str); 17] = [
+const UNITS: [(&str, &str); 18] = [
     ("_m_per_s2", "m/s\u{b2}"),
     ("_m_per_s", "m/s"),
     ("_n_per_m3", "N/m\u{b3}"),
@@ -48,6 +48,7 @@ const UNITS: [(&str, &str); 17] = [
     ("_n_s_per_m", "N s/m"),
     ("_s_per_m", "s/m"),
     ("_gpa", "GPa"),
+    ("_pa", "Pa"),
     ("_deg", "\u{b0}"),
     ("_mm", "mm"),
     ("_mj", "mJ"),
@@ -151,6 +152,8 @@ mod tests {
             ("base_accel_m_per_s2", "m/s\u{b2}"),
             ("stiffness_n_per_m", "N/m"),
             ("travel_limit_mm", "mm"),
+            ("yield_gpa", "GPa"),
+            ("max_stress_pa", "Pa"),
             ("amplitude_g", "g"),
             ("max_abs_x_m", "m"),
             ("restitution", ""),

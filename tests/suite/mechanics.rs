@@ -1,7 +1,9 @@
 //! Statics: force curves, fitted tables, landscapes.
 
+use interwell::mechanics::flexure::{Geometry, Group};
 use interwell::mechanics::{
-    Equilibrium, ForceCurve, Kink, Landscape, Mechanism, Piece, Table, TableError, fit, force_scale,
+    BuildError, Equilibrium, ForceCurve, Kink, Landscape, Mechanism, Piece, Table, TableError, fit,
+    force_scale,
 };
 use interwell::scene::{self, ColumnsError, Files};
 use proptest::prelude::*;
@@ -10,6 +12,13 @@ const PROTOTYPE: &str = include_str!("../../assets/force_dl2.7.csv");
 
 fn build(described: scene::Mechanism) -> Mechanism {
     Mechanism::build(&described, &Files::default()).unwrap()
+}
+
+fn fault_of(described: &scene::Mechanism) -> scene::Fault {
+    match Mechanism::build(described, &Files::default()) {
+        Err(BuildError::Wrong(fault)) => fault,
+        other => panic!("{other:?}"),
+    }
 }
 
 fn polynomial(coefficients: &[f64]) -> Mechanism {
@@ -197,7 +206,7 @@ fn no_force_and_a_constant_force_have_no_landscape() {
 #[test]
 fn too_many_coefficients_are_a_fault() {
     let described = scene::Mechanism::Polynomial { coefficients_si: vec![1.0; 17] };
-    let fault = Mechanism::build(&described, &Files::default()).unwrap_err();
+    let fault = fault_of(&described);
     assert_eq!(fault.field, "mechanism.coefficients_si");
 }
 
@@ -244,7 +253,7 @@ fn the_presets_table_is_the_embedded_one() {
     let described = scene::Mechanism::Table { path: "force_dl2.7.csv".into(), tolerance: 1e-4 };
     assert_eq!(build(described).curve, Mechanism::from_table(PROTOTYPE, 1e-4).unwrap().curve);
     let described = scene::Mechanism::Table { path: "nowhere.csv".into(), tolerance: 1e-4 };
-    let fault = Mechanism::build(&described, &Files::default()).unwrap_err();
+    let fault = fault_of(&described);
     assert_eq!((fault.field.as_str(), fault.value.as_str()), ("mechanism.path", "nowhere.csv"));
 }
 
@@ -642,4 +651,73 @@ proptest! {
         let changes = (0..2000).filter(|i| at(-10.0 + f64::from(*i) * 0.01) * at(-9.99 + f64::from(*i) * 0.01) < 0.0);
         prop_assert!(own.landscape.equilibria.len() >= changes.count());
     }
+}
+
+// --- Kinks beside a well -------------------------------------------------------------------------
+
+/// An odd curve with a kink at 1, slopes `inner` and `outer` there, and the well `past` beyond it.
+fn kinked(inner: f64, outer: f64, past: f64) -> Mechanism {
+    // a x + b x^3 inside, a straight line outside.
+    let (force, slope) = (-outer * past, inner);
+    let b = 0.5 * (slope - force);
+    let a = force - b;
+    let piece = |origin, coefficients| Piece { origin, coefficients, potential_at_origin: 0.0 };
+    let right = piece(1.0, vec![force, outer]);
+    let pieces = vec![right.mirrored(), piece(0.0, vec![0.0, a, 0.0, b]), right];
+    Mechanism::new(ForceCurve::from_pieces(pieces, vec![-1.0, 1.0], (-2.0, 2.0), true, None))
+}
+
+#[test]
+fn a_kink_beside_a_well_gives_it_two_stiffnesses() {
+    for past in [1e-4, 9e-3, 0.0] {
+        let own = kinked(137.0, 4000.0, past).landscape;
+        let kink = own.kink_at_right_well().unwrap();
+        close(kink.inner, 137.0, 1e-12);
+        close(kink.outer, 4000.0, 1e-12);
+        assert_eq!(own.damping_kink().map(|kink| kink.x), Some(1.0));
+        close(own.damping_stiffness().unwrap(), 137.0, 1e-12);
+    }
+    // Far beyond the kink a small pluck does not meet it; the ratio still means the inner slope.
+    let own = kinked(137.0, 4000.0, 0.02).landscape;
+    assert_eq!(own.kink_at_right_well(), None);
+    close(own.damping_stiffness().unwrap(), 137.0, 1e-12);
+    // Just inside it, the slope that counts is that of the well itself, and the kink is still beside it.
+    let own = kinked(137.0, 4000.0, -1e-4).landscape;
+    assert!(own.right_stable().unwrap().x < 1.0);
+    assert_eq!(own.damping_kink(), None);
+    close(own.kink_at_right_well().unwrap().inner, 137.0, 1e-12);
+    // Well inside it, as in the prototype's table.
+    let table = Mechanism::from_table(PROTOTYPE, 1e-4).unwrap().landscape;
+    assert_eq!((table.kink_at_right_well(), table.damping_kink()), (None, None));
+}
+
+// --- Flexures ------------------------------------------------------------------------------------
+
+#[test]
+fn flexures_enter_in_si() {
+    let group = |count, length_mm, width_mm| scene::FlexureGroup { count, length_mm, width_mm };
+    let own = build(scene::Mechanism::Flexures {
+        preload_mm: 2.7,
+        thickness_mm: 0.1,
+        young_gpa: 190.0,
+        parallel: group(2, 26.0, 20.0),
+        buckling: group(1, 27.7, 6.8),
+        poisson: 0.34,
+        plane_strain: true,
+        initial_bow_mm: 0.0,
+        yield_gpa: 2.0,
+    });
+    let expected = Geometry {
+        preload: 2.7e-3,
+        thickness: 1e-4,
+        young: 190e9,
+        poisson: 0.34,
+        plane_strain: true,
+        initial_bow: 0.0,
+        yield_stress: 2e9,
+        parallel: Group { count: 2, length: 26e-3, width: 20e-3 },
+        buckling: Group { count: 1, length: 27.7e-3, width: 6.8e-3 },
+    };
+    assert_eq!(own.flexures.as_ref().unwrap().geometry(), &expected);
+    assert_eq!(polynomial(&[0.0, 1.0]).flexures, None);
 }

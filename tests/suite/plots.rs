@@ -116,6 +116,20 @@ fn pictures_say_what_they_show() {
 }
 
 #[test]
+fn a_wall_leaves_the_picture_and_the_picture_says_so() {
+    // 25 N at 8 mm against 0.2 N between the wells: the axis shows the wells.
+    let texts =
+        says("curve paper-table", &["force leaves the picture (", " N at 8 mm)", "0.2", "force to hold, N"]);
+    assert!(!texts.iter().any(|text| text == "20" || text == "10"), "{texts:?}");
+    // The rows have all of it.
+    let force =
+        |line: &str| super::cli::stdout(line).lines().last().unwrap().split(',').nth(1).unwrap().parse();
+    let last: f64 = force("curve paper-table --at-mm 8").unwrap();
+    assert!(last > 10.0, "{last}");
+    assert!(!says("curve nominal-cubic", &[]).iter().any(|text| text.contains("leaves")));
+}
+
+#[test]
 fn lines_over_a_map_stand_only_where_they_mean_something() {
     for line in [
         // From elsewhere than rest; over other fields; without a sine.

@@ -34,8 +34,9 @@ const fn known(
 use Regime::{Interwell, Intrawell, Irregular, OneWell};
 
 /// All but the chaotic one.
-const KNOWN: [Known; 12] = [
+const KNOWN: [Known; 13] = [
     known("paper", Interwell, Some(1), (30, 600), 0.049_140_721_78, 0.0015),
+    known("paper-table", Interwell, Some(1), (30, 600), 0.049_140_721_78, 0.0015),
     known("paper-unconstrained", Intrawell, Some(2), (0, 0), 0.017_347_687_64, 0.007_238_817_224),
     known("paper-ramp", Interwell, None, (1080, 11334), 0.052_495_015_78, 0.0015),
     known("uneven-stops", Interwell, Some(1), (30, 630), 0.051_103_902_06, 0.0017),

@@ -4,6 +4,7 @@ use interwell::scene::*;
 
 mod checking;
 mod files;
+mod flexures;
 mod properties;
 mod reading;
 mod setting;
@@ -42,6 +43,10 @@ fn reads_back(scene: &Scene) {
     assert_eq!(&again.unwrap_or_else(|error| panic!("{error}\n{written}")).scene, scene, "{written}");
 }
 
+/// The prototype's flexures, with what may be left out left out.
+const FLEXURES: &str = "Flexures(preload_mm: 2.7, thickness_mm: 0.1, young_gpa: 190, \
+    parallel: (count: 2, length_mm: 26, width_mm: 20), buckling: (count: 1, length_mm: 27.7, width_mm: 6.8))";
+
 /// A scene that has every numeric field but those of the other variants.
 fn broad(variant: usize) -> Document {
     let pick = |all: &[&'static str]| all[variant % all.len()];
@@ -53,6 +58,7 @@ fn broad(variant: usize) -> Document {
                 "DoubleWell(equilibrium_mm: 7, barrier_mj: 0.5)",
                 "Polynomial(coefficients_si: [1, 2, 3])",
                 "Table(path: \"a.csv\")",
+                FLEXURES,
             ]),
         ),
         ("damping", pick(&["Ratio(0.1)", "Coefficient(c_n_s_per_m: 1)"])),

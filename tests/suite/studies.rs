@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use interwell::dynamics::{Model, Request};
-use interwell::mechanics::Mechanism;
-use interwell::scene::Document;
+use interwell::mechanics::{ForceCurve, Mechanism, Piece};
+use interwell::scene::{Document, Files};
 use interwell::study::*;
 
 fn model(document: &Document) -> Model {
@@ -124,4 +124,90 @@ fn default_samples_follow_the_drive() {
         ]),
         181
     );
+}
+
+/// The prototype with its flexures.
+fn flexures() -> Document {
+    let text = "(title: \"t\", mass_g: 15.2, damping: Ratio(0.023), stops: Rigid(travel_limit_mm: 1.5, restitution: 0.36), \
+        mechanism: Flexures(preload_mm: 2.7, thickness_mm: 0.1, young_gpa: 190, \
+        parallel: (count: 2, length_mm: 26, width_mm: 20), buckling: (count: 1, length_mm: 27.7, width_mm: 6.8)), \
+        excitation: Sine(frequency_hz: 3, amplitude_g: 1), run: (duration_s: 0.2, settle_s: 0))";
+    Document::from_text("t", text, Files::default()).unwrap()
+}
+
+#[test]
+fn each_geometry_is_solved_once() {
+    let document = flexures();
+    let never = AtomicBool::new(false);
+    let task = Task { tick: &|| {}, cancel: &never };
+    for (over, geometries) in [
+        (&["excitation.amplitude_g=0:1:0.25", "mechanism.preload_mm=2.5,2.7"][..], 2),
+        (&["mechanism.preload_mm=2.5,2.7", "mass_g=15,16", "mechanism.parallel.length_mm=26,26.5"], 4),
+        (&["mass_g=15,16,17"], 1),
+    ] {
+        let grid = Grid::new(document.axes(over).unwrap()).unwrap();
+        let sweep = Sweep::new(&document.scene, &document.files, grid);
+        sweep.first_mechanism().unwrap();
+        sweep.validate(&pool(2), &task).unwrap();
+        let tally = sweep.run(&pool(2), &task, |_| Ok::<_, ()>(true)).unwrap();
+        assert_eq!((tally.cells, tally.mechanisms), (sweep.grid().cells(), geometries), "{over:?}");
+    }
+}
+
+#[test]
+fn a_damping_ratio_is_told_in_all_its_meanings() {
+    // Slopes, kink and equilibrium of the prototype's beams in round numbers.
+    let (kink, past, inner, outer) = (7.18e-3, 2e-6, 137.0, 4000.0);
+    let force = -outer * past;
+    let cubic = 0.5 * (inner - force / kink);
+    let piece = |origin, coefficients| Piece { origin, coefficients, potential_at_origin: 0.0 };
+    let right = piece(kink, vec![force, outer]);
+    let middle = piece(0.0, vec![0.0, force / kink - cubic, 0.0, cubic / (kink * kink)]);
+    let pieces = vec![right.mirrored(), middle, right];
+    let curve = ForceCurve::from_pieces(pieces, vec![-kink, kink], (-8e-3, 8e-3), true, None);
+    let mut document = Document::load("paper").unwrap();
+    document.set("damping=Ratio(0.023)").unwrap();
+    let lines = inspect(&document.scene, &Arc::new(Mechanism::new(curve))).unwrap();
+    let of = |beginning: &str| {
+        let own: Vec<&String> = lines.iter().filter(|line| line.starts_with(beginning)).collect();
+        assert_eq!(own.len(), 1, "{lines:?}");
+        own[0].clone()
+    };
+    let first = of("damping ratio 0.023: ");
+    for word in
+        ["k = 137 N/m", "just inside the kink at 7.18 mm", "2 um", "c = 2 xi sqrt(k m) = 0.06638", "used"]
+    {
+        assert!(first.contains(word), "`{word}` is not in: {first}");
+    }
+    let second = of("the same ratio ");
+    for word in ["4000 N/m", "c = 0.3587 N s/m", "25.5 Hz", "c = 0.112 N s/m"] {
+        assert!(second.contains(word), "`{word}` is not in: {second}");
+    }
+    // One well-defined stiffness, one line.
+    for name in ["paper-table", "nominal-cubic"] {
+        let document = Document::load(name).unwrap();
+        let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+        let lines = inspect(&document.scene, &Arc::new(mechanism)).unwrap();
+        let ratio = lines.iter().filter(|line| line.contains("ratio ")).collect::<Vec<_>>();
+        assert!(ratio.len() == 1 && !ratio[0].contains("kink"), "{ratio:?}");
+    }
+}
+
+#[test]
+fn flexures_are_told_in_words() {
+    let document = flexures();
+    let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+    let text = inspect(&document.scene, &Arc::new(mechanism)).unwrap().join("\n");
+    for words in [
+        "flexures: 2 parallel, 26 mm long and 20 mm wide; 1 buckling, 27.7 mm long and 6.8 mm wide; all 0.1 mm thick",
+        "preload 2.7 mm",
+        "geometrically exact (Reissner)",
+        "E = 190 GPa, Poisson's ratio 0.34",
+        "against fresh solutions off by at most ",
+        "force curve: ",
+        "kinks, ",
+        "stable equilibrium at ",
+    ] {
+        assert!(text.contains(words), "`{words}` is not in: {text}");
+    }
 }

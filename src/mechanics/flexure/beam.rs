@@ -204,37 +204,18 @@ impl Beam {
                 -s * sine - kappa * s_2 * (normal * sine - shear * cosine),
                 -s_by_q * normal - kappa * (s_by_q * c - 0.5 * psi * s * s) * difference,
             ];
-            for i in 0..n {
-                let value = weight * even[i];
-                t.even[i] -= value * even_load;
-                for (table, factor) in t.even_by.iter_mut().zip(even_by) {
-                    table[i] -= value * factor;
-                }
-                let weighted = value * even_weight;
-                for j in 0..=i {
-                    t.even_even[i * n + j] += weighted * even[j];
-                }
-                let weighted = weight * odd[i] * even_weight;
-                for j in 0..=i {
-                    t.odd_odd[i * n + j] += weighted * odd[j];
-                }
+            add(&mut t.even, -weight * even_load, even);
+            for (table, factor) in t.even_by.iter_mut().zip(even_by) {
+                add(table, -weight * factor, even);
             }
-            for i in 0..odd_modes {
-                let value = weight * odd[i];
-                t.odd[i] -= value * odd_load;
+            add_product(&mut t.even_even, weight * even_weight, even, even);
+            add_product(&mut t.odd_odd, weight * even_weight, odd, odd);
+            if odd_modes > 0 {
+                add(&mut t.odd, -weight * odd_load, odd);
                 for (table, factor) in t.odd_by.iter_mut().zip(odd_by) {
-                    table[i] -= value * factor;
+                    add(table, -weight * factor, odd);
                 }
-                let weighted = value * odd_weight;
-                for j in 0..n {
-                    t.odd_even[i * n + j] += weighted * even[j];
-                }
-            }
-        }
-        for i in 0..n {
-            for j in 0..i {
-                t.even_even[j * n + i] = t.even_even[i * n + j];
-                t.odd_odd[j * n + i] = t.odd_odd[i * n + j];
+                add_product(&mut t.odd_even, weight * odd_weight, odd, even);
             }
         }
         t
@@ -243,4 +224,18 @@ impl Beam {
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Adds `factor` times `values`.
+fn add(sum: &mut [f64], factor: f64, values: &[f64]) {
+    for (s, value) in sum.iter_mut().zip(values) {
+        *s += factor * value;
+    }
+}
+
+/// Adds `factor` times the products of `rows` and `columns`.
+fn add_product(table: &mut [f64], factor: f64, rows: &[f64], columns: &[f64]) {
+    for (row, value) in table.chunks_exact_mut(columns.len()).zip(rows) {
+        add(row, factor * value, columns);
+    }
 }

@@ -120,8 +120,8 @@ impl Point {
     /// mode, one that goes leaves nothing.
     pub fn reshaped(&self, shapes: [Shape; 2], basis: &Basis) -> Self {
         let mut own = Self { shapes, ..self.clone() };
-        for group in 0..2 {
-            match shapes[group] {
+        for (group, shape) in shapes.into_iter().enumerate() {
+            match shape {
                 Shape::Straight => {
                     own.odd[group] = Vec::new();
                     own.q[group] = 0.0;

@@ -71,15 +71,18 @@ pub struct Geometry {
 }
 
 /// How far the force curve is from fresh solutions at points that it was not made of.
-#[derive(Debug, Clone, PartialEq, Default)]
+///
+/// *Inside* is between the outermost kinks, or between the outermost equilibria where there is no kink; with one well and
+/// no kink there is no inside, and what is said of it is NaN.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Accuracy {
-    /// Error of the force between the kinks, relative to its largest magnitude between the wells.
+    /// Error of the force inside, relative to its largest magnitude between the wells.
     pub force: f64,
-    /// Error of the potential there, relative to the barrier; to the largest potential where there is none.
+    /// Error of the potential inside, relative to the barrier.
     pub potential: f64,
-    /// Error of the stiffness there, relative to its magnitude at x = 0.
+    /// Error of the stiffness inside, relative to its magnitude at x = 0.
     pub stiffness: f64,
-    /// Error of the force elsewhere, relative to the larger of that largest magnitude and the force itself.
+    /// Error of the force outside, relative to the larger of that largest magnitude and the force itself.
     pub outer_force: f64,
     /// Equilibria solved for.
     pub solves: usize,
@@ -149,16 +152,17 @@ pub struct State {
 #[derive(Debug, Clone)]
 pub struct Flexures {
     geometry: Geometry,
+    tolerance: f64,
     accuracy: Accuracy,
     solver: Solver,
     segments: Vec<Segment>,
     units: Units,
 }
 
-/// Everything else follows from the geometry and the tolerance that the accuracy shows.
+/// Everything else follows from these two.
 impl PartialEq for Flexures {
     fn eq(&self, other: &Self) -> bool {
-        self.geometry == other.geometry && self.accuracy == other.accuracy
+        self.geometry == other.geometry && self.tolerance == other.tolerance
     }
 }
 
@@ -195,10 +199,9 @@ impl Flexures {
         let scale = Scale::of(&segments);
         let stretches = pieces::fit(&mut solver, &mut segments, scale, tolerance).map_err(lost)?;
         let curve = curve(&stretches, units);
-        let accuracy = Accuracy { solves: solver.solves, modes: solver.most_modes, ..Accuracy::default() };
-        let mut own = Self { geometry: geometry.clone(), accuracy, solver, segments, units };
-        own.measure(&curve, &stretches, scale);
-        Ok((curve, own))
+        let accuracy = measured(&curve, &stretches, &segments, scale, units, &solver);
+        solver.forget();
+        Ok((curve, Self { geometry: geometry.clone(), tolerance, accuracy, solver, segments, units }))
     }
 
     /// The geometry that was solved.
@@ -264,30 +267,44 @@ impl Flexures {
             lines: vec![line(0, "parallel"), line(1, "buckling")],
         }
     }
+}
 
-    /// Compares the curve with the fresh states of its pieces.
-    fn measure(&mut self, curve: &ForceCurve, stretches: &[Stretch], scale: Scale) {
-        let Units { length, force } = self.units;
-        let start = self.segments[0].points[0].energy;
-        let unit = force * length;
-        let deepest =
-            self.segments.iter().flat_map(|s| &s.points).fold(0.0_f64, |m, p| m.max(start - p.energy));
-        for point in stretches.iter().flat_map(|s| &s.checks) {
-            let x = point.x * length;
-            let missed = (curve.force(x) / force - point.force).abs() / scale.force.max(point.force.abs());
-            let level = if deepest > 0.0 { deepest } else { (point.energy - start).abs() };
-            let potential = (curve.potential(x) / unit - (point.energy - start)).abs() / level;
-            let stiffness = (curve.stiffness(x) * length / force - point.stiffness).abs() / scale.stiffness;
-            let own = &mut self.accuracy;
-            if point.x <= scale.inside {
-                own.force = own.force.max(missed);
-                own.potential = own.potential.max(potential);
-                own.stiffness = own.stiffness.max(stiffness);
-            } else {
-                own.outer_force = own.outer_force.max(missed);
-            }
+/// Compares the curve with the fresh states of its pieces.
+fn measured(
+    curve: &ForceCurve,
+    stretches: &[Stretch],
+    segments: &[Segment],
+    scale: Scale,
+    units: Units,
+    solver: &Solver,
+) -> Accuracy {
+    let Units { length, force } = units;
+    let start = segments[0].points[0].energy;
+    let points = segments.iter().flat_map(|s| &s.points);
+    let deepest = points.fold(0.0_f64, |most, p| most.max(start - p.energy));
+    let none = if scale.inside > 0.0 { 0.0 } else { f64::NAN };
+    let mut own = Accuracy {
+        force: none,
+        potential: none,
+        stiffness: none,
+        outer_force: 0.0,
+        solves: solver.solves,
+        modes: solver.most_modes,
+    };
+    for point in stretches.iter().flat_map(|s| &s.checks) {
+        let x = point.x * length;
+        let missed = (curve.force(x) / force - point.force).abs() / scale.force.max(point.force.abs());
+        if point.x > scale.inside {
+            own.outer_force = own.outer_force.max(missed);
+            continue;
         }
+        let potential = curve.potential(x) / (force * length) - (point.energy - start);
+        let stiffness = curve.stiffness(x) * length / force - point.stiffness;
+        own.force = own.force.max(missed);
+        own.potential = own.potential.max(potential.abs() / deepest);
+        own.stiffness = own.stiffness.max(stiffness.abs() / scale.stiffness);
     }
+    own
 }
 
 fn bending_modulus(geometry: &Geometry) -> f64 {

@@ -46,6 +46,11 @@ impl Solver {
         Self { beams, preload, bow, tail, systems: BTreeMap::new(), solves: 0, most_modes: 0 }
     }
 
+    /// Gives up the tables, which are made again where they are needed; they are larger than all states together.
+    pub fn forget(&mut self) {
+        self.systems.clear();
+    }
+
     /// Another bow of the stress-free flexures.
     pub fn set_bow(&mut self, bow: [f64; 2]) {
         if bow != self.bow {

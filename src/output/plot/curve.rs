@@ -28,22 +28,22 @@ pub fn curve_figure(
     let x: Vec<f64> = column("x_m").iter().map(|x| x * 1e3).collect();
     let pairs =
         |y: &[f64], scale: f64| -> Vec<Point> { x.iter().zip(y).map(|(x, y)| (*x, y * scale)).collect() };
-    let (force, force_unit) = scaled(column("force_n"), &[(1.0, "N"), (1e-3, "mN")]);
-    let (potential, potential_unit) =
-        scaled(column("potential_j"), &[(1.0, "J"), (1e-3, "mJ"), (1e-6, "\u{b5}J")]);
-    let across = Axis::around(x.iter().copied(), 0.0, 9, "displacement, mm");
     let landscape = &mechanism.landscape;
+    let force_range = telling(&x, column("force_n"), landscape);
+    let potential_range = telling(&x, column("potential_j"), landscape);
+    let (force, force_unit) = scaled(force_range, &[(1.0, "N"), (1e-3, "mN")]);
+    let (potential, potential_unit) = scaled(potential_range, &[(1.0, "J"), (1e-3, "mJ"), (1e-6, "\u{b5}J")]);
+    let across = Axis::around(x.iter().copied(), 0.0, 9, "displacement, mm");
     let inside = |at: f64| at * 1e3 >= across.low && at * 1e3 <= across.high;
 
-    let height = |values: &[f64], scale: f64, least: f64, label: &str| {
-        let (low, high) = telling(&x, values, landscape);
+    let height = |(low, high): (f64, f64), scale: f64, least: f64, label: &str| {
         Axis::around([low * scale, high * scale, least], 0.08, TICKS, label)
     };
     let upper = Area::new(LEFT, 175.0, RIGHT, 520.0);
     let lower = Area::new(LEFT, 550.0, RIGHT, 860.0);
-    let force_axis = height(column("force_n"), force, 0.0, &format!("force to hold, {force_unit}"));
+    let force_axis = height(force_range, force, 0.0, &format!("force to hold, {force_unit}"));
     let potential_axis =
-        height(column("potential_j"), potential, f64::NAN, &format!("potential, {potential_unit}"));
+        height(potential_range, potential, f64::NAN, &format!("potential, {potential_unit}"));
     let framed = |area, x, y| Frame { gutter: Some(GUTTER), ..Frame::new(area, x, y) };
     let frames = [
         (framed(upper, across.clone().silent(), force_axis), pairs(column("force_n"), force), theme.ink),
@@ -91,7 +91,11 @@ pub fn curve_figure(
         entries.push((Sample::Patch(theme.wall_fill(), Some(theme.wall_hatch())), "stop"));
     }
     legend(&mut figure, theme, &entries, LEFT, RIGHT, 142.0);
-    caption.draw(&mut figure, theme, &subtitle(landscape), LEFT);
+    let mut words = subtitle(landscape);
+    if let Some(wall) = wall(column("x_m"), column("force_n"), &frames[0].0.y, force) {
+        words += &wall;
+    }
+    caption.draw(&mut figure, theme, &words, LEFT);
     figure
 }
 
@@ -118,10 +122,20 @@ fn subtitle(landscape: &Landscape) -> String {
     parts.join(", ")
 }
 
+/// What the picture does not show, where the force leaves it: how large it becomes, and where. `scale` is that of the
+/// axis `up`.
+fn wall(x: &[f64], force: &[f64], up: &Axis, scale: f64) -> Option<String> {
+    let beyond = |force: f64| force * scale < up.low || force * scale > up.high;
+    let outside = x.iter().zip(force).filter(|(_, force)| force.is_finite() && beyond(**force));
+    let (x, force) = outside.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let (force, x) = (short(*force), short(x * 1e3));
+    Some(format!(", force leaves the picture ({force} N at {x} mm)").replace('-', "\u{2212}"))
+}
+
 /// The factor from SI and the name of the largest of `units` (each its size in SI, falling) in which the
-/// greatest value is 0.1 or more.
-fn scaled(values: &[f64], units: &[(f64, &'static str)]) -> (f64, &'static str) {
-    let greatest = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
+/// greatest value of a range is 0.1 or more.
+fn scaled((low, high): (f64, f64), units: &[(f64, &'static str)]) -> (f64, &'static str) {
+    let greatest = [low, high].iter().filter(|value| value.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
     let fits =
         units.iter().find(|(size, _)| greatest >= 0.1 * size).or(units.last().filter(|_| greatest > 0.0));
     fits.or(units.first()).map_or((1.0, ""), |(size, unit)| (1.0 / size, *unit))

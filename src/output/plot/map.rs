@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::mark::{Sample, cross, legend};
 use super::run::speed_unit;
 use super::style::{self, Theme, viridis};
-use super::sweep::{BOTTOM, LEFT, RMS, TOP, label, words};
+use super::sweep::{BOTTOM, LEFT, RMS, TOP, label, missing_words, words};
 use crate::study::Table;
 
 /// The lines over a map, each where it makes sense.
@@ -113,11 +113,12 @@ pub(super) fn map(figure: &mut Figure, rows: &Table, (x, y): (&str, &str), overl
         }
     }
     let mut entries = Vec::new();
+    let missing = missing_words(words(rows, "outcome"));
     if cells.contains(&Cell::Rest) {
         entries.push((Sample::Patch(theme.rest, Some(theme.rest_hatch)), "at rest"));
     }
     if cells.contains(&Cell::Missing) {
-        entries.push((Sample::Crossed(theme.paper, theme.soft), "ended early"));
+        entries.push((Sample::Crossed(theme.paper, theme.soft), missing));
     }
     entries.extend(over(figure, &frame, (x, y), &across, &up, overlay));
     frame.axes(figure, theme);

@@ -93,6 +93,18 @@ pub(super) fn label(rows: &Table, name: &str) -> String {
     rows.column(name).map_or_else(|| name.to_owned(), Column::label)
 }
 
+/// What a legend says of cells without a speed, by the outcomes of all cells.
+pub(super) fn missing_words(outcomes: &[&'static str]) -> &'static str {
+    let is = |word: &&&str| **word == "not_converged";
+    let unsolved = outcomes.iter().filter(is).count();
+    let early = outcomes.iter().filter(|word| !is(word) && **word != "done").count();
+    match (unsolved, early) {
+        (0, _) => "ended early",
+        (_, 0) => "flexures not solved",
+        _ => "ended early or not solved",
+    }
+}
+
 pub(super) const RMS: &str = "rms_velocity_m_per_s";
 
 /// RMS velocity over one field, each value marked with its regime.
@@ -136,7 +148,22 @@ fn line(figure: &mut Figure, rows: &Table, x: &str, theme: &Theme) {
         }
     }
     if !missing.is_empty() {
-        entries.push((Sample::Line(theme.soft, style::LINE, Some(style::DOT)), "ended early"));
+        entries.push((
+            Sample::Line(theme.soft, style::LINE, Some(style::DOT)),
+            missing_words(words(rows, "outcome")),
+        ));
     }
     legend(figure, theme, &entries, LEFT, RIGHT, 146.0);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_legend_says_why_a_cell_has_no_speed() {
+        assert_eq!(missing_words(&["done", "left_table"]), "ended early");
+        assert_eq!(missing_words(&["done", "not_converged"]), "flexures not solved");
+        assert_eq!(missing_words(&["step_budget", "not_converged"]), "ended early or not solved");
+    }
 }

@@ -37,6 +37,37 @@ fn excitation() -> impl Strategy<Value = Excitation> {
     leaf.prop_recursive(4, 16, 4, |inner| proptest::collection::vec(inner, 0..4).prop_map(Excitation::Sum))
 }
 
+fn flexures() -> impl Strategy<Value = Mechanism> {
+    let group = || {
+        (0_u64..100, number(), number()).prop_map(|(count, length_mm, width_mm)| FlexureGroup {
+            count,
+            length_mm,
+            width_mm,
+        })
+    };
+    let sizes = (number(), number(), number(), number(), number(), number());
+    (sizes, any::<bool>(), group(), group()).prop_map(
+        |(
+            (preload_mm, thickness_mm, young_gpa, poisson, initial_bow_mm, yield_gpa),
+            plane_strain,
+            parallel,
+            buckling,
+        )| {
+            Mechanism::Flexures {
+                preload_mm,
+                thickness_mm,
+                young_gpa,
+                parallel,
+                buckling,
+                poisson,
+                plane_strain,
+                initial_bow_mm,
+                yield_gpa,
+            }
+        },
+    )
+}
+
 fn scene() -> impl Strategy<Value = Scene> {
     let mechanism = prop_oneof![
         (number(), number())
@@ -44,6 +75,7 @@ fn scene() -> impl Strategy<Value = Scene> {
         proptest::collection::vec(number(), 0..20)
             .prop_map(|coefficients_si| Mechanism::Polynomial { coefficients_si }),
         (any::<String>(), number()).prop_map(|(path, tolerance)| Mechanism::Table { path, tolerance }),
+        flexures(),
     ];
     let app =
         (proptest::option::of(number()), proptest::option::of(stops())).prop_map(|(speed, stops)| AppHints {

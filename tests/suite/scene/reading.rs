@@ -159,8 +159,13 @@ fn the_coefficient_limit_is_that_of_the_force_curve() {
 fn structural_errors_have_a_place_and_the_known_names() {
     for (changes, expected) in [
         (
-            ("mechanism", "Flexures(preload_mm: 2.7)"),
-            "s.ron:5:16: mechanism: unknown choice `Flexures` in Mechanism; known: Cubic, DoubleWell, Polynomial, Table",
+            ("mechanism", "Springs(k: 2.7)"),
+            "s.ron:5:16: mechanism: unknown choice `Springs` in Mechanism; known: Flexures, Cubic, DoubleWell, Polynomial, Table",
+        ),
+        (("mechanism", "Flexures(preload_mm: 2.7)"), "`thickness_mm` is missing in Flexures"),
+        (
+            ("mechanism", "Flexures(parallel: (count: 2, length: 26))"),
+            "unknown field `length` in FlexureGroup; known: count, length_mm, width_mm",
         ),
         (
             ("stops", "Hertz(travel_limit_mm: 1)"),

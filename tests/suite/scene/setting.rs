@@ -13,7 +13,7 @@ fn every_number_can_be_read_set_and_checked() {
         assert!(fields.len() > 15 && fields.iter().any(|field| field == "run.settle_s"));
         for field in &fields {
             let mut document = original.clone();
-            let whole = field.ends_with("seed") || field.ends_with("lines");
+            let whole = field.ends_with("seed") || field.ends_with("lines") || field.ends_with("count");
             let value = if whole { 9.0 } else { 0.125 };
             document.set(&format!("{field}={value}")).unwrap();
             assert_eq!(FieldPath::new(field).get(&document.scene), Some(value), "{field}");
