@@ -21,10 +21,11 @@ pub(super) struct Basis {
 }
 
 impl Basis {
-    /// `modes` functions of each parity, with twice as many points on the half: products of two functions and
-    /// a weight as wiggly as both are integrated exactly.
+    /// `modes` functions of each parity, with half as many points again on the half: products of two functions are
+    /// integrated exactly with a weight of half their degree, and the weight's own coefficients fall as fast as the
+    /// rotation's.
     pub fn new(modes: usize) -> Self {
-        let rule = even_half(2 * modes);
+        let rule = even_half(modes + modes / 2 + 1);
         let (mut even, mut odd) = (Vec::new(), Vec::new());
         let mut row = vec![0.0; 2 * modes];
         for (xi, _) in &rule {

@@ -132,7 +132,7 @@ pub(super) fn fit(
             let change = (0.3 * SHARE / miss.max(1e-30)).powf(0.5 / POINTS as f64);
             if miss <= SHARE {
                 from = to;
-                size = (to - from).max(size) * change.clamp(0.5, 4.0);
+                size = (to - from).max(size) * change.clamp(0.5, 2.5);
                 stretches.push(stretch);
             } else {
                 size = (to - from) * change.clamp(0.1, 0.8);
