@@ -23,22 +23,30 @@ impl<T: Scalar> GaussLegendre<T> {
         let points = points.clamp(1, MOST_POINTS);
         let (one, half) = (T::of(1.0), T::of(0.5));
         let mut rule = Self { points, nodes: [T::zero(); MOST_POINTS], weights: [T::zero(); MOST_POINTS] };
-        for i in 0..points {
-            let angle = std::f64::consts::PI * (i as f64 + 0.75) / (points as f64 + 0.5);
-            let mut x = T::of(angle.cos());
-            let mut slope = one;
-            for _ in 0..8 {
-                let (mut value, mut before) = (one, T::zero());
-                for n in 1..=points {
-                    let next = (T::of((2 * n - 1) as f64) * x * value - T::of((n - 1) as f64) * before)
-                        / T::of(n as f64);
-                    (before, value) = (value, next);
+        let mut x = [one; MOST_POINTS];
+        for (i, x) in x[..points].iter_mut().enumerate() {
+            *x = T::of((std::f64::consts::PI * (i as f64 + 0.75) / (points as f64 + 0.5)).cos());
+        }
+        // All points at once: one by one, each division waits for the last.
+        let mut slope = [one; MOST_POINTS];
+        for _ in 0..8 {
+            let (mut value, mut before) = ([one; MOST_POINTS], [T::zero(); MOST_POINTS]);
+            for n in 1..=points {
+                let (twice, less, whole) =
+                    (T::of((2 * n - 1) as f64), T::of((n - 1) as f64), T::of(n as f64));
+                for ((value, before), x) in value[..points].iter_mut().zip(&mut before).zip(&x) {
+                    let next = (twice * *x * *value - less * *before) / whole;
+                    (*before, *value) = (*value, next);
                 }
-                slope = T::of(points as f64) * (x * value - before) / (x * x - one);
-                x -= value / slope;
             }
-            rule.nodes[i] = half - half * x;
-            rule.weights[i] = one / ((one - x * x) * slope * slope);
+            for i in 0..points {
+                slope[i] = T::of(points as f64) * (x[i] * value[i] - before[i]) / (x[i] * x[i] - one);
+                x[i] -= value[i] / slope[i];
+            }
+        }
+        for i in 0..points {
+            rule.nodes[i] = half - half * x[i];
+            rule.weights[i] = one / ((one - x[i] * x[i]) * slope[i] * slope[i]);
         }
         rule
     }
