@@ -2,9 +2,16 @@
 //!
 //! First the same scene by the general path and written out by hand (`by_hand`): the end is the same bit for bit
 //! (a test holds that), the time should be within a few per cent. By hand there is the motion alone, and with the
-//! crossings counted, as every run of a scene with a well counts them; the ratio is to the latter. Then what is
-//! asked for, or stands in the scene without an effect, against the same scene without it. A ratio is the median
-//! over pairs run in turn.
+//! crossings counted, as every run of a scene with a well counts them; the ratio is to the latter. Both count them
+//! by the same search, and neither locates them: their instants are asked for only in a settled window under a
+//! periodic drive, and by events.
+//!
+//! What keeps the ratio above 1: some 2 us a run for what begins and ends one, and 20 to 30 ns a step. Of these the
+//! search for stops and breaks is at most 2; the rest shows in a profile as a few here and there (touch, segment,
+//! window, budgets, the series as a call of its own), and a twentieth either way by how the compiler lays out the loop.
+//!
+//! Then what is asked for, or stands in the scene without an effect, against the same scene without it. A ratio is
+//! the median over pairs run in turn.
 
 mod by_hand;
 mod shared;

@@ -90,7 +90,8 @@ impl Problem {
     }
 
     fn fly<const DRIVEN: bool, const COUNT: bool>(&self, amplitude: f64, frequency: f64) -> End {
-        let &Self { linear, cubic, damping, period, order, .. } = self;
+        let &Self { linear, cubic, damping, period, .. } = self;
+        let order = self.order.min(ROOM - 2);
         let omega = TAU * frequency;
         let curvature = -(omega * omega);
         let mut inverse = [0.0; ROOM];
@@ -141,17 +142,26 @@ impl Problem {
             let log2 = radius + tolerance_log2 / order as f64;
             let mut h = if log2 < 1000.0 { fast_exp2(log2).min(self.longest) } else { self.longest };
 
+            let mut bound;
             let (h, position, velocity, next) = loop {
                 let last = left <= h;
                 if last {
                     h = left;
                 }
                 let (mut position, mut velocity, mut half) = (0.0, 0.0, 0.0);
-                for c in y[..=order].iter().rev() {
+                bound = 0.0;
+                for c in y[1..=order].iter().rev() {
                     half = half * h + velocity;
                     velocity = velocity * h + position;
                     position = position * h + *c;
+                    if COUNT {
+                        bound = bound * h + c.abs();
+                    }
                 }
+                half = half * h + velocity;
+                velocity = velocity * h + position;
+                position = position * h + y[0];
+                bound *= h; // the mass is never further from where the step starts
                 let acceleration = half + half;
                 let (mut next_cycle, mut next_phase) = (cycle, phase + h);
                 if next_phase >= period {
@@ -186,7 +196,7 @@ impl Problem {
                 h *= 0.5;
             };
             steps += 1;
-            if COUNT {
+            if COUNT && ((y[0] > 0.0) != (position > 0.0) || y[0].abs() <= bound) {
                 crossings += passages(&y[..=order], h, position);
             }
             (x, v) = (position, velocity);
@@ -197,30 +207,18 @@ impl Problem {
 }
 
 /// Passages of 0 within a step of length `h` that ends at `end`.
-#[inline]
 fn passages(y: &[f64], h: f64, end: f64) -> u64 {
     let mut scaled = [0.0; ROOM];
-    let (mut power, mut bound) = (1.0, 0.0);
-    scaled[0] = y[0];
-    for (slot, c) in scaled[1..].iter_mut().zip(&y[1..]) {
+    let mut power = 1.0;
+    let sign = if y[0] < 0.0 { -1.0 } else { 1.0 };
+    for (slot, c) in scaled.iter_mut().zip(y) {
+        *slot = sign * (c * power);
         power *= h;
-        *slot = c * power;
-        bound += slot.abs();
     }
     let passed = (y[0] > 0.0) != (end > 0.0);
-    if !passed && y[0].abs() > bound {
-        return 0;
-    }
-    if y[0] < 0.0 {
-        scaled.iter_mut().for_each(|c| *c = -*c);
-    }
-    let mut count = 0;
-    PolynomialRoots::new(&scaled[..y.len()]).each_sign_change(|_| {
-        count += 1;
-        true
-    });
+    let count = PolynomialRoots::new(&scaled[..y.len()]).count_sign_changes() as u64;
     // The ends decide the parity: rounding may put a root just beyond one.
-    if (count % 2 == 1) == passed { count } else { count.max(1) - 1 + u64::from(passed && count == 0) }
+    if (count % 2 == 1) == passed { count } else { count.checked_sub(1).unwrap_or(1) }
 }
 
 #[inline]
@@ -261,7 +259,7 @@ fn fast_log2(x: f64) -> f64 {
 
 #[inline]
 fn fast_exp2(x: f64) -> f64 {
-    let whole = x.floor();
+    let whole = Scalar::floor(x);
     let f = x - whole;
     let mantissa = 1.0 + f * (0.6565 + 0.3435 * f);
     f64::from_bits(((whole as i64 + 1023).clamp(1, 2046) as u64) << 52) * mantissa

@@ -14,6 +14,9 @@ pub(crate) trait Drive<T: Scalar> {
     /// State carried along a series.
     type Rolling: Default;
 
+    /// From here on all coefficients are 0, and are not added: an addition of nothing takes its time too.
+    const ZERO_FROM: usize = usize::MAX;
+
     /// Fills the first `SEEDED` coefficients of `a`, at `at`.
     fn seed(
         &self,
@@ -95,6 +98,7 @@ pub(crate) struct Still<T> {
 
 impl<T: Scalar> Drive<T> for Still<T> {
     type Rolling = ();
+    const ZERO_FROM: usize = 1;
 
     #[inline]
     fn seed(&self, _: &Clock<T>, _: &Instant<T>, _: usize, a: &mut [T; ROOM], (): &mut ()) {

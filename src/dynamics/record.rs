@@ -192,7 +192,11 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             self.extremes(step, from, to, full);
         }
         if let Some(barrier) = self.barrier {
-            self.crossings(step, barrier);
+            let end_side = side_of(step.x, barrier);
+            let gap = (step.series.y[0] + step.origin) - barrier;
+            if end_side != self.barrier_side || !(gap.abs() > step.bound) {
+                self.crossings(step, gap, end_side);
+            }
         }
         if self.next_strobe.is_some() {
             self.strobes(step);
@@ -253,12 +257,8 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         }
     }
 
-    fn crossings(&mut self, step: &StepView<T>, barrier: T) {
-        let end_side = side_of(step.x, barrier);
-        let gap = (step.series.y[0] + step.origin) - barrier;
-        if end_side == self.barrier_side && gap.abs() > step.bound {
-            return;
-        }
+    /// Takes in the passages of the top within a step that starts `gap` to the right of it and ends on `end_side`.
+    fn crossings(&mut self, step: &StepView<T>, gap: T, end_side: i8) {
         let n = step.series.known;
         let mut g = step.series.scaled(step.whole);
         g[0] = gap;
@@ -269,17 +269,35 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         if self.barrier_side == 0 {
             self.barrier_side = departs; // a start on the top is no crossing
         }
-        let mut found = [T::zero(); super::series::ROOM];
-        let mut count = 0;
-        if departs != self.barrier_side {
-            count = 1; // the top was reached at the end of the last step and is passed now, at 0
-        }
+        // the top was reached at the end of the last step and is passed now, at 0
+        let at_once = usize::from(departs != self.barrier_side);
         if departs < 0 {
             for c in &mut g[first..n] {
                 *c = -*c;
             }
         }
-        PolynomialRoots::new(&g[first..n]).each_sign_change(|s| {
+        let roots = PolynomialRoots::new(&g[first..n]);
+        // The end decides the parity: rounding may put a root just beyond it, or a touch of the top.
+        let passed = end_side != self.barrier_side;
+        let settle = |count: usize| match count % 2 == 1 {
+            odd if end_side == 0 => count - usize::from(odd), // on the top: the next step tells
+            odd if odd == passed => count,
+            _ => count.checked_sub(1).unwrap_or(1),
+        };
+        if !self.instants_matter(step) {
+            let count = settle(at_once + roots.count_sign_changes());
+            if count % 2 == 1 {
+                self.barrier_side = -self.barrier_side;
+            }
+            self.counts.total_crossings += count as u64;
+            if self.in_window(&step.at) {
+                self.counts.crossings += count as u64;
+            }
+            return;
+        }
+        let mut found = [T::zero(); super::series::ROOM];
+        let mut count = at_once;
+        roots.each_sign_change(|s| {
             let t = s * step.whole;
             if t > step.length || count == found.len() {
                 return false;
@@ -288,21 +306,26 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             count += 1;
             true
         });
-        // The end decides the parity: rounding may put a root just beyond it, or a touch of the top.
-        let odd = count % 2 == 1;
-        if end_side == 0 {
-            count -= usize::from(odd); // on the top: the next step tells
-        } else if odd != (end_side != self.barrier_side) {
-            if count > 0 {
-                count -= 1;
-            } else {
-                found[0] = step.length;
-                count = 1;
-            }
+        if count == 0 {
+            found[0] = step.length;
         }
-        for t in &found[..count] {
+        for t in &found[..settle(count)] {
             self.crossing(step, *t);
         }
+    }
+
+    /// Whether it must be known when within the step a crossing happens, not only that it does: events list it, and
+    /// so does what tells the regime; a step cut short or near an end of the window may hold a crossing beyond it.
+    fn instants_matter(&self, step: &StepView<T>) -> bool {
+        // By two lengths: more than rounding can hide.
+        let clear = |border: &Instant<T>| {
+            let left = self.clock.between(&step.at, border);
+            left <= T::zero() || left > step.length + step.length
+        };
+        self.events.is_some()
+            || step.length != step.whole
+            || !(clear(&self.window.0) && clear(&self.window.1))
+            || (self.period > T::zero() && self.in_window(&step.at))
     }
 
     fn crossing(&mut self, step: &StepView<T>, into: T) {

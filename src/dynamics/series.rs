@@ -73,7 +73,7 @@ impl<T: Scalar> Series<T> {
         }
         let f = self.force_coefficient(force, k);
         let drag = damping * T::of((k + 1) as f64) * self.y[k + 1];
-        self.y[k + 2] = -((drag + f) + self.a[k]) * self.inverse[k + 2];
+        self.y[k + 2] = -with_base::<T, D>(drag + f, &self.a, k) * self.inverse[k + 2];
         self.known += 1;
     }
 
@@ -87,19 +87,17 @@ impl<T: Scalar> Series<T> {
         roll: &mut D::Rolling,
     ) {
         let c = force.coefficients();
-        let from = self.known - 2;
-        let Self { y, a, square: squares, nested, inverse, .. } = self;
-        let known = from..order - 1;
+        let Self { y, a, nested, inverse, .. } = self;
+        let known = self.known - 2..order.min(MAX_ORDER) - 1; // the bound spares a look at each index
         match c {
-            [c0] => recur(known, y, a, inverse, damping, drive, roll, |k, _| at_zero(k, *c0)),
+            [c0] => recur(known, y, a, inverse, damping, drive, roll, |k, _| at_zero(k, *c0, T::zero())),
             [c0, c1] => {
-                recur(known, y, a, inverse, damping, drive, roll, |k, y| at_zero(k, *c0) + *c1 * y[k]);
+                recur(known, y, a, inverse, damping, drive, roll, |k, y| at_zero(k, *c0, *c1 * y[k]));
             }
             [_, c1, _, c3] if force.is_odd() => {
                 let row = &mut nested[0];
                 recur(known, y, a, inverse, damping, drive, roll, |k, y| {
-                    squares[k] = square(y, k);
-                    row[k] = *c3 * squares[k] + at_zero(k, *c1);
+                    row[k] = at_zero(k, *c1, *c3 * square(y, k));
                     convolve(row, y, k)
                 });
             }
@@ -153,10 +151,13 @@ impl<T: Scalar> Series<T> {
     pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
         let order = self.known - 1;
         let mut radius = f64::INFINITY;
-        for j in order.saturating_sub(3).max(2)..=order {
-            let size = self.y[j].to_f64().abs() * j as f64;
+        let first = order.saturating_sub(3).max(2);
+        let mut power = first as f64;
+        for c in &self.y[first..=order] {
+            let size = c.to_f64().abs() * power;
+            power += 1.0;
             if size > 1e-300 {
-                radius = radius.min((speed_log2 - fast_log2(size)) / (j - 1) as f64);
+                radius = radius.min((speed_log2 - fast_log2(size)) / (power - 2.0));
             } else if !size.is_finite() {
                 return f64::NAN;
             }
@@ -258,10 +259,16 @@ impl<T: Scalar> Series<T> {
     }
 }
 
-/// `value` in the constant term, 0 elsewhere.
+/// `rest`, and `value` in the constant term: elsewhere nothing is added, not a 0, on which the next would wait.
 #[inline(always)]
-fn at_zero<T: Number>(k: usize, value: T) -> T {
-    if k == 0 { value } else { T::zero() }
+fn at_zero<T: Number>(k: usize, value: T, rest: T) -> T {
+    if k == 0 { rest + value } else { rest }
+}
+
+/// `sum` and coefficient `k` of the base's acceleration, where it may be other than 0.
+#[inline(always)]
+fn with_base<T: Scalar, D: Drive<T>>(sum: T, a: &[T; ROOM], k: usize) -> T {
+    if k < D::ZERO_FROM { sum + a[k] } else { sum }
 }
 
 /// The recurrence of the equation of motion over the orders `known`, the force's coefficients by `force`.
@@ -283,7 +290,7 @@ fn recur<T: Scalar, D: Drive<T>>(
         }
         let f = force(k, y);
         let drag = damping * T::of((k + 1) as f64) * y[k + 1];
-        y[k + 2] = -((drag + f) + a[k]) * inverse[k + 2];
+        y[k + 2] = -with_base::<T, D>(drag + f, a, k) * inverse[k + 2];
     }
 }
 
@@ -331,7 +338,7 @@ pub(crate) fn fast_log2(x: f64) -> f64 {
 /// 2^x to 0.3 %, for |x| below 1000, for step sizes only.
 #[inline]
 pub(crate) fn fast_exp2(x: f64) -> f64 {
-    let whole = x.floor();
+    let whole = Scalar::floor(x);
     let f = x - whole;
     let mantissa = 1.0 + f * (0.6565 + 0.3435 * f);
     f64::from_bits(((whole as i64 + 1023).clamp(1, 2046) as u64) << 52) * mantissa

@@ -60,7 +60,13 @@ impl<T: Scalar> Tone<T> {
     /// Value and time derivative per unit amplitude.
     #[inline]
     pub fn unit(&self, at: &Instant<T>) -> (T, T) {
-        let turns = at.phase * self.frequency + (T::of(self.ratio.fraction(at.cycle)) + self.phase);
+        self.after(at.phase, T::of(self.ratio.fraction(at.cycle)) + self.phase)
+    }
+
+    /// The same where the tone is `start` turns in at phase 0 of the cycle.
+    #[inline]
+    fn after(&self, phase: T, start: T) -> (T, T) {
+        let turns = phase * self.frequency + start;
         let (s, c) = T::sin_cos_turns(turns);
         let omega = T::tau() * self.frequency;
         if self.quarter { (c, -(s * omega)) } else { (s, c * omega) }
@@ -91,6 +97,14 @@ pub(crate) struct Sine<T> {
     pub tone: Tone<T>,
 }
 
+impl<T: Scalar> Sine<T> {
+    /// Value and time derivative per unit amplitude: each cycle begins at the same turn.
+    #[inline]
+    fn unit(&self, at: &Instant<T>) -> (T, T) {
+        self.tone.after(at.phase, self.tone.phase)
+    }
+}
+
 impl<T: Scalar> Drive<T> for Sine<T> {
     /// Where the tone was last evaluated, and what it was: a step begins where the check of the last one looked.
     type Rolling = Option<(Instant<T>, (T, T))>;
@@ -99,7 +113,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
     fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Rolling) {
         let (s, d) = match last {
             Some((when, unit)) if when == at => *unit,
-            _ => self.tone.unit(at),
+            _ => self.unit(at),
         };
         let w = self.tone.curvature();
         a[0] = self.tone.amplitude * s;
@@ -122,7 +136,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         _: impl Fn() -> T,
         last: &mut Self::Rolling,
     ) -> T {
-        let unit = self.tone.unit(at);
+        let unit = self.unit(at);
         *last = Some((*at, unit));
         self.tone.amplitude * unit.0
     }

@@ -22,8 +22,11 @@ impl<T: Scalar> GaussLegendre<T> {
     pub fn new(points: usize) -> Self {
         let points = points.clamp(1, MOST_POINTS);
         let mut rule = Self { points, nodes: [T::zero(); MOST_POINTS], weights: [T::zero(); MOST_POINTS] };
+        let (x, slope) = roots::<T>(points, 0, points);
+        let (one, half) = (T::of(1.0), T::of(0.5));
         for i in 0..points {
-            (rule.nodes[i], rule.weights[i]) = point_and_weight(points, i);
+            rule.nodes[i] = half - half * x[i];
+            rule.weights[i] = one / ((one - x[i] * x[i]) * slope[i] * slope[i]);
         }
         rule
     }
@@ -39,34 +42,44 @@ impl<T: Scalar> GaussLegendre<T> {
     }
 }
 
-/// Point `i` of `points` on \[0, 1], ascending, and its weight.
-fn point_and_weight<T: Scalar>(points: usize, i: usize) -> (T, T) {
-    let (one, half) = (T::of(1.0), T::of(0.5));
-    let angle = std::f64::consts::PI * (i as f64 + 0.75) / (points as f64 + 0.5);
-    let mut x = T::of(angle.cos());
-    let mut slope = one;
-    for _ in 0..8 {
-        let (mut value, mut before) = (one, T::zero());
-        for n in 1..=points {
-            let next =
-                (T::of((2 * n - 1) as f64) * x * value - T::of((n - 1) as f64) * before) / T::of(n as f64);
-            (before, value) = (value, next);
-        }
-        slope = T::of(points as f64) * (x * value - before) / (x * x - one);
-        x -= value / slope;
+/// The `count` roots from number `first` of the Legendre polynomial of degree `points`, descending from 1 to -1, and its
+/// slope at each. At most [`MOST_POINTS`] at a time.
+fn roots<T: Scalar>(points: usize, first: usize, count: usize) -> ([T; MOST_POINTS], [T; MOST_POINTS]) {
+    let one = T::of(1.0);
+    let mut x = [one; MOST_POINTS];
+    for (i, x) in x[..count].iter_mut().enumerate() {
+        let place = (first + i) as f64 + 0.75;
+        *x = T::of((std::f64::consts::PI * place / (points as f64 + 0.5)).cos());
     }
-    (half - half * x, one / ((one - x * x) * slope * slope))
+    // All at once: one by one, each division waits for the last.
+    let mut slope = [one; MOST_POINTS];
+    for _ in 0..8 {
+        let (mut value, mut before) = ([one; MOST_POINTS], [T::zero(); MOST_POINTS]);
+        for n in 1..=points {
+            let (twice, less, whole) = (T::of((2 * n - 1) as f64), T::of((n - 1) as f64), T::of(n as f64));
+            for ((value, before), x) in value[..count].iter_mut().zip(&mut before).zip(&x) {
+                let next = (twice * *x * *value - less * *before) / whole;
+                (*before, *value) = (*value, next);
+            }
+        }
+        for i in 0..count {
+            slope[i] = T::of(points as f64) * (x[i] * value[i] - before[i]) / (x[i] * x[i] - one);
+            x[i] -= value[i] / slope[i];
+        }
+    }
+    (x, slope)
 }
 
 /// The half of a rule with 2 `half` points on \[-1, 1] that lies at x > 0: its points, descending, and weights,
 /// whose sum is 1. It integrates an even function from 0 to 1, exactly up to degree 4 `half` - 1.
 pub fn even_half(half: usize) -> Vec<(f64, f64)> {
-    (0..half)
-        .map(|i| {
-            let (node, weight) = point_and_weight::<f64>(2 * half, i);
-            (1.0 - 2.0 * node, 2.0 * weight)
-        })
-        .collect()
+    let mut rule = Vec::with_capacity(half);
+    for first in (0..half).step_by(MOST_POINTS) {
+        let count = MOST_POINTS.min(half - first);
+        let (x, slope) = roots::<f64>(2 * half, first, count);
+        rule.extend((0..count).map(|i| (x[i], 2.0 / ((1.0 - x[i] * x[i]) * slope[i] * slope[i]))));
+    }
+    rule
 }
 
 #[cfg(test)]

@@ -17,6 +17,22 @@ pub const MAX_DEGREE: usize = 39;
 const COEFFICIENTS: usize = MAX_DEGREE + 1;
 const MAX_DEPTH: u32 = 36;
 
+/// BINOMIALS\[n\]\[k\] = n over k, exact: all are below 2^53.
+static BINOMIALS: [[f64; COEFFICIENTS]; COEFFICIENTS] = {
+    let mut rows = [[0.0; COEFFICIENTS]; COEFFICIENTS];
+    let mut n = 0;
+    while n < COEFFICIENTS {
+        rows[n][0] = 1.0;
+        let mut k = 1;
+        while k <= n {
+            rows[n][k] = rows[n - 1][k - 1] + rows[n - 1][k];
+            k += 1;
+        }
+        n += 1;
+    }
+    rows
+};
+
 /// A polynomial on [0, 1], sum g\[k\] s^k, as something to find sign changes in.
 ///
 /// A value of exactly 0 counts as negative throughout: a root at the very end of an interval belongs to
@@ -68,6 +84,23 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     /// Calls `visit` with every s in (0, 1] where the polynomial changes sign, in ascending order, until
     /// it returns false.
     pub fn each_sign_change(&self, mut visit: impl FnMut(T) -> bool) {
+        self.each_bracket(|low, high| visit(self.polish(low, high)));
+    }
+
+    /// How often it changes sign in (0, 1]: what [`Self::each_sign_change`] visits, without locating it.
+    pub fn count_sign_changes(&self) -> usize {
+        let mut count = 0;
+        self.each_bracket(|_, _| {
+            count += 1;
+            true
+        });
+        count
+    }
+
+    /// Calls `visit` with the ends of an interval around each sign change, in ascending order, until it returns
+    /// false.
+    #[inline]
+    fn each_bracket(&self, mut visit: impl FnMut(T, T) -> bool) {
         let zero = T::zero();
         let g = self.g;
         if g.len() < 2 {
@@ -90,16 +123,14 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         if most_slope < zero || least_slope > zero {
             // Monotone: the end decides.
             if (self.value(T::of(1.0)) > zero) != (g[0] > zero) {
-                visit(self.polish(zero, T::of(1.0)));
+                visit(zero, T::of(1.0));
             }
             return;
         }
         let n = g.len() - 1;
         let mut b = [zero; COEFFICIENTS];
-        let mut binomial = 1.0;
-        for k in 0..=n {
-            b[k] = g[k] / T::of(binomial);
-            binomial = binomial * (n - k) as f64 / (k + 1) as f64;
+        for ((b, c), binomial) in b.iter_mut().zip(g).zip(&BINOMIALS[n]) {
+            *b = *c / T::of(*binomial);
         }
         for i in 1..=n {
             for j in (i..=n).rev() {
@@ -117,7 +148,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         low: T,
         width: T,
         depth: u32,
-        visit: &mut impl FnMut(T) -> bool,
+        visit: &mut impl FnMut(T, T) -> bool,
     ) -> bool {
         let zero = T::zero();
         let n = self.g.len() - 1;
@@ -127,7 +158,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         }
         if changes == 1 || depth == MAX_DEPTH {
             if changes % 2 == 1 {
-                return visit(self.polish(low, low + width));
+                return visit(low, low + width);
             }
             return true; // a touch
         }
@@ -206,6 +237,7 @@ mod tests {
             found.push(s);
             true
         });
+        assert_eq!(PolynomialRoots::new(g).count_sign_changes(), found.len());
         found
     }
 

@@ -1,6 +1,6 @@
 //! Any scene: what must hold of every run, whatever it does.
 
-use interwell::dynamics::{Event, EventKind, Model, Outcome, Phase, Run, Side};
+use interwell::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Run, Side};
 use interwell::scene::{Damping, Excitation, Mechanism, Scene, Start, Stops};
 use proptest::prelude::*;
 
@@ -81,6 +81,9 @@ pub fn assert_sound(scene: &Scene, model: &Model, run: &Run, ledger_factor: f64)
     assert_eq!(summary.total_impacts, count(EventKind::Impact));
     assert_eq!(summary.total_crossings, count(EventKind::Crossing));
     assert_eq!(summary.rests, count(EventKind::Rest));
+    // Counted without being listed they are as many.
+    let unlisted = model.run(&Request::default()).summary;
+    assert_eq!((unlisted.crossings, unlisted.total_crossings), (summary.crossings, summary.total_crossings));
     // Closed relative to what was moved, or, where that is far below the scene's own scales, to those.
     let ledger = summary.ledger.unwrap();
     let allowed = ledger_factor * model.tolerance;
