@@ -66,10 +66,26 @@ pub fn run(options: Options) -> Result<(), Failure> {
         (None, true, Some(word)) => Err(Failure::argument(format!(
             "--headless needs a command before `{word}`: {commands}; see interwell --help"
         ))),
-        (None, false, _) => Err(Failure::argument(format!(
-            "this build has no window: use interwell --headless with {commands}; see interwell --help"
-        ))),
+        (None, false, scene) => window(scene.as_deref()),
     }
+}
+
+/// Opens the window.
+#[cfg(feature = "app")]
+fn window(scene: Option<&str>) -> Result<(), Failure> {
+    use interwell::app::AppError;
+    interwell::app::run(scene).map_err(|error| match error {
+        AppError::Scene(error) => error.into(),
+        AppError::NoWindow(_) => Failure::Failed(error.into()),
+    })
+}
+
+#[cfg(not(feature = "app"))]
+fn window(_: Option<&str>) -> Result<(), Failure> {
+    Err(Failure::argument(
+        "this build has no window: use interwell --headless with presets, check, curve, simulate or sweep; \
+         see interwell --help",
+    ))
 }
 
 /// Prints a line on standard error; where that is closed there is no one to tell.

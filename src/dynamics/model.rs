@@ -170,6 +170,11 @@ impl Model {
         self.stops.map_or((None, None), |pair| (at(pair.left), at(pair.right)))
     }
 
+    /// Whether the base moves at all.
+    pub fn is_shaken(&self) -> bool {
+        !self.drive.is_still()
+    }
+
     /// Begin of the settled window in s.
     pub fn settle(&self) -> f64 {
         self.settle

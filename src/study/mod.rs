@@ -24,7 +24,7 @@ pub use curve::{
 pub use grid::{Grid, GridError, MAX_CELLS};
 pub use inspect::inspect;
 pub use map::{first_interwell, release_line};
-pub use settled::{Settled, Thresholds, settled, thresholds};
+pub use settled::{Settled, Standing, Thresholds, settled, standing, thresholds};
 pub use simulate::{Keep, Sampling, Simulation, sample_times, simulate};
 pub use sweep::{CellFaults, Sweep, SweepEnd, Tally};
 pub use table::{Column, Table, Values};

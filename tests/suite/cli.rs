@@ -283,7 +283,7 @@ fn options_stand_anywhere_and_values_may_be_negative() {
     after.assert().success().stdout(right);
     let shifted = "simulate elastic-box --set start.x_mm=-3 --at 0";
     headless(shifted).assert().success().stdout(contains("\n0,-0.003,").or(contains("\n0,-3e-3,")));
-    headless("presets --out -").assert().success().stdout(starts_with("paper"));
+    headless("presets --out -").assert().success().stdout(starts_with("first-look"));
 }
 
 #[test]
