@@ -36,7 +36,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, style: &Style, more: &mut b
 /// Shaking and stops as one row, where room is short. Whether something changed.
 pub fn row_ui(ui: &mut Ui, session: &mut Session, style: &Style, more: &mut bool) -> bool {
     ui.horizontal(|ui| {
-        let width = ((ui.available_width() - 430.0) * 0.5).clamp(60.0, 260.0);
+        let width = ((ui.available_width() - 520.0) * 0.5).clamp(60.0, 260.0);
         heading_ui(ui, "Shaking");
         let mut changed = shaking_ui(ui, session, width);
         ui.separator();

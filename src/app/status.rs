@@ -71,6 +71,9 @@ impl Sentence {
 /// Speed in mm/s: whole, below 10 with one decimal.
 pub fn speed(m_per_s: f64) -> String {
     let mm = m_per_s * 1e3;
+    if mm > 0.0 && mm < 0.05 {
+        return "below 0.1".to_owned();
+    }
     if mm < 9.95 { format!("{mm:.1}") } else { format!("{mm:.0}") }
 }
 
@@ -180,16 +183,24 @@ pub fn unshaken(model: &Model, state: &Sample) -> Sentence {
 struct Words {
     stays: &'static str,
     leaves: &'static str,
+    falls: &'static str,
     crosses: &'static str,
     swings: &'static str,
     hits: &'static str,
 }
 
-const NOW: Words =
-    Words { stays: "stays", leaves: "leaves", crosses: "crosses", swings: "swings", hits: "hits" };
+const NOW: Words = Words {
+    stays: "stays",
+    leaves: "leaves",
+    falls: "falls",
+    crosses: "crosses",
+    swings: "swings",
+    hits: "hits",
+};
 const SOON: Words = Words {
     stays: "will stay",
     leaves: "will leave",
+    falls: "fall",
     crosses: "will cross",
     swings: "will swing",
     hits: "hit",
@@ -268,8 +279,8 @@ pub fn driven(
             };
             let impacts = per_period(summary.impacts);
             let text = format!(
-                "Hopping: {} the {side} stop {every} and falls back, never crossing; {rms_text}, {impacts:.0} impacts a period.",
-                words.leaves
+                "Hopping: {} the {side} stop {every} and {} back, never crossing; {rms_text}, {impacts:.0} impacts a period.",
+                words.leaves, words.falls
             );
             Sentence::new(Kind::Intrawell, text)
         }

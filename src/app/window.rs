@@ -15,7 +15,7 @@ use super::menu::{self, Command};
 use super::player::SPEEDS;
 use super::session::Session;
 use super::settings::Settings;
-use super::style::{self, COMPACT_BELOW, PROJECTOR_ZOOM, STATUS, STATUS_COMPACT, Style};
+use super::style::{self, BODY, COMPACT_BELOW, PROJECTOR_ZOOM, STATUS, STATUS_COMPACT, Style};
 use super::task::{Latest, Wake};
 use super::transport::{self, EVENT_AHEAD};
 use super::views::{self, Memory, Span, View, ViewContext};
@@ -136,7 +136,7 @@ impl Window {
         });
         if !self.covered {
             let height = if compact { 40.0 } else { 44.0 };
-            Panel::top("status").frame(line).min_size(height).show(ui, |ui| {
+            Panel::top("status").frame(line).exact_size(height).show(ui, |ui| {
                 status_ui(ui, &self.session, &style, compact);
             });
         }
@@ -176,6 +176,7 @@ impl Window {
             reduce_motion: self.settings.reduce_motion,
             covered: self.covered,
         };
+        ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
         let Some(view) = self.filled else {
             self.tiling.ui(ui, &mut context, &mut self.filled);
             return;
@@ -309,19 +310,27 @@ fn status_ui(ui: &mut Ui, session: &Session, style: &Style, compact: bool) {
             size * 0.42,
             style.kind(sentence.kind),
         ));
-        let settling = session
-            .settling()
-            .map(|(gone, of)| format!("settling after your change: {gone} of {of} periods"));
-        let text = RichText::new(sentence.whole()).size(size);
+        let settling = session.settling().map(|(gone, of)| format!("settling: {gone} of {of} periods"));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if let Some(settling) = settling {
-                ui.label(RichText::new(settling).color(style.faint()));
+                let hover = "How far the motion has settled since your last change";
+                ui.label(RichText::new(settling).color(style.faint())).on_hover_text(hover);
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                ui.add(egui::Label::new(text).wrap());
+                let text = sentence.whole();
+                let size = fitted(ui, &text, size);
+                ui.add(egui::Label::new(RichText::new(text).size(size)).wrap());
             });
         });
     });
+}
+
+/// The size at which a text stands in one line, or the smallest one, at which it takes two.
+fn fitted(ui: &Ui, text: &str, size: f32) -> f32 {
+    let font = egui::FontId::proportional(size);
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER);
+    let share = ui.available_width() / galley.size().x.max(1.0);
+    (size * share.min(1.0) - 0.05).clamp(BODY.min(size), size)
 }
 
 impl eframe::App for Window {

@@ -40,8 +40,11 @@ pub fn parse() -> Result<Options, ExitCode> {
     })
 }
 
-/// Does what was asked for.
-pub fn run(options: Options) -> Result<(), Failure> {
+/// Does what was asked for; `window` is what opens the window on a scene.
+pub fn run(
+    options: Options,
+    window: impl FnOnce(Option<&str>) -> Result<(), Failure>,
+) -> Result<(), Failure> {
     let Options { headless, scene, command } = options;
     let commands = "presets, check, curve, simulate or sweep";
     match (command, headless, scene) {
@@ -68,24 +71,6 @@ pub fn run(options: Options) -> Result<(), Failure> {
         ))),
         (None, false, scene) => window(scene.as_deref()),
     }
-}
-
-/// Opens the window.
-#[cfg(feature = "app")]
-fn window(scene: Option<&str>) -> Result<(), Failure> {
-    use interwell::app::AppError;
-    interwell::app::run(scene).map_err(|error| match error {
-        AppError::Scene(error) => error.into(),
-        AppError::NoWindow(_) => Failure::Failed(error.into()),
-    })
-}
-
-#[cfg(not(feature = "app"))]
-fn window(_: Option<&str>) -> Result<(), Failure> {
-    Err(Failure::argument(
-        "this build has no window: use interwell --headless with presets, check, curve, simulate or sweep; \
-         see interwell --help",
-    ))
 }
 
 /// Prints a line on standard error; where that is closed there is no one to tell.

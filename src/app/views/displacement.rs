@@ -1,11 +1,12 @@
 //! Displacement over time: it scrolls, rests are shaded, impacts are ticks, stops are lines.
 
 use eframe::egui::{self, Ui, vec2};
-use egui_plot::{HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
+use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
 
 use crate::dynamics::{EventKind, Phase, Sample};
 
 use super::ViewContext;
+use super::span::ticks;
 
 /// Forcing periods that are shown; without a period swings of the scene's own time scale.
 const PERIODS: f64 = 6.0;
@@ -52,13 +53,21 @@ pub fn displacement_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         .allow_axis_zoom_drag(false)
         .allow_double_click_reset(false)
         .show_background(false)
+        .show_grid(false)
+        .x_grid_spacer(|_| marks(from.max(0.0), to, 5.0))
+        .y_grid_spacer(|_| marks(low, high, 6.0))
         .x_axis_label("time (s)")
         .y_axis_label("displacement (mm)")
         .set_margin_fraction(vec2(0.0, 0.0))
+        .x_axis_formatter(|mark, _| plain(mark))
+        .y_axis_formatter(|mark, _| plain(mark))
         .label_formatter(|_| None)
         .show_crosshair(false)
         .show(ui, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
+            for mark in marks(low, high, 6.0) {
+                plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
+            }
             for (begin, end) in rests {
                 let span = Span::new("at rest", begin..=end).fill(style.rest_shade());
                 plot.span(span.border(egui::Stroke::NONE).label_align(egui::Align2::CENTER_TOP));
@@ -82,6 +91,19 @@ pub fn displacement_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         .response
         .on_hover_text("Displacement of the mass from the middle. Grey: at rest on a stop. Ticks: impacts.");
     false
+}
+
+/// Round numbers for an axis, some `count` of them.
+fn marks(low: f64, high: f64, count: f64) -> Vec<GridMark> {
+    let (values, _) = ticks(low, high, count);
+    let step_size = values.windows(2).next().map_or(1.0, |pair| (pair[1] - pair[0]) * 1e3);
+    values.iter().map(|value| GridMark { value: value * 1e3, step_size }).collect()
+}
+
+/// A tick's number, with the decimals that tell it from the next one.
+fn plain(mark: GridMark) -> String {
+    let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{:.decimals$}", mark.value + 0.0)
 }
 
 /// From when to when the mass rests.

@@ -40,22 +40,17 @@ pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let x = context.span.screen_from_world(state.x, rect);
     let (top, bottom) = (rect.top() + 24.0, rect.bottom() - 12.0);
     let middle = (top + bottom) * 0.5;
-    let half = vec2(30.0, ((bottom - top) * 0.11).clamp(9.0, 22.0));
+    // as wide as the ball on the well, so that it touches the stops when it should
+    let half = vec2(BALL, ((bottom - top) * 0.2).clamp(12.0, 40.0));
     frame(&painter, context, rect, top, bottom);
     flexures(&painter, context, rect, (x, middle, half), (top, bottom));
     let body = Rect::from_center_size(pos2(x, middle), half * 2.0);
-    painter.rect(
-        body,
-        5.0,
-        style.mass().gamma_multiply(0.55),
-        Stroke::new(1.5, style.mass_edge()),
-        egui::StrokeKind::Middle,
-    );
-    let wall = (bottom - top) * 0.16;
+    let edge = Stroke::new(1.5, style.mass_edge());
+    painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
+    let wall = half.y * 0.8;
     let mut changed = stops_ui(ui, context, rect, middle - wall, middle + wall);
     changed |= mass_ui(ui, context, pos2(x, middle), rect);
     let painter = ui.painter().with_clip_rect(area);
-    painter.circle(pos2(x, middle), BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     rings(ui, context, rect, middle);
     push_arrow(&painter, context, pos2(x, middle - half.y - 10.0), state.base_accel, rect);
     inset(&painter, context, rect, state.base_accel);
@@ -102,7 +97,7 @@ fn flexures(
         };
         Shape::line((0..=FLEXURE_POINTS).map(point).collect(), stroke)
     };
-    for side in [-0.7, 0.7] {
+    for side in [-0.6, 0.6] {
         let foot = pos2(zero + side * half.x, bottom - 4.0);
         painter.add(shape(foot, pos2(x + side * half.x, middle + half.y), 0.0));
     }

@@ -86,7 +86,7 @@ impl Span {
 }
 
 /// Round numbers from `low` to `high`, some `count` of them, in thousandths of the unit given, and decimals to write them.
-fn ticks(low: f64, high: f64, count: f64) -> (Vec<f64>, usize) {
+pub(super) fn ticks(low: f64, high: f64, count: f64) -> (Vec<f64>, usize) {
     let rough = (high - low) / count.max(1.0);
     let power = 10_f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= rough).unwrap_or(rough);

@@ -40,13 +40,9 @@ pub fn stops_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, top: f32
             changed |=
                 context.session.edit(|scene| put_side(&mut scene.stops, way > 0.0, distance.max(0.05)));
             let text = format!("{distance:.2} mm");
-            painter.text(
-                pos2(wall.center().x, top - 2.0),
-                egui::Align2::CENTER_BOTTOM,
-                text,
-                style.body(),
-                style.ink(),
-            );
+            let align = if way > 0.0 { egui::Align2::LEFT_TOP } else { egui::Align2::RIGHT_TOP };
+            let at = pos2(x + way * (WALL + 5.0), top);
+            painter.text(at, align, text, style.body(), style.ink());
         }
         if response.drag_stopped() {
             context.session.end_gesture();

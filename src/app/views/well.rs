@@ -15,6 +15,9 @@ use super::stops::stops_ui;
 /// Points between two points of a curve.
 const CURVE_STEP: f32 = 2.0;
 
+/// Height in points of the legend over the picture.
+const LEGEND: f32 = 22.0;
+
 /// Pushes in g that the vertical range has room for.
 const ROOMS: [f64; 14] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.6, 1.0, 1.5, 2.2, 3.2, 5.0, 10.0, 20.0];
 
@@ -25,7 +28,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         return false;
     }
     let style = context.style;
-    let rect = Rect::from_min_max(area.min + vec2(0.0, 4.0), area.max - vec2(0.0, 22.0));
+    let rect = Rect::from_min_max(area.min + vec2(0.0, LEGEND), area.max - vec2(0.0, 22.0));
     let painter = ui.painter().with_clip_rect(area);
     painter.rect_filled(area, 0.0, style.ground());
     let axis = Heights::of(ui, context, rect);
@@ -67,12 +70,12 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         }
     }
     let ball = height(state.x, tilt) - vec2(0.0, BALL);
-    let (top, bottom) = (rect.top() + 14.0, rect.bottom());
+    let (top, bottom) = (rect.top() + 4.0, rect.bottom());
     let mut changed = stops_ui(ui, context, rect, top, bottom);
     changed |= mass_ui(ui, context, ball, rect);
     let painter = ui.painter().with_clip_rect(rect);
     painter.circle(ball, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
-    legend(&painter, context, rect);
+    legend(&ui.painter().with_clip_rect(area), context, area);
     changed
 }
 
@@ -164,16 +167,17 @@ fn x_axis(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
     }
 }
 
-fn legend(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
+fn legend(painter: &egui::Painter, context: &ViewContext<'_>, area: Rect) {
     let style = context.style;
     let entries = [
         (style.tray_stroke(), "potential, tipped by the base's push"),
         (style.ghost_stroke(), "potential of the mechanism"),
     ];
-    for (i, (stroke, text)) in entries.into_iter().enumerate() {
-        let y = rect.top() + 10.0 + 16.0 * i as f32;
-        let x = rect.center().x - 118.0;
+    let (mut x, y) = (area.left() + 10.0, area.top() + 0.5 * LEGEND);
+    for (stroke, text) in entries {
         painter.line_segment([pos2(x, y), pos2(x + 22.0, y)], stroke);
-        painter.text(pos2(x + 28.0, y), Align2::LEFT_CENTER, text, style.small(), style.faint());
+        let at = pos2(x + 28.0, y);
+        let written = painter.text(at, Align2::LEFT_CENTER, text, style.small(), style.faint());
+        x = written.right() + 20.0;
     }
 }
