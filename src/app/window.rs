@@ -253,7 +253,11 @@ impl Window {
                 self.filled = None;
             }
             Command::Show(view, shown) => self.tiling.show(view, shown),
-            Command::Fill => self.filled = if self.filled.is_some() { None } else { Some(View::Well) },
+            // the view under the pointer
+            Command::Fill => {
+                let wanted = self.memory.hovered.unwrap_or(View::Well);
+                self.filled = if self.filled.is_some() { None } else { Some(wanted) };
+            }
             Command::Cover => self.covered = !self.covered,
             Command::FullScreen => {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));

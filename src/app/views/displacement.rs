@@ -69,8 +69,8 @@ pub fn displacement_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
                 plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
             }
             for (begin, end) in rests {
-                let span = Span::new("at rest", begin..=end).fill(style.rest_shade());
-                plot.span(span.border(egui::Stroke::NONE).label_align(egui::Align2::CENTER_TOP));
+                let span = Span::new("", begin..=end).fill(style.rest_shade());
+                plot.span(span.border(egui::Stroke::NONE));
             }
             for stop in [left, right].into_iter().flatten() {
                 plot.hline(

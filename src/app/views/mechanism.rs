@@ -17,6 +17,9 @@ use super::well::mass_ui;
 /// Points of a drawn flexure.
 const FLEXURE_POINTS: usize = 24;
 
+/// Length in points of an arrow's head.
+const ARROW_HEAD: f32 = 12.0;
+
 /// A ring that grows and fades.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ring {
@@ -118,11 +121,18 @@ fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, from: Pos2, ba
     let tail = (from.x - 0.5 * length).clamp(shown.left(), shown.right());
     let tip = (tail + length).clamp(shown.left(), shown.right());
     if length.abs() > 3.0 {
-        painter.arrow(pos2(tip - length, from.y), vec2(length, 0.0), style.arrow_stroke());
+        let (stroke, y) = (style.arrow_stroke(), from.y);
+        let head = ARROW_HEAD.min(length.abs()) * length.signum();
+        painter.line_segment([pos2(tip - length, y), pos2(tip - 0.5 * head, y)], stroke);
+        let points = vec![pos2(tip, y), pos2(tip - head, y - 6.0), pos2(tip - head, y + 6.0)];
+        painter.add(Shape::convex_polygon(points, stroke.color, Stroke::NONE));
     }
     let text = format!("push {:.2} g", (base_accel / STANDARD_GRAVITY).abs());
+    let galley = painter.layout_no_wrap(text, style.small(), style.base());
     let middle = from.x.clamp(shown.left() + 36.0, shown.right() - 36.0);
-    painter.text(pos2(middle, from.y - 7.0), Align2::CENTER_BOTTOM, text, style.small(), style.base());
+    let place = Align2::CENTER_BOTTOM.anchor_size(pos2(middle, from.y - 8.0), galley.size());
+    painter.rect_filled(place.expand(1.5), 2.0, style.ground());
+    painter.galley(place.min, galley, style.base());
 }
 
 /// The base's own motion at its own scale, for a sine, whose displacement is -a/(2 pi f)^2.

@@ -71,12 +71,17 @@ pub struct Memory {
     seen_to: f64,
     /// The push in m/s^2 that the well makes room for.
     room_for: f64,
+    /// The view under the pointer.
+    pub hovered: Option<View>,
     /// Time span of the displacement in s, where a person has chosen one.
     pub time_window: Option<f64>,
 }
 
 /// Draws one view. Whether it changed something.
 pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
+    if ui.rect_contains_pointer(ui.max_rect()) {
+        context.memory.hovered = Some(view);
+    }
     match view {
         View::Mechanism => mechanism::mechanism_ui(ui, context),
         View::Well => well::well_ui(ui, context),
