@@ -142,21 +142,18 @@ fn inset(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, base_ac
     };
     let rate = std::f64::consts::TAU * frequency_hz;
     let (swing, place) = (amplitude_g.abs() * STANDARD_GRAVITY / (rate * rate), -base_accel / (rate * rate));
-    if !(swing > 0.0 && swing.is_finite()) || rect.width() < 330.0 {
+    if !(swing > 0.0 && swing.is_finite()) || rect.width() < 520.0 {
         return;
     }
     let style = context.style;
-    let size = vec2(120.0, 34.0);
-    let own = Rect::from_min_size(pos2(rect.right() - size.x - 12.0, rect.bottom() - size.y - 20.0), size);
-    painter.rect_filled(own, 3.0, style.ground());
-    painter.rect_stroke(own, 3.0, style.grid_stroke(), egui::StrokeKind::Inside);
-    let track = own.center() + vec2(0.0, 8.0);
-    let half = own.width() * 0.5 - 16.0;
-    painter.line_segment([track - vec2(half, 0.0), track + vec2(half, 0.0)], style.grid_stroke());
+    let half = 34.0;
+    let track = pos2(rect.right() - half - 20.0, rect.top() + 11.0);
+    painter.line_segment([track - vec2(half, 0.0), track + vec2(half, 0.0)], style.ghost_stroke());
     let at = track + vec2((place / swing) as f32 * half, 0.0);
-    painter.rect_filled(Rect::from_center_size(at, vec2(16.0, 9.0)), 2.0, style.base());
+    painter.rect_filled(Rect::from_center_size(at, vec2(14.0, 9.0)), 2.0, style.base());
     let text = format!("base: ±{:.1} mm", swing * 1e3);
-    painter.text(own.center_top() + vec2(0.0, 3.0), Align2::CENTER_TOP, text, style.small(), style.faint());
+    let left = track - vec2(half + 14.0, 0.0);
+    painter.text(left, Align2::RIGHT_CENTER, text, style.small(), style.base());
 }
 
 /// Impacts since the last frame begin a ring, one at a time a side; rings under way are drawn.

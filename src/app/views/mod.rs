@@ -69,8 +69,6 @@ pub struct Memory {
     rings: [Option<mechanism::Ring>; 2],
     /// The time up to which impacts have been looked at.
     seen_to: f64,
-    /// The push in m/s^2 that the well makes room for.
-    room_for: f64,
     /// The view under the pointer.
     pub hovered: Option<View>,
     /// Time span of the displacement in s, where a person has chosen one.

@@ -107,10 +107,9 @@ struct Heights {
 
 impl Heights {
     /// From a little below the deepest to a little above the highest place that the mass gets to.
-    fn of(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect) -> Self {
+    fn of(ui: &Ui, context: &ViewContext<'_>, rect: Rect) -> Self {
         let push = context.session.largest_push();
         let room = ROOMS.iter().map(|g| g * STANDARD_GRAVITY).find(|room| *room >= push).unwrap_or(push);
-        context.memory.room_for = room;
         let model = context.session.model();
         let curve = &model.mechanism.curve;
         let landscape = &model.mechanism.landscape;
