@@ -72,7 +72,7 @@
 //! | [`study`] | questions: one run, a sweep, a curve; a table comes out |
 //! | [`output`] | a table in, bytes out |
 //!
-//! The command line is the binary's own; it computes nothing.
+//! The command line is the binary's own, and the window is the feature `app`; neither computes anything.
 //!
 //! # Accuracy
 //!
@@ -81,6 +81,8 @@
 //! missed and located to rounding. A run can be repeated in some 31 digits
 //! ([`dynamics::Model::run_reference`]) to see what its error was.
 
+#[cfg(feature = "app")]
+pub mod app;
 pub mod dynamics;
 pub mod mechanics;
 pub mod numeric;

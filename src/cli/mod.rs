@@ -40,8 +40,11 @@ pub fn parse() -> Result<Options, ExitCode> {
     })
 }
 
-/// Does what was asked for.
-pub fn run(options: Options) -> Result<(), Failure> {
+/// Does what was asked for; `window` is what opens the window on a scene.
+pub fn run(
+    options: Options,
+    window: impl FnOnce(Option<&str>) -> Result<(), Failure>,
+) -> Result<(), Failure> {
     let Options { headless, scene, command } = options;
     let commands = "presets, check, curve, simulate or sweep";
     match (command, headless, scene) {
@@ -66,9 +69,7 @@ pub fn run(options: Options) -> Result<(), Failure> {
         (None, true, Some(word)) => Err(Failure::argument(format!(
             "--headless needs a command before `{word}`: {commands}; see interwell --help"
         ))),
-        (None, false, _) => Err(Failure::argument(format!(
-            "this build has no window: use interwell --headless with {commands}; see interwell --help"
-        ))),
+        (None, false, scene) => window(scene.as_deref()),
     }
 }
 

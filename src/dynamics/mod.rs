@@ -7,6 +7,7 @@ mod contact;
 mod describe;
 mod drive;
 mod equation;
+mod live;
 mod model;
 mod motion;
 mod prepare;
@@ -19,6 +20,7 @@ mod summary;
 mod tone;
 
 pub use base::STANDARD_GRAVITY;
+pub use live::{Live, LiveLedger, Passage};
 pub use model::{Model, Request};
 pub use result::*;
 pub use scales::Scales;

@@ -164,6 +164,22 @@ impl Model {
         super::prepare::run::<DoubleDouble>(self, request, tolerance)
     }
 
+    /// Positions of the left and the right stop in m, where there are any.
+    pub fn stop_positions(&self) -> (Option<f64>, Option<f64>) {
+        let at = |stop: Option<StopAt>| stop.map(|stop| stop.x);
+        self.stops.map_or((None, None), |pair| (at(pair.left), at(pair.right)))
+    }
+
+    /// Whether the base moves at all.
+    pub fn is_shaken(&self) -> bool {
+        !self.drive.is_still()
+    }
+
+    /// Begin of the settled window in s.
+    pub fn settle(&self) -> f64 {
+        self.settle
+    }
+
     /// Acceleration of the base in m/s^2 at time `t` in s.
     pub fn base_acceleration(&self, t: f64) -> f64 {
         super::prepare::base_acceleration(self, t)

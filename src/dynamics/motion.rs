@@ -53,7 +53,7 @@ const CANCEL_STRIDE: u64 = 256;
 
 /// A surface that the mass touches at the start of a step, and how many of the leading coefficients of the
 /// gap are 0 by definition.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Touch {
     pub end: End,
     pub order: usize,
@@ -128,6 +128,22 @@ pub(super) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     pub evaluations: u64,
 }
 
+/// What a motion carries from one step to the next. The drive's rolling state is no part of it: it only keeps
+/// what would be computed again, to the bit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Carried<T> {
+    pub at: Instant<T>,
+    pub x: T,
+    pub v: T,
+    pub arena: usize,
+    pub segment: usize,
+    pub touch: Option<Touch>,
+    pub contact: Contact,
+    pub refused: Option<Instant<T>>,
+    pub turned_back: bool,
+    pub barrier_side: i8,
+}
+
 /// A step that has been chosen.
 struct Step<T> {
     length: T,
@@ -188,17 +204,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             if !(left > T::zero()) {
                 break Outcome::Done;
             }
-            let ended = match self.contact {
-                Contact::Motionless => {
-                    self.stand(self.end, Phase::Free);
-                    None
-                }
-                Contact::Resting(end) => {
-                    self.rest(end);
-                    None
-                }
-                Contact::Free => self.fly(left),
-            };
+            let ended = self.proceed(left);
             if let Some(outcome) = ended {
                 break outcome;
             }
@@ -229,6 +235,52 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         run.summary.steps = self.steps;
         run.summary.evaluations = self.evaluations;
         run
+    }
+
+    /// Goes on by one step of flight or one rest; `left` is the time to the end of the run.
+    #[inline]
+    pub fn proceed(&mut self, left: T) -> Flow {
+        match self.contact {
+            Contact::Motionless => {
+                self.stand(self.end, Phase::Free);
+                None
+            }
+            Contact::Resting(end) => {
+                self.rest(end);
+                None
+            }
+            Contact::Free => self.fly(left),
+        }
+    }
+
+    /// What is carried from one step to the next: from it the motion goes on as if it had never been left.
+    pub fn carry(&self) -> Carried<T> {
+        Carried {
+            at: self.at,
+            x: self.x,
+            v: self.v,
+            arena: self.arena,
+            segment: self.segment,
+            touch: self.touch,
+            contact: self.contact,
+            refused: self.refused,
+            turned_back: self.turned_back,
+            barrier_side: self.record.barrier_side,
+        }
+    }
+
+    /// Goes on from what another motion of the same scene carried.
+    pub fn resume(&mut self, carried: &Carried<T>) {
+        self.at = carried.at;
+        self.x = carried.x;
+        self.v = carried.v;
+        self.arena = carried.arena;
+        self.segment = carried.segment;
+        self.touch = carried.touch;
+        self.contact = carried.contact;
+        self.refused = carried.refused;
+        self.turned_back = carried.turned_back;
+        self.record.barrier_side = carried.barrier_side;
     }
 
     /// The end of the drive's segment or of the run, whichever comes first.

@@ -22,12 +22,10 @@ pub(crate) fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64) -
     let unit = model.scales.unit();
     let equation = Equation::<T>::new(model, unit);
     let clock = clock(model, unit);
-    let mut run = match drive_kind(&model.drive) {
-        Kind::Still => with_drive(model, request, tolerance, &equation, clock, &still(model, unit)),
-        Kind::Sine => with_drive(model, request, tolerance, &equation, clock, &sine(model, unit)),
-        Kind::Composite => {
-            with_drive(model, request, tolerance, &equation, clock, &composite(model, unit, &clock))
-        }
+    let mut run = match form(model, &clock) {
+        Form::Still(drive) => with_drive(model, request, tolerance, &equation, clock, &drive),
+        Form::Sine(drive) => with_drive(model, request, tolerance, &equation, clock, &drive),
+        Form::Composite(drive) => with_drive(model, request, tolerance, &equation, clock, &drive),
     };
     run.summary.cpu_s = watch.elapsed().as_secs_f64();
     run
@@ -55,22 +53,29 @@ pub(super) fn base_at<T: Scalar, D: Drive<T>>(
     a[0].to_f64() / (unit * unit)
 }
 
-enum Kind {
-    Still,
-    Sine,
-    Composite,
+/// The three forms of a drive.
+#[derive(Debug)]
+pub(super) enum Form<T> {
+    Still(Still<T>),
+    Sine(Sine<T>),
+    Composite(Composite<T>),
 }
 
-fn drive_kind(drive: &BaseMotion) -> Kind {
+/// The simplest form that this model's drive has.
+pub(super) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
+    let drive = &model.drive;
+    let unit = clock.unit();
     match drive.tones.as_slice() {
-        _ if !(drive.chirps.is_empty() && drive.records.is_empty()) => Kind::Composite,
-        [] => Kind::Still,
-        [tone] if drive.constant == 0.0 && tone.ramp.is_none() => Kind::Sine,
-        _ => Kind::Composite,
+        _ if !(drive.chirps.is_empty() && drive.records.is_empty()) => {
+            Form::Composite(composite(model, unit, clock))
+        }
+        [] => Form::Still(still(model, unit)),
+        [tone] if drive.constant == 0.0 && tone.ramp.is_none() => Form::Sine(sine(model, unit)),
+        _ => Form::Composite(composite(model, unit, clock)),
     }
 }
 
-fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
+pub(super) fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
     let frequency = model.drive.fastest().unwrap_or_else(|| {
         // Without a drive: so short a cycle that its phase is exact, a power of two of the time unit, and not so
         // many cycles that they could not be counted.

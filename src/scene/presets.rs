@@ -35,6 +35,7 @@ macro_rules! presets {
 }
 
 presets! {
+    "first-look": "what the window opens on: the prototype without stops, shaken a little too weakly to cross";
     "paper": "the prototype: travel limits inside the wells, and the map over limit and shaking";
     "paper-table": "the prototype with its force from an independent three-dimensional model of the flexures";
     "paper-unconstrained": "the prototype without stops: rattles at 1 g, crosses from 1.24 g, mostly without rhythm";

@@ -9,11 +9,13 @@ mod flexures;
 mod grid;
 mod inspect;
 mod map;
+mod settled;
 mod simulate;
 mod sweep;
 mod table;
 mod times;
 mod trace;
+mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -24,11 +26,13 @@ pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_
 pub use grid::{Grid, GridError, MAX_CELLS};
 pub use inspect::inspect;
 pub use map::{first_interwell, release_line};
+pub use settled::{Settled, Standing, Thresholds, settled, standing, thresholds};
 pub use simulate::{Keep, Sampling, Simulation, sample_times, simulate};
 pub use sweep::{CellFaults, Sweep, SweepEnd, Tally};
 pub use table::{Column, Table, Values};
 pub use times::{MAX_SAMPLES, Step, TimesError, even_times, listed_times};
 pub use trace::{Trace, simulate_with_trace};
+pub use watch::Watch;
 
 /// How a study that takes long is watched and stopped.
 #[derive(Clone, Copy)]

@@ -8,6 +8,7 @@ mod convergence;
 mod drives;
 mod impacts;
 mod layers;
+mod live;
 mod mechanics;
 mod oracles;
 mod plots;

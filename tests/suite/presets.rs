@@ -33,7 +33,7 @@ const fn known(
 
 use Regime::{Interwell, Intrawell, Irregular, OneWell};
 
-/// All but the chaotic one.
+/// All but the two that never repeat.
 const KNOWN: [Known; 13] = [
     known("paper", Interwell, Some(1), (30, 600), 0.049_140_721_78, 0.0015),
     known("paper-table", Interwell, Some(1), (30, 600), 0.049_140_721_78, 0.0015),
@@ -76,7 +76,8 @@ fn drive(amplitude: f64) -> String {
 #[test]
 fn every_scene_does_what_is_recorded_of_it() {
     // The largest difference between the two tolerances was 2e-10 of an RMS velocity.
-    for preset_ in PRESETS.iter().filter(|preset| preset.name != "duffing-chaos") {
+    let repeats = |name: &str| !["first-look", "duffing-chaos"].contains(&name);
+    for preset_ in PRESETS.iter().filter(|preset| repeats(preset.name)) {
         let name = preset_.name;
         let known = KNOWN.iter().find(|known| known.name == name).unwrap_or_else(|| panic!("{name}"));
         for (tolerance, change) in [(1e-9, "run.tolerance=1e-9"), (1e-12, "run.tolerance=1e-12")] {
@@ -88,6 +89,28 @@ fn every_scene_does_what_is_recorded_of_it() {
             near_relative(own.max_abs_x.unwrap(), known.max_abs_x, 1e-9);
         }
     }
+}
+
+#[test]
+fn the_first_look_needs_help_to_cross() {
+    // It rattles without an exact rhythm: over ten lengths, settled windows and tolerances the RMS velocity was 16.3
+    // to 17.2 mm/s.
+    let own = summary("first-look", &[]);
+    assert_eq!((own.regime, own.total_crossings, own.impacts), (Intrawell, 0, 0));
+    near(own.rms_velocity.unwrap(), 0.0168, 0.0008);
+    near(own.max_abs_x.unwrap(), 7.254e-3, 5e-6);
+    near(own.max_abs_x.unwrap() - own.travel.unwrap(), 5.54e-3, 3e-5);
+    assert_eq!(summary("first-look", &["excitation.amplitude_g=1.3"]).regime, Irregular);
+    let at = |limit: f64| {
+        let stops = format!("stops=Rigid(travel_limit_mm: {limit}, restitution: 0.36)");
+        summary("first-look", &[&stops])
+    };
+    let stopped = at(1.5);
+    assert_eq!((stopped.regime, stopped.period, stopped.crossings), (Interwell, Some(1), 60));
+    near_relative(stopped.rms_velocity.unwrap(), 0.046_935_318, 1e-7);
+    assert!(at(1.6).rms_velocity > stopped.rms_velocity && at(1.7).rms_velocity < stopped.rms_velocity);
+    assert!(at(1.75).regime == Intrawell && at(1.75).releases > 0);
+    assert_eq!(at(1.85).regime, Regime::Rest);
 }
 
 #[test]

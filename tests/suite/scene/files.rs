@@ -9,10 +9,9 @@ fn a_scene_is_found_or_the_message_says_what_there_is() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
     let error = |spec: &str| Document::load(spec).unwrap_err().to_string();
-    assert!(
-        error(&at("none.ron"))
-            .contains("none.ron: no such file, and no built-in scene of that name; built in: paper,")
-    );
+    assert!(error(&at("none.ron")).contains(
+        "none.ron: no such file, and no built-in scene of that name; built in: first-look, paper,"
+    ));
     assert!(error(&at("")).contains("is a directory"));
     std::fs::write(at("noise.ron"), b"(title: \"\n\xff\xfe\0").unwrap();
     assert!(error(&at("noise.ron")).contains("is not text: byte 11 (line 2)"), "{}", error(&at("noise.ron")));

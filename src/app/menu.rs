@@ -1,0 +1,184 @@
+//! The menu bar: what is asked for. What is done about it is the window's business.
+
+use eframe::egui::{self, Button, Key, KeyboardShortcut, Modifiers, Ui};
+
+use crate::scene::{Layout, PRESETS};
+
+use super::layouts::Tiling;
+use super::session::Session;
+use super::settings::Settings;
+use super::views::View;
+
+/// What can be asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Command {
+    /// Open a built-in scene.
+    OpenPreset(&'static str),
+    /// Choose a scene file and open it.
+    Open,
+    /// Save the scene to its file.
+    Save,
+    /// Choose a file and save the scene to it.
+    SaveAs,
+    /// Leave.
+    Quit,
+    /// A step back.
+    Undo,
+    /// A step forward again.
+    Redo,
+    /// Scene, view and time as they were opened.
+    BackToStart,
+    /// Play or pause.
+    PlayPause,
+    /// A single step.
+    Step,
+    /// To the event before.
+    PreviousEvent,
+    /// To the event after.
+    NextEvent,
+    /// One of the speeds.
+    Speed(usize),
+    /// Arrange the views.
+    Arrange(Layout),
+    /// Show or hide a view.
+    Show(View, bool),
+    /// One view over the whole window, or no longer.
+    Fill,
+    /// Cover the results, or no longer.
+    Cover,
+    /// The whole screen, or no longer.
+    FullScreen,
+    /// Change the settings.
+    Set(Settings),
+    /// About the program.
+    About,
+}
+
+const fn command(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+
+const fn plain(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::NONE, key)
+}
+
+const SAVE_AS: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S);
+const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+
+/// Draws the bar and says what was asked for.
+pub fn menu_ui(ui: &mut Ui, session: &Session, tiling: &Tiling, settings: Settings) -> Vec<Command> {
+    let mut asked = Vec::new();
+    egui::MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| {
+            ui.menu_button("Open built-in scene", |ui| {
+                for preset in PRESETS {
+                    if ui.button(preset.name).on_hover_text(preset.summary).clicked() {
+                        asked.push(Command::OpenPreset(preset.name));
+                        ui.close();
+                    }
+                }
+            });
+            item(ui, &mut asked, "Open...", Some(command(Key::O)), true, Command::Open);
+            let save = session.editor.is_dirty() || session.editor.path().is_none();
+            item(ui, &mut asked, "Save", Some(command(Key::S)), save, Command::Save);
+            item(ui, &mut asked, "Save as...", Some(SAVE_AS), true, Command::SaveAs);
+            ui.separator();
+            item(ui, &mut asked, "Quit", Some(command(Key::Q)), true, Command::Quit);
+        });
+        ui.menu_button("Edit", |ui| {
+            let editor = &session.editor;
+            item(ui, &mut asked, "Undo", Some(command(Key::Z)), editor.can_undo(), Command::Undo);
+            item(ui, &mut asked, "Redo", Some(REDO), editor.can_redo(), Command::Redo);
+            item(ui, &mut asked, "Back to start", Some(plain(Key::Home)), true, Command::BackToStart);
+        });
+        ui.menu_button("View", |ui| view_menu_ui(ui, &mut asked, tiling, settings));
+        ui.menu_button("Help", |ui| {
+            item(ui, &mut asked, "About", None, true, Command::About);
+        });
+        ui.add_space(16.0);
+        let dirty = if session.editor.is_dirty() { " *" } else { "" };
+        ui.strong(format!("{}{dirty}", session.scene().title));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let hover = "Scene and time as they were opened; it can be undone (Home)";
+            if ui.button("Back to start").on_hover_text(hover).clicked() {
+                asked.push(Command::BackToStart);
+            }
+        });
+    });
+    asked
+}
+
+fn item(
+    ui: &mut Ui,
+    asked: &mut Vec<Command>,
+    text: &str,
+    keys: Option<KeyboardShortcut>,
+    enabled: bool,
+    what: Command,
+) {
+    let mut button = Button::new(text);
+    if let Some(keys) = keys {
+        button = button.shortcut_text(ui.ctx().format_shortcut(&keys));
+    }
+    if ui.add_enabled(enabled, button).clicked() {
+        asked.push(what);
+        ui.close();
+    }
+}
+
+fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings: Settings) {
+    item(ui, asked, "Arrange as Look", Some(command(Key::Num1)), true, Command::Arrange(Layout::Look));
+    ui.separator();
+    for view in View::ALL {
+        let mut shown = tiling.shows(view);
+        if ui.checkbox(&mut shown, view.name()).clicked() {
+            asked.push(Command::Show(view, shown));
+        }
+    }
+    ui.separator();
+    item(ui, asked, "One view over the window", Some(plain(Key::Z)), true, Command::Fill);
+    item(ui, asked, "Cover the results", Some(plain(Key::C)), true, Command::Cover);
+    item(ui, asked, "Full screen", Some(plain(Key::F11)), true, Command::FullScreen);
+    ui.separator();
+    let mut wanted = settings;
+    ui.checkbox(&mut wanted.dark, "Dark");
+    ui.checkbox(&mut wanted.projector, "Projector").on_hover_text("Light, larger, thicker lines");
+    ui.checkbox(&mut wanted.reduce_motion, "Reduce motion").on_hover_text("No rings at impacts");
+    if wanted != settings {
+        asked.push(Command::Set(wanted));
+    }
+}
+
+/// What the keyboard asks for; nothing while a number is being typed.
+pub fn keys(ctx: &egui::Context) -> Vec<Command> {
+    let typing = ctx.text_edit_focused();
+    let mut asked = Vec::new();
+    let mut on = |keys: KeyboardShortcut, what: Command| {
+        if ctx.input_mut(|input| input.consume_shortcut(&keys)) {
+            asked.push(what);
+        }
+    };
+    // the longer ones first
+    on(SAVE_AS, Command::SaveAs);
+    on(REDO, Command::Redo);
+    on(command(Key::Y), Command::Redo);
+    on(command(Key::Z), Command::Undo);
+    on(command(Key::S), Command::Save);
+    on(command(Key::O), Command::Open);
+    on(command(Key::Num1), Command::Arrange(Layout::Look));
+    on(plain(Key::F11), Command::FullScreen);
+    on(plain(Key::PageUp), Command::PreviousEvent);
+    on(plain(Key::PageDown), Command::NextEvent);
+    if typing {
+        return asked;
+    }
+    on(plain(Key::Home), Command::BackToStart);
+    on(plain(Key::Space), Command::PlayPause);
+    on(plain(Key::Period), Command::Step);
+    on(plain(Key::Z), Command::Fill);
+    on(plain(Key::C), Command::Cover);
+    for (i, key) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5].into_iter().enumerate() {
+        on(plain(key), Command::Speed(i));
+    }
+    asked
+}

@@ -1,0 +1,90 @@
+//! The window: what is seen of a scene, and the hands on it.
+//!
+//! Nothing is computed here. [`session`] holds what is open (a scene with undo, its live motion, what background tasks
+//! have found) and works without a window; the rest draws it. A view is a function of a [`views::ViewContext`].
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`document`] | the scene, its file, undo |
+//! | [`task`] | background tasks as values |
+//! | [`player`] | the clock and the live motion with its past |
+//! | [`session`] | those three together, and what is known of the scene |
+//! | [`status`] | the sentence that says what the mass does |
+//! | [`style`] | every colour and width |
+//! | [`views`] | what is seen, a file each |
+//! | [`layouts`] | where the views stand |
+//! | [`window`] | panels, menus, keys: the `eframe::App` |
+
+pub mod controls;
+pub mod document;
+mod hint;
+pub mod layouts;
+pub mod menu;
+pub mod player;
+pub mod session;
+pub mod settings;
+pub mod status;
+pub mod style;
+pub mod task;
+pub mod transport;
+pub mod views;
+mod widgets;
+pub mod window;
+
+use std::sync::Arc;
+
+use eframe::egui;
+
+pub use session::CannotRun;
+use settings::Settings;
+use window::Window;
+
+/// Why there is no window.
+#[derive(Debug, thiserror::Error)]
+pub enum AppError {
+    /// The scene cannot be run.
+    #[error(transparent)]
+    Scene(#[from] CannotRun),
+    /// The machine has no display, or no graphics.
+    #[error(
+        "no window can be opened ({0}); without a display use interwell --headless, see interwell --help"
+    )]
+    NoWindow(String),
+}
+
+/// Opens the window on a scene, and comes back when it is closed.
+pub fn run(spec: Option<&str>) -> Result<(), AppError> {
+    // What is wrong with the scene is said before a window is there.
+    Window::open(spec, Settings::default(), Arc::new(|| ()))?;
+    if !has_display() {
+        return Err(AppError::NoWindow("neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()));
+    }
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("interwell")
+        .with_app_id("interwell")
+        .with_inner_size([1280.0, 720.0])
+        .with_min_inner_size([640.0, 400.0]);
+    let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
+    let spec = spec.map(str::to_owned);
+    let start = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
+        window::prepare(&creation.egui_ctx);
+        let settings = creation
+            .storage
+            .and_then(|storage| eframe::get_value(storage, eframe::APP_KEY))
+            .unwrap_or_default();
+        let ctx = creation.egui_ctx.clone();
+        let wake = Arc::new(move || ctx.request_repaint());
+        Ok(Box::new(Window::open(spec.as_deref(), settings, wake)?))
+    };
+    eframe::run_native("interwell", options, Box::new(start)).map_err(|error| {
+        let text = error.to_string();
+        AppError::NoWindow(text.lines().next().unwrap_or_default().to_owned())
+    })
+}
+
+/// Whether there is a display to ask for; only where that is told by the environment.
+fn has_display() -> bool {
+    let unix = cfg!(all(unix, not(target_os = "macos")));
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !unix || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(set)
+}

@@ -1,0 +1,157 @@
+//! What time is it in the window, and how fast does it go?
+//!
+//! The motion is live: playing advances it, and a change acts from its present state. Its past is remembered and can be
+//! looked at; playing from there goes through it once more and then on.
+
+use crate::dynamics::{Model, Outcome, Sample};
+use crate::study::Watch;
+
+/// Speeds relative to real time, and how they are called; the keys 1 to 5.
+pub const SPEEDS: [(f64, &str); 5] =
+    [(1e-3, "1/1000"), (1e-2, "1/100"), (0.1, "1/10"), (0.5, "1/2"), (1.0, "real time")];
+
+/// Longest stretch of real time in s that one frame plays: after a pause of the window it goes on where it was.
+const LONGEST_FRAME: f64 = 0.1;
+
+/// Time on the screen in s that a single step takes.
+const STEP: f64 = 1.0 / 30.0;
+
+/// A motion that is played.
+#[derive(Debug, Clone)]
+pub struct Player {
+    watch: Watch,
+    /// Speed relative to real time.
+    pub speed: f64,
+    playing: bool,
+    /// The time that is looked at, where it is not the present.
+    past: Option<f64>,
+    /// Whether the mass is held by hand, which holds the clock.
+    held: bool,
+}
+
+impl Player {
+    /// Begins at the model's own start, playing.
+    pub fn new(model: &Model, speed: f64) -> Self {
+        Self { watch: Watch::new(model), speed, playing: true, past: None, held: false }
+    }
+
+    /// Whether time goes on.
+    pub fn is_playing(&self) -> bool {
+        self.playing && !self.held && (self.past.is_some() || self.watch.ended().is_none())
+    }
+
+    /// Plays or pauses.
+    pub fn set_playing(&mut self, playing: bool) {
+        self.playing = playing;
+    }
+
+    /// Plays on by `seconds` of real time.
+    pub fn tick(&mut self, seconds: f64) {
+        if self.is_playing() {
+            self.go(seconds.clamp(0.0, LONGEST_FRAME) * self.speed);
+        }
+    }
+
+    /// A single step, paused.
+    pub fn step(&mut self) {
+        self.playing = false;
+        self.go(STEP * self.speed);
+    }
+
+    fn go(&mut self, seconds: f64) {
+        match self.past {
+            Some(t) if t + seconds < self.watch.time() => self.past = Some(t + seconds),
+            Some(_) => self.past = None,
+            None => {
+                self.watch.advance(self.watch.time() + seconds);
+            }
+        }
+    }
+
+    /// From the start again.
+    pub fn restart(&mut self, model: &Model) {
+        self.watch = Watch::new(model);
+        (self.past, self.held) = (None, false);
+    }
+
+    /// From now on the mass moves as `model` says.
+    pub fn change(&mut self, model: &Model) {
+        self.past = None;
+        self.watch.change(model);
+    }
+
+    /// Holds the mass at `x` in m; the clock stands.
+    pub fn hold(&mut self, x: f64) {
+        (self.past, self.held) = (None, true);
+        self.watch.place(x, 0.0);
+    }
+
+    /// Lets go of the mass.
+    pub fn let_go(&mut self) {
+        self.held = false;
+    }
+
+    /// Whether the mass is held by hand.
+    pub fn is_held(&self) -> bool {
+        self.held
+    }
+
+    /// Looks at the time `t` in s, as far as it is remembered.
+    pub fn seek(&mut self, t: f64) {
+        let t = t.max(self.watch.begin());
+        self.past = (t < self.watch.time()).then_some(t);
+    }
+
+    /// Goes to the next or the previous event and pauses there; what has not happened yet is played up to it, as
+    /// far as `most` seconds ahead. Whether there was one.
+    pub fn seek_event(&mut self, later: bool, most: f64) -> bool {
+        self.playing = false;
+        let t = self.time();
+        if let Some(event) = self.watch.neighbour(t, later) {
+            self.seek(event.t);
+            return true;
+        }
+        if !later {
+            return false;
+        }
+        self.past = None;
+        let until = self.watch.time() + most;
+        while self.watch.time() < until {
+            let before = self.watch.time();
+            self.watch.advance((before + most / 50.0).min(until));
+            if let Some(event) = self.watch.neighbour(t, true) {
+                self.seek(event.t);
+                return true;
+            }
+            if self.watch.time() <= before {
+                break;
+            }
+        }
+        false
+    }
+
+    /// The time that is shown in s.
+    pub fn time(&self) -> f64 {
+        self.past.unwrap_or(self.watch.time())
+    }
+
+    /// Whether the past is shown.
+    pub fn is_past(&self) -> bool {
+        self.past.is_some()
+    }
+
+    /// The state that is shown.
+    pub fn state(&self) -> Sample {
+        self.past.map_or_else(|| self.watch.now(), |t| self.watch.state_at(t))
+    }
+
+    /// What has been seen.
+    pub fn watch(&self) -> &Watch {
+        &self.watch
+    }
+
+    /// How the run ended, where it did.
+    pub fn ended(&self) -> Option<Outcome> {
+        self.watch.ended()
+    }
+}

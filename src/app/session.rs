@@ -1,0 +1,375 @@
+//! What is open in the window: a scene, its model, its motion, and what is known of it.
+//!
+//! Everything here works without a window; the views look at it and change it through its methods.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::dynamics::{Model, STANDARD_GRAVITY};
+use crate::mechanics::{BuildError, FlexureError, Mechanism};
+use crate::scene::{self, Document, Excitation, Scene, SceneError, Stops};
+use crate::study::{self, Settled, Thresholds};
+
+use super::document::Editor;
+use super::player::Player;
+use super::status::{self, Sentence, Tense};
+use super::task::{Latest, Wake};
+
+/// Forcing periods after a change during which the motion settles, and those until which the future tense is used.
+const SETTLING_PERIODS: f64 = 5.0;
+const FUTURE_PERIODS: f64 = 3.0;
+
+/// The speed of a scene that does not say one.
+const SPEED: f64 = 0.1;
+
+/// Stops that appear where a scene does not say which.
+const STOPS_WHEN_ON: Stops = Stops::Rigid { travel_limit_mm: 1.5, restitution: 0.36 };
+
+/// A side of the card Before / now.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Card {
+    /// The scene.
+    pub scene: Scene,
+    /// What it settles to, once that is known.
+    pub settled: Option<Settled>,
+}
+
+/// An open scene.
+pub struct Session {
+    /// The scene and the way back.
+    pub editor: Editor,
+    /// The model that moves: of the scene, or of the last one that could be run.
+    model: Arc<Model>,
+    /// Why the scene as it stands cannot be run.
+    fault: Option<String>,
+    /// The motion.
+    pub player: Player,
+    settled: Latest<Settled>,
+    thresholds: Latest<Thresholds>,
+    before: Option<Card>,
+    /// The scene that the model was built from.
+    built: Scene,
+    mechanism: Arc<Mechanism>,
+    /// What the mechanism was built from: a table is fitted once, not for every move of a slider.
+    mechanism_of: scene::Mechanism,
+    /// Live time in s of the last change.
+    changed_at: f64,
+    /// The stops that come back when they are switched on.
+    remembered_stops: Stops,
+    wake: Wake,
+}
+
+/// Why a scene cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum CannotRun {
+    /// It is wrong.
+    #[error(transparent)]
+    Wrong(#[from] SceneError),
+    /// It is right, and its flexures were not solved.
+    #[error(transparent)]
+    Unsolved(#[from] FlexureError),
+}
+
+fn unbuilt(document: &Document, error: BuildError) -> CannotRun {
+    match error {
+        BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
+        BuildError::Unsolved(error) => error.into(),
+    }
+}
+
+impl Session {
+    /// A session on a scene; `wake` is called from other threads when something has come.
+    pub fn new(editor: Editor, wake: Wake) -> Result<Self, CannotRun> {
+        let document = editor.document();
+        document.check()?;
+        let scene = editor.scene().clone();
+        let mechanism =
+            Mechanism::build(&scene.mechanism, &document.files).map_err(|error| unbuilt(document, error))?;
+        let mechanism = Arc::new(mechanism);
+        let model =
+            Model::build(&scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
+        let hints = scene.app.clone().unwrap_or_default();
+        let player = Player::new(&model, hints.speed.unwrap_or(SPEED));
+        let remembered_stops = match scene.stops {
+            Stops::None => hints.stops_when_on.unwrap_or(STOPS_WHEN_ON),
+            stops => stops,
+        };
+        let mut session = Self {
+            editor,
+            model: Arc::new(model),
+            fault: None,
+            player,
+            settled: Latest::default(),
+            thresholds: Latest::default(),
+            before: None,
+            mechanism_of: scene.mechanism.clone(),
+            built: scene,
+            mechanism,
+            changed_at: 0.0,
+            remembered_stops,
+            wake,
+        };
+        session.ask_settled();
+        session.ask_thresholds();
+        Ok(session)
+    }
+
+    /// The scene as it stands.
+    pub fn scene(&self) -> &Scene {
+        self.editor.scene()
+    }
+
+    /// The model that moves.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Why the scene as it stands cannot be run; the motion is that of the last one that could.
+    pub fn fault(&self) -> Option<&str> {
+        self.fault.as_deref()
+    }
+
+    /// Calls back when something that was asked for has come.
+    pub fn wake(&self) -> &Wake {
+        &self.wake
+    }
+
+    /// Takes in what has been computed meanwhile, and what was edited. To be called once a frame.
+    pub fn poll(&mut self) {
+        self.settled.poll();
+        self.thresholds.poll();
+        self.apply();
+    }
+
+    /// Changes the scene as part of a gesture; see [`Editor::edit`].
+    pub fn edit(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
+        let now = (!self.editor.in_gesture()).then(|| self.now_card());
+        let changed = self.editor.edit(change);
+        if let (true, Some(now)) = (changed, now) {
+            self.before = Some(now);
+        }
+        changed
+    }
+
+    /// Ends the gesture.
+    pub fn end_gesture(&mut self) {
+        if self.editor.in_gesture() {
+            self.apply();
+            self.editor.end_gesture();
+            self.ask_thresholds();
+        }
+    }
+
+    /// Changes the scene by one gesture of its own.
+    pub fn edit_once(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
+        self.end_gesture();
+        let changed = self.edit(change);
+        self.end_gesture();
+        changed
+    }
+
+    /// A step back. Whether there was one.
+    pub fn undo(&mut self) -> bool {
+        self.travel(Editor::undo)
+    }
+
+    /// A step forward again. Whether there was one.
+    pub fn redo(&mut self) -> bool {
+        self.travel(Editor::redo)
+    }
+
+    fn travel(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
+        self.end_gesture();
+        let now = self.now_card();
+        let moved = step(&mut self.editor);
+        if moved {
+            self.before = Some(now);
+            self.apply();
+            self.ask_thresholds();
+        }
+        moved
+    }
+
+    /// The scene and the time as they were opened, playing.
+    pub fn back_to_start(&mut self) {
+        self.travel(Editor::back_to_start);
+        self.before = None;
+        self.restart();
+        self.player.set_playing(true);
+    }
+
+    /// The motion from its start again.
+    pub fn restart(&mut self) {
+        self.player.restart(&self.model);
+        self.changed_at = 0.0;
+        self.ask_settled();
+    }
+
+    /// The mass has been moved by hand: what it settles to is asked anew.
+    pub fn moved_by_hand(&mut self) {
+        self.changed_at = self.player.watch().time();
+        self.ask_settled();
+    }
+
+    /// Switches the stops; the ones that were there are remembered.
+    pub fn switch_stops(&mut self, on: bool) -> bool {
+        let stops = if on { self.remembered_stops } else { Stops::None };
+        if !on && self.scene().stops != Stops::None {
+            self.remembered_stops = self.scene().stops;
+        }
+        self.edit_once(|scene| scene.stops = stops)
+    }
+
+    /// The stops that come when they are switched on.
+    pub fn remembered_stops(&self) -> Stops {
+        self.remembered_stops
+    }
+
+    /// Changes the stops that come when they are switched on.
+    pub fn remember_stops(&mut self, stops: Stops) {
+        self.remembered_stops = stops;
+    }
+
+    /// Lets the mass go on as the scene now says, where that has changed.
+    fn apply(&mut self) {
+        if *self.editor.scene() == self.built {
+            return;
+        }
+        self.built = self.editor.scene().clone();
+        match self.build() {
+            Ok(model) => {
+                self.fault = None;
+                self.model = Arc::new(model);
+                self.player.change(&self.model);
+                self.changed_at = self.player.watch().time();
+                self.thresholds.clear();
+                self.ask_settled();
+            }
+            Err(error) => {
+                self.fault = Some(error.to_string());
+                self.settled.clear();
+                self.thresholds.clear();
+            }
+        }
+    }
+
+    fn build(&mut self) -> Result<Model, CannotRun> {
+        let document = self.editor.document();
+        document.check()?;
+        let scene = &document.scene;
+        if scene.mechanism != self.mechanism_of {
+            let built = Mechanism::build(&scene.mechanism, &document.files)
+                .map_err(|error| unbuilt(document, error))?;
+            self.mechanism = Arc::new(built);
+            self.mechanism_of = scene.mechanism.clone();
+        }
+        Ok(Model::build(scene, Arc::clone(&self.mechanism)).map_err(|faults| document.error_from(faults))?)
+    }
+
+    fn ask_settled(&mut self) {
+        let model = self.player.watch().from_here().unwrap_or_else(|| (*self.model).clone());
+        self.settled.ask(&self.wake, move |cancel| study::settled(&model, cancel));
+    }
+
+    fn ask_thresholds(&mut self) {
+        if self.thresholds.is_running() || self.fault.is_some() {
+            return;
+        }
+        let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
+        if !matches!(scene.excitation, Excitation::Sine { .. }) || mechanism.landscape.barrier.is_none() {
+            return;
+        }
+        self.thresholds.ask(&self.wake, move |cancel| {
+            study::thresholds(&scene, &mechanism, &study::Task { tick: &|| (), cancel })
+        });
+    }
+
+    /// Waits for what is being computed, at most so long.
+    pub fn wait(&mut self, most: Duration) {
+        self.apply();
+        self.settled.wait(most);
+        if self.thresholds.is_running() {
+            self.thresholds.wait(most);
+        }
+    }
+
+    /// What the motion settles to; of an earlier scene while the answer is still to come.
+    pub fn settled(&self) -> Option<&Settled> {
+        self.settled.newest()
+    }
+
+    /// The scene as it stands, for the card.
+    pub fn now_card(&self) -> Card {
+        Card { scene: self.scene().clone(), settled: self.settled.current().copied() }
+    }
+
+    /// The scene before the last gesture, for the card.
+    pub fn before_card(&self) -> Option<&Card> {
+        self.before.as_ref()
+    }
+
+    /// Forcing periods of the motion since the last change, where the drive has a period.
+    pub fn periods_since_change(&self) -> Option<f64> {
+        self.model.forcing_period.map(|period| (self.player.watch().time() - self.changed_at) / period)
+    }
+
+    /// How far the motion has settled after a change: periods gone, and of how many.
+    pub fn settling(&self) -> Option<(u32, u32)> {
+        let periods = self.periods_since_change().filter(|periods| *periods < SETTLING_PERIODS)?;
+        (self.changed_at > 0.0).then_some((periods as u32, SETTLING_PERIODS as u32))
+    }
+
+    /// What the status line says.
+    pub fn sentence(&self) -> Sentence {
+        if let Some(fault) = &self.fault {
+            return Sentence::fault(fault);
+        }
+        let state = self.player.state();
+        if self.player.is_held() {
+            return status::held(&self.model, &state);
+        }
+        if let Some(outcome) = self.player.ended() {
+            return status::ended(&self.model, outcome);
+        }
+        if !self.model.is_shaken() {
+            return status::unshaken(&self.model, &state);
+        }
+        let Some(settled) = self.settled.current() else { return Sentence::waiting() };
+        let early = self.changed_at > 0.0 && self.periods_since_change().is_some_and(|p| p < FUTURE_PERIODS);
+        let tense = if early { Tense::Future } else { Tense::Present };
+        status::driven(self.scene(), &self.model, settled, self.thresholds.current(), tense)
+    }
+
+    /// Amplitude of the shaking in g, where it is a sine.
+    pub fn amplitude_g(&self) -> Option<f64> {
+        match self.scene().excitation {
+            Excitation::Sine { amplitude_g, .. } => Some(amplitude_g),
+            _ => None,
+        }
+    }
+
+    /// The largest acceleration of the base that a view makes room for, in m/s^2.
+    pub fn largest_push(&self) -> f64 {
+        let g = match &self.scene().excitation {
+            Excitation::Sine { amplitude_g, .. } => amplitude_g.abs(),
+            Excitation::AmplitudeRamp { from_g, to_g, .. } => from_g.abs().max(to_g.abs()),
+            Excitation::Chirp { amplitude_g, .. } => amplitude_g.abs(),
+            Excitation::Constant { accel_g } => accel_g.abs(),
+            Excitation::Noise { rms_g, .. } => 2.5 * rms_g,
+            Excitation::Recorded { record, .. } => {
+                record.as_ref().map_or(0.0, |record| record.peak() / STANDARD_GRAVITY)
+            }
+            Excitation::None | Excitation::Sum(_) => 1.0,
+        };
+        g * STANDARD_GRAVITY
+    }
+}
+
+/// The stops of a scene in mm, left and right; none where a side is open.
+pub fn stop_distances(scene: &Scene) -> (Option<f64>, Option<f64>) {
+    match scene.stops {
+        scene::Stops::None => (None, None),
+        scene::Stops::Rigid { travel_limit_mm, .. } => (Some(-travel_limit_mm), Some(travel_limit_mm)),
+        scene::Stops::Uneven { left_mm, right_mm, .. } => (left_mm.map(|mm| -mm), right_mm),
+    }
+}

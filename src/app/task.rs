@@ -1,0 +1,178 @@
+//! How does the window have something computed without waiting for it?
+//!
+//! A task is a value: dropped, it is cancelled. [`Latest`] asks again and again for the same kind of
+//! answer and shows the newest; an answer to an older question is thrown away.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
+use std::time::{Duration, Instant};
+
+/// Wakes the window when an answer is there.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// A computation on a thread of its own.
+#[derive(Debug)]
+pub struct Task<T> {
+    answer: Receiver<T>,
+    cancel: Arc<AtomicBool>,
+}
+
+impl<T: Send + 'static> Task<T> {
+    /// Starts `job`, which looks at the flag that it is given; none where the system has no thread to give.
+    pub fn start(wake: &Wake, job: impl FnOnce(&AtomicBool) -> T + Send + 'static) -> Option<Self> {
+        let (sender, answer) = channel();
+        let cancel = Arc::new(AtomicBool::new(false));
+        let (flag, wake) = (Arc::clone(&cancel), Arc::clone(wake));
+        let thread = std::thread::Builder::new().name("study".into());
+        let run = move || {
+            let answer = job(&flag);
+            // nobody listens where the task was dropped
+            if sender.send(answer).is_ok() {
+                wake();
+            }
+        };
+        thread.spawn(run).ok().map(|_| Self { answer, cancel })
+    }
+
+    /// The answer, once; `Err` where none will come any more.
+    pub fn poll(&self) -> Option<Result<T, ()>> {
+        match self.answer.try_recv() {
+            Ok(answer) => Some(Ok(answer)),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some(Err(())),
+        }
+    }
+
+    /// Waits for the answer, at most so long.
+    pub fn wait(&self, most: Duration) -> Option<Result<T, ()>> {
+        match self.answer.recv_timeout(most) {
+            Ok(answer) => Some(Ok(answer)),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => Some(Err(())),
+        }
+    }
+}
+
+impl<T> Drop for Task<T> {
+    fn drop(&mut self) {
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+}
+
+/// The newest answer to a question that changes.
+#[derive(Debug)]
+pub struct Latest<T> {
+    generation: u64,
+    task: Option<Task<Option<T>>>,
+    /// The answer and the generation of its question.
+    answer: Option<(u64, T)>,
+}
+
+impl<T> Default for Latest<T> {
+    fn default() -> Self {
+        Self { generation: 0, task: None, answer: None }
+    }
+}
+
+impl<T: Send + 'static> Latest<T> {
+    /// Asks anew; a question under way is dropped.
+    pub fn ask(&mut self, wake: &Wake, job: impl FnOnce(&AtomicBool) -> Option<T> + Send + 'static) {
+        self.generation += 1;
+        self.task = Task::start(wake, job);
+    }
+
+    /// Forgets question and answer.
+    pub fn clear(&mut self) {
+        self.generation += 1;
+        (self.task, self.answer) = (None, None);
+    }
+
+    /// Takes in an answer that has come. Whether one has.
+    pub fn poll(&mut self) -> bool {
+        let Some(came) = self.task.as_ref().and_then(Task::poll) else { return false };
+        self.take(came);
+        true
+    }
+
+    fn take(&mut self, came: Result<Option<T>, ()>) {
+        self.task = None;
+        if let Ok(Some(answer)) = came {
+            self.answer = Some((self.generation, answer));
+        }
+    }
+
+    /// Waits for the answer to the present question, at most so long. Whether it is there.
+    pub fn wait(&mut self, most: Duration) -> bool {
+        let until = Instant::now() + most;
+        if let Some(task) = &self.task
+            && let Some(came) = task.wait(until.saturating_duration_since(Instant::now()))
+        {
+            self.take(came);
+        }
+        self.current().is_some()
+    }
+
+    /// The answer to the present question, once it is there.
+    pub fn current(&self) -> Option<&T> {
+        self.answer.as_ref().filter(|answer| answer.0 == self.generation).map(|answer| &answer.1)
+    }
+
+    /// The newest answer, be it to an older question.
+    pub fn newest(&self) -> Option<&T> {
+        self.answer.as_ref().map(|answer| &answer.1)
+    }
+
+    /// Whether an answer is being worked on.
+    pub fn is_running(&self) -> bool {
+        self.task.is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LONG: Duration = Duration::from_secs(20);
+
+    fn wake() -> Wake {
+        Arc::new(|| ())
+    }
+
+    #[test]
+    fn dropped_it_is_cancelled() {
+        let (sender, seen) = channel();
+        let task = Task::start(&wake(), move |cancel: &AtomicBool| {
+            while !cancel.load(Ordering::Relaxed) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            sender.send(()).ok();
+        });
+        drop(task.unwrap());
+        assert!(seen.recv_timeout(LONG).is_ok());
+    }
+
+    #[test]
+    fn an_answer_to_an_older_question_is_not_current() {
+        let mut latest = Latest::default();
+        latest.ask(&wake(), |_| Some(1));
+        assert!(latest.wait(LONG));
+        assert_eq!(latest.current(), Some(&1));
+        let (sender, gate) = channel::<()>();
+        latest.ask(&wake(), move |_| gate.recv().ok().map(|()| 2));
+        assert_eq!((latest.current(), latest.newest()), (None, Some(&1)));
+        sender.send(()).unwrap();
+        assert!(latest.wait(LONG));
+        assert_eq!(latest.current(), Some(&2));
+        latest.ask(&wake(), |_| None::<i32>);
+        assert!(!latest.wait(LONG) && !latest.is_running());
+        assert_eq!(latest.newest(), Some(&2));
+    }
+
+    #[test]
+    fn a_job_that_panics_leaves_no_answer() {
+        let mut latest: Latest<i32> = Latest::default();
+        latest.ask(&wake(), |_| std::panic::resume_unwind(Box::new("stop")));
+        assert!(!latest.wait(LONG) && !latest.is_running());
+    }
+}

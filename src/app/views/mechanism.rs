@@ -1,0 +1,195 @@
+//! The mechanism as a drawing, over the well and on its x axis, seen from the base.
+//!
+//! A schematic: clamps, flexures and the mass in the right places along x, not to scale across it. The base stands
+//! still in it, and the push that the mass feels instead is an arrow; the base's own motion is far larger than the travel
+//! and has an inset at its own scale. An impact is a ring whose size is the energy that it takes.
+
+use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use crate::app::style::{BALL, RING_SECONDS};
+use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
+use crate::scene::Excitation;
+
+use super::ViewContext;
+use super::stops::stops_ui;
+use super::well::mass_ui;
+
+/// Points of a drawn flexure.
+const FLEXURE_POINTS: usize = 24;
+
+/// Length in points of an arrow's head.
+const ARROW_HEAD: f32 = 12.0;
+
+/// A ring that grows and fades.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ring {
+    /// Screen time in s at which it began.
+    began: f64,
+    /// Share of the energy scale.
+    size: f64,
+}
+
+/// Draws it. Whether something changed.
+pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+    let (area, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+    if area.width() < 60.0 || area.height() < 60.0 {
+        return false;
+    }
+    let style = context.style;
+    let painter = ui.painter().with_clip_rect(area);
+    painter.rect_filled(area, 0.0, style.ground());
+    let rect = area;
+    let state = context.session.player.state();
+    let x = context.span.screen_from_world(state.x, rect);
+    let (top, bottom) = (rect.top() + 24.0, rect.bottom() - 12.0);
+    let middle = (top + bottom) * 0.5;
+    // as wide as the ball on the well, so that it touches the stops when it should
+    let half = vec2(BALL, ((bottom - top) * 0.2).clamp(12.0, 40.0));
+    frame(&painter, context, rect, top, bottom);
+    flexures(&painter, context, rect, (x, middle, half), (top, bottom));
+    let body = Rect::from_center_size(pos2(x, middle), half * 2.0);
+    let edge = Stroke::new(1.5, style.mass_edge());
+    painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
+    let wall = half.y * 0.8;
+    let mut changed = stops_ui(ui, context, rect, middle - wall, middle + wall);
+    changed |= mass_ui(ui, context, pos2(x, middle), rect);
+    let painter = ui.painter().with_clip_rect(area);
+    rings(ui, context, rect, middle);
+    push_arrow(&painter, context, pos2(x, middle - half.y - 10.0), state.base_accel, rect);
+    inset(&painter, context, rect, state.base_accel);
+    let text = "schematic, seen from the base; flexures not to scale";
+    painter.text(rect.left_top() + vec2(10.0, 6.0), Align2::LEFT_TOP, text, style.small(), style.faint());
+    changed
+}
+
+/// The frame of the base: a beam above and one below, to which the flexures are clamped.
+fn frame(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, top: f32, bottom: f32) {
+    let color = context.style.frame_colour();
+    let beam = |y: f32| Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y - 4.0..=y + 4.0);
+    painter.rect_filled(beam(top), 2.0, color);
+    painter.rect_filled(beam(bottom), 2.0, color);
+}
+
+/// Two guided flexures below the mass and the buckled one above it.
+fn flexures(
+    painter: &egui::Painter,
+    context: &ViewContext<'_>,
+    rect: Rect,
+    (x, middle, half): (f32, f32, egui::Vec2),
+    (top, bottom): (f32, f32),
+) {
+    let stroke = context.style.flexure_stroke();
+    let zero = context.span.screen_from_world(0.0, rect);
+    let landscape = &context.session.model().mechanism.landscape;
+    // The bump is largest at the barrier and gone at the wells, where the flexure is straight.
+    let (place, well) = match landscape.barrier {
+        Some(barrier) => {
+            (x - context.span.screen_from_world(barrier.x, rect), barrier.right_well - barrier.x)
+        }
+        None => (0.0, 0.0),
+    };
+    let reach = (context.span.scale(rect) * well) as f32;
+    let left = if reach > 0.0 { (1.0 - (place / reach).powi(2)).max(0.0) } else { 0.0 };
+    let bump = 0.35 * (middle - top) * left.sqrt();
+    let shape = |from: Pos2, to: Pos2, bump: f32| {
+        let point = |i: usize| {
+            let s = i as f32 / FLEXURE_POINTS as f32;
+            let guided = s * s * (3.0 - 2.0 * s);
+            let bulge = (std::f32::consts::PI * s).sin().powi(2);
+            pos2(from.x + (to.x - from.x) * guided + bump * bulge, from.y + (to.y - from.y) * s)
+        };
+        Shape::line((0..=FLEXURE_POINTS).map(point).collect(), stroke)
+    };
+    for side in [-0.6, 0.6] {
+        let foot = pos2(zero + side * half.x, bottom - 4.0);
+        painter.add(shape(foot, pos2(x + side * half.x, middle + half.y), 0.0));
+    }
+    painter.add(shape(pos2(zero, top + 4.0), pos2(x, middle - half.y), bump));
+}
+
+/// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g).
+fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, from: Pos2, base_accel: f64, rect: Rect) {
+    if !context.session.model().is_shaken() {
+        return;
+    }
+    let style = context.style;
+    let full = f64::from(rect.width()) * 0.16;
+    let room = context.session.largest_push().max(1e-9);
+    let length = (-base_accel / room * full) as f32;
+    // centred on the mass, as far as the view lets it
+    let shown = rect.shrink(12.0);
+    let tail = (from.x - 0.5 * length).clamp(shown.left(), shown.right());
+    let tip = (tail + length).clamp(shown.left(), shown.right());
+    if length.abs() > 3.0 {
+        let (stroke, y) = (style.arrow_stroke(), from.y);
+        let head = ARROW_HEAD.min(length.abs()) * length.signum();
+        painter.line_segment([pos2(tip - length, y), pos2(tip - 0.5 * head, y)], stroke);
+        let points = vec![pos2(tip, y), pos2(tip - head, y - 6.0), pos2(tip - head, y + 6.0)];
+        painter.add(Shape::convex_polygon(points, stroke.color, Stroke::NONE));
+    }
+    let text = format!("push {:.2} g", (base_accel / STANDARD_GRAVITY).abs());
+    let galley = painter.layout_no_wrap(text, style.small(), style.base());
+    let middle = from.x.clamp(shown.left() + 36.0, shown.right() - 36.0);
+    let place = Align2::CENTER_BOTTOM.anchor_size(pos2(middle, from.y - 8.0), galley.size());
+    painter.rect_filled(place.expand(1.5), 2.0, style.ground());
+    painter.galley(place.min, galley, style.base());
+}
+
+/// The base's own motion at its own scale, for a sine, whose displacement is -a/(2 pi f)^2.
+fn inset(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, base_accel: f64) {
+    let Excitation::Sine { frequency_hz, amplitude_g, .. } = context.session.scene().excitation else {
+        return;
+    };
+    let rate = std::f64::consts::TAU * frequency_hz;
+    let (swing, place) = (amplitude_g.abs() * STANDARD_GRAVITY / (rate * rate), -base_accel / (rate * rate));
+    if !(swing > 0.0 && swing.is_finite()) || rect.width() < 520.0 {
+        return;
+    }
+    let style = context.style;
+    let half = 34.0;
+    let track = pos2(rect.right() - half - 20.0, rect.top() + 11.0);
+    painter.line_segment([track - vec2(half, 0.0), track + vec2(half, 0.0)], style.ghost_stroke());
+    let at = track + vec2((place / swing) as f32 * half, 0.0);
+    painter.rect_filled(Rect::from_center_size(at, vec2(14.0, 9.0)), 2.0, style.base());
+    let text = format!("base: ±{:.1} mm", swing * 1e3);
+    let left = track - vec2(half + 14.0, 0.0);
+    painter.text(left, Align2::RIGHT_CENTER, text, style.small(), style.base());
+}
+
+/// Impacts since the last frame begin a ring, one at a time a side; rings under way are drawn.
+fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
+    let now = ui.input(|input| input.time);
+    let (from, to) = (context.memory.seen_to, context.session.player.time());
+    context.memory.seen_to = to;
+    let model = context.session.model();
+    let (left, right) = model.stop_positions();
+    if to > from && !context.reduce_motion {
+        let watch = context.session.player.watch();
+        let first = watch.events().partition_point(|event| event.t <= from);
+        let scale = model.scales.speed * model.scales.speed;
+        for event in watch.events().range(first..).take_while(|event| event.t <= to) {
+            let side = usize::from(event.side == Side::Right);
+            let busy = context.memory.rings[side].is_some_and(|ring| now - ring.began < RING_SECONDS);
+            let taken = (event.v_in * event.v_in - event.v_out * event.v_out) / scale;
+            if event.kind == EventKind::Impact && !busy && taken > 1e-4 {
+                context.memory.rings[side] = Some(Ring { began: now, size: taken.min(1.0) });
+            }
+        }
+    }
+    let style = context.style;
+    let painter = ui.painter().with_clip_rect(rect);
+    for (side, stop) in [left, right].into_iter().enumerate() {
+        let (Some(ring), Some(stop)) = (context.memory.rings[side], stop) else { continue };
+        let age = (now - ring.began) / RING_SECONDS;
+        if !(0.0..1.0).contains(&age) {
+            context.memory.rings[side] = None;
+            continue;
+        }
+        let way = if side == 0 { -BALL } else { BALL };
+        let center = pos2(context.span.screen_from_world(stop, rect) + way, y);
+        let radius = (8.0 + 42.0 * ring.size.sqrt() * age) as f32;
+        let color: Color32 = style.impact().gamma_multiply((1.0 - age) as f32);
+        painter.circle_stroke(center, radius, Stroke::new(2.5, color));
+        ui.ctx().request_repaint();
+    }
+}

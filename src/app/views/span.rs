@@ -1,0 +1,116 @@
+//! The x axis that the drawn mechanism and the well share.
+
+use eframe::egui::{Rangef, Rect};
+
+use crate::app::session::{Session, stop_distances};
+
+/// Room beside the outermost thing that is shown.
+const ROOM: f64 = 1.18;
+
+/// Displacements in m from left to right.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// The left end.
+    pub low: f64,
+    /// The right end.
+    pub high: f64,
+}
+
+impl Span {
+    /// What has to be seen of a scene: its wells; without a pair of them its stops, its start and its reach. It depends on
+    /// the shaking and on the stops as little as it can, so that it stands still while they are changed.
+    pub fn of(session: &Session) -> Self {
+        let model = session.model();
+        let wells = &model.mechanism.landscape.barrier;
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut show = |x: f64, room: f64| {
+            if x.is_finite() {
+                (low, high) = (low.min(x * room), high.max(x * room));
+            }
+        };
+        if let Some(barrier) = wells {
+            show(barrier.left_well, ROOM);
+            show(barrier.right_well, ROOM);
+            if let Some((least, most)) = session.settled().and_then(|settled| settled.range) {
+                // in coarse steps: a little more reach moves nothing
+                for x in [least, most] {
+                    let size = barrier.left_well.abs().max(barrier.right_well.abs());
+                    let steps = (x.abs() / size * 4.0 * 1.02).ceil();
+                    if x.abs() > ROOM * size {
+                        show(x.signum() * size * steps / 4.0, 1.0);
+                    }
+                }
+            }
+        } else {
+            let (left, right) = stop_distances(session.scene());
+            for x in [left, right].into_iter().flatten() {
+                show(x / 1e3, ROOM);
+            }
+            let (least, most) = session.settled().and_then(|settled| settled.range).unwrap_or((0.0, 0.0));
+            for x in [least, most, session.player.watch().samples().front().map_or(0.0, |s| s.x), 0.0] {
+                show(x, ROOM);
+            }
+        }
+        if !(high - low > 0.0) {
+            return Self { low: -0.01, high: 0.01 };
+        }
+        let margin = 0.03 * (high - low);
+        Self { low: low - margin, high: high + margin }
+    }
+
+    /// The place on the screen of a displacement in m, over `rect`.
+    pub fn screen_from_world(&self, x: f64, rect: Rect) -> f32 {
+        let share = (x - self.low) / (self.high - self.low);
+        rect.left() + (share * f64::from(rect.width())) as f32
+    }
+
+    /// The displacement in m of a place on the screen.
+    pub fn world_from_screen(&self, x: f32, rect: Rect) -> f64 {
+        self.low + f64::from((x - rect.left()) / rect.width()) * (self.high - self.low)
+    }
+
+    /// Points per m.
+    pub fn scale(&self, rect: Rect) -> f64 {
+        f64::from(rect.width()) / (self.high - self.low)
+    }
+
+    /// Round displacements in m for ticks, some `count` of them, and the decimals of their mm.
+    pub fn ticks(&self, count: f64) -> (Vec<f64>, usize) {
+        ticks(self.low * 1e3, self.high * 1e3, count)
+    }
+
+    /// The part of the screen that is drawn on.
+    pub fn screen(&self, rect: Rect) -> Rangef {
+        rect.x_range()
+    }
+}
+
+/// Round numbers from `low` to `high`, some `count` of them, in thousandths of the unit given, and decimals to write them.
+pub(super) fn ticks(low: f64, high: f64, count: f64) -> (Vec<f64>, usize) {
+    let rough = (high - low) / count.max(1.0);
+    let power = 10_f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= rough).unwrap_or(rough);
+    if !(step > 0.0 && step.is_finite()) {
+        return (Vec::new(), 0);
+    }
+    let (first, last) = ((low / step).ceil(), (high / step).floor());
+    let number = (last - first).clamp(0.0, 100.0) as u32;
+    let values = (0..=number).map(|i| (first + f64::from(i)) * step / 1e3).collect();
+    (values, (-step.log10().floor()).clamp(0.0, 9.0) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::pos2;
+
+    #[test]
+    fn screen_and_world_are_inverse() {
+        let span = Span { low: -8e-3, high: 8e-3 };
+        let rect = Rect::from_min_max(pos2(100.0, 0.0), pos2(500.0, 10.0));
+        assert_eq!(span.screen_from_world(0.0, rect), 300.0);
+        assert!((span.world_from_screen(400.0, rect) - 4e-3).abs() < 1e-12);
+        let (ticks, decimals) = span.ticks(5.0);
+        assert_eq!((ticks.len(), decimals), (3, 0));
+    }
+}

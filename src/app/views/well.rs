@@ -1,0 +1,182 @@
+//! The well: the mass rides on the potential, and the base tips it.
+//!
+//! In the frame of the base the mass feels the force of the mechanism and the push -m a_b, whose potential is m a_b x:
+//! it moves as a ball does on the sum of both. The sum is drawn thick; the mechanism's own curve is a thin ghost that stays.
+//! The vertical range follows the largest push in a few coarse steps, so that the tray tips and does not rescale.
+
+use eframe::egui::{self, Align2, CursorIcon, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use crate::app::style::{BALL, GRAB};
+use crate::dynamics::STANDARD_GRAVITY;
+
+use super::ViewContext;
+use super::stops::stops_ui;
+
+/// Points between two points of a curve.
+const CURVE_STEP: f32 = 2.0;
+
+/// Height in points of the legend over the picture.
+const LEGEND: f32 = 22.0;
+
+/// Pushes in g that the vertical range has room for.
+const ROOMS: [f64; 14] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.6, 1.0, 1.5, 2.2, 3.2, 5.0, 10.0, 20.0];
+
+/// Draws it. Whether something changed.
+pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+    let (area, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+    if area.width() < 60.0 || area.height() < 60.0 {
+        return false;
+    }
+    let style = context.style;
+    let rect = Rect::from_min_max(area.min + vec2(0.0, LEGEND), area.max - vec2(0.0, 22.0));
+    let painter = ui.painter().with_clip_rect(area);
+    painter.rect_filled(area, 0.0, style.ground());
+    let axis = Heights::of(ui, context, rect);
+    x_axis(&painter, context, rect);
+
+    let state = context.session.player.state();
+    let model = context.session.model();
+    let (curve, mass) = (&model.mechanism.curve, model.mass);
+    let tilt = mass * state.base_accel;
+    let (left, right) = model.stop_positions();
+    let domain = curve.domain();
+    let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
+    let count = (rect.width() / CURVE_STEP).max(2.0) as usize;
+    let place = |i: usize| low + (high - low) * i as f64 / count as f64;
+    let height = |x: f64, tilt: f64| {
+        let screen = pos2(
+            context.span.screen_from_world(x, rect),
+            axis.screen_from_world(curve.potential(x) + tilt * x),
+        );
+        // far outside the view is far enough
+        pos2(screen.x, screen.y.clamp(rect.top() - 4000.0, rect.bottom() + 4000.0))
+    };
+    let line = |tilt: f64| (0..=count).map(|i| height(place(i), tilt)).collect::<Vec<Pos2>>();
+    let clipped = painter.with_clip_rect(rect);
+    clipped.add(Shape::line(line(0.0), style.ghost_stroke()));
+    let between = |x: f64| left.is_none_or(|stop| x >= stop) && right.is_none_or(|stop| x <= stop);
+    let reachable: Vec<Pos2> =
+        (0..=count).map(place).filter(|x| between(*x)).map(|x| height(x, tilt)).collect();
+    let faint = Stroke::new(style.ghost_stroke().width, style.faint());
+    clipped.extend(Shape::dashed_line(&line(tilt), faint, 5.0, 5.0));
+    clipped.add(Shape::line(reachable, style.tray_stroke()));
+
+    if let Some(barrier) = model.mechanism.landscape.barrier {
+        let top = height(barrier.x, 0.0);
+        clipped.text(top - vec2(0.0, 6.0), Align2::CENTER_BOTTOM, "barrier", style.small(), style.faint());
+        for (x, name) in [(barrier.left_well, "left-hand well"), (barrier.right_well, "right-hand well")] {
+            let bottom = height(x, 0.0);
+            clipped.text(bottom + vec2(0.0, 6.0), Align2::CENTER_TOP, name, style.small(), style.faint());
+        }
+    }
+    let ball = height(state.x, tilt) - vec2(0.0, BALL);
+    let (top, bottom) = (rect.top() + 4.0, rect.bottom());
+    let mut changed = stops_ui(ui, context, rect, top, bottom);
+    changed |= mass_ui(ui, context, ball, rect);
+    let painter = ui.painter().with_clip_rect(rect);
+    painter.circle(ball, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
+    legend(&ui.painter().with_clip_rect(area), context, area);
+    changed
+}
+
+/// Lets the mass be grabbed: it is held where the hand is, and the clock stands.
+pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect) -> bool {
+    let grab = Rect::from_center_size(at, egui::Vec2::splat(2.0 * GRAB));
+    let response = ui
+        .interact(grab.intersect(rect.expand(GRAB)), ui.scope_id().with("mass"), Sense::drag())
+        .on_hover_and_drag_cursor(CursorIcon::Grab);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "proof mass"));
+    let player = &mut context.session.player;
+    if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+        player.hold(context.span.world_from_screen(pointer.x, rect));
+    }
+    if response.drag_stopped() {
+        player.let_go();
+        context.session.moved_by_hand();
+        return true;
+    }
+    response.dragged()
+}
+
+/// The vertical axis in J, upwards.
+struct Heights {
+    low: f64,
+    high: f64,
+    rect: Rect,
+}
+
+impl Heights {
+    /// From a little below the deepest to a little above the highest place that the mass gets to.
+    fn of(ui: &Ui, context: &ViewContext<'_>, rect: Rect) -> Self {
+        let push = context.session.largest_push();
+        let room = ROOMS.iter().map(|g| g * STANDARD_GRAVITY).find(|room| *room >= push).unwrap_or(push);
+        let model = context.session.model();
+        let curve = &model.mechanism.curve;
+        let landscape = &model.mechanism.landscape;
+        let tilt = model.mass * room;
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut show = |x: f64, tilted: bool| {
+            let (v, side) = (curve.potential(x), if tilted { tilt * x.abs() } else { 0.0 });
+            (low, high) = (low.min(v - side), high.max(v + side));
+        };
+        match landscape.barrier {
+            Some(barrier) => {
+                show(barrier.left_well, true);
+                show(barrier.right_well, true);
+                show(barrier.x, false);
+            }
+            None => {
+                let (left, right) = model.stop_positions();
+                let domain = curve.domain();
+                for x in [left.unwrap_or(context.span.low), right.unwrap_or(context.span.high)] {
+                    show(x.clamp(domain.0, domain.1), model.is_shaken());
+                }
+                show(0.0, false);
+            }
+        }
+        if !(high - low > 0.0) {
+            (low, high) = (low - 1e-3, low + 1e-3);
+        }
+        let room = 0.22 * (high - low);
+        let id = ui.scope_id();
+        let ease = |name: &str, value: f64| {
+            let target = (value * 1e6) as f32;
+            f64::from(ui.ctx().animate_value_with_time(id.with(name), target, 0.3)) * 1e-6
+        };
+        Self { low: ease("low", low - 0.5 * room), high: ease("high", high + room), rect }
+    }
+
+    fn screen_from_world(&self, energy: f64) -> f32 {
+        let share = (energy - self.low) / (self.high - self.low);
+        self.rect.bottom() - (share * f64::from(self.rect.height())) as f32
+    }
+}
+
+/// Ticks in mm below `rect`.
+fn x_axis(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
+    let style = context.style;
+    let (ticks, decimals) = context.span.ticks(f64::from(rect.width()) / 55.0);
+    let last = ticks.len().saturating_sub(1);
+    for (i, x) in ticks.iter().enumerate() {
+        let at = context.span.screen_from_world(*x, rect);
+        painter.vline(at, rect.y_range(), style.grid_stroke());
+        let unit = if i == last { " mm" } else { "" };
+        let text = format!("{:.decimals$}{unit}", x * 1e3 + 0.0);
+        painter.text(pos2(at, rect.bottom() + 4.0), Align2::CENTER_TOP, text, style.small(), style.faint());
+    }
+}
+
+fn legend(painter: &egui::Painter, context: &ViewContext<'_>, area: Rect) {
+    let style = context.style;
+    let entries = [
+        (style.tray_stroke(), "potential, tipped by the base's push"),
+        (style.ghost_stroke(), "potential of the mechanism"),
+    ];
+    let (mut x, y) = (area.left() + 10.0, area.top() + 0.5 * LEGEND);
+    for (stroke, text) in entries {
+        painter.line_segment([pos2(x, y), pos2(x + 22.0, y)], stroke);
+        let at = pos2(x + 28.0, y);
+        let written = painter.text(at, Align2::LEFT_CENTER, text, style.small(), style.faint());
+        x = written.right() + 20.0;
+    }
+}

@@ -1,0 +1,172 @@
+//! Small things that several panels draw: a slider that is one gesture, icons, the shapes of regimes.
+
+use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
+
+use super::status::Kind;
+
+/// A slider of a number of the scene.
+pub struct Knob<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The unit after the number.
+    pub unit: &'a str,
+    /// Smallest and largest value of the slider; a typed number may lie outside.
+    pub range: (f64, f64),
+    /// Step of the arrow keys; with Shift ten of them.
+    pub step: f64,
+    /// Decimals of the number.
+    pub decimals: usize,
+    /// What happens if it is increased.
+    pub hover: &'a str,
+    /// Width of the slider in points.
+    pub width: f32,
+}
+
+/// What was done to a knob.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Turn {
+    /// The new value, where it changed.
+    pub value: Option<f64>,
+    /// Whether the gesture has ended.
+    pub ended: bool,
+}
+
+impl Knob<'_> {
+    /// Draws it and says what was done to it.
+    pub fn ui(&self, ui: &mut Ui, value: f64) -> Turn {
+        let mut turned = value;
+        let (low, high) = (self.range.0.min(value), self.range.1.max(value));
+        let slider = egui::Slider::new(&mut turned, low..=high)
+            .fixed_decimals(self.decimals)
+            .suffix(self.unit)
+            .clamping(egui::SliderClamping::Never)
+            .smart_aim(false)
+            .step_by(self.step);
+        let name = ui.label(self.name).on_hover_text(self.hover);
+        let response = ui
+            .scope(|ui| {
+                ui.spacing_mut().slider_width = self.width;
+                ui.add(slider)
+            })
+            .inner
+            .labelled_by(name.id)
+            .on_hover_text(self.hover);
+        if turned != value && !response.dragged() && response.has_focus() && ui.input(|i| i.modifiers.shift) {
+            turned = value + 10.0 * (turned - value);
+        }
+        // the decimals that are shown are the number
+        let tens = 10_f64.powi(self.decimals as i32);
+        if turned != value && turned.abs() < 1e12 {
+            turned = (turned * tens).round() / tens;
+        }
+        let changed = turned != value && turned.is_finite();
+        Turn {
+            value: changed.then_some(turned),
+            ended: response.drag_stopped() || (changed && !response.dragged()),
+        }
+    }
+}
+
+/// What a button shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Icon {
+    /// A triangle.
+    Play,
+    /// Two bars.
+    Pause,
+    /// A bar and a triangle to the left.
+    Restart,
+    /// A triangle and a bar: one step.
+    Step,
+    /// To the event before.
+    PreviousEvent,
+    /// To the event after.
+    NextEvent,
+    /// A square with four corners: one view over the whole window.
+    Fill,
+}
+
+/// A button with an icon; `name` is what a screen reader and the tests call it.
+pub fn icon_button_ui(ui: &mut Ui, icon: Icon, size: f32, name: &str, hover: &str) -> Response {
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(size), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
+    let visuals = ui.style().interact(&response);
+    ui.painter().rect_filled(rect, 4.0, visuals.weak_bg_fill);
+    if response.has_focus() {
+        ui.painter().rect_stroke(rect, 4.0, visuals.fg_stroke, egui::StrokeKind::Inside);
+    }
+    let color = if ui.is_enabled() { visuals.fg_stroke.color } else { ui.visuals().weak_text_color() };
+    ui.painter().extend(icon_shapes(icon, rect.shrink(size * 0.28), color));
+    response.on_hover_text(hover)
+}
+
+fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
+    let triangle = |r: Rect, right: bool| {
+        let (tip, back) = if right { (r.right(), r.left()) } else { (r.left(), r.right()) };
+        let points = vec![pos2(tip, r.center().y), pos2(back, r.top()), pos2(back, r.bottom())];
+        Shape::convex_polygon(points, color, Stroke::NONE)
+    };
+    let bar = |x: f32, width: f32| {
+        let bar = Rect::from_min_max(pos2(x, rect.top()), pos2(x + width, rect.bottom()));
+        Shape::rect_filled(bar, 0.0, color)
+    };
+    let thin = rect.width() * 0.2;
+    let part = |from: f32, to: f32| {
+        let x = |share: f32| rect.left() + share * rect.width();
+        Rect::from_min_max(pos2(x(from), rect.top()), pos2(x(to), rect.bottom()))
+    };
+    let diamond = |x: f32| {
+        let (c, r) = (pos2(x, rect.center().y), rect.width() * 0.22);
+        let points = vec![c - vec2(0.0, r), c + vec2(r, 0.0), c + vec2(0.0, r), c - vec2(r, 0.0)];
+        Shape::convex_polygon(points, color, Stroke::NONE)
+    };
+    match icon {
+        Icon::Play => vec![triangle(rect, true)],
+        Icon::Pause => {
+            vec![bar(rect.left() + thin * 0.5, thin * 1.4), bar(rect.right() - thin * 1.9, thin * 1.4)]
+        }
+        Icon::Restart => vec![bar(rect.left(), thin), triangle(part(0.25, 1.0), false)],
+        Icon::Step => vec![triangle(part(0.0, 0.7), true), bar(rect.right() - thin, thin)],
+        Icon::PreviousEvent => {
+            vec![triangle(part(0.5, 1.0), false), diamond(rect.left() + rect.width() * 0.2)]
+        }
+        Icon::NextEvent => vec![triangle(part(0.0, 0.5), true), diamond(rect.right() - rect.width() * 0.2)],
+        Icon::Fill => {
+            vec![Shape::rect_stroke(rect, 0.0, Stroke::new(1.5, color), egui::StrokeKind::Inside)]
+        }
+    }
+}
+
+/// The shape of a kind of motion: square, circle, diamond, double arrow.
+pub fn kind_shapes(kind: Kind, center: Pos2, radius: f32, color: Color32) -> Vec<Shape> {
+    let r = radius;
+    let polygon = |points: Vec<Pos2>| Shape::convex_polygon(points, color, Stroke::NONE);
+    match kind {
+        Kind::Resting | Kind::Other => {
+            vec![Shape::rect_filled(Rect::from_center_size(center, Vec2::splat(1.7 * r)), 0.0, color)]
+        }
+        Kind::Intrawell => vec![Shape::circle_filled(center, r, color)],
+        Kind::Irregular => vec![polygon(vec![
+            center + vec2(0.0, -1.2 * r),
+            center + vec2(1.2 * r, 0.0),
+            center + vec2(0.0, 1.2 * r),
+            center + vec2(-1.2 * r, 0.0),
+        ])],
+        Kind::Interwell => {
+            let head = |way: f32| {
+                polygon(vec![
+                    center + vec2(way * 1.4 * r, 0.0),
+                    center + vec2(way * 0.4 * r, -0.9 * r),
+                    center + vec2(way * 0.4 * r, 0.9 * r),
+                ])
+            };
+            let shaft = [center - vec2(0.6 * r, 0.0), center + vec2(0.6 * r, 0.0)];
+            vec![head(-1.0), head(1.0), Shape::line_segment(shaft, Stroke::new(0.4 * r, color))]
+        }
+        Kind::Fault => vec![polygon(vec![
+            center + vec2(0.0, -r),
+            center + vec2(1.1 * r, 0.9 * r),
+            center + vec2(-1.1 * r, 0.9 * r),
+        ])],
+    }
+}

@@ -1,0 +1,362 @@
+//! The window: panels around the tiles, commands carried out, time passed on.
+//!
+//! [`Window::ui`] needs no graphics and no display: tests drive it as it is.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Sense, Ui, Vec2};
+
+use crate::scene::{Layout, PRESETS};
+
+use super::document::Editor;
+use super::layouts::Tiling;
+use super::menu::{self, Command};
+use super::player::SPEEDS;
+use super::session::{CannotRun, Session};
+use super::settings::Settings;
+use super::style::{self, BODY, COMPACT_BELOW, PROJECTOR_ZOOM, STATUS, STATUS_COMPACT, Style};
+use super::task::{Latest, Wake};
+use super::transport::{self, EVENT_AHEAD};
+use super::views::{self, Memory, Span, View, ViewContext};
+use super::widgets::{Icon, icon_button_ui, kind_shapes};
+use super::{controls, hint};
+
+/// A file that was chosen, and what for.
+#[derive(Debug, Clone, PartialEq)]
+enum Chosen {
+    Open(PathBuf),
+    Save(PathBuf),
+}
+
+/// Everything that the window shows.
+pub struct Window {
+    /// The open scene.
+    pub session: Session,
+    /// What a person wants whatever the scene.
+    pub settings: Settings,
+    tiling: Tiling,
+    layout: Layout,
+    memory: Memory,
+    more: bool,
+    filled: Option<View>,
+    covered: bool,
+    /// A message that waits to be read: an error of a file, or what this program is.
+    message: Option<(String, String)>,
+    dialog: Latest<Chosen>,
+    hint: hint::Hint,
+    wake: Wake,
+    /// What was applied last, to be applied again only where it changes.
+    applied: Option<Settings>,
+}
+
+impl Window {
+    /// A window on a scene file or a built-in scene; the first preset where none is given.
+    pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+        let first = PRESETS.first().map_or("paper", |preset| preset.name);
+        let session = Session::new(Editor::open(spec.unwrap_or(first))?, Arc::clone(&wake))?;
+        let layout = session.scene().app.as_ref().and_then(|app| app.layout).unwrap_or(Layout::Look);
+        Ok(Self {
+            hint: hint::Hint::for_scene(&session),
+            session,
+            settings,
+            tiling: Tiling::new(layout, false),
+            layout,
+            memory: Memory::default(),
+            more: false,
+            filled: None,
+            covered: false,
+            message: None,
+            dialog: Latest::default(),
+            wake,
+            applied: None,
+        })
+    }
+
+    /// Opens another scene; one that cannot be opened leaves the present one and says why.
+    pub fn open_another(&mut self, spec: &str) {
+        match Self::open(Some(spec), self.settings, Arc::clone(&self.wake)) {
+            Ok(window) => *self = Self { dialog: std::mem::take(&mut self.dialog), ..window },
+            Err(error) => self.message = Some(("This scene cannot be opened".to_owned(), error.to_string())),
+        }
+    }
+
+    /// The message that waits to be read.
+    pub fn message(&self) -> Option<&str> {
+        self.message.as_ref().map(|message| message.1.as_str())
+    }
+
+    /// What was done since the last frame, before it is drawn.
+    pub fn logic(&mut self, ctx: &egui::Context) {
+        if self.applied != Some(self.settings) {
+            let dark = self.settings.dark && !self.settings.projector;
+            ctx.set_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light });
+            let zoom = if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 };
+            if self.applied.is_some_and(|applied| applied.projector != self.settings.projector)
+                || self.settings.projector
+            {
+                ctx.set_zoom_factor(zoom);
+            }
+            self.applied = Some(self.settings);
+        }
+        if self.dialog.poll()
+            && let Some(chosen) = self.dialog.current().cloned()
+        {
+            self.dialog.clear();
+            match chosen {
+                Chosen::Open(path) => self.open_another(&path.to_string_lossy()),
+                Chosen::Save(path) => self.save_to(&path),
+            }
+        }
+        self.session.poll();
+        let seconds = ctx.input(|input| f64::from(input.stable_dt));
+        self.session.player.tick(seconds);
+        if self.session.player.is_playing() {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Draws it all.
+    pub fn ui(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        for command in menu::keys(&ctx) {
+            self.carry_out(&ctx, command);
+        }
+        let style = Style::of(&ctx, self.settings.projector);
+        let compact = ctx.content_rect().width() < COMPACT_BELOW;
+        if compact != self.tiling.is_compact() {
+            self.tiling = Tiling::new(self.layout, compact);
+        }
+        let fill = ui.visuals().panel_fill;
+        let frame = |x: i8, y: i8| Frame::new().fill(fill).inner_margin(Margin::symmetric(x, y));
+        let (bar, line, feet) = (frame(8, 2), frame(12, 4), frame(12, 4));
+        let mut asked = Vec::new();
+        Panel::top("menu").frame(bar).exact_size(32.0).show(ui, |ui| {
+            asked = menu::menu_ui(ui, &self.session, &self.tiling, self.settings);
+        });
+        if !self.covered {
+            let height = if compact { 40.0 } else { 44.0 };
+            Panel::top("status").frame(line).exact_size(height).show(ui, |ui| {
+                status_ui(ui, &self.session, &style, compact);
+            });
+        }
+        Panel::bottom("transport").frame(feet).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
+            transport::transport_ui(ui, &mut self.session, &style);
+        });
+        if compact {
+            Panel::top("controls row").frame(line).show(ui, |ui| {
+                controls::row_ui(ui, &mut self.session, &style, &mut self.more);
+            });
+        } else {
+            let width = if ctx.content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
+            let column = frame(12, 10);
+            Panel::left("controls").frame(column).resizable(false).exact_size(width).show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    controls::column_ui(ui, &mut self.session, &style, &mut self.more);
+                });
+            });
+        }
+        if self.hint.is_shown(&self.session) {
+            Panel::top("hint").frame(line).show(ui, |ui| self.hint.ui(ui));
+        }
+        CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
+        for command in asked {
+            self.carry_out(&ctx, command);
+        }
+        self.message_ui(ui);
+    }
+
+    fn views_ui(&mut self, ui: &mut Ui, style: Style) {
+        let span = Span::of(&self.session);
+        let mut context = ViewContext {
+            session: &mut self.session,
+            style,
+            span,
+            memory: &mut self.memory,
+            reduce_motion: self.settings.reduce_motion,
+            covered: self.covered,
+        };
+        ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
+        let Some(view) = self.filled else {
+            self.tiling.ui(ui, &mut context, &mut self.filled);
+            return;
+        };
+        let mut close = false;
+        ui.horizontal(|ui| {
+            ui.add_space(8.0);
+            ui.heading(view.name());
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                close = icon_button_ui(ui, Icon::Fill, 24.0, "all views", "All views again (Z)").clicked();
+            });
+        });
+        views::view_ui(ui, view, &mut context);
+        if close {
+            self.filled = None;
+        }
+    }
+
+    fn message_ui(&mut self, ui: &Ui) {
+        let Some((title, text)) = &self.message else { return };
+        let answer = egui::Modal::new(egui::Id::unique("message")).show(ui.ctx(), |ui| {
+            ui.set_max_width(560.0);
+            ui.heading(title);
+            ui.add_space(6.0);
+            egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| ui.label(text));
+            ui.add_space(8.0);
+            ui.button("Close").clicked()
+        });
+        if answer.inner || answer.should_close() {
+            self.message = None;
+        }
+    }
+
+    /// Does what was asked for.
+    pub fn carry_out(&mut self, ctx: &egui::Context, command: Command) {
+        let player = &mut self.session.player;
+        match command {
+            Command::OpenPreset(name) => self.open_another(name),
+            Command::Open => self.choose(true),
+            Command::Save => match self.session.editor.path().map(PathBuf::from) {
+                Some(path) => self.save_to(&path),
+                None => self.choose(false),
+            },
+            Command::SaveAs => self.choose(false),
+            Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Command::Undo => {
+                self.session.undo();
+            }
+            Command::Redo => {
+                self.session.redo();
+            }
+            Command::BackToStart => {
+                self.session.back_to_start();
+                (self.filled, self.covered) = (None, false);
+                self.memory = Memory::default();
+                self.tiling = Tiling::new(self.layout, self.tiling.is_compact());
+            }
+            Command::PlayPause => player.set_playing(!player.is_playing()),
+            Command::Step => player.step(),
+            Command::PreviousEvent => {
+                player.seek_event(false, EVENT_AHEAD);
+            }
+            Command::NextEvent => {
+                player.seek_event(true, EVENT_AHEAD);
+            }
+            Command::Speed(index) => {
+                if let Some(speed) = SPEEDS.get(index) {
+                    player.speed = speed.0;
+                }
+            }
+            Command::Arrange(layout) => {
+                self.layout = layout;
+                self.tiling = Tiling::new(layout, self.tiling.is_compact());
+                self.filled = None;
+            }
+            Command::Show(view, shown) => self.tiling.show(view, shown),
+            // the view under the pointer
+            Command::Fill => {
+                let wanted = self.memory.hovered.unwrap_or(View::Well);
+                self.filled = if self.filled.is_some() { None } else { Some(wanted) };
+            }
+            Command::Cover => self.covered = !self.covered,
+            Command::FullScreen => {
+                let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
+                ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!full));
+            }
+            Command::Set(settings) => self.settings = settings,
+            Command::About => self.message = Some(about()),
+        }
+    }
+
+    fn save_to(&mut self, path: &std::path::Path) {
+        if let Err(error) = self.session.editor.save_to(path) {
+            self.message = Some(("The scene was not saved".to_owned(), error));
+        }
+    }
+
+    /// Asks for a file, without the window waiting for the answer.
+    fn choose(&mut self, open: bool) {
+        let name = self
+            .session
+            .editor
+            .path()
+            .and_then(|path| path.file_name())
+            .map_or_else(|| "scene.ron".to_owned(), |name| name.to_string_lossy().into_owned());
+        self.dialog.ask(&self.wake, move |_| {
+            let dialog = rfd::FileDialog::new().add_filter("scene", &["ron"]);
+            if open {
+                dialog.pick_file().map(Chosen::Open)
+            } else {
+                dialog.set_file_name(name).save_file().map(Chosen::Save)
+            }
+        });
+    }
+}
+
+fn about() -> (String, String) {
+    let text = format!(
+        "Version {}. Bistable mechanisms with travel limits: what they do when they are shaken.\n\n\
+         Every number comes from a run of the integrator; the motion on the screen is such a run, continued.",
+        env!("CARGO_PKG_VERSION")
+    );
+    ("interwell".to_owned(), text)
+}
+
+/// The line that says what the mass does.
+fn status_ui(ui: &mut Ui, session: &Session, style: &Style, compact: bool) {
+    let sentence = session.sentence();
+    let size = if compact { STATUS_COMPACT } else { STATUS };
+    ui.horizontal_centered(|ui| {
+        let (rect, _) = ui.allocate_exact_size(Vec2::splat(size + 6.0), Sense::hover());
+        ui.painter().extend(kind_shapes(
+            sentence.kind,
+            rect.center(),
+            size * 0.42,
+            style.kind(sentence.kind),
+        ));
+        let settling = session.settling().map(|(gone, of)| format!("settling: {gone} of {of} periods"));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if let Some(settling) = settling {
+                let hover = "How far the motion has settled since your last change";
+                ui.label(RichText::new(settling).color(style.faint())).on_hover_text(hover);
+            }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let text = sentence.whole();
+                let size = fitted(ui, &text, size);
+                ui.add(egui::Label::new(RichText::new(text).size(size)).wrap());
+            });
+        });
+    });
+}
+
+/// The size at which a text stands in one line, or the smallest one, at which it takes two.
+fn fitted(ui: &Ui, text: &str, size: f32) -> f32 {
+    let font = egui::FontId::proportional(size);
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER);
+    let share = ui.available_width() / galley.size().x.max(1.0);
+    (size * share.min(1.0) - 0.05).clamp(BODY.min(size), size)
+}
+
+impl eframe::App for Window {
+    fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
+        Self::logic(self, ctx);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        Self::ui(self, ui);
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        eframe::set_value(storage, eframe::APP_KEY, &self.settings);
+    }
+
+    fn persist_egui_memory(&self) -> bool {
+        // what is open comes from the scene, not from the last time
+        false
+    }
+}
+
+/// Fonts and spacing; to be called once for a context.
+pub fn prepare(ctx: &egui::Context) {
+    style::install(ctx);
+}

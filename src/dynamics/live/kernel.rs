@@ -1,0 +1,270 @@
+//! What does the integrator need to go on from a step's end, to look into a step, and to stop within one?
+//!
+//! Built once for a model; a [`Motion`] is made from it for every call and thrown away. That costs some microseconds
+//! and keeps the integrator free of any thought of being continued.
+
+use super::super::clock::Clock;
+use super::super::drive::Drive;
+use super::super::equation::{End, Equation};
+use super::super::model::{Model, Request};
+use super::super::motion::{Carried, Contact, Motion};
+use super::super::prepare::{Form, base_at, clock, form};
+use super::super::result::{Event, Outcome, Phase, Sample};
+
+/// Steps of one call: some tens of milliseconds. More are only asked for where impacts crowd without end.
+const STEPS_PER_CALL: u64 = 50_000;
+
+/// Energies in kernel units, per mass.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Sums {
+    pub work: f64,
+    pub squared_velocity: f64,
+    pub impact: f64,
+}
+
+impl Sums {
+    pub fn less(&self, other: &Self) -> Self {
+        Self {
+            work: self.work - other.work,
+            squared_velocity: self.squared_velocity - other.squared_velocity,
+            impact: self.impact - other.impact,
+        }
+    }
+}
+
+/// Equation, clock and drive of one model.
+#[derive(Debug, Clone)]
+pub(super) struct Kernel {
+    equation: Equation<f64>,
+    clock: Clock<f64>,
+    drive: std::sync::Arc<Form<f64>>,
+}
+
+/// What came of stepping on.
+pub(super) struct Stretch {
+    pub samples: Vec<Sample>,
+    pub events: Vec<Event>,
+    pub head: Carried<f64>,
+    pub sums: Sums,
+    /// Where the last step began, and the energies up to there; none where no step was taken.
+    pub last: Option<(Carried<f64>, Sums)>,
+    pub ended: Option<Outcome>,
+    /// The work of one call was used up.
+    pub exhausted: bool,
+}
+
+/// Calls a method of the kernel with the drive in its own type.
+macro_rules! with_drive {
+    ($self:ident, $drive:ident => $call:expr) => {
+        match &*$self.drive {
+            Form::Still($drive) => $call,
+            Form::Sine($drive) => $call,
+            Form::Composite($drive) => $call,
+        }
+    };
+}
+
+impl Kernel {
+    pub fn new(model: &Model) -> Self {
+        let unit = model.scales.unit();
+        let clock = clock(model, unit);
+        let drive = std::sync::Arc::new(form(model, &clock));
+        Self { equation: Equation::new(model, unit), clock, drive }
+    }
+
+    /// Seconds per kernel time unit.
+    pub fn unit(&self) -> f64 {
+        self.equation.unit
+    }
+
+    pub fn seconds(&self, carried: &Carried<f64>) -> f64 {
+        self.clock.seconds(&carried.at)
+    }
+
+    /// Acceleration of the base in m/s^2.
+    pub fn base(&self, carried: &Carried<f64>) -> f64 {
+        with_drive!(self, drive => base_at(drive, &self.clock, carried.segment, &carried.at, self.unit()))
+    }
+
+    /// Acceleration of the base in m/s^2 at a time in s.
+    pub fn base_at(&self, t: f64) -> f64 {
+        let at = self.clock.at(t);
+        with_drive!(self, drive => base_at(drive, &self.clock, self.segment(drive, t), &at, self.unit()))
+    }
+
+    /// The segment of the drive at a time in s.
+    fn segment<D: Drive<f64>>(&self, drive: &D, t: f64) -> usize {
+        let at = self.clock.at(t);
+        let mut segment = 0;
+        while drive.segment_end(segment).is_some_and(|end| self.clock.between(&at, &end) <= 0.0) {
+            segment += 1;
+        }
+        segment
+    }
+
+    fn motion<'a, D: Drive<f64>, const LEDGER: bool>(
+        &'a self,
+        model: &'a Model,
+        drive: &'a D,
+        request: &Request<'a>,
+        from: Option<&Carried<f64>>,
+    ) -> Motion<'a, f64, D, LEDGER> {
+        let mut motion = Motion::new(model, request, model.tolerance, &self.equation, self.clock, drive);
+        if let Some(from) = from {
+            motion.resume(from);
+        }
+        motion
+    }
+
+    /// The model's start put into the time `now` in s, and what happens there at once.
+    pub fn start(&self, model: &Model, now: f64) -> (Carried<f64>, Vec<Event>) {
+        with_drive!(self, drive => self.start_with(model, now, drive))
+    }
+
+    fn start_with<D: Drive<f64>>(&self, model: &Model, now: f64, drive: &D) -> (Carried<f64>, Vec<Event>) {
+        let request = Request { events: true, ..Request::default() };
+        let mut motion = self.motion::<D, false>(model, drive, &request, None);
+        motion.at = self.clock.at(now);
+        motion.segment = self.segment(drive, now);
+        if motion.contact == Contact::Free {
+            motion.place_at_start();
+        }
+        (motion.carry(), motion.record.events.take().unwrap_or_default())
+    }
+
+    /// Steps on from `head` until a step has passed `to` in s.
+    pub fn proceed(&self, model: &Model, head: &Carried<f64>, to: f64, times: &[f64]) -> Stretch {
+        with_drive!(self, drive => self.proceed_with(model, head, to, times, drive))
+    }
+
+    fn proceed_with<D: Drive<f64>>(
+        &self,
+        model: &Model,
+        head: &Carried<f64>,
+        to: f64,
+        times: &[f64],
+        drive: &D,
+    ) -> Stretch {
+        let request = Request { sample_times: times, events: true, ledger: true, cancel: None };
+        let mut motion = self.motion::<D, true>(model, drive, &request, Some(head));
+        let until = self.clock.at(to);
+        let (mut last, mut ended) = (None, None);
+        while ended.is_none()
+            && self.clock.between(&motion.at, &until) >= 0.0
+            && motion.steps < STEPS_PER_CALL
+        {
+            let left = self.clock.between(&motion.at, &motion.end);
+            if !(left > 0.0) {
+                ended = Some(Outcome::Done);
+                break;
+            }
+            last = Some((motion.carry(), sums(&motion)));
+            ended = motion.proceed(left);
+        }
+        let exhausted = ended.is_none() && self.clock.between(&motion.at, &until) >= 0.0;
+        Stretch {
+            head: motion.carry(),
+            sums: sums(&motion),
+            last,
+            ended,
+            exhausted,
+            events: motion.record.events.take().unwrap_or_default(),
+            samples: motion.record.samples,
+        }
+    }
+
+    /// Takes the steps from `tail` to `head` once more for the samples at `times`, all before the head.
+    pub fn look(
+        &self,
+        model: &Model,
+        tail: &Carried<f64>,
+        head: &Carried<f64>,
+        times: &[f64],
+        into: &mut Vec<Sample>,
+    ) {
+        if !times.is_empty() {
+            with_drive!(self, drive => self.look_with(model, tail, head, times, into, drive));
+        }
+    }
+
+    fn look_with<D: Drive<f64>>(
+        &self,
+        model: &Model,
+        tail: &Carried<f64>,
+        head: &Carried<f64>,
+        times: &[f64],
+        into: &mut Vec<Sample>,
+        drive: &D,
+    ) {
+        if tail.contact != Contact::Free {
+            // It stands still, and the search for its release need not be made again.
+            let (x, phase) = (tail.x, phase_of(tail.contact));
+            into.extend(times.iter().map(|&t| {
+                let base_accel = base_at(drive, &self.clock, tail.segment, &self.clock.at(t), self.unit());
+                Sample { t, x, v: 0.0, base_accel, phase }
+            }));
+            return;
+        }
+        let request = Request { sample_times: times, ..Request::default() };
+        let mut motion = self.motion::<D, false>(model, drive, &request, Some(tail));
+        while self.clock.between(&motion.at, &head.at) > 0.0 && motion.steps < STEPS_PER_CALL {
+            let left = self.clock.between(&motion.at, &motion.end);
+            if motion.proceed(left).is_some() {
+                break;
+            }
+        }
+        into.extend(motion.record.samples);
+    }
+
+    /// The state at `now` in s, where that lies between `tail` and `head`, and the energies from the tail to there.
+    pub fn present(
+        &self,
+        model: &Model,
+        tail: &Carried<f64>,
+        head: &Carried<f64>,
+        now: f64,
+    ) -> Option<(Carried<f64>, Sums)> {
+        with_drive!(self, drive => self.present_with(model, tail, head, now, drive))
+    }
+
+    fn present_with<D: Drive<f64>>(
+        &self,
+        model: &Model,
+        tail: &Carried<f64>,
+        head: &Carried<f64>,
+        now: f64,
+        drive: &D,
+    ) -> Option<(Carried<f64>, Sums)> {
+        let at = self.clock.at(now);
+        if self.clock.between(&at, &head.at) <= 0.0 {
+            return None;
+        }
+        let request = Request { ledger: true, ..Request::default() };
+        let mut motion = self.motion::<D, true>(model, drive, &request, Some(tail));
+        motion.end = at;
+        while motion.steps < STEPS_PER_CALL {
+            let left = self.clock.between(&motion.at, &motion.end);
+            if !(left > 0.0) || motion.proceed(left).is_some() {
+                break;
+            }
+        }
+        Some((motion.carry(), sums(&motion)))
+    }
+}
+
+fn sums<D: Drive<f64>>(motion: &Motion<'_, f64, D, true>) -> Sums {
+    let whole = &motion.record.whole;
+    Sums {
+        work: whole.work.value(),
+        squared_velocity: whole.squared_velocity.value(),
+        impact: whole.impact.value(),
+    }
+}
+
+pub(super) fn phase_of(contact: Contact) -> Phase {
+    match contact {
+        Contact::Resting(End::Low) => Phase::LeftStop,
+        Contact::Resting(End::High) => Phase::RightStop,
+        _ => Phase::Free,
+    }
+}

@@ -1,0 +1,309 @@
+//! How does a motion go on that is changed while it runs?
+//!
+//! A [`Live`] run is the integrator of [`Model::run`] without an end: it steps ahead of the time that it has been
+//! advanced to, and what it hands out never depends on how often it was asked. So a run that is advanced in any
+//! pieces takes the same steps as one that is not, to the bit; a time between two steps is looked at by taking the
+//! last step once more, up to there.
+//!
+//! A change of the model takes effect at the present time: the state is kept as far as the new stops and the new
+//! curve allow, and the drive goes on in phase. Whatever energy a change puts in or takes out by itself (a stop
+//! dragged over the mass, a new potential under it, a mass put elsewhere) is in the ledger as moved by hand.
+
+mod kernel;
+mod phase;
+
+use kernel::{Kernel, Sums, phase_of};
+
+use super::model::Model;
+use super::motion::{Carried, Contact};
+use super::result::{Event, EventKind, Outcome, Phase, Sample, Side};
+
+/// Longest live run in kernel time units: some years of the prototype. The clock of an undriven scene is
+/// still the one that [`Model::run`] has.
+const HORIZON_UNITS: f64 = 8_589_934_592.0;
+
+/// Periods of the fastest tone that the clock counts exactly.
+const MOST_PERIODS: f64 = 9e15;
+
+/// Samples and events of a stretch of time, each ascending. The caller may drain them as it likes.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Passage {
+    /// The state at the times asked for, and right after every change.
+    pub samples: Vec<Sample>,
+    /// What happened.
+    pub events: Vec<Event>,
+}
+
+/// Where the energy of a live run went since it began, in J. `stored` is what is there now less what was there at the
+/// start: work + by hand - damping - impact = stored.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LiveLedger {
+    /// Work of the base on the mass.
+    pub work_j: f64,
+    /// Taken by damping.
+    pub damping_j: f64,
+    /// Taken by impacts.
+    pub impact_j: f64,
+    /// Put in by changes: a stop dragged over the mass, a mass placed, another potential.
+    pub by_hand_j: f64,
+    /// Change of kinetic energy and potential.
+    pub stored_j: f64,
+}
+
+/// A run that is continued from its present state; see the module.
+#[derive(Debug, Clone)]
+pub struct Live {
+    /// The model as it acts now, its drive shifted so that its phase went on through every change.
+    model: Model,
+    /// Duration and begin of the settled window that the scene asked for.
+    asked: (f64, f64),
+    kernel: Kernel,
+    /// Turns by which each tone is ahead of its scene.
+    shifts: Vec<f64>,
+    now: f64,
+    /// The begin of the step in which the present time lies, and its end.
+    tail: Carried<f64>,
+    head: Carried<f64>,
+    /// Events of that step that are still to come.
+    coming: Vec<Event>,
+    /// Energies up to the tail, and of the step from there to the head.
+    past: LiveLedger,
+    ahead: Sums,
+    /// Kinetic energy and potential at the start in J.
+    start_energy: f64,
+    ended: Option<Outcome>,
+}
+
+impl Live {
+    /// A run from the model's own start, at time 0. What happens at once (a start pressed on a stop rests) comes
+    /// with the first [`advance`](Self::advance).
+    pub fn new(model: &Model) -> Self {
+        let asked = (model.duration, model.settle);
+        let model = without_end(model.clone());
+        let shifts = vec![0.0; model.drive.tones.len()];
+        let kernel = Kernel::new(&model);
+        let (start, coming) = kernel.start(&model, 0.0);
+        let start_energy = energy(&model, model.start);
+        Self {
+            kernel,
+            shifts,
+            asked,
+            now: 0.0,
+            tail: start,
+            head: start,
+            coming,
+            past: LiveLedger::default(),
+            ahead: Sums::default(),
+            start_energy,
+            ended: None,
+            model,
+        }
+    }
+
+    /// The present time in s.
+    pub fn time(&self) -> f64 {
+        self.now
+    }
+
+    /// The model as it acts now; its drive's phase is the live one.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// How the run ended, where it did: it cannot be advanced further.
+    pub fn ended(&self) -> Option<Outcome> {
+        self.ended.filter(|outcome| outcome.ended_at().is_some_and(|at| self.now >= at))
+    }
+
+    /// Advances to `to` in s and appends what happens on the way: samples at `times`, ascending, later than the
+    /// present and not later than `to`, and the events up to `to`.
+    ///
+    /// False where the work of one call was used up or the run ended before `to`; the present time then says
+    /// how far it came, and no sample beyond it was made.
+    pub fn advance(&mut self, to: f64, times: &[f64], into: &mut Passage) -> bool {
+        let to = to.min(self.model.duration);
+        if !(to > self.now) {
+            self.deliver(into);
+            return true;
+        }
+        let (samples_from, mut reached) = (into.samples.len(), to);
+        // the rest of the step that has been taken already
+        let head_time = self.kernel.seconds(&self.head);
+        let known = times.partition_point(|t| *t < head_time);
+        self.kernel.look(&self.model, &self.tail, &self.head, &times[..known], &mut into.samples);
+        if self.ended.is_none() {
+            let stretch = self.kernel.proceed(&self.model, &self.head, to, &times[known..]);
+            into.samples.extend(stretch.samples);
+            self.coming.extend(stretch.events);
+            if let Some((tail, before)) = stretch.last {
+                self.past.add(&self.ahead, &self.model);
+                self.past.add(&before, &self.model);
+                self.ahead = stretch.sums.less(&before);
+                self.tail = tail;
+                self.head = stretch.head;
+            }
+            self.ended = stretch.ended;
+            if stretch.exhausted {
+                reached = self.kernel.seconds(&self.tail);
+            }
+        }
+        if let Some(end) = self.ended.and_then(Outcome::ended_at) {
+            reached = reached.min(end);
+        }
+        self.now = reached.max(self.now);
+        let kept = into.samples[samples_from..].partition_point(|sample| sample.t <= self.now);
+        into.samples.truncate(samples_from + kept);
+        self.deliver(into);
+        reached >= to
+    }
+
+    /// The events that are due.
+    fn deliver(&mut self, into: &mut Passage) {
+        let due = self.coming.partition_point(|event| event.t <= self.now);
+        into.events.extend(self.coming.drain(..due));
+    }
+
+    /// Acceleration of the base in m/s^2 at a time in s, as the drive is now.
+    pub fn base_acceleration(&self, t: f64) -> f64 {
+        self.kernel.base_at(t.max(0.0))
+    }
+
+    /// The state at the present time.
+    pub fn state(&self) -> Sample {
+        let (carried, _) = self.present();
+        self.sample(&carried)
+    }
+
+    fn sample(&self, carried: &Carried<f64>) -> Sample {
+        Sample {
+            t: self.now,
+            x: carried.x,
+            v: carried.v / self.kernel.unit(),
+            base_accel: self.kernel.base(carried),
+            phase: phase_of(carried.contact),
+        }
+    }
+
+    /// The state at the present time and the energies from the tail to there.
+    fn present(&self) -> (Carried<f64>, Sums) {
+        self.kernel.present(&self.model, &self.tail, &self.head, self.now).unwrap_or((self.head, self.ahead))
+    }
+
+    /// The energies up to the present time.
+    pub fn ledger(&self) -> LiveLedger {
+        let (carried, sums) = self.present();
+        let mut ledger = self.past;
+        ledger.add(&sums, &self.model);
+        let v = carried.v / self.kernel.unit();
+        ledger.stored_j = energy(&self.model, (carried.x, v)) - self.start_energy;
+        ledger
+    }
+
+    /// From now on the mass moves as `model` says. Its start, duration and settled window do not act.
+    ///
+    /// The time goes on, and with it whatever is a function of time (a record, a chirp, a ramp). Tones go on in
+    /// phase also where their frequency changes. The mass keeps its place and speed; a stop that now lies on
+    /// the other side of it carries it along, as the end of the known curve does, and takes its speed.
+    pub fn change(&mut self, model: &Model, into: &mut Passage) {
+        self.shifts = phase::shifts(&self.model, model, &self.shifts, self.now);
+        self.asked = (model.duration, model.settle);
+        let mut next = without_end(model.clone());
+        phase::shift(&mut next.drive, &self.shifts);
+        let state = self.state();
+        self.go_on(next, (state.x, state.v), state.phase, into);
+    }
+
+    /// Puts the mass to `x` in m with velocity `v` in m/s, as far as the stops let it. What is no number changes nothing.
+    pub fn place(&mut self, x: f64, v: f64, into: &mut Passage) {
+        if !(x.is_finite() && v.is_finite()) {
+            return;
+        }
+        let next = self.model.clone();
+        self.go_on(next, (x, v), Phase::Free, into);
+    }
+
+    fn go_on(&mut self, mut next: Model, wanted: (f64, f64), was: Phase, into: &mut Passage) {
+        let (carried, sums) = self.present();
+        let before = energy(&self.model, (carried.x, carried.v / self.kernel.unit()));
+        self.past.add(&sums, &self.model);
+        next.start = held_within(&next, wanted);
+        next.motionless = false;
+        self.past.by_hand_j += energy(&next, next.start) - before;
+        self.model = next;
+        self.kernel = Kernel::new(&self.model);
+        let (start, mut happened) = self.kernel.start(&self.model, self.now);
+        // Resting on is no event, and letting go is one.
+        let rests = phase_of(start.contact);
+        match was {
+            Phase::Free => {}
+            _ if was == rests => happened.retain(|event| event.kind != EventKind::Rest),
+            _ => {
+                let side = if was == Phase::LeftStop { Side::Left } else { Side::Right };
+                let kind = EventKind::Release;
+                happened.insert(0, Event { t: self.now, kind, side, v_in: 0.0, v_out: 0.0 });
+            }
+        }
+        (self.tail, self.head, self.coming) = (start, start, happened);
+        self.ahead = Sums::default();
+        self.ended = None;
+        self.deliver(into);
+        into.samples.push(self.sample(&start));
+    }
+
+    /// A model whose run begins at the present state and phase and lasts as long as the scene's own: what will
+    /// become of this motion. None under a ramp, a chirp or a record, which are functions of the time since the start.
+    pub fn from_here(&self) -> Option<Model> {
+        let drive = &self.model.drive;
+        let repeats = drive.chirps.is_empty() && drive.records.is_empty();
+        if !repeats || drive.tones.iter().any(|tone| tone.ramp.is_some()) {
+            return None;
+        }
+        let mut model = self.model.clone();
+        (model.duration, model.settle) = self.asked;
+        phase::advance(&mut model.drive, self.now);
+        let (carried, _) = self.present();
+        model.start = (carried.x, carried.v / self.kernel.unit());
+        model.motionless = carried.contact == Contact::Motionless;
+        Some(model)
+    }
+}
+
+impl LiveLedger {
+    fn add(&mut self, sums: &Sums, model: &Model) {
+        let unit = model.scales.unit();
+        let energy = model.mass / (unit * unit);
+        self.work_j += sums.work * energy;
+        self.damping_j += model.damping * sums.squared_velocity / unit;
+        self.impact_j += sums.impact * energy;
+    }
+}
+
+/// The model with a duration that no one waits for; nothing of it is settled.
+fn without_end(mut model: Model) -> Model {
+    let unit = model.scales.unit();
+    let counted = MOST_PERIODS / model.drive.fastest().unwrap_or(0.0);
+    model.duration = (HORIZON_UNITS * unit).max(model.duration).min(counted);
+    model.settle = model.duration;
+    model
+}
+
+/// Kinetic energy and potential in J at a displacement and a velocity.
+fn energy(model: &Model, (x, v): (f64, f64)) -> f64 {
+    0.5 * model.mass * v * v + model.mechanism.curve.potential(x)
+}
+
+/// A state with the mass between the stops and within the known curve; where it had to be carried there, it has no
+/// speed.
+fn held_within(model: &Model, (x, v): (f64, f64)) -> (f64, f64) {
+    let domain = model.mechanism.curve.domain();
+    let stops = model.stops;
+    let low = stops.and_then(|s| s.left).map_or(domain.0, |stop| stop.x.max(domain.0));
+    let high = stops.and_then(|s| s.right).map_or(domain.1, |stop| stop.x.min(domain.1));
+    if !(x <= high) {
+        (high, 0.0)
+    } else if x < low {
+        (low, 0.0)
+    } else {
+        (x, v)
+    }
+}

@@ -1,0 +1,204 @@
+//! What has been seen of a motion that goes on? A live run with a memory.
+//!
+//! The path is sampled for the eye: some eighty times a swing, and at every event, so that rebounds are
+//! corners and rests are flat. The oldest of it is forgotten.
+
+use std::collections::VecDeque;
+
+use crate::dynamics::{Event, EventKind, Live, LiveLedger, Model, Outcome, Passage, Phase, Sample, Side};
+
+/// Samples in a period of the drive or of small oscillations, whichever is shorter.
+const PER_PERIOD: f64 = 80.0;
+
+/// How many samples and events are remembered: some minutes of the prototype.
+const MOST_SAMPLES: usize = 200_000;
+const MOST_EVENTS: usize = 50_000;
+
+/// The most samples that one call makes; a longer way is gone with fewer.
+const MOST_AT_ONCE: f64 = 20_000.0;
+
+/// A live run and its past.
+#[derive(Debug, Clone)]
+pub struct Watch {
+    live: Live,
+    samples: VecDeque<Sample>,
+    events: VecDeque<Event>,
+    /// The state at the present time.
+    now: Sample,
+    /// Time between samples in s.
+    step: f64,
+}
+
+impl Watch {
+    /// Begins at the model's own start.
+    pub fn new(model: &Model) -> Self {
+        let live = Live::new(model);
+        let now = live.state();
+        let mut own =
+            Self { live, samples: VecDeque::new(), events: VecDeque::new(), now, step: sampling_step(model) };
+        own.take(Passage { samples: vec![now], events: Vec::new() });
+        own.advance(0.0);
+        own
+    }
+
+    /// Goes on to the time `to` in s. False where it did not get there: the run has ended, or impacts
+    /// crowd so that it needs more calls.
+    pub fn advance(&mut self, to: f64) -> bool {
+        let from = self.live.time();
+        let step = self.step.max((to - from) / MOST_AT_ONCE);
+        let first = (from / step).floor() + 1.0;
+        let count = ((to / step).floor() - first + 1.0).max(0.0) as u32;
+        let times = (0..count).map(|i| (first + f64::from(i)) * step);
+        let times: Vec<f64> = times.filter(|t| *t > from && *t <= to).collect();
+        let mut passage = Passage::default();
+        let arrived = self.live.advance(to, &times, &mut passage);
+        self.take(passage);
+        self.now = self.live.state();
+        arrived
+    }
+
+    /// From now on the mass moves as `model` says; see [`Live::change`].
+    pub fn change(&mut self, model: &Model) {
+        let mut passage = Passage::default();
+        self.live.change(model, &mut passage);
+        self.step = sampling_step(model);
+        self.take(passage);
+        self.now = self.live.state();
+    }
+
+    /// Puts the mass to `x` in m with velocity `v` in m/s.
+    pub fn place(&mut self, x: f64, v: f64) {
+        let mut passage = Passage::default();
+        self.live.place(x, v, &mut passage);
+        self.take(passage);
+        self.now = self.live.state();
+    }
+
+    /// The present time in s.
+    pub fn time(&self) -> f64 {
+        self.live.time()
+    }
+
+    /// The present state.
+    pub fn now(&self) -> Sample {
+        self.now
+    }
+
+    /// How the run ended, where it did.
+    pub fn ended(&self) -> Option<Outcome> {
+        self.live.ended()
+    }
+
+    /// Where the energy went since the start.
+    pub fn ledger(&self) -> LiveLedger {
+        self.live.ledger()
+    }
+
+    /// What will become of the motion: see [`Live::from_here`].
+    pub fn from_here(&self) -> Option<Model> {
+        self.live.from_here()
+    }
+
+    /// The path that is remembered, ascending in time; at an impact two samples, before and after it.
+    pub fn samples(&self) -> &VecDeque<Sample> {
+        &self.samples
+    }
+
+    /// The events that are remembered, ascending in time.
+    pub fn events(&self) -> &VecDeque<Event> {
+        &self.events
+    }
+
+    /// The first time in s that is remembered.
+    pub fn begin(&self) -> f64 {
+        self.samples.front().map_or(0.0, |sample| sample.t)
+    }
+
+    /// The remembered state at a time in s: between two samples by the cubic through places and velocities.
+    pub fn state_at(&self, t: f64) -> Sample {
+        if t >= self.now.t {
+            return self.now;
+        }
+        let after = self.samples.partition_point(|sample| sample.t <= t);
+        let Some(a) = after.checked_sub(1).and_then(|i| self.samples.get(i)) else {
+            return self.samples.front().copied().unwrap_or(self.now);
+        };
+        let b = self.samples.get(after).unwrap_or(&self.now);
+        let h = b.t - a.t;
+        if !(h > 0.0) || a.phase != Phase::Free {
+            return Sample { t, ..*a };
+        }
+        let s = (t - a.t) / h;
+        // Hermite's cubic and its derivative
+        let (rise, bend) = (b.x - a.x, (a.v + b.v) * h - 2.0 * (b.x - a.x));
+        let c = rise - a.v * h - bend;
+        Sample {
+            t,
+            x: a.x + s * (a.v * h + s * (c + s * bend)),
+            v: a.v + s * (2.0 * c + s * 3.0 * bend) / h,
+            base_accel: a.base_accel + s * (b.base_accel - a.base_accel),
+            phase: Phase::Free,
+        }
+    }
+
+    /// The event before or after a time in s, releases and crossings and the first impact after a flight: what one
+    /// would call one thing that happened.
+    pub fn neighbour(&self, t: f64, later: bool) -> Option<Event> {
+        // a chatter is one event, at its first impact
+        let lone = |i: &usize| {
+            let event = &self.events[*i];
+            let before = i.checked_sub(1).map(|j| &self.events[j]);
+            !matches!(event.kind, EventKind::Impact | EventKind::Rest)
+                || before.is_none_or(|before| before.kind != EventKind::Impact || before.side != event.side)
+        };
+        let split = |own: f64| self.events.partition_point(|event| event.t <= own);
+        let found = if later {
+            (split(t)..self.events.len()).find(lone)
+        } else {
+            let before = self.events.partition_point(|event| event.t < t);
+            (0..before).rev().find(lone)
+        };
+        found.map(|i| self.events[i])
+    }
+
+    /// Takes in a passage, the corners of the path at its events included.
+    fn take(&mut self, passage: Passage) {
+        let mut events = passage.events.iter().peekable();
+        for sample in &passage.samples {
+            while let Some(event) = events.next_if(|event| event.t <= sample.t) {
+                self.corner(event);
+            }
+            self.samples.push_back(*sample);
+        }
+        events.for_each(|event| self.corner(event));
+        self.events.extend(passage.events);
+        let spare = self.samples.len().saturating_sub(MOST_SAMPLES);
+        self.samples.drain(..spare);
+        let spare = self.events.len().saturating_sub(MOST_EVENTS);
+        self.events.drain(..spare);
+    }
+
+    fn corner(&mut self, event: &Event) {
+        let (left, right) = self.live.model().stop_positions();
+        let Some(x) = (if event.side == Side::Left { left } else { right }) else { return };
+        let base_accel = self.live.base_acceleration(event.t);
+        let sample = |v: f64, phase: Phase| Sample { t: event.t, x, v, base_accel, phase };
+        match event.kind {
+            EventKind::Impact => {
+                self.samples.push_back(sample(event.v_in, Phase::Free));
+                self.samples.push_back(sample(event.v_out, Phase::Free));
+            }
+            EventKind::Rest => {
+                let phase = if event.side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
+                self.samples.push_back(sample(0.0, phase));
+            }
+            EventKind::Release => self.samples.push_back(sample(0.0, Phase::Free)),
+            EventKind::Crossing => {}
+        }
+    }
+}
+
+fn sampling_step(model: &Model) -> f64 {
+    let swing = std::f64::consts::TAU * model.scales.time;
+    model.forcing_period.map_or(swing, |period| period.min(swing)) / PER_PERIOD
+}

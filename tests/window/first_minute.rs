@@ -1,0 +1,158 @@
+//! The first minute, and the hands on the scene.
+
+use eframe::egui::{Key, Modifiers, accesskit::Role};
+use egui_kittest::kittest::Queryable as _;
+use interwell::app::settings::Settings;
+use interwell::dynamics::EventKind;
+use interwell::scene::Stops;
+
+use crate::support::{LONG, window};
+
+const WIDE: [f32; 2] = [1280.0, 720.0];
+
+#[test]
+fn it_opens_and_plays() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.get_by_label("Well");
+    harness.get_by_label_contains("Intrawell: stays in the right-hand well");
+    harness.get_by_label_contains("Make it cross");
+    let before = harness.state().session.player.time();
+    harness.run_steps(10);
+    let after = harness.state().session.player.time();
+    assert!(after > before);
+    harness.key_press(Key::Space);
+    harness.run_steps(3);
+    let paused = harness.state().session.player.time();
+    harness.run_steps(5);
+    assert_eq!(harness.state().session.player.time(), paused);
+    harness.key_press(Key::Num5);
+    harness.run_steps(2);
+    assert_eq!(harness.state().session.player.speed, 1.0);
+}
+
+#[test]
+fn shaking_harder_and_stops_both_make_it_cross() {
+    for harder in [true, false] {
+        let mut harness = window("first-look", WIDE, Settings::default());
+        let before = harness.state().session.player.state();
+        if harder {
+            let slider = harness.get_by_role_and_label(Role::Slider, "amplitude");
+            slider.set_value_accesskit(1.4);
+        } else {
+            harness.get_by_role_and_label(Role::CheckBox, "Stops").click();
+        }
+        harness.run_steps(2);
+        // it goes on from where it was
+        let state =
+            harness.state().session.player.watch().samples().iter().rev().find(|s| s.t <= before.t + 0.02);
+        assert!(state.is_some());
+        assert!(harness.state().session.editor.can_undo());
+        harness.state_mut().session.wait(LONG);
+        harness.key_press(Key::Num5);
+        harness.run_steps(240);
+        let watch = harness.state().session.player.watch();
+        assert!(watch.events().iter().any(|event| event.kind == EventKind::Crossing), "{harder}");
+        assert!(harness.query_by_label_contains("Make it cross").is_none());
+        // one gesture, one step back
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.run_steps(2);
+        let session = &harness.state().session;
+        assert_eq!((session.amplitude_g(), session.scene().stops), (Some(0.9), Stops::None));
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+        harness.run_steps(2);
+        assert!(harness.state().session.editor.is_dirty());
+    }
+}
+
+#[test]
+fn a_dragged_slider_is_one_step() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    let rail = harness.get_by_role_and_label(Role::Slider, "amplitude").rect();
+    let at = |share: f32| eframe::egui::pos2(rail.left() + share * rail.width(), rail.center().y);
+    harness.drag_at(at(0.3));
+    harness.run_steps(2);
+    for share in [0.35, 0.4, 0.45, 0.5] {
+        harness.hover_at(at(share));
+        harness.run_steps(1);
+    }
+    harness.drop_at(at(0.5));
+    harness.run_steps(2);
+    let session = &mut harness.state_mut().session;
+    assert_ne!(session.amplitude_g(), Some(0.9));
+    assert!(!session.editor.in_gesture());
+    assert!(session.undo() && session.amplitude_g() == Some(0.9));
+    assert!(!session.undo());
+}
+
+#[test]
+fn a_change_keeps_the_motion_continuous() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.key_press(Key::Num5);
+    harness.run_steps(60);
+    let session = &mut harness.state_mut().session;
+    let before = session.player.state();
+    session.edit_once(|scene| scene.mass_g = 18.0);
+    let after = session.player.state();
+    assert_eq!((before.t, before.x), (after.t, after.x));
+    assert!((before.v - after.v).abs() < 1e-9);
+    // a stop in the way carries it along, and nothing ever jumps but at an impact
+    session.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 4.0, restitution: 0.3 });
+    assert!(session.player.state().x <= 4e-3);
+    assert!(session.player.watch().ledger().by_hand_j > 0.0);
+}
+
+#[test]
+fn events_time_and_the_start_are_reached() {
+    let mut harness = window("paper", WIDE, Settings::default());
+    harness.key_press(Key::PageDown);
+    harness.run_steps(2);
+    let first = harness.state().session.player.time();
+    assert!(first > 0.0 && !harness.state().session.player.is_playing());
+    harness.key_press(Key::PageDown);
+    harness.run_steps(2);
+    let second = harness.state().session.player.time();
+    assert!(second > first);
+    harness.key_press(Key::PageUp);
+    harness.run_steps(2);
+    assert_eq!(harness.state().session.player.time(), first);
+    harness.get_by_label("restart").click();
+    harness.run_steps(2);
+    assert!(harness.state().session.player.time() < first);
+    harness.state_mut().session.edit_once(|scene| scene.mass_g = 20.0);
+    harness.key_press(Key::Home);
+    harness.run_steps(2);
+    assert_eq!(harness.state().session.scene().mass_g, 15.2);
+}
+
+#[test]
+fn a_small_window_shows_it_without_scrolling() {
+    let mut harness = window("first-look", [853.0, 480.0], Settings::default());
+    harness.run_steps(3);
+    let inside =
+        |rect: eframe::egui::Rect| rect.right() <= 853.0 && rect.bottom() <= 480.0 && rect.left() >= 0.0;
+    for label in ["Well", "Mechanism", "Displacement", "pause", "More"] {
+        assert!(inside(harness.get_by_label(label).rect()), "{label}");
+    }
+    for name in ["amplitude", "at ±"] {
+        assert!(inside(harness.get_by_role_and_label(Role::Slider, name).rect()), "{name}");
+    }
+    harness.get_by_label("More").click();
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::Slider, "mass");
+}
+
+#[test]
+fn a_scene_that_does_not_open_says_why() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.state_mut().open_another("nowhere.ron");
+    harness.run_steps(2);
+    assert!(harness.state().message().is_some_and(|text| text.contains("no such file")));
+    harness.get_by_label("Close").click();
+    harness.run_steps(2);
+    assert!(harness.state().message().is_none());
+    for preset in interwell::scene::PRESETS {
+        harness.state_mut().open_another(preset.name);
+        harness.run_steps(4);
+        assert!(harness.state().message().is_none(), "{}", preset.name);
+    }
+}

@@ -1,0 +1,39 @@
+//! A window that tests drive, and sessions without one.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use egui_kittest::Harness;
+use interwell::app::document::Editor;
+use interwell::app::session::Session;
+use interwell::app::settings::Settings;
+use interwell::app::window::{Window, prepare};
+use interwell::scene::Document;
+
+/// Long enough for any answer on a busy machine.
+pub const LONG: Duration = Duration::from_secs(60);
+
+/// A window on a built-in scene, with its first answers there.
+pub fn window(preset: &str, size: [f32; 2], settings: Settings) -> Harness<'static, Window> {
+    let mut window = Window::open(Some(preset), settings, Arc::new(|| ())).unwrap();
+    window.session.wait(LONG);
+    let draw = |ui: &mut eframe::egui::Ui, window: &mut Window| {
+        window.logic(&ui.ctx().clone());
+        window.ui(ui);
+    };
+    let mut harness =
+        Harness::builder().with_size(size).with_context_setup(prepare).build_ui_state(draw, window);
+    harness.run_steps(3);
+    harness
+}
+
+/// A session on a built-in scene with fields changed, its answers there.
+pub fn session(preset: &str, changes: &[&str]) -> Session {
+    let mut document = Document::load(preset).unwrap();
+    for change in changes {
+        document.set(change).unwrap();
+    }
+    let mut session = Session::new(Editor::new(document, None), Arc::new(|| ())).unwrap();
+    session.wait(LONG);
+    session
+}
