@@ -28,7 +28,9 @@ fn main() {
     let build = |document: &Document| Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
     row("curve of a cubic, with its landscape", QUICK, || build(&cubic));
     let paper = shared::document("paper", &[]);
-    row("curve of the preset `paper`: read and fit a table", SLOW * 11, || build(&paper));
+    row("curve of the preset `paper`: solve its flexures", SLOW * 11, || build(&paper));
+    let solid = shared::document("paper-table", &[]);
+    row("curve of the preset `paper-table`: read and fit a table", SLOW * 11, || build(&solid));
     for points in [100, 1000, 10_000] {
         let table = table(points);
         let fit = || Mechanism::from_table(&table, 1e-3).unwrap();

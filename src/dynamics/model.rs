@@ -277,10 +277,8 @@ fn scales(scene: &Scene, mass: f64, mechanism: &Mechanism, drive: &BaseMotion, s
             reference = barrier.x;
             half_distance = 0.5 * (barrier.right_well - barrier.left_well);
             for e in equilibria {
-                if e.x == barrier.left_well {
-                    stiffness = stiffness.max(e.stiffness_right.abs());
-                } else if e.x == barrier.right_well {
-                    stiffness = stiffness.max(e.stiffness_left.abs());
+                if e.x == barrier.left_well || e.x == barrier.right_well {
+                    stiffness = stiffness.max(landscape.inner_stiffness(e).abs());
                 } else if e.x == barrier.x {
                     stiffness = stiffness.max(e.stiffness_left.abs()).max(e.stiffness_right.abs());
                 }

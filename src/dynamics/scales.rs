@@ -5,7 +5,10 @@
 //!
 //! - rate w: the square root of the largest stiffness magnitude over mass among the wells' inner sides and
 //!   the barrier (one well: at it; none: at the start); without stiffness the drive's fastest tone;
-//!   without both, sqrt(acceleration over length), or speed over length;
+//!   without both, sqrt(acceleration over length), or speed over length. The inner side of a well that lies
+//!   beyond a kink is the slope just inside the kink, as for a damping ratio: flexures rest some um beyond
+//!   theirs, where the force is a wall of 30 times the stiffness, and nothing here may jump while a slider
+//!   moves the well across;
 //! - length L: the largest of half the distance between the wells, the start's distance from the
 //!   barrier (or the single equilibrium, or 0), start speed over w, and the sum over the parts of
 //!   the drive of amplitude over w and the larger of w and the part's own rate (a fast part moves the mass that

@@ -125,32 +125,41 @@ impl Landscape {
         }
     }
 
-    /// The stiffness in N/m that a damping ratio refers to: that of the right-most stable equilibrium, on its
-    /// inner side (towards the barrier, or towards x = 0 where there is none).
+    /// The stiffness in N/m that a damping ratio refers to: the [`inner_stiffness`](Self::inner_stiffness) of the
+    /// right-most stable equilibrium.
+    ///
+    /// None where no equilibrium is stable or this stiffness is not above 0.
+    pub fn damping_stiffness(&self) -> Option<f64> {
+        let stiffness = self.inner_stiffness(self.right_stable()?);
+        (stiffness > 0.0).then_some(stiffness)
+    }
+
+    /// The stiffness in N/m of a stable equilibrium on its inner side (towards the barrier, or towards x = 0 where there
+    /// is none).
     ///
     /// Where the equilibrium lies at or beyond a kink, seen from there, it is the slope just inside
     /// that kink, so that it does not jump while the equilibrium moves across: of several kinks the nearest one with a
     /// slope above 0 (one on the way down from the barrier says nothing about the well). At a kink without an inner
     /// side (a single well with its corner at x = 0) it is the smaller of the two.
-    ///
-    /// None where no equilibrium is stable or this stiffness is not above 0.
-    pub fn damping_stiffness(&self) -> Option<f64> {
-        let well = self.right_stable()?;
+    pub fn inner_stiffness(&self, well: &Equilibrium) -> f64 {
         let middle = self.middle();
-        let stiffness = match self.damping_kink() {
+        match self.kink_inside(well) {
             Some(kink) if well.x >= middle => kink.stiffness_left,
             Some(kink) => kink.stiffness_right,
             None if well.x > middle => well.stiffness_left,
             None if well.x < middle => well.stiffness_right,
             None => well.stiffness_left.min(well.stiffness_right),
-        };
-        (stiffness > 0.0).then_some(stiffness)
+        }
     }
 
     /// The kink whose inner slope [`damping_stiffness`](Self::damping_stiffness) is; none where that is the slope at
     /// the equilibrium itself.
     pub fn damping_kink(&self) -> Option<&Kink> {
-        let well = self.right_stable()?;
+        self.kink_inside(self.right_stable()?)
+    }
+
+    /// The kink whose inner slope [`inner_stiffness`](Self::inner_stiffness) is, where there is one.
+    fn kink_inside(&self, well: &Equilibrium) -> Option<&Kink> {
         let middle = self.middle();
         let beyond = |kink: &&Kink| {
             (middle < kink.x && kink.x <= well.x && kink.stiffness_left > 0.0)

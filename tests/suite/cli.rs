@@ -137,7 +137,7 @@ fn curve_rows_and_columns() {
     assert_eq!((x.len(), &x[0][..], &x[200][..], &x[201][..]), (401, "-8e-3", "0", "4e-5"));
     assert_eq!(column(&stdout("curve duffing"), "x_m").len(), 401);
     assert_eq!(column(&stdout("curve paper --points 5"), "x_m").len(), 5);
-    refused(headless("curve --at-mm 9"), &["9 mm", "-8 to 8 mm"]);
+    refused(headless("curve --at-mm 9"), &["9 mm", "-8.2559", " to 8.2559"]);
     for bad in ["--at-mm nan", "--at-mm x", "--at-mm ,", "--range-mm 3:-3", "--range-mm 3", "--points 1"] {
         refused(headless(&format!("curve {bad}")), &[]);
     }

@@ -1,11 +1,14 @@
 //! Statics: force curves, fitted tables, landscapes.
 
+use std::sync::Arc;
+
+use interwell::dynamics::{Model, Scales};
 use interwell::mechanics::flexure::{Geometry, Group};
 use interwell::mechanics::{
     BuildError, Equilibrium, ForceCurve, Kink, Landscape, Mechanism, Piece, Table, TableError, fit,
     force_scale,
 };
-use interwell::scene::{self, ColumnsError, Files};
+use interwell::scene::{self, ColumnsError, Document, Files};
 use proptest::prelude::*;
 
 const PROTOTYPE: &str = include_str!("../../assets/force_dl2.7.csv");
@@ -574,6 +577,24 @@ fn the_damping_stiffness_does_not_jump_while_an_equilibrium_crosses_a_corner() {
 }
 
 #[test]
+fn either_well_has_its_own_inner_stiffness() {
+    let own = Landscape::of(&chain(&[
+        (-3.0, -4.0),
+        (-2.0, 0.5),
+        (-1.0, 1.0),
+        (1.0, -1.0),
+        (2.0, -0.1),
+        (3.0, 40.0),
+    ]));
+    let inner: Vec<f64> =
+        own.equilibria.iter().filter(|e| e.stable).map(|e| own.inner_stiffness(e)).collect();
+    // The left well lies beyond its corner at -2, the right one beyond that at 2.
+    assert_eq!(inner.len(), 2);
+    close(inner[0], 0.5, 1e-12);
+    close(inner[1], 0.9, 1e-12);
+}
+
+#[test]
 fn the_damping_stiffness_looks_inward_from_either_side() {
     let well = |x: f64, left: f64, right: f64| Equilibrium {
         x,
@@ -689,6 +710,25 @@ fn a_kink_beside_a_well_gives_it_two_stiffnesses() {
     // Well inside it, as in the prototype's table.
     let table = Mechanism::from_table(PROTOTYPE, 1e-4).unwrap().landscape;
     assert_eq!((table.kink_at_right_well(), table.damping_kink()), (None, None));
+}
+
+#[test]
+fn the_scales_do_not_jump_while_a_well_crosses_its_kink() {
+    // All that a run in the unit of 1 m is relative to, beside the tolerance: it follows the well, by micrometres, and
+    // the slope inside the kink, 137 N/m, not the wall of 4000 N/m in which the well lies once it is beyond.
+    let text = "(title: \"t\", mass_g: 15.2, mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1), \
+                damping: Ratio(0.023), run: (duration_s: 1))";
+    let scene = Document::from_text("t", text, Files::default()).unwrap().scene;
+    let scales =
+        |past: f64| -> Scales { Model::build(&scene, Arc::new(kinked(137.0, 4000.0, past))).unwrap().scales };
+    let at = scales(0.0);
+    for past in [-1e-6, -1e-9, 1e-9, 1e-6] {
+        let own = scales(past);
+        close(own.length, at.length, 1e-4);
+        close(own.speed, at.speed, 1e-4);
+        close(own.time, at.time, 1e-4);
+    }
+    close(at.time, (15.2e-3_f64 / 137.0).sqrt(), 1e-9);
 }
 
 // --- Flexures ------------------------------------------------------------------------------------

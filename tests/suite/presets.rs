@@ -4,7 +4,8 @@
 //! they are faster than 10 um/s: how many slower ones are located before the rest of a chatter is summed
 //! depends on the tolerance.
 
-use interwell::dynamics::{EventKind, Outcome, Regime, Run, STANDARD_GRAVITY, Side, Summary};
+use interwell::dynamics::{EventKind, Outcome, Regime, Request, Run, STANDARD_GRAVITY, Side, Summary};
+use interwell::mechanics::Mechanism;
 use interwell::scene::PRESETS;
 
 use crate::support::*;
@@ -35,13 +36,13 @@ use Regime::{Interwell, Intrawell, Irregular, OneWell};
 
 /// All but the two that never repeat.
 const KNOWN: [Known; 13] = [
-    known("paper", Interwell, Some(1), (30, 600), 0.049_140_721_78, 0.0015),
+    known("paper", Interwell, Some(1), (30, 600), 0.049_494_877_83, 0.0015),
     known("paper-table", Interwell, Some(1), (30, 600), 0.049_140_721_78, 0.0015),
-    known("paper-unconstrained", Intrawell, Some(2), (0, 0), 0.017_347_687_64, 0.007_238_817_224),
-    known("paper-ramp", Interwell, None, (1080, 11334), 0.052_495_015_78, 0.0015),
-    known("uneven-stops", Interwell, Some(1), (30, 630), 0.051_103_902_06, 0.0017),
-    known("walking", Irregular, None, (209, 2004), 0.016_094_163_80, 0.0006),
-    known("random-shaking", Irregular, None, (48, 552), 0.011_658_824_57, 0.001),
+    known("paper-unconstrained", Intrawell, Some(1), (0, 0), 0.017_170_973_36, 0.007_239_045_314),
+    known("paper-ramp", Interwell, Some(1), (1080, 11966), 0.052_607_007_00, 0.0015),
+    known("uneven-stops", Interwell, Some(1), (30, 630), 0.051_828_258_00, 0.0017),
+    known("walking", Irregular, None, (211, 2022), 0.016_279_666_40, 0.0006),
+    known("random-shaking", Irregular, None, (85, 937), 0.015_280_332_87, 0.001),
     known("nominal-cubic", Interwell, Some(1), (30, 660), 0.114_697_633_3, 0.004),
     known("monostable", OneWell, Some(1), (60, 0), 0.065_565_728_46, 0.003_591_152_840),
     known("bouncing-ball", OneWell, None, (0, 52), 0.488_221_014_7, 1.0),
@@ -141,18 +142,28 @@ fn chaos_has_averages_that_hold() {
 #[test]
 fn the_older_scenes_do_what_their_notes_say() {
     // paper: rattles without stops; the least shaking that crosses from rest, in steps of 0.01 g, is below the
-    // 1.24 g of the unstopped prototype with stops at 2.6 mm and above it from 2.65 mm to 7 mm.
+    // 1.16 g of the unstopped prototype with stops at 2.6 mm and above it from 2.7 mm to 7 mm.
     let paper = |stops: &str, amplitude: f64| {
         summary("paper", &[stops, &format!("excitation.amplitude_g={amplitude}")])
     };
     assert_eq!(paper("stops=None", 1.0).regime, Regime::Intrawell);
-    assert_eq!(paper("stops=None", 1.23).total_crossings, 0);
-    assert!(paper("stops=None", 1.24).total_crossings > 0);
-    assert_eq!(paper("stops.travel_limit_mm=2.6", 1.23).regime, Regime::Interwell);
-    for limit in [2.65, 3.0, 4.0, 5.0, 6.0, 6.5, 7.0] {
-        let crossings = paper(&format!("stops.travel_limit_mm={limit}"), 1.24).total_crossings;
+    assert_eq!(paper("stops=None", 1.15).total_crossings, 0);
+    assert!(paper("stops=None", 1.16).total_crossings > 0);
+    assert_eq!(paper("stops.travel_limit_mm=2.6", 1.15).regime, Regime::Interwell);
+    for limit in [2.7, 3.0, 4.0, 5.0, 6.0, 6.5, 7.0] {
+        let crossings = paper(&format!("stops.travel_limit_mm={limit}"), 1.16).total_crossings;
         assert_eq!(crossings, 0, "{limit}");
     }
+    // the worst place, and a softer preload
+    let worst = |limit: f64, amplitude| paper(&format!("stops.travel_limit_mm={limit}"), amplitude).crossings;
+    assert!(worst(4.6, 1.465) == 0 && worst(4.6, 1.475) > 0);
+    let softer = |amplitude: f64| {
+        let amplitude = format!("excitation.amplitude_g={amplitude}");
+        preset("paper", &["mechanism.preload_mm=2.5", &amplitude])
+    };
+    assert_eq!(run(&softer(0.68)).summary.total_crossings, 0);
+    assert_eq!(run(&softer(0.69)).summary.regime, Regime::Interwell);
+    near(softer(0.69).mechanism.landscape.barrier.unwrap().from_right_j, 0.838e-3, 5e-7);
     // nominal-cubic: impacts above 1 um/s in ten seconds, at any tolerance
     for change in ["run.tolerance=1e-9", "run.tolerance=1e-12"] {
         let run = run(&preset("nominal-cubic", &[change]));
@@ -168,19 +179,24 @@ fn the_older_scenes_do_what_their_notes_say() {
 }
 
 #[test]
-fn without_stops_the_prototype_rattles_up_to_1_23_g() {
+fn without_stops_the_prototype_rattles_up_to_1_15_g() {
     let own = summary("paper-unconstrained", &[]);
-    near(own.max_abs_x.unwrap() - own.travel.unwrap(), 5.437_31e-3, 1e-8);
-    for hundredths in (4..=123).step_by(7) {
+    near(own.max_abs_x.unwrap() - own.travel.unwrap(), 5.480_707e-3, 1e-8);
+    for hundredths in (3..=115).step_by(7) {
         let change = format!("excitation.amplitude_g={}", f64::from(hundredths) / 100.0);
-        assert_eq!(summary("paper-unconstrained", &[&change]).total_crossings, 0, "{change}");
+        // The scales that a tolerance is relative to are those of a crossing; a trembling about the kink closes
+        // to some twice the tolerance of the little that it moves.
+        let own = whole(&run(&preset("paper-unconstrained", &[&change])), 2e-9);
+        assert_eq!(own.total_crossings, 0, "{change}");
     }
-    let crosses = run(&preset("paper-unconstrained", &["excitation.amplitude_g=1.24"]));
-    assert!(crosses.events.iter().any(|event| event.kind == EventKind::Crossing && event.t < 10.0));
-    let lucky = summary("paper-unconstrained", &["excitation.amplitude_g=1.39"]);
-    assert_eq!((lucky.regime, lucky.period), (Regime::Interwell, Some(1)));
-    near_relative(lucky.rms_velocity.unwrap(), 0.216, 0.01);
-    near(lucky.max_abs_x.unwrap(), 7.873e-3, 1e-5);
+    let crosses = run(&preset("paper-unconstrained", &["excitation.amplitude_g=1.16"]));
+    assert!(crosses.events.iter().any(|event| event.kind == EventKind::Crossing && event.t < 5.0));
+    for (amplitude, rms, reach) in [(1.18, 0.253, 7.87e-3), (1.35, 0.216, 7.89e-3)] {
+        let lucky = summary("paper-unconstrained", &[&format!("excitation.amplitude_g={amplitude}")]);
+        assert_eq!((lucky.regime, lucky.period), (Regime::Interwell, Some(1)));
+        near_relative(lucky.rms_velocity.unwrap(), rms, 0.01);
+        near(lucky.max_abs_x.unwrap(), reach, 1e-5);
+    }
 }
 
 #[test]
@@ -190,22 +206,90 @@ fn the_ramp_frees_then_hops_then_crosses() {
     let amplitude = |t: f64| 2.0 * t / 300.0;
     let released = of(EventKind::Release).next().unwrap();
     let crossed = of(EventKind::Crossing).next().unwrap();
-    near(released, 114.746_314_89, 1e-8);
-    near(crossed, 119.483_663_13, 1e-8);
-    near(amplitude(released), 0.765, 5e-4);
-    near(amplitude(crossed), 0.7966, 5e-5);
-    assert_eq!(of(EventKind::Release).filter(|t| *t < crossed).count(), 14 + 1);
-    // It is let go where the push of the base equals the force of the table at 1.5 mm.
+    near(released, 103.413_146_21, 1e-8);
+    near(crossed, 107.827_700_24, 1e-8);
+    near(amplitude(released), 0.689, 5e-4);
+    near(amplitude(crossed), 0.7189, 5e-5);
+    assert_eq!(of(EventKind::Release).filter(|t| *t < crossed).count(), 13 + 1);
+    // It is let go where the push of the base equals the force of the flexures at 1.5 mm.
     let push = amplitude(released) * (std::f64::consts::TAU * 3.0 * released).sin();
-    near(push, 0.113_753_078_146_880 / (0.0152 * STANDARD_GRAVITY), 1e-9);
-    near(push, 0.763, 5e-4);
+    let force = preset("paper-ramp", &[]).mechanism.curve.force(1.5e-3);
+    near(push, -force / (0.0152 * STANDARD_GRAVITY), 1e-9);
+    near(push, 0.688, 5e-4);
     // Twice in every one of the 540 periods of the window.
     assert_eq!(ramp.summary.crossings, 2 * 540);
     let open = run(&preset("paper-ramp", &["stops=None"]));
+    // Chaotic in its well from 1.1 g on: over tolerances of 1e-8 to 1e-13 it was 175.1 to 178.8 s.
     let crossed = of_kind(&open, EventKind::Crossing)[0].t;
-    near(crossed, 186.46, 0.005);
-    near(amplitude(crossed), 1.243, 5e-4);
+    near(amplitude(crossed), 1.18, 0.02);
     assert_eq!(open.summary.regime, Regime::Irregular);
+}
+
+#[test]
+fn flexures_in_31_digits() {
+    for name in ["paper", "uneven-stops", "random-shaking"] {
+        let short = ["run.settle_s=0", "run.duration_s=4"];
+        let reference = preset(name, &short);
+        let request = Request { events: true, ..Default::default() };
+        let reference = reference.run_reference(&request, 1e-26);
+        for tolerance in [1e-6_f64, 1e-9, 1e-12] {
+            let own = run(&preset(name, &[&short[..], &[&format!("run.tolerance={tolerance:e}")]].concat()));
+            assert_eq!(
+                (own.summary.crossings, impacts(&own)),
+                (reference.summary.crossings, impacts(&reference))
+            );
+            let rms = |run: &Run| run.summary.rms_velocity.unwrap();
+            near_relative(rms(&own), rms(&reference), tolerance.max(1e-13));
+            let crossings = |run: &Run| of_kind(run, EventKind::Crossing);
+            for (own, reference) in crossings(&own).iter().zip(crossings(&reference)) {
+                near(own.t, reference.t, tolerance.max(1e-12));
+            }
+        }
+    }
+}
+
+#[test]
+fn two_models_of_one_prototype() {
+    // Beams against the solid model of `paper-table`. Not the same physics: near the middle a wide strip that cannot curl
+    // is stiffer by up to 1 / (1 - poisson^2); the solid model's wells lie 0.3 mm nearer to the middle, so that a
+    // comparison of forces near the wells says nothing.
+    let (beams, solid) = (preset("paper", &[]).mechanism, preset("paper-table", &[]).mechanism);
+    let force = |mechanism: &Mechanism, x: f64| mechanism.curve.force(x);
+    let most = |reach: i32, own: &Mechanism| {
+        let apart = (0..=reach).map(|i| f64::from(i) * 1e-5).map(|x| force(own, x) - force(&solid, x));
+        apart.fold(0.0_f64, |most, apart| most.max(apart.abs()))
+    };
+    near(most(550, &beams), 12.9e-3, 2e-4);
+    // Strips that cannot curl at all: within 5 mN as far as 2 mm.
+    let wide = preset("paper", &["mechanism.plane_strain=true"]).mechanism;
+    near(most(200, &wide), 4.8e-3, 2e-4);
+    let barrier = |own: &Mechanism| own.landscape.barrier.unwrap().from_right_j;
+    near_relative(barrier(&beams), barrier(&solid), 0.015);
+    let hardest = |own: &Mechanism| own.landscape.extrema.iter().fold(0.0_f64, |most, e| most.max(e.force));
+    near_relative(hardest(&beams), hardest(&solid), 0.04);
+    let kink = |own: &Mechanism| own.landscape.kinks.last().unwrap().x;
+    near(kink(&beams), kink(&solid), 1e-6);
+    // The least shaking, in steps of 0.01 g, that frees the mass and that carries it across.
+    for (limit, beams, solid) in [
+        (1.0, [0.48, 0.49], [0.54, 0.56]),
+        (1.5, [0.69, 0.72], [0.77, 0.80]),
+        (2.0, [0.89, 0.93], [0.97, 1.02]),
+        (3.0, [1.19, 1.26], [1.27, 1.35]),
+        (4.0, [1.32, 1.45], [1.37, 1.51]),
+        (5.0, [1.24, 1.47], [1.21, 1.48]),
+    ] {
+        for (name, [frees, crosses]) in [("paper", beams), ("paper-table", solid)] {
+            let at = |amplitude: f64| {
+                let limit = format!("stops.travel_limit_mm={limit}");
+                run(&preset(name, &[&limit, &format!("excitation.amplitude_g={amplitude}")])).summary
+            };
+            assert_eq!((at(frees - 0.01).releases, at(crosses - 0.01).crossings), (0, 0), "{name} {limit}");
+            assert!(at(frees).releases > 0 && at(crosses).crossings > 0, "{name} {limit}");
+        }
+        for i in 0..2 {
+            near_relative(beams[i], solid[i], 0.13);
+        }
+    }
 }
 
 #[test]
@@ -232,14 +316,14 @@ fn unequal_stops_rebound_differently() {
     assert!(landings.len() >= 29);
     for landing in landings {
         let (v_in, v_out) =
-            if landing.side == Side::Left { (-0.229_841, 0.075_848) } else { (0.247_098, -0.096_368) };
+            if landing.side == Side::Left { (-0.234_926, 0.077_526) } else { (0.246_294, -0.096_055) };
         near(landing.v_in, v_in, 1e-6);
         near(landing.v_out, v_out, 1e-6);
     }
     for (right, regime, released) in [
-        (1.95, Regime::Interwell, true),
-        (2.0, Regime::Intrawell, true),
-        (2.1, Regime::Rest, false),
+        (2.15, Regime::Interwell, true),
+        (2.2, Regime::Intrawell, true),
+        (2.35, Regime::Rest, false),
         (2.5, Regime::Rest, false),
     ] {
         let own = summary("uneven-stops", &[&format!("stops.right_mm={right}")]);
@@ -249,24 +333,33 @@ fn unequal_stops_rebound_differently() {
 
 #[test]
 fn a_walk_crosses_over_and_back_in_every_step() {
-    let walk = run(&preset("walking", &[]));
     // the count of steps as the record's header has it
     let step = |t: f64| {
         let wander = 0.04 * 11.0 / std::f64::consts::TAU * (1.0 - (std::f64::consts::TAU * t / 11.0).cos());
         (2.0 * t + wander).floor() as usize
     };
-    let mut crossings = [0; 120];
-    for event in of_kind(&walk, EventKind::Crossing) {
-        crossings[step(event.t)] += 1;
-    }
     // full pace from 4 to 56 s
     assert_eq!((step(4.0), step(56.0)), (8, 112));
-    assert!(crossings[8..112].iter().all(|count| *count == 2), "{crossings:?}");
+    let crossings = |limit: f64| {
+        let walk = run(&preset("walking", &[&format!("stops.travel_limit_mm={limit}")]));
+        let mut steps = [0; 120];
+        for event in of_kind(&walk, EventKind::Crossing) {
+            steps[step(event.t)] += 1;
+        }
+        (steps, walk.summary)
+    };
+    for (limit, a_step, rms) in [(0.6, 2, 0.016_279_666), (0.75, 2, 0.018_580_729), (0.8, 1, 0.014_037_367)] {
+        let (steps, own) = crossings(limit);
+        let walked = if limit < 0.7 { &steps[8..112] } else { &steps[10..112] };
+        assert!(walked.iter().all(|count| *count == a_step), "{limit}: {steps:?}");
+        near_relative(own.rms_velocity.unwrap(), rms, 1e-6);
+    }
 
     let open = summary("walking", &["stops=None"]);
     assert_eq!(open.total_crossings, 0);
-    near_relative(open.rms_velocity.unwrap(), 0.005_491_276, 1e-6);
-    assert_eq!(summary("walking", &["stops.travel_limit_mm=0.8"]).total_crossings, 1);
+    // without a rhythm: 7.31 to 7.46 mm/s over tolerances
+    near(open.rms_velocity.unwrap(), 7.4e-3, 2e-4);
+    assert_eq!(summary("walking", &["stops.travel_limit_mm=0.85"]).total_crossings, 1);
     assert_eq!(summary("walking", &["stops.travel_limit_mm=1.5"]).regime, Regime::Rest);
 }
 
@@ -294,7 +387,7 @@ fn random_shaking_crosses_only_with_stops_until_it_is_strong() {
     for seed in 1..=8 {
         let seed = format!("excitation.seed={seed}");
         let stopped = summary("random-shaking", &[&seed]);
-        assert!((48..=64).contains(&stopped.crossings), "{seed}: {}", stopped.crossings);
+        assert!((71..=90).contains(&stopped.crossings), "{seed}: {}", stopped.crossings);
         let open = summary("random-shaking", &[&seed, "stops=None"]);
         assert_eq!((open.regime, open.total_crossings), (Regime::Intrawell, 0), "{seed}");
 
@@ -311,8 +404,8 @@ fn random_shaking_crosses_only_with_stops_until_it_is_strong() {
         assert!(open.crossings >= 1 && stopped.crossings > 3 * open.crossings);
         assert!(open.rms_velocity > stopped.rms_velocity);
     }
-    assert_eq!(largest[0], (192, 25));
-    assert!((30..=45).contains(&largest[1].0) && (65..=85).contains(&largest[1].1), "{largest:?}");
+    assert_eq!(largest[0], (222, 27));
+    assert!((30..=60).contains(&largest[1].0) && (75..=100).contains(&largest[1].1), "{largest:?}");
 }
 
 #[test]

@@ -5,9 +5,9 @@
 //! flexures bulge, and the sway of all of them has two stable sides. The curve ends in a kink where the bulge is used up and
 //! the flexures are taut.
 //!
-//! Method: geometrically exact beams (Reissner 1972) in a spectral discretisation ([`basis`]), the equilibrium
-//! equations of all of them at once ([`equilibrium`]), the stable branch with its kinks ([`branch`]), and
-//! from a few dozen states the piecewise polynomial ([`pieces`]).
+//! Method: geometrically exact beams (Reissner 1972) in a spectral discretisation (`basis`), the equilibrium
+//! equations of all of them at once (`equilibrium`), the stable branch with its kinks (`branch`), and
+//! from a few dozen states the piecewise polynomial (`pieces`).
 
 mod basis;
 mod beam;

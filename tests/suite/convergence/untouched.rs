@@ -23,10 +23,16 @@ fn scenes() -> Vec<Model> {
             ],
         ),
         preset("paper", &[]),
+        preset("paper-table", &[]),
         preset("bouncing-ball", &[]),
         preset("elastic-box", &[]),
     ]
 }
+
+/// The flexures of `paper`.
+const PROTOTYPE: &str = "mechanism=Flexures(preload_mm: 2.7, thickness_mm: 0.1, young_gpa: 190, \
+                         parallel: (count: 2, length_mm: 26, width_mm: 20), \
+                         buckling: (count: 1, length_mm: 27.7, width_mm: 6.8))";
 
 #[test]
 fn a_stop_never_reached_changes_no_bit() {
@@ -38,6 +44,7 @@ fn a_stop_never_reached_changes_no_bit() {
         &["excitation=None", "start=At(x_mm: 3, v_m_per_s: 0.4)"],
         &["excitation=AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 2, over_s: 7)"],
         &["mechanism=Table(path: \"force_dl2.7.csv\")", "excitation.amplitude_g=1.3"],
+        &[PROTOTYPE, "excitation.amplitude_g=1.3"],
     ] {
         let with = |stops: &str| {
             let stops = format!("stops={stops}");

@@ -51,9 +51,12 @@ fn elastic_impacts_over_a_barrier_keep_their_speed() {
 fn every_ledger_closes_to_the_tolerance() {
     // work - damping - impact - stored, each integrated on its own, is 0 to the tolerance of the run or to
     // rounding.
-    let scenes: [(&str, &[&str]); 12] = [
+    let scenes: [(&str, &[&str]); 15] = [
         ("paper", &[]),
         ("paper", &["stops=None", "excitation.amplitude_g=1.3"]),
+        ("paper", &["stops.travel_limit_mm=7.5", "excitation.amplitude_g=1.6"]),
+        ("paper-table", &[]),
+        ("paper-table", &["stops=None", "excitation.amplitude_g=1.3"]),
         ("nominal-cubic", &[]),
         ("nominal-cubic", &["stops=None", "excitation.amplitude_g=1.1"]),
         ("nominal-cubic", &["stops.travel_limit_mm=7.5", "stops.restitution=0.9"]),

@@ -121,11 +121,13 @@ fn uneven_stops_are_mirrored_to_the_last_bit() {
 
 #[test]
 fn a_curve_of_many_pieces_is_mirrored_to_the_last_bit() {
-    // The table of the prototype, odd by structure, crossing its breaks, with and without stops.
-    for stops in ["None", "Rigid(travel_limit_mm: 4, restitution: 0.36)"] {
+    // The prototype, its table and its flexures, odd by structure, crossing the breaks, with and without stops.
+    let all = ["None", "Rigid(travel_limit_mm: 4, restitution: 0.36)"];
+    for (name, stops) in ["paper", "paper-table"].into_iter().flat_map(|name| all.map(|stops| (name, stops)))
+    {
         let scene = |sign: f64| {
             preset(
-                "paper",
+                name,
                 &[
                     &format!("stops={stops}"),
                     &format!("start=At(x_mm: {:?}, v_m_per_s: {:?})", 3.9 * sign, -0.2 * sign),
