@@ -199,8 +199,8 @@ fn from_here_the_future_is_the_same() {
 }
 
 #[test]
-fn it_ends_where_the_table_does() {
-    let model = preset("paper-unconstrained", &["start=At(x_mm: 7.9, v_m_per_s: 1)"]);
+fn it_ends_where_the_curve_does() {
+    let model = preset("paper-unconstrained", &["start=At(x_mm: 8.2, v_m_per_s: 3)"]);
     let (mut live, mut passage) = (Live::new(&model), Passage::default());
     assert!(!live.advance(1.0, &[0.0001, 0.5], &mut passage));
     let end = live.ended().and_then(|outcome| outcome.ended_at()).unwrap();
