@@ -175,6 +175,7 @@ impl Window {
             memory: &mut self.memory,
             reduce_motion: self.settings.reduce_motion,
             covered: self.covered,
+            filled: self.filled.is_some(),
         };
         ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
         let Some(view) = self.filled else {
