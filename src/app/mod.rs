@@ -9,6 +9,7 @@
 //! | [`task`] | background tasks as values |
 //! | [`player`] | the clock and the live motion with its past |
 //! | [`session`] | those three together, and what is known of the scene |
+//! | `controls`, `geometry` | the hands on the scene and on its flexures |
 //! | [`status`] | the sentence that says what the mass does |
 //! | [`style`] | every colour and width |
 //! | [`views`] | what is seen, a file each |
@@ -17,6 +18,7 @@
 
 pub mod controls;
 pub mod document;
+mod geometry;
 mod hint;
 pub mod layouts;
 pub mod menu;
