@@ -6,6 +6,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`document`] | the scene, its file, undo |
+//! | [`export`], [`leave`] | what leaves the window, and what is asked before a scene does |
 //! | [`task`] | background tasks as values |
 //! | [`player`] | the clock and the live motion with its past |
 //! | [`session`] | those three together, and what is known of the scene |
@@ -18,9 +19,11 @@
 
 pub mod controls;
 pub mod document;
+pub mod export;
 mod geometry;
 mod hint;
 pub mod layouts;
+pub mod leave;
 pub mod menu;
 pub mod player;
 pub mod session;
@@ -76,7 +79,12 @@ pub fn run(spec: Option<&str>) -> Result<(), AppError> {
             .unwrap_or_default();
         let ctx = creation.egui_ctx.clone();
         let wake = Arc::new(move || ctx.request_repaint());
-        Ok(Box::new(Window::open(spec.as_deref(), settings, wake)?))
+        let mut window = Window::open(spec.as_deref(), settings, wake)?;
+        if let Some(storage) = creation.storage {
+            window.recent = eframe::get_value(storage, window::RECENT).unwrap_or_default();
+        }
+        window.remember_file();
+        Ok(Box::new(window))
     };
     eframe::run_native("interwell", options, Box::new(start)).map_err(|error| {
         let text = error.to_string();
