@@ -62,6 +62,10 @@ pub enum Command {
     FullScreen,
     /// Change the settings.
     Set(Settings),
+    /// Take hold of the mass.
+    Grab,
+    /// The list of keys.
+    Shortcuts,
     /// About the program.
     About,
 }
@@ -132,6 +136,7 @@ pub fn menu_ui(
         });
         ui.menu_button("View", |ui| view_menu_ui(ui, &mut asked, tiling, settings));
         ui.menu_button("Help", |ui| {
+            item(ui, &mut asked, "Keys", Some(plain(Key::F1)), true, Command::Shortcuts);
             item(ui, &mut asked, "About", None, true, Command::About);
         });
         ui.add_space(16.0);
@@ -207,6 +212,7 @@ pub fn keys(ctx: &egui::Context) -> Vec<Command> {
     on(command(Key::O), Command::Open);
     on(command(Key::Q), Command::Quit);
     on(command(Key::Num1), Command::Arrange(Layout::Look));
+    on(plain(Key::F1), Command::Shortcuts);
     on(plain(Key::F11), Command::FullScreen);
     on(plain(Key::PageUp), Command::PreviousEvent);
     on(plain(Key::PageDown), Command::NextEvent);
@@ -218,6 +224,7 @@ pub fn keys(ctx: &egui::Context) -> Vec<Command> {
     on(plain(Key::Period), Command::Step);
     on(plain(Key::Z), Command::Fill);
     on(plain(Key::C), Command::Cover);
+    on(plain(Key::G), Command::Grab);
     for (i, key) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5].into_iter().enumerate() {
         on(plain(key), Command::Speed(i));
     }

@@ -28,6 +28,7 @@ pub mod menu;
 pub mod player;
 pub mod session;
 pub mod settings;
+mod shortcuts;
 pub mod status;
 pub mod style;
 pub mod task;

@@ -22,7 +22,7 @@ use super::task::{Latest, Wake};
 use super::transport::{self, EVENT_AHEAD};
 use super::views::{self, Memory, Span, View, ViewContext};
 use super::widgets::{Icon, icon_button_ui, kind_shapes};
-use super::{controls, export, hint};
+use super::{controls, export, hint, shortcuts};
 
 /// Where the scenes opened last are kept between two starts of the program.
 pub const RECENT: &str = "recent";
@@ -75,6 +75,8 @@ pub struct Window {
     after_save: Option<Next>,
     /// A file with comments that is about to be written over.
     over_comments: Option<PathBuf>,
+    /// The list of keys is shown.
+    shortcuts: bool,
     /// The changes may go: the window closes without another question.
     leaving: bool,
     /// Errors of what is written elsewhere than in this thread.
@@ -114,6 +116,7 @@ impl Window {
             after_save: None,
             over_comments: None,
             leaving: false,
+            shortcuts: false,
             errors: channel(),
             titled: String::new(),
             dialog: Latest::default(),
@@ -263,6 +266,13 @@ impl Window {
             self.after_save = None;
         }
         self.take_in(ctx);
+        // a view that is gone cannot let go of the mass itself
+        let free =
+            ctx.memory(|memory| memory.focused().is_none()) && !ctx.input(|input| input.pointer.any_down());
+        if free && self.session.player.is_held() {
+            self.session.player.let_go();
+            self.session.moved_by_hand();
+        }
         self.session.poll();
         let seconds = ctx.input(|input| f64::from(input.stable_dt));
         self.session.player.tick(seconds);
@@ -315,10 +325,14 @@ impl Window {
             Panel::top("hint").frame(line).show(ui, |ui| self.hint.ui(ui));
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
+        self.memory.grab = false;
         for command in asked {
             self.carry_out(&ctx, command);
         }
         self.questions_ui(ui, &ctx);
+        if self.shortcuts {
+            self.shortcuts = shortcuts::shortcuts_ui(ui);
+        }
         self.message_ui(ui);
     }
 
@@ -471,6 +485,8 @@ impl Window {
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!full));
             }
             Command::Set(settings) => self.settings = settings,
+            Command::Grab => self.memory.grab = true,
+            Command::Shortcuts => self.shortcuts = !self.shortcuts,
             Command::About => self.message = Some(about()),
         }
     }

@@ -3,5 +3,6 @@
 mod documents;
 mod first_minute;
 mod flexures;
+mod keyboard;
 mod sentences;
 mod support;

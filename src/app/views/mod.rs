@@ -76,6 +76,8 @@ pub struct Memory {
     bent: Option<State>,
     /// The time up to which impacts have been looked at.
     seen_to: f64,
+    /// The mass is to be taken hold of by the first view that has it.
+    pub grab: bool,
     /// The view under the pointer.
     pub hovered: Option<View>,
     /// Time span of the displacement in s, where a person has chosen one.
