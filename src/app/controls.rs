@@ -2,8 +2,9 @@
 
 use eframe::egui::{self, RichText, Ui};
 
-use crate::scene::{Damping, Excitation, Mechanism, Stops};
+use crate::scene::{Damping, Excitation, Stops};
 
+use super::geometry;
 use super::session::Session;
 use super::style::Style;
 use super::widgets::{Knob, Turn};
@@ -52,7 +53,10 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, style: &Style, more: &mut bool
             place.pivot(egui::Align2::RIGHT_TOP).order(egui::Order::Foreground).show(ui.ctx(), |ui| {
                 egui::Frame::popup(ui.style()).show(ui, |ui| {
                     ui.set_width(280.0);
-                    changed |= more_ui(ui, session, style, 150.0);
+                    let room = (ui.ctx().content_rect().bottom() - button.rect.bottom() - 24.0).max(120.0);
+                    egui::ScrollArea::vertical().max_height(room).show(ui, |ui| {
+                        changed |= more_ui(ui, session, style, 150.0);
+                    });
                 });
             });
         }
@@ -191,7 +195,7 @@ pub fn put_side(stops: &mut Stops, right: bool, mm: f64) {
 
 fn more_ui(ui: &mut Ui, session: &mut Session, style: &Style, width: f32) -> bool {
     let mut changed = restitution_ui(ui, session, width);
-    changed |= preload_ui(ui, session, style);
+    changed |= geometry::preload_ui(ui, session, style, width);
     changed |= frequency_ui(ui, session, width);
     changed |= damping_ui(ui, session, width);
     let knob = Knob {
@@ -204,7 +208,15 @@ fn more_ui(ui: &mut Ui, session: &mut Session, style: &Style, width: f32) -> boo
         width,
     };
     let done = knob.ui(ui, session.scene().mass_g);
-    changed | turn(session, done, |scene, value| scene.mass_g = value.max(1e-3))
+    changed |= turn(session, done, |scene, value| scene.mass_g = value.max(1e-3));
+    ui.add_space(8.0);
+    let hover = "What is changed seldom: the sizes of the flexures.";
+    let heading = RichText::new("Advanced").strong();
+    let advanced = egui::CollapsingHeader::new(heading).id_salt("advanced").show(ui, |ui| {
+        changed |= geometry::sizes_ui(ui, session, style, width);
+    });
+    advanced.header_response.on_hover_text(hover);
+    changed
 }
 
 fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
@@ -232,15 +244,6 @@ fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
             *restitution = value.clamp(0.0, 1.0);
         }
     })
-}
-
-fn preload_ui(ui: &mut Ui, session: &Session, _: &Style) -> bool {
-    let why = match session.scene().mechanism {
-        Mechanism::Table { .. } => "The force comes from a table, which was made at one preload.",
-        _ => "The force is given by a formula without a preload.",
-    };
-    ui.add_enabled(false, egui::Label::new("preload")).on_disabled_hover_text(why);
-    false
 }
 
 fn frequency_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {

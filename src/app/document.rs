@@ -5,10 +5,18 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::scene::{Document, Scene, SceneError, Start, Stops, write};
+use crate::scene::{Document, Excitation, Files, Mechanism, Scene, SceneError, Start, Stops, TABLES, write};
+
+use super::export;
 
 /// The most steps back that are kept.
 const MOST_STEPS: usize = 500;
+
+/// How a document calls a built-in scene, before its name.
+const BUILT_IN: &str = "built-in ";
+
+/// How messages call a scene that came as text.
+const PASTED: &str = "the pasted scene";
 
 /// The scene of the window.
 #[derive(Debug, Clone)]
@@ -45,8 +53,37 @@ impl Editor {
     /// Opens a scene file or a built-in scene.
     pub fn open(spec: &str) -> Result<Self, SceneError> {
         let document = Document::load(spec)?;
-        let own_file = !document.name.starts_with("built-in ");
+        let own_file = !document.name.starts_with(BUILT_IN);
         Ok(Self::new(document, own_file.then(|| PathBuf::from(spec))))
+    }
+
+    /// An editor on a scene as text, which has no file.
+    pub fn from_text(text: &str) -> Result<Self, SceneError> {
+        let document = Document::from_text(PASTED, text, Files::default())?;
+        Ok(Self::new(document, None))
+    }
+
+    /// What the command line calls the scene that was opened or last saved; none for one that has no such name.
+    pub fn origin(&self) -> Option<String> {
+        match &self.path {
+            Some(path) => Some(path.to_string_lossy().into_owned()),
+            None => self.document.name.strip_prefix(BUILT_IN).map(str::to_owned),
+        }
+    }
+
+    /// The scene as it was opened or last saved.
+    pub fn saved_scene(&self) -> &Scene {
+        &self.saved
+    }
+
+    /// The scene as text.
+    pub fn text(&self) -> String {
+        write(&self.document.scene)
+    }
+
+    /// Whether the file that the scene came from has comments, which are no part of a scene.
+    pub fn has_comments(&self) -> bool {
+        self.path.is_some() && super::leave::has_comments(&self.document.text)
     }
 
     /// The scene.
@@ -137,14 +174,38 @@ impl Editor {
         self.edit_once(|scene| *scene = opened)
     }
 
-    /// Writes the scene to a file, which is then its own.
+    /// Writes the scene to a file, which is then its own. Embedded tables that it names are put beside the file, where
+    /// it looks for them from then on; one that is there already stays.
     pub fn save_to(&mut self, path: &Path) -> Result<(), String> {
         self.end_gesture();
-        let text = write(&self.document.scene);
-        std::fs::write(path, text).map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+        let text = self.text();
+        if self.document.files.folder.is_none() {
+            let mut names = Vec::new();
+            if let Mechanism::Table { path, .. } = &self.document.scene.mechanism {
+                names.push(path.as_str());
+            }
+            records(&self.document.scene.excitation, &mut names);
+            for table in TABLES.iter().filter(|table| names.contains(&table.name)) {
+                let beside = path.with_file_name(table.name);
+                if !beside.exists() {
+                    export::write(&beside, table.text.as_bytes())?;
+                }
+            }
+        }
+        export::write(path, text.as_bytes())?;
         self.path = Some(path.to_owned());
+        (self.document.text, self.document.name) = (text, path.display().to_string());
         self.saved = self.document.scene.clone();
         Ok(())
+    }
+}
+
+/// The records that an excitation names.
+fn records<'a>(excitation: &'a Excitation, names: &mut Vec<&'a str>) {
+    match excitation {
+        Excitation::Recorded { path, .. } => names.push(path),
+        Excitation::Sum(terms) => terms.iter().for_each(|term| records(term, names)),
+        _ => {}
     }
 }
 
@@ -240,5 +301,25 @@ mod tests {
         assert_eq!(again.scene(), editor.scene());
         assert_eq!(again.path(), Some(path.as_path()));
         assert!(editor.save_to(&folder.path().join("no/such/folder.ron")).is_err());
+    }
+
+    #[test]
+    fn tables_go_where_the_scene_goes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("own.ron");
+        Editor::open("paper-table").unwrap().save_to(&path).unwrap();
+        let again = Editor::open(path.to_str().unwrap()).unwrap();
+        assert!(
+            crate::mechanics::Mechanism::build(&again.scene().mechanism, &again.document().files).is_ok()
+        );
+        assert_eq!(again.origin().as_deref(), path.to_str());
+    }
+
+    #[test]
+    fn as_text_and_back_it_is_the_same() {
+        let editor = editor();
+        let again = Editor::from_text(&editor.text()).unwrap();
+        assert_eq!((again.scene(), again.origin()), (editor.scene(), None));
+        assert!(!again.has_comments() && Editor::from_text("no scene").is_err());
     }
 }

@@ -14,12 +14,24 @@ use super::views::View;
 pub enum Command {
     /// Open a built-in scene.
     OpenPreset(&'static str),
+    /// Open a scene file that was open before.
+    OpenRecent(String),
     /// Choose a scene file and open it.
     Open,
     /// Save the scene to its file.
     Save,
     /// Choose a file and save the scene to it.
     SaveAs,
+    /// Write the motion as CSV.
+    SaveMotion,
+    /// Write the window as a picture.
+    SavePicture,
+    /// The scene as text to the clipboard.
+    CopyScene,
+    /// The scene that the clipboard holds as text.
+    PasteScene,
+    /// The command line of what is shown to the clipboard.
+    CopyCommand,
     /// Leave.
     Quit,
     /// A step back.
@@ -50,6 +62,10 @@ pub enum Command {
     FullScreen,
     /// Change the settings.
     Set(Settings),
+    /// Take hold of the mass.
+    Grab,
+    /// The list of keys.
+    Shortcuts,
     /// About the program.
     About,
 }
@@ -63,10 +79,18 @@ const fn plain(key: Key) -> KeyboardShortcut {
 }
 
 const SAVE_AS: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S);
+const COPY_COMMAND: KeyboardShortcut =
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C);
 const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
 
 /// Draws the bar and says what was asked for.
-pub fn menu_ui(ui: &mut Ui, session: &Session, tiling: &Tiling, settings: Settings) -> Vec<Command> {
+pub fn menu_ui(
+    ui: &mut Ui,
+    session: &Session,
+    tiling: &Tiling,
+    settings: Settings,
+    recent: &[String],
+) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| {
@@ -79,9 +103,24 @@ pub fn menu_ui(ui: &mut Ui, session: &Session, tiling: &Tiling, settings: Settin
                 }
             });
             item(ui, &mut asked, "Open...", Some(command(Key::O)), true, Command::Open);
+            ui.add_enabled_ui(!recent.is_empty(), |ui| {
+                ui.menu_button("Open recent", |ui| {
+                    for path in recent {
+                        let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
+                        if ui.button(name).on_hover_text(path).clicked() {
+                            asked.push(Command::OpenRecent(path.clone()));
+                            ui.close();
+                        }
+                    }
+                });
+            });
+            ui.separator();
             let save = session.editor.is_dirty() || session.editor.path().is_none();
             item(ui, &mut asked, "Save", Some(command(Key::S)), save, Command::Save);
             item(ui, &mut asked, "Save as...", Some(SAVE_AS), true, Command::SaveAs);
+            ui.separator();
+            item(ui, &mut asked, "Save the motion as CSV...", None, true, Command::SaveMotion);
+            item(ui, &mut asked, "Save a picture of the window...", None, true, Command::SavePicture);
             ui.separator();
             item(ui, &mut asked, "Quit", Some(command(Key::Q)), true, Command::Quit);
         });
@@ -90,9 +129,14 @@ pub fn menu_ui(ui: &mut Ui, session: &Session, tiling: &Tiling, settings: Settin
             item(ui, &mut asked, "Undo", Some(command(Key::Z)), editor.can_undo(), Command::Undo);
             item(ui, &mut asked, "Redo", Some(REDO), editor.can_redo(), Command::Redo);
             item(ui, &mut asked, "Back to start", Some(plain(Key::Home)), true, Command::BackToStart);
+            ui.separator();
+            item(ui, &mut asked, "Copy the scene as text", Some(command(Key::C)), true, Command::CopyScene);
+            item(ui, &mut asked, "Paste a scene", Some(command(Key::V)), true, Command::PasteScene);
+            item(ui, &mut asked, "Copy the command line", Some(COPY_COMMAND), true, Command::CopyCommand);
         });
         ui.menu_button("View", |ui| view_menu_ui(ui, &mut asked, tiling, settings));
         ui.menu_button("Help", |ui| {
+            item(ui, &mut asked, "Keys", Some(plain(Key::F1)), true, Command::Shortcuts);
             item(ui, &mut asked, "About", None, true, Command::About);
         });
         ui.add_space(16.0);
@@ -160,12 +204,15 @@ pub fn keys(ctx: &egui::Context) -> Vec<Command> {
     };
     // the longer ones first
     on(SAVE_AS, Command::SaveAs);
+    on(COPY_COMMAND, Command::CopyCommand);
     on(REDO, Command::Redo);
     on(command(Key::Y), Command::Redo);
     on(command(Key::Z), Command::Undo);
     on(command(Key::S), Command::Save);
     on(command(Key::O), Command::Open);
+    on(command(Key::Q), Command::Quit);
     on(command(Key::Num1), Command::Arrange(Layout::Look));
+    on(plain(Key::F1), Command::Shortcuts);
     on(plain(Key::F11), Command::FullScreen);
     on(plain(Key::PageUp), Command::PreviousEvent);
     on(plain(Key::PageDown), Command::NextEvent);
@@ -177,6 +224,7 @@ pub fn keys(ctx: &egui::Context) -> Vec<Command> {
     on(plain(Key::Period), Command::Step);
     on(plain(Key::Z), Command::Fill);
     on(plain(Key::C), Command::Cover);
+    on(plain(Key::G), Command::Grab);
     for (i, key) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5].into_iter().enumerate() {
         on(plain(key), Command::Speed(i));
     }

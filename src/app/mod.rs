@@ -6,9 +6,11 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`document`] | the scene, its file, undo |
+//! | [`export`], [`leave`] | what leaves the window, and what is asked before a scene does |
 //! | [`task`] | background tasks as values |
 //! | [`player`] | the clock and the live motion with its past |
 //! | [`session`] | those three together, and what is known of the scene |
+//! | `controls`, `geometry` | the hands on the scene and on its flexures |
 //! | [`status`] | the sentence that says what the mass does |
 //! | [`style`] | every colour and width |
 //! | [`views`] | what is seen, a file each |
@@ -17,12 +19,16 @@
 
 pub mod controls;
 pub mod document;
+pub mod export;
+mod geometry;
 mod hint;
 pub mod layouts;
+pub mod leave;
 pub mod menu;
 pub mod player;
 pub mod session;
 pub mod settings;
+mod shortcuts;
 pub mod status;
 pub mod style;
 pub mod task;
@@ -74,7 +80,12 @@ pub fn run(spec: Option<&str>) -> Result<(), AppError> {
             .unwrap_or_default();
         let ctx = creation.egui_ctx.clone();
         let wake = Arc::new(move || ctx.request_repaint());
-        Ok(Box::new(Window::open(spec.as_deref(), settings, wake)?))
+        let mut window = Window::open(spec.as_deref(), settings, wake)?;
+        if let Some(storage) = creation.storage {
+            window.recent = eframe::get_value(storage, window::RECENT).unwrap_or_default();
+        }
+        window.remember_file();
+        Ok(Box::new(window))
     };
     eframe::run_native("interwell", options, Box::new(start)).map_err(|error| {
         let text = error.to_string();

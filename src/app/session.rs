@@ -6,8 +6,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::dynamics::{Model, STANDARD_GRAVITY};
-use crate::mechanics::{BuildError, FlexureError, Mechanism};
-use crate::scene::{self, Document, Excitation, Scene, SceneError, Stops};
+use crate::mechanics::{BuildError, FLEXURE_TOLERANCE, FlexureError, Mechanism};
+use crate::scene::{self, Document, Excitation, Fault, Scene, SceneError, Stops};
 use crate::study::{self, Settled, Thresholds};
 
 use super::document::Editor;
@@ -18,6 +18,10 @@ use super::task::{Latest, Wake};
 /// Forcing periods after a change during which the motion settles, and those until which the future tense is used.
 const SETTLING_PERIODS: f64 = 5.0;
 const FUTURE_PERIODS: f64 = 3.0;
+
+/// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and what it is
+/// off by is not seen. At the end of the gesture they are solved as every study solves them.
+const HANDLED_TOLERANCE: f64 = 1e-6;
 
 /// The speed of a scene that does not say one.
 const SPEED: f64 = 0.1;
@@ -52,6 +56,10 @@ pub struct Session {
     mechanism: Arc<Mechanism>,
     /// What the mechanism was built from: a table is fitted once, not for every move of a slider.
     mechanism_of: scene::Mechanism,
+    /// Whether the mechanism was solved in a hurry, in the midst of a gesture.
+    hurried: bool,
+    /// What a hand asked of the mechanism and did not get, and why.
+    refused: Option<String>,
     /// Live time in s of the last change.
     changed_at: f64,
     /// The stops that come back when they are switched on.
@@ -74,6 +82,31 @@ fn unbuilt(document: &Document, error: BuildError) -> CannotRun {
     match error {
         BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
         BuildError::Unsolved(error) => error.into(),
+    }
+}
+
+/// The mechanism of a scene that can be run with it.
+fn solved(document: &Document, tolerance: f64) -> Result<Arc<Mechanism>, CannotRun> {
+    document.check()?;
+    let scene = &document.scene;
+    let mechanism = Mechanism::build_with(&scene.mechanism, &document.files, tolerance)
+        .map_err(|error| unbuilt(document, error))?;
+    let mechanism = Arc::new(mechanism);
+    Model::build(scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
+    Ok(mechanism)
+}
+
+/// The first thing that is wrong, without the place in a file, which a hand on a slider does not look at.
+fn why(error: &CannotRun) -> String {
+    match error {
+        CannotRun::Wrong(SceneError::Faults { faults, .. }) => faults.first().map_or_else(
+            || error.to_string(),
+            |placed| {
+                let Fault { field, value, problem } = &placed.fault;
+                format!("{field} = {value}: {problem}")
+            },
+        ),
+        _ => error.to_string(),
     }
 }
 
@@ -103,6 +136,8 @@ impl Session {
             thresholds: Latest::default(),
             before: None,
             mechanism_of: scene.mechanism.clone(),
+            hurried: false,
+            refused: None,
             built: scene,
             mechanism,
             changed_at: 0.0,
@@ -151,12 +186,54 @@ impl Session {
         changed
     }
 
+    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run; if not, everything stays
+    /// as it is and [`refused`](Self::refused) says why. Whether it changed.
+    pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut scene::Mechanism)) -> bool {
+        let mut document = self.editor.document().clone();
+        change(&mut document.scene.mechanism);
+        if document.scene.mechanism == self.scene().mechanism {
+            return false;
+        }
+        let wanted = document.scene.mechanism.clone();
+        match solved(&document, HANDLED_TOLERANCE) {
+            Ok(mechanism) => {
+                (self.mechanism, self.mechanism_of, self.hurried) = (mechanism, wanted.clone(), true);
+                self.refused = None;
+                self.edit(|scene| scene.mechanism = wanted)
+            }
+            Err(error) => {
+                self.refused = Some(why(&error));
+                false
+            }
+        }
+    }
+
+    /// Why the last change that a hand wanted of the mechanism was not made.
+    pub fn refused(&self) -> Option<&str> {
+        self.refused.as_deref()
+    }
+
     /// Ends the gesture.
     pub fn end_gesture(&mut self) {
         if self.editor.in_gesture() {
             self.apply();
             self.editor.end_gesture();
+            self.solve_in_earnest();
             self.ask_thresholds();
+        }
+    }
+
+    /// Solves a mechanism anew that was solved in a hurry; where that fails, the hurried one stays.
+    fn solve_in_earnest(&mut self) {
+        if !std::mem::take(&mut self.hurried) {
+            return;
+        }
+        let Ok(mechanism) = solved(self.editor.document(), FLEXURE_TOLERANCE) else { return };
+        self.mechanism = mechanism;
+        if let Ok(model) = Model::build(self.scene(), Arc::clone(&self.mechanism)) {
+            self.model = Arc::new(model);
+            self.player.change(&self.model);
+            self.ask_settled();
         }
     }
 
@@ -180,6 +257,7 @@ impl Session {
 
     fn travel(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
         self.end_gesture();
+        self.refused = None;
         let now = self.now_card();
         let moved = step(&mut self.editor);
         if moved {

@@ -125,6 +125,15 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
     let why = match outcome {
         Outcome::LeftTable { .. } => {
             let end = mm(domain.0.abs().min(domain.1));
+            if model.mechanism.flexures.is_some() {
+                return Sentence::new(
+                    Kind::Fault,
+                    format!(
+                        "The run ended at {at:.2} s: the mass went beyond what was solved of the flexures, which ends at \
+                         {end} mm. Set stops inside it, or shake less."
+                    ),
+                );
+            }
             format!(
                 "the mass left the force table, which ends at {end} mm. Set stops inside it or extend the table."
             )

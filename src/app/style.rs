@@ -155,6 +155,11 @@ impl Style {
         Stroke::new(self.width(2.0), self.stop())
     }
 
+    /// Around what the keyboard acts on.
+    pub fn focus_stroke(&self) -> Stroke {
+        Stroke::new(self.width(2.0), self.base())
+    }
+
     /// An arrow.
     pub fn arrow_stroke(&self) -> Stroke {
         Stroke::new(3.0, self.base())
@@ -214,6 +219,9 @@ pub fn install(ctx: &egui::Context) {
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.visuals.override_text_color = Some(ink.ink());
         style.visuals.slider_trailing_fill = true;
+        // what has the keyboard's focus has this frame, too
+        style.visuals.widgets.active.bg_stroke = ink.focus_stroke();
+        style.visuals.widgets.active.fg_stroke = Stroke::new(2.0, ink.base());
     });
 }
 

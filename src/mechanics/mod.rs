@@ -48,7 +48,7 @@ impl From<Fault> for BuildError {
 
 /// Error of the force of flexures, relative to its maximum between the wells. The same for every
 /// study: far below what a beam leaves out of a real flexure, so that nobody need think of it.
-const FLEXURE_TOLERANCE: f64 = 1e-8;
+pub const FLEXURE_TOLERANCE: f64 = 1e-8;
 
 impl Mechanism {
     /// Builds the curve that a scene describes; the scene has passed its range check.
@@ -57,6 +57,16 @@ impl Mechanism {
     /// takes the longest by far. The fault of a table names `mechanism.path`; that of a polynomial with too many terms
     /// `mechanism.coefficients_si`.
     pub fn build(described: &scene::Mechanism, files: &Files) -> Result<Self, BuildError> {
+        Self::build_with(described, files, FLEXURE_TOLERANCE)
+    }
+
+    /// As [`build`](Self::build), with flexures solved to `flexure_tolerance` (1e-6 to 1e-9; see [`Flexures::solve`]):
+    /// a geometry that a hand is still changing is solved sooner than one that stays.
+    pub fn build_with(
+        described: &scene::Mechanism,
+        files: &Files,
+        flexure_tolerance: f64,
+    ) -> Result<Self, BuildError> {
         match described {
             scene::Mechanism::Flexures {
                 preload_mm,
@@ -68,17 +78,20 @@ impl Mechanism {
                 plane_strain,
                 initial_bow_mm,
                 yield_gpa,
-            } => Self::from_flexures(&Geometry {
-                preload: preload_mm / 1e3,
-                thickness: thickness_mm / 1e3,
-                young: young_gpa * 1e9,
-                poisson: *poisson,
-                plane_strain: *plane_strain,
-                initial_bow: initial_bow_mm / 1e3,
-                yield_stress: yield_gpa * 1e9,
-                parallel: group(parallel),
-                buckling: group(buckling),
-            }),
+            } => {
+                let geometry = Geometry {
+                    preload: preload_mm / 1e3,
+                    thickness: thickness_mm / 1e3,
+                    young: young_gpa * 1e9,
+                    poisson: *poisson,
+                    plane_strain: *plane_strain,
+                    initial_bow: initial_bow_mm / 1e3,
+                    yield_stress: yield_gpa * 1e9,
+                    parallel: group(parallel),
+                    buckling: group(buckling),
+                };
+                Self::from_flexures(&geometry, flexure_tolerance)
+            }
             scene::Mechanism::Cubic { linear_n_per_m, cubic_n_per_m3 } => {
                 Ok(Self::new(ForceCurve::polynomial(&[0.0, *linear_n_per_m, 0.0, *cubic_n_per_m3])))
             }
@@ -116,8 +129,8 @@ impl Mechanism {
     /// Solves flexures; all in SI.
     ///
     /// Fails where the solver does not converge.
-    fn from_flexures(geometry: &Geometry) -> Result<Self, BuildError> {
-        let (curve, flexures) = Flexures::solve(geometry, FLEXURE_TOLERANCE)?;
+    fn from_flexures(geometry: &Geometry, tolerance: f64) -> Result<Self, BuildError> {
+        let (curve, flexures) = Flexures::solve(geometry, tolerance)?;
         Ok(Self { flexures: Some(Arc::new(flexures)), ..Self::new(curve) })
     }
 

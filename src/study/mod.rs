@@ -27,7 +27,7 @@ pub use grid::{Grid, GridError, MAX_CELLS};
 pub use inspect::inspect;
 pub use map::{first_interwell, release_line};
 pub use settled::{Settled, Standing, Thresholds, settled, standing, thresholds};
-pub use simulate::{Keep, Sampling, Simulation, sample_times, simulate};
+pub use simulate::{Keep, Sampling, Simulation, sample_times, samples_table, simulate};
 pub use sweep::{CellFaults, Sweep, SweepEnd, Tally};
 pub use table::{Column, Table, Values};
 pub use times::{MAX_SAMPLES, Step, TimesError, even_times, listed_times};

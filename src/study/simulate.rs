@@ -77,7 +77,8 @@ pub(super) fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
     times.iter().filter_map(find).collect()
 }
 
-pub(super) fn samples_table(samples: &[Sample]) -> Table {
+/// Samples as the table `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`.
+pub fn samples_table(samples: &[Sample]) -> Table {
     let numbers = |of: fn(&Sample) -> f64| Values::Numbers(samples.iter().map(of).collect());
     Table::new()
         .with("t_s", numbers(|s| s.t))

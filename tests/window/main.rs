@@ -1,5 +1,8 @@
 //! The window without a display: what is seen, pressed and dragged, and what that does to the scene and its motion.
 
+mod documents;
 mod first_minute;
+mod flexures;
+mod keyboard;
 mod sentences;
 mod support;

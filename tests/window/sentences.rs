@@ -20,13 +20,15 @@ fn shaken() {
     let stops = |mm: f64| format!("stops=Rigid(travel_limit_mm: {mm}, restitution: 0.36)");
     let (kind, text) = of("first-look", &[]);
     assert_eq!(kind, Kind::Intrawell);
-    assert!(text.starts_with(
-        "Intrawell: stays in the right-hand well, between 5.5 and 7.3 mm; RMS velocity 17 mm/s."
-    ));
+    // it rattles without a rhythm: the turning point is 5.65 mm, give or take some micrometres
+    let low = ["5.6", "5.7"].map(|low| {
+        format!("Intrawell: stays in the right-hand well, between {low} and 7.3 mm; RMS velocity 17 mm/s.")
+    });
+    assert!(low.iter().any(|low| text.starts_with(low)), "{text}");
     assert!(text.ends_with("About 0.3 g short of crossing."), "{text}");
 
     let (kind, text) = of("first-look", &[&stops(1.5)]);
-    let expected = "Interwell: crosses twice a period, from stop to stop at ±1.5 mm; RMS velocity 47 mm/s, impacts take 9";
+    let expected = "Interwell: crosses twice a period, from stop to stop at ±1.5 mm; RMS velocity 48 mm/s, impacts take 9";
     assert!(kind == Kind::Interwell && text.starts_with(expected), "{text}");
     assert!(text.ends_with(" g to spare."), "{text}");
 
@@ -34,7 +36,7 @@ fn shaken() {
     let expected = "Resting: pressed on the right-hand stop all the time; 0.90 g never frees it. Frees at 1.";
     assert!(kind == Kind::Resting && text.starts_with(expected) && text.contains("crosses at 1."), "{text}");
 
-    let (kind, text) = of("first-look", &[&stops(1.75)]);
+    let (kind, text) = of("first-look", &[&stops(1.95)]);
     assert!(
         kind == Kind::Intrawell && text.starts_with("Hopping: leaves the right-hand stop every period"),
         "{text}"
@@ -72,13 +74,13 @@ fn not_shaken() {
     assert_eq!(kind, Kind::Resting);
     assert_eq!(
         text,
-        "At rest in the right-hand well; nothing shakes it. 0.91 mJ would lift it over the barrier."
+        "At rest in the right-hand well; nothing shakes it. 0.92 mJ would lift it over the barrier."
     );
     let (_, text) = of("paper", &["excitation=None"]);
     assert!(text.starts_with("Pressed on the right-hand stop with 0.10 N; nothing shakes it. 0."), "{text}");
     let (_, text) = of("first-look", &["excitation=None", "start=At(x_mm: 5, v_m_per_s: 0)"]);
     assert!(text.starts_with("Ringing down in the right-hand well: 0."), "{text}");
-    assert!(text.ends_with("mJ of energy left, 0.91 mJ needed to cross."), "{text}");
+    assert!(text.ends_with("mJ of energy left, 0.92 mJ needed to cross."), "{text}");
 }
 
 #[test]
@@ -92,7 +94,9 @@ fn held_ended_and_wrong() {
     let own = session("first-look", &["start=At(x_mm: 7.9, v_m_per_s: 2)"]);
     let (kind, text) = says(&own);
     assert!(kind == Kind::Fault && text.starts_with("The run ended at 0.0"), "{text}");
-    assert!(text.contains("left the force table"), "{text}");
+    assert!(text.contains("beyond what was solved of the flexures, which ends at 8.3 mm"), "{text}");
+    let own = session("paper-table", &["stops=None", "start=At(x_mm: 7.9, v_m_per_s: 2)"]);
+    assert!(says(&own).1.contains("left the force table"), "{:?}", says(&own));
 
     let mut own = session("first-look", &[]);
     own.edit_once(|scene| scene.mass_g = f64::NAN);

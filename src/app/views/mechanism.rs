@@ -1,6 +1,7 @@
 //! The mechanism as a drawing, over the well and on its x axis, seen from the base.
 //!
-//! A schematic: clamps, flexures and the mass in the right places along x, not to scale across it. The base stands
+//! Where the force comes from flexures they are drawn as they are bent ([`flexures`](super::flexures)); else a schematic
+//! has clamps, flexures and the mass in the right places along x, not to scale across it. The base stands
 //! still in it, and the push that the mass feels instead is an arrow; the base's own motion is far larger than the travel
 //! and has an inset at its own scale. An impact is a ring whose size is the energy that it takes.
 
@@ -11,6 +12,7 @@ use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 use crate::scene::Excitation;
 
 use super::ViewContext;
+use super::flexures::{CLAMP, Place, Scale, bulge_words, clamp, state_at};
 use super::stops::stops_ui;
 use super::well::mass_ui;
 
@@ -31,43 +33,78 @@ pub(super) struct Ring {
 
 /// Draws it. Whether something changed.
 pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
-    let (area, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
-    if area.width() < 60.0 || area.height() < 60.0 {
+    let (rect, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+    if rect.width() < 60.0 || rect.height() < 60.0 {
         return false;
     }
-    let style = context.style;
-    let painter = ui.painter().with_clip_rect(area);
-    painter.rect_filled(area, 0.0, style.ground());
-    let rect = area;
-    let state = context.session.player.state();
-    let x = context.span.screen_from_world(state.x, rect);
-    let (top, bottom) = (rect.top() + 24.0, rect.bottom() - 12.0);
-    let middle = (top + bottom) * 0.5;
-    // as wide as the ball on the well, so that it touches the stops when it should
-    let half = vec2(BALL, ((bottom - top) * 0.2).clamp(12.0, 40.0));
-    frame(&painter, context, rect, top, bottom);
-    flexures(&painter, context, rect, (x, middle, half), (top, bottom));
-    let body = Rect::from_center_size(pos2(x, middle), half * 2.0);
-    let edge = Stroke::new(1.5, style.mass_edge());
-    painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
-    let wall = half.y * 0.8;
-    let mut changed = stops_ui(ui, context, rect, middle - wall, middle + wall);
-    changed |= mass_ui(ui, context, pos2(x, middle), rect);
-    let painter = ui.painter().with_clip_rect(area);
-    rings(ui, context, rect, middle);
-    push_arrow(&painter, context, pos2(x, middle - half.y - 10.0), state.base_accel, rect);
-    inset(&painter, context, rect, state.base_accel);
-    let text = "schematic, seen from the base; flexures not to scale";
-    painter.text(rect.left_top() + vec2(10.0, 6.0), Align2::LEFT_TOP, text, style.small(), style.faint());
+    // an axis of its own only where no other view stands on it
+    let shared = context.span;
+    let changed = drawing_ui(ui, context, rect);
+    context.span = shared;
     changed
 }
 
-/// The frame of the base: a beam above and one below, to which the flexures are clamped.
-fn frame(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, top: f32, bottom: f32) {
-    let color = context.style.frame_colour();
-    let beam = |y: f32| Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y - 4.0..=y + 4.0);
-    painter.rect_filled(beam(top), 2.0, color);
-    painter.rect_filled(beam(bottom), 2.0, color);
+fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
+    let style = context.style;
+    let painter = ui.painter().with_clip_rect(rect);
+    painter.rect_filled(rect, 0.0, style.ground());
+    let state = context.session.player.state();
+    let (top, bottom) = (rect.top() + 28.0, rect.bottom() - 12.0);
+    // as wide as the ball on the well, so that it touches the stops when it should
+    let half = vec2(BALL, ((bottom - top) * 0.13).clamp(14.0, 30.0));
+    for (y, above) in [(top, true), (bottom, false)] {
+        let y = if above { y - CLAMP..=y } else { y..=y + CLAMP };
+        clamp(&painter, &style, Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y), above);
+    }
+    let place = Place { top, bottom, half };
+    let (middle, words) = match bent_ui(&painter, context, rect, place, state.x) {
+        Some(drawn) => drawn,
+        None => {
+            let middle = 0.5 * (top + bottom);
+            let x = context.span.screen_from_world(state.x, rect);
+            flexures(&painter, context, rect, (x, middle, half), (top, bottom));
+            (middle, "schematic, seen from the base; no flexures behind this force".to_owned())
+        }
+    };
+    let x = context.span.screen_from_world(state.x, rect);
+    let body = Rect::from_center_size(pos2(x, middle), half * 2.0);
+    let edge = Stroke::new(1.5, style.mass_edge());
+    painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
+    let mut changed = stops_ui(ui, context, rect, middle - half.y - 4.0, middle + half.y + 4.0);
+    changed |= mass_ui(ui, context, pos2(x, middle), rect);
+    rings(ui, context, rect, middle);
+    push_arrow(&painter, context, body, state.base_accel, rect);
+    inset(&painter, context, rect, state.base_accel);
+    painter.text(rect.left_top() + vec2(10.0, 4.0), Align2::LEFT_TOP, words, style.small(), style.faint());
+    changed
+}
+
+/// The flexures as they are bent, where there are such: the middle of the body, and what is said of the drawing.
+fn bent_ui(
+    painter: &egui::Painter,
+    context: &mut ViewContext<'_>,
+    rect: Rect,
+    place: Place,
+    x: f64,
+) -> Option<(f32, String)> {
+    let bent = state_at(context, x)?;
+    let style = context.style;
+    let mechanism = &context.session.model().mechanism;
+    let geometry = mechanism.flexures.as_ref()?.geometry();
+    let scale = Scale::of(geometry, place);
+    let reach = mechanism.landscape.right_stable().map_or(0.0, |well| well.x.abs());
+    if context.filled
+        && let Some(own) = scale.true_span(reach, rect)
+    {
+        context.span = own;
+    }
+    painter.extend(scale.shapes(geometry, &bent, context.span, rect, style.flexure_stroke()));
+    scale.bar(painter, &style, pos2(rect.right() - 18.0, place.bottom - 8.0));
+    let words = bulge_words(&bent);
+    let at = pos2(rect.left() + 12.0, place.top + 8.0);
+    painter.text(at, Align2::LEFT_TOP, words, style.body(), style.ink());
+    let words = format!("seen from the base, {}", scale.words(context.span, rect));
+    Some((scale.middle(&bent), words))
 }
 
 /// Two guided flexures below the mass and the buckled one above it.
@@ -101,36 +138,37 @@ fn flexures(
         Shape::line((0..=FLEXURE_POINTS).map(point).collect(), stroke)
     };
     for side in [-0.6, 0.6] {
-        let foot = pos2(zero + side * half.x, bottom - 4.0);
+        let foot = pos2(zero + side * half.x, bottom);
         painter.add(shape(foot, pos2(x + side * half.x, middle + half.y), 0.0));
     }
-    painter.add(shape(pos2(zero, top + 4.0), pos2(x, middle - half.y), bump));
+    painter.add(shape(pos2(zero, top), pos2(x, middle - half.y), bump));
 }
 
-/// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g).
-fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, from: Pos2, base_accel: f64, rect: Rect) {
+/// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g). It lies at the mass's height on the
+/// inner side of the body, where neither flexures nor stops are.
+fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, base_accel: f64, rect: Rect) {
     if !context.session.model().is_shaken() {
         return;
     }
     let style = context.style;
     let full = f64::from(rect.width()) * 0.16;
     let room = context.session.largest_push().max(1e-9);
-    let length = (-base_accel / room * full) as f32;
-    // centred on the mass, as far as the view lets it
-    let shown = rect.shrink(12.0);
-    let tail = (from.x - 0.5 * length).clamp(shown.left(), shown.right());
-    let tip = (tail + length).clamp(shown.left(), shown.right());
-    if length.abs() > 3.0 {
-        let (stroke, y) = (style.arrow_stroke(), from.y);
-        let head = ARROW_HEAD.min(length.abs()) * length.signum();
-        painter.line_segment([pos2(tip - length, y), pos2(tip - 0.5 * head, y)], stroke);
+    let push = (-base_accel / room * full) as f32;
+    let inner = if body.center().x > rect.center().x { -1.0 } else { 1.0 };
+    let near = body.center().x + inner * (body.width() * 0.5 + 6.0);
+    let far = near + inner * push.abs();
+    let (y, stroke) = (body.center().y, style.arrow_stroke());
+    if push.abs() > 3.0 {
+        let (tail, tip) = if push * inner > 0.0 { (near, far) } else { (far, near) };
+        let head = ARROW_HEAD.min(push.abs()) * push.signum();
+        painter.line_segment([pos2(tail, y), pos2(tip - 0.5 * head, y)], stroke);
         let points = vec![pos2(tip, y), pos2(tip - head, y - 6.0), pos2(tip - head, y + 6.0)];
         painter.add(Shape::convex_polygon(points, stroke.color, Stroke::NONE));
     }
     let text = format!("push {:.2} g", (base_accel / STANDARD_GRAVITY).abs());
     let galley = painter.layout_no_wrap(text, style.small(), style.base());
-    let middle = from.x.clamp(shown.left() + 36.0, shown.right() - 36.0);
-    let place = Align2::CENTER_BOTTOM.anchor_size(pos2(middle, from.y - 8.0), galley.size());
+    let align = if inner > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_BOTTOM };
+    let place = align.anchor_size(pos2(near, y - 7.0), galley.size());
     painter.rect_filled(place.expand(1.5), 2.0, style.ground());
     painter.galley(place.min, galley, style.base());
 }

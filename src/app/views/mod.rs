@@ -6,12 +6,15 @@
 
 mod before_now;
 mod displacement;
+mod flexures;
 mod mechanism;
 mod span;
 mod stops;
 mod well;
 
 use eframe::egui::Ui;
+
+use crate::mechanics::flexure::State;
 
 use super::session::Session;
 use super::style::Style;
@@ -60,6 +63,8 @@ pub struct ViewContext<'a> {
     pub reduce_motion: bool,
     /// Results are covered: predict first.
     pub covered: bool,
+    /// One view fills the window, and shares its axes with none.
+    pub filled: bool,
 }
 
 /// What views keep between frames.
@@ -67,8 +72,12 @@ pub struct ViewContext<'a> {
 pub struct Memory {
     /// The last impact on the left and the right that is drawn as a ring.
     rings: [Option<mechanism::Ring>; 2],
+    /// The flexures as they were drawn last.
+    bent: Option<State>,
     /// The time up to which impacts have been looked at.
     seen_to: f64,
+    /// The mass is to be taken hold of by the first view that has it.
+    pub grab: bool,
     /// The view under the pointer.
     pub hovered: Option<View>,
     /// Time span of the displacement in s, where a person has chosen one.

@@ -5,8 +5,13 @@ use eframe::egui::{self, CursorIcon, Rect, Sense, Shape, Stroke, Ui, pos2, vec2}
 use crate::app::controls::put_side;
 use crate::app::session::stop_distances;
 use crate::app::style::{BALL, GRAB};
+use crate::scene::Scene;
 
 use super::ViewContext;
+use super::well::arrows;
+
+/// Step in mm of a stop that the arrow keys move, as that of its slider.
+const KEY_STEP: f64 = 0.05;
 
 /// Thickness of a wall in points.
 const WALL: f32 = 10.0;
@@ -27,7 +32,7 @@ pub fn stops_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, top: f32
         let id = ui.scope_id().with(name);
         let response =
             ui.interact(grab, id, Sense::drag()).on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, name));
+        response.widget_info(|| egui::WidgetInfo::slider(true, mm, name));
         let style = context.style;
         let color = if response.hovered() || response.dragged() { style.mass() } else { style.stop() };
         let painter = ui.painter().with_clip_rect(rect);
@@ -43,6 +48,16 @@ pub fn stops_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, top: f32
             let align = if way > 0.0 { egui::Align2::LEFT_TOP } else { egui::Align2::RIGHT_TOP };
             let at = pos2(x + way * (WALL + 5.0), top);
             painter.text(at, align, text, style.body(), style.ink());
+        }
+        if response.has_focus() && !response.dragged() {
+            let stroke = context.style.focus_stroke();
+            ui.painter().rect_stroke(wall.expand(3.0), 2.0, stroke, egui::StrokeKind::Outside);
+            let moved = arrows(ui, response.id) * f64::from(way);
+            if moved != 0.0 {
+                let distance = ((mm.abs() / KEY_STEP).round() + moved) * KEY_STEP;
+                let edit = |scene: &mut Scene| put_side(&mut scene.stops, way > 0.0, distance.max(KEY_STEP));
+                changed |= context.session.edit_once(edit);
+            }
         }
         if response.drag_stopped() {
             context.session.end_gesture();

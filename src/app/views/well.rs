@@ -79,13 +79,22 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     changed
 }
 
-/// Lets the mass be grabbed: it is held where the hand is, and the clock stands.
+/// Step in mm of a mass that the arrow keys move; with Shift ten of them.
+const KEY_STEP: f64 = 0.1;
+
+/// Lets the mass be grabbed: it is held where the hand is, and the clock stands. With the keyboard's focus on it the arrow
+/// keys take hold of it and move it, and Enter lets go.
 pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect) -> bool {
     let grab = Rect::from_center_size(at, egui::Vec2::splat(2.0 * GRAB));
     let response = ui
         .interact(grab.intersect(rect.expand(GRAB)), ui.scope_id().with("mass"), Sense::drag())
         .on_hover_and_drag_cursor(CursorIcon::Grab);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "proof mass"));
+    let mm = context.session.player.state().x * 1e3;
+    response.widget_info(|| egui::WidgetInfo::slider(true, mm, "proof mass"));
+    if std::mem::take(&mut context.memory.grab) {
+        response.request_focus();
+        context.session.player.hold(mm / 1e3);
+    }
     let player = &mut context.session.player;
     if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
         player.hold(context.span.world_from_screen(pointer.x, rect));
@@ -95,7 +104,40 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
         context.session.moved_by_hand();
         return true;
     }
+    if !response.dragged() && response.has_focus() {
+        focus_ring(ui, at, context.style.focus_stroke());
+        let moved = arrows(ui, response.id);
+        if moved != 0.0 {
+            // on the grid of the step
+            let place = (mm / KEY_STEP).round() + moved;
+            player.hold(place * KEY_STEP / 1e3);
+        }
+        if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
+            response.surrender_focus();
+        }
+        return moved != 0.0;
+    }
+    if response.lost_focus() && player.is_held() && !response.dragged() {
+        player.let_go();
+        context.session.moved_by_hand();
+        return true;
+    }
     response.dragged()
+}
+
+/// Steps to the right that the arrow keys ask of what has the focus; they then do not move the focus itself.
+pub(super) fn arrows(ui: &Ui, id: egui::Id) -> f64 {
+    let filter = egui::EventFilter { horizontal_arrows: true, ..egui::EventFilter::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+    ui.input(|input| {
+        let presses = |key| f64::from(u32::try_from(input.num_presses(key)).unwrap_or(0));
+        let steps = presses(egui::Key::ArrowRight) - presses(egui::Key::ArrowLeft);
+        if input.modifiers.shift { 10.0 * steps } else { steps }
+    })
+}
+
+fn focus_ring(ui: &Ui, at: Pos2, stroke: Stroke) {
+    ui.painter().circle_stroke(at, BALL + 5.0, stroke);
 }
 
 /// The vertical axis in J, upwards.
@@ -162,7 +204,11 @@ fn x_axis(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
         painter.vline(at, rect.y_range(), style.grid_stroke());
         let unit = if i == last { " mm" } else { "" };
         let text = format!("{:.decimals$}{unit}", x * 1e3 + 0.0);
-        painter.text(pos2(at, rect.bottom() + 4.0), Align2::CENTER_TOP, text, style.small(), style.faint());
+        let galley = painter.layout_no_wrap(text, style.small(), style.faint());
+        let half = 0.5 * galley.size().x + 2.0;
+        // whole, also where a tick is at the edge
+        let middle = at.clamp(rect.left() + half, (rect.right() - half).max(rect.left() + half));
+        painter.galley(pos2(middle - half, rect.bottom() + 4.0), galley, style.faint());
     }
 }
 

@@ -1,0 +1,84 @@
+//! What leaves the window: the motion as CSV, the window as a picture, the command line that shows the same.
+
+use std::path::Path;
+
+use eframe::egui::ColorImage;
+
+use crate::output::{Sink, header, rows};
+use crate::scene::assignments;
+use crate::study::samples_table;
+
+use super::document::Editor;
+use super::player::Player;
+
+/// Writes text or bytes; a file is replaced only once all of it is there. The error is a sentence.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    let mut sink = Sink::open(path).map_err(|error| error.to_string())?;
+    let refused = |error: std::io::Error| format!("cannot write {}: {error}", path.display());
+    sink.put_bytes(bytes).map_err(refused)?;
+    sink.finish().map_err(refused)
+}
+
+/// The motion that is remembered, in the columns of the command line's `simulate`.
+pub fn motion_csv(player: &Player) -> String {
+    let samples: Vec<_> = player.watch().samples().iter().copied().collect();
+    let table = samples_table(&samples);
+    header(&table) + &rows(&table, 0..table.rows())
+}
+
+/// A picture as PNG.
+pub fn png(image: &ColorImage) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let pixels: Vec<u8> = image.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
+    let side = |size: usize| u32::try_from(size).unwrap_or(0);
+    let mut encoder = png::Encoder::new(&mut bytes, side(image.size[0]), side(image.size[1]));
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&pixels));
+    written.map_err(|error| format!("the picture cannot be written: {error}"))?;
+    Ok(bytes)
+}
+
+/// The command that runs this scene without a window, from its start; none for a scene that neither has a file nor is
+/// built in, until it is saved.
+pub fn command_line(editor: &Editor) -> Option<String> {
+    let mut line = format!("interwell --headless simulate {}", quoted(&editor.origin()?));
+    for argument in assignments(editor.saved_scene(), editor.scene()) {
+        line += &format!(" --set {}", quoted(&argument));
+    }
+    Some(line)
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "._-/=+:,".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_says_what_was_changed() {
+        let mut editor = Editor::open("first-look").unwrap();
+        assert_eq!(command_line(&editor).unwrap(), "interwell --headless simulate first-look");
+        editor.edit_once(|scene| scene.stops = scene.app.as_ref().unwrap().stops_when_on.unwrap());
+        assert_eq!(
+            command_line(&editor).unwrap(),
+            "interwell --headless simulate first-look --set 'stops=Rigid(travel_limit_mm:1.5,restitution:0.36)'"
+        );
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+    }
+
+    #[test]
+    fn a_picture_is_a_png() {
+        let image = ColorImage::filled([3, 2], eframe::egui::Color32::RED);
+        assert!(png(&image).unwrap().starts_with(b"\x89PNG"));
+        assert!(png(&ColorImage::filled([0, 0], eframe::egui::Color32::RED)).is_err());
+    }
+}

@@ -1,0 +1,70 @@
+//! Which keys do what? The list that F1 shows.
+
+use eframe::egui::{self, Grid, Modal, RichText, Ui};
+
+/// Keys and what they do, in groups.
+const GROUPS: [(&str, &[(&str, &str)]); 4] = [
+    (
+        "Time",
+        &[
+            ("Space", "play, pause"),
+            (".", "a single step"),
+            ("PageUp, PageDown", "to the event before, after"),
+            ("1 to 5", "speed, from 1/1000 to real time"),
+            ("Home", "back to the start: scene, view and time"),
+        ],
+    ),
+    (
+        "Hands",
+        &[
+            ("G", "take hold of the mass"),
+            ("Left, Right", "move what has the focus: the held mass by 0.1 mm, a slider or a stop by a step"),
+            ("Shift", "with these, ten steps"),
+            ("Enter", "let go of the mass"),
+            ("Tab", "to the next control"),
+        ],
+    ),
+    (
+        "Views",
+        &[
+            ("Z", "the view under the pointer over the whole window"),
+            ("C", "cover the results: predict first"),
+            ("F11", "full screen"),
+            ("Ctrl+1", "arrange as Look"),
+        ],
+    ),
+    (
+        "Scene",
+        &[
+            ("Ctrl+Z, Ctrl+Y", "undo, redo"),
+            ("Ctrl+O, Ctrl+S", "open, save"),
+            ("Ctrl+C, Ctrl+V", "copy, paste the scene as text"),
+            ("Ctrl+Shift+C", "copy the command line that runs it"),
+            ("Ctrl+Q", "quit"),
+        ],
+    ),
+];
+
+/// Shows the list; false once it is to be closed.
+pub fn shortcuts_ui(ui: &Ui) -> bool {
+    let answer = Modal::new(egui::Id::unique("shortcuts")).show(ui.ctx(), |ui| {
+        ui.heading("Keys");
+        let room = (ui.ctx().content_rect().height() - 120.0).max(120.0);
+        egui::ScrollArea::vertical().max_height(room).show(ui, |ui| {
+            for (group, keys) in GROUPS {
+                ui.add_space(6.0);
+                ui.label(RichText::new(group).heading());
+                Grid::new(group).num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
+                    for (key, does) in keys {
+                        ui.label(*key);
+                        ui.label(*does);
+                        ui.end_row();
+                    }
+                });
+            }
+        });
+        ui.add_space(8.0);
+        ui.button("Close").clicked()
+    });
+    !(answer.inner || answer.should_close())
+}

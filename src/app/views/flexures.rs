@@ -1,0 +1,155 @@
+//! Flexures as they are bent, drawn from the solved mechanism held at the mass's own place.
+//!
+//! The solver is asked once a frame (it takes less than a tenth of a millisecond), so that nothing is read between two
+//! shapes and the bulge ends where it ends. Along the flexures the drawing has a scale of its own; sideways it has the
+//! view's, and the ratio of the two is written. The mass is a body between the two groups, its size no part of the scale.
+
+use eframe::egui::{self, Align2, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
+
+use crate::app::style::Style;
+use crate::mechanics::flexure::{Geometry, State};
+
+use super::{Span, ViewContext};
+
+/// The widest sideways travel in points at which a true scale would show too little.
+const LEAST_TRAVEL: f64 = 60.0;
+
+/// A group is drawn with at most so many flexures.
+const MOST_LINES: usize = 4;
+
+/// Thickness of the clamps in points.
+pub(super) const CLAMP: f32 = 8.0;
+
+/// Where the drawing stands: between two clamps, with a body in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Place {
+    /// The inner sides of the clamps above and below.
+    pub top: f32,
+    pub bottom: f32,
+    /// Half the size of the body.
+    pub half: Vec2,
+}
+
+/// How the drawing is scaled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Scale {
+    place: Place,
+    /// Points per m along the flexures.
+    along: f64,
+    /// Distance of the clamps in m, with a body of no size.
+    clamps: f64,
+}
+
+impl Scale {
+    pub fn of(geometry: &Geometry, place: Place) -> Self {
+        let clamps = geometry.parallel.length + geometry.buckling.length - geometry.preload;
+        let room = f64::from((place.bottom - place.top - 2.0 * place.half.y).max(1.0));
+        Self { place, along: room / clamps, clamps }
+    }
+
+    /// The x axis of a true scale over `rect`, where the travel between the wells is seen at it.
+    pub fn true_span(&self, reach: f64, rect: Rect) -> Option<Span> {
+        let half = 0.5 * f64::from(rect.width()) / self.along;
+        (reach * self.along >= LEAST_TRAVEL && half > 1.1 * reach).then_some(Span { low: -half, high: half })
+    }
+
+    /// How many times wider than long the drawing is, in words.
+    pub fn words(&self, span: Span, rect: Rect) -> String {
+        let stretch = span.scale(rect) / self.along;
+        match stretch {
+            s if (s - 1.0).abs() < 0.02 => "true scale".to_owned(),
+            s if s < 9.95 => format!("sideways {s:.1}×"),
+            s => format!("sideways {s:.0}×"),
+        }
+    }
+
+    /// The middle of the body.
+    pub fn middle(&self, state: &State) -> f32 {
+        let end = |line: usize| state.lines.get(line).and_then(|line| line.points.last());
+        let along = end(0).map_or(0.5 * self.clamps, |point| point[1]);
+        self.place.bottom - (along * self.along) as f32 - self.place.half.y
+    }
+
+    /// A place in the frame on the screen; the buckling flexures stand above the body.
+    fn screen_from_world(&self, [along, across]: [f64; 2], above: bool, span: Span, rect: Rect) -> Pos2 {
+        let y = if above {
+            self.place.top + ((self.clamps - along) * self.along) as f32
+        } else {
+            self.place.bottom - (along * self.along) as f32
+        };
+        pos2(span.screen_from_world(across, rect), y)
+    }
+
+    /// Lines of both groups.
+    pub fn shapes(
+        &self,
+        geometry: &Geometry,
+        state: &State,
+        span: Span,
+        rect: Rect,
+        stroke: Stroke,
+    ) -> Vec<Shape> {
+        let mut shapes = Vec::new();
+        for (line, (group, above)) in
+            state.lines.iter().zip([(&geometry.parallel, false), (&geometry.buckling, true)])
+        {
+            let points: Vec<Pos2> = line
+                .points
+                .iter()
+                .map(|[_, along, across]| self.screen_from_world([*along, *across], above, span, rect))
+                .collect();
+            let count = group.count.clamp(1, MOST_LINES);
+            for i in 0..count {
+                let share = if count == 1 { 0.0 } else { 2.0 * i as f32 / (count - 1) as f32 - 1.0 };
+                let aside = vec2(0.9 * share * self.place.half.x, 0.0);
+                shapes.push(Shape::line(points.iter().map(|point| *point + aside).collect(), stroke));
+            }
+        }
+        shapes
+    }
+
+    /// A bar of 10 mm along the flexures.
+    pub fn bar(&self, painter: &egui::Painter, style: &Style, at: Pos2) {
+        let length = (0.01 * self.along) as f32;
+        if !(6.0..400.0).contains(&length) {
+            return;
+        }
+        let (stroke, foot) = (style.ghost_stroke(), at - vec2(0.0, length));
+        painter.line_segment([at, foot], stroke);
+        for end in [at, foot] {
+            painter.line_segment([end - vec2(4.0, 0.0), end + vec2(4.0, 0.0)], stroke);
+        }
+        let middle = at - vec2(8.0, 0.5 * length);
+        painter.text(middle, Align2::RIGHT_CENTER, "10 mm", style.small(), style.faint());
+    }
+}
+
+/// The flexures held where the mass is; the last ones that were known, should these not be.
+pub(super) fn state_at(context: &mut ViewContext<'_>, x: f64) -> Option<State> {
+    let mechanism = &context.session.model().mechanism;
+    let flexures = mechanism.flexures.as_ref()?;
+    let (low, high) = mechanism.curve.domain();
+    if let Ok(state) = flexures.state(x.clamp(low, high)) {
+        context.memory.bent = Some(state);
+    }
+    context.memory.bent.clone()
+}
+
+/// What the buckling flexures do, in words.
+pub(super) fn bulge_words(state: &State) -> String {
+    let bulge = state.bump.abs() * 1e3;
+    if bulge < 0.005 { "taut: no bulge left".to_owned() } else { format!("bulge {bulge:.1} mm") }
+}
+
+/// A clamp: a bar of the frame, hatched on the side away from the flexures.
+pub(super) fn clamp(painter: &egui::Painter, style: &Style, bar: Rect, above: bool) {
+    painter.rect_filled(bar, 0.0, style.frame_colour());
+    let stroke = Stroke::new(1.0, style.ground());
+    let count = (bar.width() / 8.0).floor().clamp(0.0, 1000.0) as usize;
+    for i in 0..count {
+        let x = bar.left() + 8.0 * (i as f32 + 0.5);
+        painter.line_segment([pos2(x, bar.bottom()), pos2(x + 5.0, bar.top())], stroke);
+    }
+    let edge = if above { bar.bottom() } else { bar.top() };
+    painter.hline(bar.x_range(), edge, Stroke::new(1.5, style.faint()));
+}

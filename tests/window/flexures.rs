@@ -1,0 +1,102 @@
+//! The hands on the flexures: what a slider of theirs does to the curve, the motion and the way back.
+
+use eframe::egui::accesskit::Role;
+use egui_kittest::kittest::Queryable as _;
+use interwell::app::settings::Settings;
+use interwell::mechanics::FLEXURE_TOLERANCE;
+use interwell::scene::Mechanism;
+
+use crate::support::{session, window};
+
+const WIDE: [f32; 2] = [1280.0, 720.0];
+
+fn preload(mechanism: &Mechanism) -> f64 {
+    match mechanism {
+        Mechanism::Flexures { preload_mm, .. } => *preload_mm,
+        _ => f64::NAN,
+    }
+}
+
+fn set(mechanism: &mut Mechanism, mm: f64) {
+    if let Mechanism::Flexures { preload_mm, .. } = mechanism {
+        *preload_mm = mm;
+    }
+}
+
+#[test]
+fn preload_reshapes_the_well_under_the_moving_mass() {
+    let mut own = session("first-look", &[]);
+    own.player.tick(0.1);
+    let (before, barrier) = (own.player.state(), own.model().mechanism.landscape.barrier.unwrap());
+    for mm in [2.75, 2.9, 3.1] {
+        assert!(own.edit_mechanism(|mechanism| set(mechanism, mm)));
+        own.poll();
+    }
+    assert!(own.model().mechanism.landscape.barrier.unwrap().right_well > barrier.right_well);
+    own.end_gesture();
+    let after = own.player.state();
+    assert_eq!((before.t, before.x), (after.t, after.x));
+    assert!(own.player.watch().ledger().by_hand_j.abs() > 1e-6);
+    // solved in earnest at the end of the gesture, bit for bit as a study does
+    let earnest = interwell::mechanics::Mechanism::build_with(
+        &own.scene().mechanism,
+        &own.editor.document().files,
+        FLEXURE_TOLERANCE,
+    );
+    assert_eq!(own.model().mechanism.curve, earnest.unwrap().curve);
+    assert!(own.undo() && preload(&own.scene().mechanism) == 2.7 && !own.undo());
+    assert_eq!(own.model().mechanism.landscape.barrier.unwrap(), barrier);
+}
+
+#[test]
+fn a_mass_beyond_the_new_curve_is_carried_along() {
+    let mut own = session("first-look", &["start=At(x_mm: 7.5, v_m_per_s: 0)", "excitation=None"]);
+    own.edit_once(|scene| scene.start = interwell::scene::Start::Rest);
+    assert!(own.edit_mechanism(|mechanism| set(mechanism, 0.4)));
+    own.end_gesture();
+    let end = own.model().mechanism.curve.domain().1;
+    assert!(end < 7.5e-3 && own.player.state().x <= end);
+    assert!(own.player.watch().ledger().by_hand_j.abs() > 1e-6);
+}
+
+#[test]
+fn what_cannot_be_solved_is_refused_in_words() {
+    let mut own = session("first-look", &[]);
+    let curve = own.model().mechanism.curve.clone();
+    for mm in [-1.0, 14.0, f64::NAN, f64::INFINITY, 1e300] {
+        assert!(!own.edit_mechanism(|mechanism| set(mechanism, mm)));
+        assert!(own.refused().is_some_and(|why| why.len() > 20), "{mm}");
+        own.end_gesture();
+        assert!(own.fault().is_none() && preload(&own.scene().mechanism) == 2.7);
+        assert_eq!(own.model().mechanism.curve, curve);
+    }
+    assert!(!own.editor.can_undo());
+    assert!(own.edit_mechanism(|mechanism| set(mechanism, 0.0)) && own.refused().is_none());
+    own.end_gesture();
+    assert!(own.model().mechanism.landscape.barrier.is_none());
+}
+
+#[test]
+fn the_slider_of_the_preload() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.get_by_label("More").click();
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::Slider, "preload").set_value_accesskit(2.2);
+    harness.run_steps(3);
+    assert_eq!(preload(&harness.state().session.scene().mechanism), 2.2);
+    harness.get_by_role_and_label(Role::Slider, "preload").set_value_accesskit(14.0);
+    harness.run_steps(3);
+    harness.get_by_label_contains("14.00 mm was not taken");
+    assert_eq!(preload(&harness.state().session.scene().mechanism), 2.2);
+    harness.get_by_label("Advanced").click();
+    harness.run_steps(12);
+    harness.get_by_role_and_label(Role::Slider, "thickness").set_value_accesskit(0.12);
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("was not taken").is_none());
+
+    let mut harness = window("paper-table", WIDE, Settings::default());
+    harness.get_by_label("More").click();
+    harness.run_steps(3);
+    harness.get_by_label("preload");
+    assert!(harness.query_by_role_and_label(Role::Slider, "preload").is_none());
+}

@@ -1,0 +1,78 @@
+//! Everything by the keyboard.
+
+use eframe::egui::{Key, Modifiers, accesskit::Role};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use interwell::app::settings::Settings;
+use interwell::scene::Stops;
+
+use crate::support::window;
+
+const WIDE: [f32; 2] = [1280.0, 720.0];
+
+#[test]
+fn the_mass_is_held_moved_and_let_go() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.key_press(Key::G);
+    harness.run_steps(3);
+    assert!(harness.state().session.player.is_held());
+    harness.get_by_label_contains("Held at ");
+    let (time, x) = (harness.state().session.player.time(), harness.state().session.player.state().x);
+    for _ in 0..3 {
+        harness.key_press(Key::ArrowLeft);
+        harness.run_steps(2);
+    }
+    let moved = harness.state().session.player.state().x;
+    assert!((x - moved - 0.3e-3).abs() < 0.06e-3, "{x} {moved}");
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::ArrowLeft);
+    harness.run_steps(2);
+    let further = harness.state().session.player.state().x;
+    assert!((moved - further - 1e-3).abs() < 1e-9);
+    assert_eq!(harness.state().session.player.time(), time);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert!(!harness.state().session.player.is_held());
+    assert!(harness.state().session.player.time() > time);
+    // a view that goes while it has the mass lets go of it
+    harness.key_press(Key::G);
+    harness.run_steps(3);
+    assert!(harness.state().session.player.is_held());
+    harness.get_by_label("fill the window with Displacement").click();
+    harness.run_steps(4);
+    assert!(!harness.state().session.player.is_held());
+}
+
+#[test]
+fn sliders_and_stops_go_by_named_steps() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.get_by_role_and_label(Role::Slider, "amplitude").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    assert_eq!(harness.state().session.amplitude_g(), Some(0.91));
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::ArrowRight);
+    harness.run_steps(2);
+    assert_eq!(harness.state().session.amplitude_g(), Some(1.01));
+    harness.get_by_role_and_label(Role::CheckBox, "Stops").click();
+    harness.run_steps(3);
+    let stop = |harness: &egui_kittest::Harness<'static, interwell::app::window::Window>| {
+        harness.query_all_by_label("right stop").next().map(|node| node.accesskit_node().numeric_value())
+    };
+    assert_eq!(stop(&harness), Some(Some(1.5)));
+    harness.query_all_by_label("right stop").next().unwrap().focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    let Stops::Rigid { travel_limit_mm, .. } = harness.state().session.scene().stops else { panic!() };
+    assert!((travel_limit_mm - 1.55).abs() < 1e-9);
+}
+
+#[test]
+fn the_keys_are_listed() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.key_press(Key::F1);
+    harness.run_steps(3);
+    harness.get_by_label("let go of the mass");
+    harness.key_press(Key::F1);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("let go of the mass").is_none());
+}
