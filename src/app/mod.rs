@@ -74,7 +74,10 @@ pub fn run(spec: Option<&str>) -> Result<(), AppError> {
             .unwrap_or_default();
         let ctx = creation.egui_ctx.clone();
         let wake = Arc::new(move || ctx.request_repaint());
-        Ok(Box::new(Window::open(spec.as_deref(), settings, wake)?))
+        let own = creation.storage.and_then(|storage| eframe::get_value(storage, window::OWN_KEY));
+        let mut window = Window::open(spec.as_deref(), settings, wake)?;
+        window.set_own_arrangement(own);
+        Ok(Box::new(window))
     };
     eframe::run_native("interwell", options, Box::new(start)).map_err(|error| {
         let text = error.to_string();
