@@ -92,6 +92,7 @@ impl Watch {
 
     /// From now on the mass moves as `model` says; see [`Live::change`].
     pub fn change(&mut self, model: &Model) {
+        self.leave();
         let mut passage = Passage::default();
         self.live.change(model, &mut passage);
         self.step = sampling_step(model);
@@ -101,10 +102,18 @@ impl Watch {
 
     /// Puts the mass to `x` in m with velocity `v` in m/s.
     pub fn place(&mut self, x: f64, v: f64) {
+        self.leave();
         let mut passage = Passage::default();
         self.live.place(x, v, &mut passage);
         self.take(passage);
         self.now = self.live.state();
+    }
+
+    /// Remembers the present state, so that a change is a jump at its instant and not a way from the last sample.
+    fn leave(&mut self) {
+        if self.samples.back().is_none_or(|last| last.t < self.now.t) {
+            self.samples.push_back(self.now);
+        }
     }
 
     /// The present time in s.

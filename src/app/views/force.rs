@@ -48,6 +48,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let diamond = points.iter().map(|step| at + *step * 1.3).collect();
         painter.add(Shape::closed_line(diamond, Stroke::new(1.5, style.ink())));
     }
+    releases(&painter, context, &chart);
     let state = context.session.player.state();
     let push = -model.mass * state.base_accel;
     let mut legend = vec![(Sign::Line(style.tray_stroke()), "force of the mechanism")];
@@ -58,7 +59,6 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let from = chart.screen_from_world(state.x, own.force(state.x));
         painter.extend(Shape::dashed_line(&[from, at], style.base_stroke(), 4.0, 3.0));
     }
-    releases(&painter, context, &chart);
     let at = chart.screen_from_world(state.x, own.force(state.x));
     painter.circle(at, BALL - 2.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
     chart.legend(ui, &style, &legend);

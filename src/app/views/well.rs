@@ -169,10 +169,8 @@ pub(super) fn x_axis(painter: &egui::Painter, context: &ViewContext<'_>, rect: R
 
 fn legend(painter: &egui::Painter, context: &ViewContext<'_>, area: Rect) {
     let style = context.style;
-    let entries = [
-        (style.tray_stroke(), "potential, tipped by the push"),
-        (style.ghost_stroke(), "the mechanism's own"),
-    ];
+    let entries =
+        [(style.tray_stroke(), "potential with the push"), (style.ghost_stroke(), "the mechanism's own")];
     let (mut x, y) = (area.left() + 10.0, area.top() + 0.5 * LEGEND);
     for (stroke, text) in entries {
         let galley = painter.layout_no_wrap(text.to_owned(), style.small(), style.faint());
