@@ -1,13 +1,13 @@
 //! Which views stand where? Trees of tiles for each layout, and for windows that are as small as a projector's.
 
-use eframe::egui::{self, Ui, WidgetText};
+use eframe::egui::{self, Ui, Vec2, WidgetText};
 use egui_tiles::{
     Container, Linear, LinearDir, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse,
 };
 
 use crate::scene::Layout;
 
-use super::style::BODY;
+use super::style::{BODY, COMPACT_BELOW, LARGE_FROM};
 use super::views::{View, ViewContext, view_ui};
 
 /// Shares of the window in the layout Look: left of 1030 points 590, of 584 points of height 220 on the left and 340
@@ -16,22 +16,84 @@ const LEFT_SHARE: f32 = 590.0 / 1030.0;
 const MECHANISM_SHARE: f32 = 220.0 / 584.0;
 const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
 
-/// The tiles of one layout.
+/// Shares of the layout Study: columns, and the mechanism over the well.
+const STUDY_COLUMN: f32 = 0.34;
+const STUDY_MECHANISM: f32 = 0.34;
+
+/// How much room there is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Room {
+    /// A projector's: two groups of tabs.
+    Compact,
+    /// Four tiles, or six.
+    Wide,
+    /// A tile more.
+    Large,
+}
+
+impl Room {
+    /// The room in a window of that many points.
+    pub fn of(size: Vec2) -> Self {
+        if size.x < COMPACT_BELOW {
+            Self::Compact
+        } else if size.x > LARGE_FROM.x && size.y > LARGE_FROM.y {
+            Self::Large
+        } else {
+            Self::Wide
+        }
+    }
+}
+
+/// Which arrangement is on the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Arrangement {
+    /// One that comes with the program.
+    Layout(Layout),
+    /// The person's own.
+    Own,
+}
+
+/// The tiles of one arrangement.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Tiling {
     tree: Tree<View>,
-    compact: bool,
+    room: Room,
 }
 
 impl Tiling {
-    /// The tiles of a layout; `compact` for a small window.
-    pub fn new(layout: Layout, compact: bool) -> Self {
-        let tree = if compact { compact_tree() } else { wide_tree(layout) };
-        Self { tree, compact }
+    /// The tiles of a layout.
+    pub fn new(layout: Layout, room: Room) -> Self {
+        let tree = match room {
+            Room::Compact => compact_tree(&views_of(layout)),
+            Room::Wide | Room::Large => wide_tree(layout, room == Room::Large),
+        };
+        Self { tree, room }
     }
 
-    /// Whether it is the one for a small window.
-    pub fn is_compact(&self) -> bool {
-        self.compact
+    /// The tiles of a person's own arrangement, as they were kept; where there is little room, the same views as tabs.
+    pub fn own(kept: &Tree<View>, room: Room) -> Self {
+        let tree = if room == Room::Compact {
+            let shown = |id: &TileId| kept.is_visible(*id);
+            let view = |own: (&TileId, &Tile<View>)| match own.1 {
+                Tile::Pane(view) => shown(own.0).then_some(*view),
+                Tile::Container(_) => None,
+            };
+            let shown: Vec<View> = kept.tiles.iter().filter_map(view).collect();
+            compact_tree(&View::ALL.into_iter().filter(|view| shown.contains(view)).collect::<Vec<_>>())
+        } else {
+            kept.clone()
+        };
+        Self { tree, room }
+    }
+
+    /// The tiles as they stand, to be kept. None where they stand for a small window.
+    pub fn kept(&self) -> Option<&Tree<View>> {
+        (self.room != Room::Compact).then_some(&self.tree)
+    }
+
+    /// The room that it was made for.
+    pub fn room(&self) -> Room {
+        self.room
     }
 
     /// Whether a view is shown somewhere.
@@ -39,19 +101,37 @@ impl Tiling {
         self.tree.tiles.find_pane(&view).is_some_and(|id| self.tree.is_visible(id))
     }
 
-    /// Shows or hides a view.
+    /// Shows or hides a view. One that has no place yet comes to those of its kind: below them, or where there is
+    /// little room as a tab.
     pub fn show(&mut self, view: View, shown: bool) {
         match self.tree.tiles.find_pane(&view) {
             Some(id) => self.tree.set_visible(id, shown),
             None if shown => {
                 let id = self.tree.tiles.insert_pane(view);
-                let root = self.tree.root().and_then(|root| self.tree.tiles.get_mut(root));
-                if let Some(Tile::Container(container)) = root {
+                let place = self.place_for(view).or(self.tree.root());
+                if let Some(Tile::Container(container)) = place.and_then(|id| self.tree.tiles.get_mut(id)) {
                     container.add_child(id);
                 }
             }
-            None => {}
+            None => return,
         }
+        if shown && self.room == Room::Compact {
+            self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(own) if *own == view));
+        }
+    }
+
+    /// The container that holds views of the same kind.
+    fn place_for(&self, view: View) -> Option<TileId> {
+        let tiles = &self.tree.tiles;
+        let alike = |own: &View| own.is_along_x() == view.is_along_x();
+        let neighbour = View::ALL.iter().filter(|own| alike(own)).find_map(|own| tiles.find_pane(own))?;
+        let mut place = tiles.parent_of(neighbour)?;
+        while self.room != Room::Compact
+            && let Some(Container::Tabs(_)) = tiles.get_container(place)
+        {
+            place = tiles.parent_of(place)?;
+        }
+        Some(place)
     }
 
     /// Draws the views. Whether one changed something; `fill` is set where a view asks for the whole window.
@@ -62,25 +142,73 @@ impl Tiling {
     }
 }
 
-fn wide_tree(_: Layout) -> Tree<View> {
+/// The views of a layout.
+fn views_of(layout: Layout) -> Vec<View> {
+    let look = [View::Well, View::Mechanism, View::Displacement, View::BeforeNow];
+    let study = [View::PhasePortrait, View::ForceCurve, View::Energy];
+    match layout {
+        Layout::Look | Layout::Map => look.to_vec(),
+        Layout::Study => look.into_iter().chain(study).collect(),
+    }
+}
+
+fn wide_tree(layout: Layout, large: bool) -> Tree<View> {
+    match layout {
+        Layout::Look | Layout::Map => look_tree(large),
+        Layout::Study => study_tree(large),
+    }
+}
+
+fn look_tree(large: bool) -> Tree<View> {
     let mut tiles = Tiles::default();
     let mut pane = |view| tiles.insert_pane(view);
     let (mechanism, well) = (pane(View::Mechanism), pane(View::Well));
     let (displacement, card) = (pane(View::Displacement), pane(View::BeforeNow));
+    let phase = large.then(|| pane(View::PhasePortrait));
     let left = pair(&mut tiles, LinearDir::Vertical, mechanism, well, MECHANISM_SHARE);
-    let right = pair(&mut tiles, LinearDir::Vertical, displacement, card, DISPLACEMENT_SHARE);
+    let right = match phase {
+        Some(phase) => tiles.insert_vertical_tile(vec![displacement, phase, card]),
+        None => pair(&mut tiles, LinearDir::Vertical, displacement, card, DISPLACEMENT_SHARE),
+    };
     let root = pair(&mut tiles, LinearDir::Horizontal, left, right, LEFT_SHARE);
     Tree::new(egui::Id::unique("wide"), root, tiles)
 }
 
-fn compact_tree() -> Tree<View> {
+/// What has the displacement along it in two columns, what has not in the third.
+fn study_tree(large: bool) -> Tree<View> {
     let mut tiles = Tiles::default();
     let mut pane = |view| tiles.insert_pane(view);
-    let (well, mechanism) = (pane(View::Well), pane(View::Mechanism));
-    let (displacement, card) = (pane(View::Displacement), pane(View::BeforeNow));
-    let left = tiles.insert_tab_tile(vec![well, mechanism]);
-    let right = tiles.insert_tab_tile(vec![displacement, card]);
-    let root = pair(&mut tiles, LinearDir::Horizontal, left, right, LEFT_SHARE);
+    let (mechanism, well) = (pane(View::Mechanism), pane(View::Well));
+    let (phase, force) = (pane(View::PhasePortrait), pane(View::ForceCurve));
+    let (displacement, energy, card) = (pane(View::Displacement), pane(View::Energy), pane(View::BeforeNow));
+    let left = pair(&mut tiles, LinearDir::Vertical, mechanism, well, STUDY_MECHANISM);
+    let middle = tiles.insert_vertical_tile(vec![phase, force]);
+    let right = if large {
+        tiles.insert_vertical_tile(vec![displacement, energy, card])
+    } else {
+        let tabs = tiles.insert_tab_tile(vec![energy, card]);
+        tiles.insert_vertical_tile(vec![displacement, tabs])
+    };
+    let others = pair(&mut tiles, LinearDir::Horizontal, middle, right, 0.5);
+    let root = pair(&mut tiles, LinearDir::Horizontal, left, others, STUDY_COLUMN);
+    Tree::new(egui::Id::unique("wide"), root, tiles)
+}
+
+/// Two groups of tabs: what has the displacement along it, and what has not.
+fn compact_tree(views: &[View]) -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let (along, others): (Vec<View>, Vec<View>) = views.iter().partition(|view| view.is_along_x());
+    let mut groups: Vec<TileId> = Vec::new();
+    for group in [along, others] {
+        let panes: Vec<TileId> = group.into_iter().map(|view| tiles.insert_pane(view)).collect();
+        if !panes.is_empty() {
+            groups.push(tiles.insert_tab_tile(panes));
+        }
+    }
+    let root = match groups[..] {
+        [left, right] => pair(&mut tiles, LinearDir::Horizontal, left, right, LEFT_SHARE),
+        _ => tiles.insert_horizontal_tile(groups),
+    };
     Tree::new(egui::Id::unique("compact"), root, tiles)
 }
 

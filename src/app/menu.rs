@@ -4,7 +4,7 @@ use eframe::egui::{self, Button, Key, KeyboardShortcut, Modifiers, Ui};
 
 use crate::scene::{Layout, PRESETS};
 
-use super::layouts::Tiling;
+use super::layouts::{Room, Tiling};
 use super::session::Session;
 use super::settings::Settings;
 use super::views::View;
@@ -52,6 +52,10 @@ pub enum Command {
     Speed(usize),
     /// Arrange the views.
     Arrange(Layout),
+    /// Arrange them as a person has done it.
+    ArrangeOwn,
+    /// Keep the present arrangement as a person's own.
+    KeepOwn,
     /// Show or hide a view.
     Show(View, bool),
     /// One view over the whole window, or no longer.
@@ -172,6 +176,10 @@ fn item(
 
 fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings: Settings) {
     item(ui, asked, "Arrange as Look", Some(command(Key::Num1)), true, Command::Arrange(Layout::Look));
+    item(ui, asked, "Arrange as Study", Some(command(Key::Num2)), true, Command::Arrange(Layout::Study));
+    item(ui, asked, "Your own arrangement", Some(command(Key::Num4)), true, Command::ArrangeOwn);
+    let keep = tiling.room() != Room::Compact;
+    item(ui, asked, "Keep this as your own", None, keep, Command::KeepOwn);
     ui.separator();
     for view in View::ALL {
         let mut shown = tiling.shows(view);
@@ -213,6 +221,8 @@ pub fn keys(ctx: &egui::Context) -> Vec<Command> {
     on(command(Key::Q), Command::Quit);
     on(command(Key::Num1), Command::Arrange(Layout::Look));
     on(plain(Key::F1), Command::Shortcuts);
+    on(command(Key::Num2), Command::Arrange(Layout::Study));
+    on(command(Key::Num4), Command::ArrangeOwn);
     on(plain(Key::F11), Command::FullScreen);
     on(plain(Key::PageUp), Command::PreviousEvent);
     on(plain(Key::PageDown), Command::NextEvent);

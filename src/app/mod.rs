@@ -83,6 +83,7 @@ pub fn run(spec: Option<&str>) -> Result<(), AppError> {
         let mut window = Window::open(spec.as_deref(), settings, wake)?;
         if let Some(storage) = creation.storage {
             window.recent = eframe::get_value(storage, window::RECENT).unwrap_or_default();
+            window.set_own_arrangement(eframe::get_value(storage, window::OWN_KEY));
         }
         window.remember_file();
         Ok(Box::new(window))

@@ -86,6 +86,12 @@ impl Player {
         self.watch.place(x, 0.0);
     }
 
+    /// Puts the mass to `x` in m with velocity `v` in m/s, from where the motion goes on.
+    pub fn place(&mut self, x: f64, v: f64) {
+        (self.past, self.held) = (None, false);
+        self.watch.place(x, v);
+    }
+
     /// Lets go of the mass.
     pub fn let_go(&mut self) {
         self.held = false;

@@ -386,6 +386,11 @@ impl Session {
         self.before.as_ref()
     }
 
+    /// Live time in s of the last change: of the scene, or of the mass by hand.
+    pub fn changed_at(&self) -> f64 {
+        self.changed_at
+    }
+
     /// Forcing periods of the motion since the last change, where the drive has a period.
     pub fn periods_since_change(&self) -> Option<f64> {
         self.model.forcing_period.map(|period| (self.player.watch().time() - self.changed_at) / period)

@@ -15,6 +15,9 @@ pub const PROJECTOR_ZOOM: f32 = 1.5;
 /// Width in points below which the window is laid out for a projector: two controls in a row, two views.
 pub const COMPACT_BELOW: f32 = 1000.0;
 
+/// Size in points of a window above which there is room for a tile more.
+pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);
+
 /// Text sizes in points.
 pub const SMALL: f32 = 11.5;
 /// Body text and buttons.
@@ -85,6 +88,11 @@ impl Style {
         ORANGE
     }
 
+    /// What is written about the proof mass.
+    pub fn mass_ink(&self) -> Color32 {
+        self.pick(Color32::from_rgb(140, 92, 0), ORANGE)
+    }
+
     /// The outline of the proof mass.
     pub fn mass_edge(&self) -> Color32 {
         self.pick(Color32::from_rgb(122, 84, 0), Color32::from_rgb(255, 214, 128))
@@ -148,6 +156,21 @@ impl Style {
     /// The motion over time.
     pub fn motion_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.6), self.motion())
+    }
+
+    /// What the base does, over time and as a push.
+    pub fn base_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.6), self.base())
+    }
+
+    /// The height of the barrier where energies are compared with it.
+    pub fn barrier_stroke(&self) -> Stroke {
+        Stroke::new(self.width(2.0), self.ink())
+    }
+
+    /// An impact: a tick in time, a jump of the velocity.
+    pub fn impact_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.5), self.impact())
     }
 
     /// A stop.

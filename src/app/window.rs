@@ -7,17 +7,18 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Sense, Ui, Vec2};
+use egui_tiles::Tree;
 
 use crate::scene::{Layout, PRESETS};
 
 use super::document::Editor;
-use super::layouts::Tiling;
+use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::{self, Answer, Next};
 use super::menu::{self, Command};
 use super::player::SPEEDS;
 use super::session::{CannotRun, Session};
 use super::settings::Settings;
-use super::style::{self, BODY, COMPACT_BELOW, PROJECTOR_ZOOM, STATUS, STATUS_COMPACT, Style};
+use super::style::{self, BODY, PROJECTOR_ZOOM, STATUS, STATUS_COMPACT, Style};
 use super::task::{Latest, Wake};
 use super::transport::{self, EVENT_AHEAD};
 use super::views::{self, Memory, Span, View, ViewContext};
@@ -29,6 +30,9 @@ pub const RECENT: &str = "recent";
 
 /// How many of them.
 const MOST_RECENT: usize = 8;
+
+/// Where a person's own arrangement is kept.
+pub const OWN_KEY: &str = "arrangement";
 
 /// A file that was chosen, and what for.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +64,9 @@ pub struct Window {
     /// What a person wants whatever the scene.
     pub settings: Settings,
     tiling: Tiling,
-    layout: Layout,
+    arrangement: Arrangement,
+    /// A person's own arrangement, kept between two starts.
+    own: Option<Tree<View>>,
     memory: Memory,
     more: bool,
     filled: Option<View>,
@@ -104,8 +110,9 @@ impl Window {
             hint: hint::Hint::for_scene(&session),
             session,
             settings,
-            tiling: Tiling::new(layout, false),
-            layout,
+            tiling: Tiling::new(layout, Room::Wide),
+            arrangement: Arrangement::Layout(layout),
+            own: None,
             memory: Memory::default(),
             more: false,
             filled: None,
@@ -137,6 +144,7 @@ impl Window {
                 *self = Self {
                     dialog: std::mem::take(&mut self.dialog),
                     recent: std::mem::take(&mut self.recent),
+                    own: self.own.take(),
                     titled: std::mem::take(&mut self.titled),
                     applied: self.applied,
                     ..window
@@ -288,9 +296,10 @@ impl Window {
             self.carry_out(&ctx, command);
         }
         let style = Style::of(&ctx, self.settings.projector);
-        let compact = ctx.content_rect().width() < COMPACT_BELOW;
-        if compact != self.tiling.is_compact() {
-            self.tiling = Tiling::new(self.layout, compact);
+        let room = Room::of(ctx.content_rect().size());
+        let compact = room == Room::Compact;
+        if room != self.tiling.room() {
+            self.arrange(room);
         }
         let fill = ui.visuals().panel_fill;
         let frame = |x: i8, y: i8| Frame::new().fill(fill).inner_margin(Margin::symmetric(x, y));
@@ -386,6 +395,13 @@ impl Window {
         ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
         let Some(view) = self.filled else {
             self.tiling.ui(ui, &mut context, &mut self.filled);
+            // what a person does to an arrangement of their own stays
+            if self.arrangement == Arrangement::Own
+                && let Some(kept) = self.tiling.kept()
+                && self.own.as_ref() != Some(kept)
+            {
+                self.own = Some(kept.clone());
+            }
             return;
         };
         let mut close = false;
@@ -450,7 +466,7 @@ impl Window {
                 self.session.back_to_start();
                 (self.filled, self.covered) = (None, false);
                 self.memory = Memory::default();
-                self.tiling = Tiling::new(self.layout, self.tiling.is_compact());
+                self.arrange(self.tiling.room());
             }
             Command::PlayPause => {
                 let playing = self.session.player.is_playing();
@@ -469,9 +485,20 @@ impl Window {
                 }
             }
             Command::Arrange(layout) => {
-                self.layout = layout;
-                self.tiling = Tiling::new(layout, self.tiling.is_compact());
-                self.filled = None;
+                self.arrangement = Arrangement::Layout(layout);
+                self.arrange(self.tiling.room());
+            }
+            Command::ArrangeOwn => {
+                // the first time it is what is there
+                if self.own.is_none() {
+                    self.own = self.tiling.kept().cloned();
+                }
+                self.arrangement = Arrangement::Own;
+                self.arrange(self.tiling.room());
+            }
+            Command::KeepOwn => {
+                self.own = self.tiling.kept().cloned().or(self.own.take());
+                self.arrangement = Arrangement::Own;
             }
             Command::Show(view, shown) => self.tiling.show(view, shown),
             // the view under the pointer
@@ -489,6 +516,36 @@ impl Window {
             Command::Shortcuts => self.shortcuts = !self.shortcuts,
             Command::About => self.message = Some(about()),
         }
+    }
+
+    /// Puts the views where the arrangement has them.
+    fn arrange(&mut self, room: Room) {
+        self.filled = None;
+        self.tiling = match (self.arrangement, &self.own) {
+            (Arrangement::Own, Some(own)) => Tiling::own(own, room),
+            (Arrangement::Own, None) => Tiling::new(Layout::Look, room),
+            (Arrangement::Layout(layout), _) => Tiling::new(layout, room),
+        };
+    }
+
+    /// A person's own arrangement of the views, where there is one.
+    pub fn own_arrangement(&self) -> Option<&Tree<View>> {
+        self.own.as_ref()
+    }
+
+    /// Takes over an arrangement that was kept.
+    pub fn set_own_arrangement(&mut self, own: Option<Tree<View>>) {
+        self.own = own;
+    }
+
+    /// What the traces share.
+    pub fn timeline(&self) -> &views::Timeline {
+        &self.memory.timeline
+    }
+
+    /// The views and where they stand.
+    pub fn tiling(&self) -> &Tiling {
+        &self.tiling
     }
 
     /// Saves to a file; one that was written by hand with comments only once it is said that they go.
@@ -628,6 +685,9 @@ impl eframe::App for Window {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, eframe::APP_KEY, &self.settings);
         eframe::set_value(storage, RECENT, &self.recent);
+        if let Some(own) = &self.own {
+            eframe::set_value(storage, OWN_KEY, own);
+        }
     }
 
     fn persist_egui_memory(&self) -> bool {

@@ -170,6 +170,11 @@ impl Model {
         self.stops.map_or((None, None), |pair| (at(pair.left), at(pair.right)))
     }
 
+    /// Kinetic energy and potential in J at a displacement in m and a velocity in m/s; the potential is 0 at x = 0.
+    pub fn energies(&self, x: f64, v: f64) -> (f64, f64) {
+        (0.5 * self.mass * v * v, self.mechanism.curve.potential(x))
+    }
+
     /// Whether the base moves at all.
     pub fn is_shaken(&self) -> bool {
         !self.drive.is_still()

@@ -37,6 +37,13 @@ pub struct Sample {
     pub phase: Phase,
 }
 
+impl Sample {
+    /// Work of the base on the mass in a second, -m a_b v, in W; `mass` in kg. Its integral is the ledger's work.
+    pub fn work_rate(&self, mass: f64) -> f64 {
+        -mass * self.base_accel * self.v
+    }
+}
+
 /// Left or right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {

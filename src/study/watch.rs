@@ -1,7 +1,8 @@
 //! What has been seen of a motion that goes on? A live run with a memory.
 //!
 //! The path is sampled for the eye: some eighty times a swing, and at every event, so that rebounds are
-//! corners and rests are flat. The oldest of it is forgotten.
+//! corners and rests are flat. The energy ledger is kept at the end of every forcing period. The oldest of it is
+//! forgotten.
 
 use std::collections::VecDeque;
 
@@ -14,6 +15,10 @@ const PER_PERIOD: f64 = 80.0;
 const MOST_SAMPLES: usize = 200_000;
 const MOST_EVENTS: usize = 50_000;
 
+/// How many ledgers are remembered, and the most that one call makes: of a longer way the last ones.
+const MOST_LEDGERS: usize = 10_000;
+const LEDGERS_AT_ONCE: f64 = 64.0;
+
 /// The most samples that one call makes; a longer way is gone with fewer.
 const MOST_AT_ONCE: f64 = 20_000.0;
 
@@ -23,6 +28,8 @@ pub struct Watch {
     live: Live,
     samples: VecDeque<Sample>,
     events: VecDeque<Event>,
+    /// Ledgers at the start and at multiples of the forcing period.
+    ledgers: VecDeque<(f64, LiveLedger)>,
     /// The state at the present time.
     now: Sample,
     /// Time between samples in s.
@@ -34,8 +41,14 @@ impl Watch {
     pub fn new(model: &Model) -> Self {
         let live = Live::new(model);
         let now = live.state();
-        let mut own =
-            Self { live, samples: VecDeque::new(), events: VecDeque::new(), now, step: sampling_step(model) };
+        let mut own = Self {
+            live,
+            samples: VecDeque::new(),
+            events: VecDeque::new(),
+            ledgers: VecDeque::from([(0.0, LiveLedger::default())]),
+            now,
+            step: sampling_step(model),
+        };
         own.take(Passage { samples: vec![now], events: Vec::new() });
         own.advance(0.0);
         own
@@ -51,14 +64,35 @@ impl Watch {
         let times = (0..count).map(|i| (first + f64::from(i)) * step);
         let times: Vec<f64> = times.filter(|t| *t > from && *t <= to).collect();
         let mut passage = Passage::default();
-        let arrived = self.live.advance(to, &times, &mut passage);
+        let (mut done, mut arrived) = (0, true);
+        for mark in self.marks(from, to) {
+            let upto = times.partition_point(|t| *t <= mark);
+            arrived = self.live.advance(mark, &times[done..upto], &mut passage);
+            done = upto;
+            if !arrived {
+                break;
+            }
+            self.ledgers.push_back((mark, self.live.ledger()));
+        }
+        arrived = arrived && self.live.advance(to, &times[done..], &mut passage);
         self.take(passage);
         self.now = self.live.state();
         arrived
     }
 
+    /// The ends of forcing periods after `from` and up to `to` in s.
+    fn marks(&self, from: f64, to: f64) -> Vec<f64> {
+        let Some(period) = self.live.model().forcing_period else { return Vec::new() };
+        let last = (to / period).floor();
+        let first = ((from / period).floor() + 1.0).max(last + 1.0 - LEDGERS_AT_ONCE);
+        let count = (last - first + 1.0).max(0.0) as u32;
+        let marks = (0..count).map(|i| (first + f64::from(i)) * period);
+        marks.filter(|mark| *mark > from && *mark <= to).collect()
+    }
+
     /// From now on the mass moves as `model` says; see [`Live::change`].
     pub fn change(&mut self, model: &Model) {
+        self.leave();
         let mut passage = Passage::default();
         self.live.change(model, &mut passage);
         self.step = sampling_step(model);
@@ -68,10 +102,18 @@ impl Watch {
 
     /// Puts the mass to `x` in m with velocity `v` in m/s.
     pub fn place(&mut self, x: f64, v: f64) {
+        self.leave();
         let mut passage = Passage::default();
         self.live.place(x, v, &mut passage);
         self.take(passage);
         self.now = self.live.state();
+    }
+
+    /// Remembers the present state, so that a change is a jump at its instant and not a way from the last sample.
+    fn leave(&mut self) {
+        if self.samples.back().is_none_or(|last| last.t < self.now.t) {
+            self.samples.push_back(self.now);
+        }
     }
 
     /// The present time in s.
@@ -92,6 +134,25 @@ impl Watch {
     /// Where the energy went since the start.
     pub fn ledger(&self) -> LiveLedger {
         self.live.ledger()
+    }
+
+    /// Where the energy went up to a time in s: at the present, and in the past up to the last period's end.
+    pub fn ledger_at(&self, t: f64) -> (f64, LiveLedger) {
+        if t >= self.now.t {
+            return (self.now.t, self.ledger());
+        }
+        let after = self.ledgers.partition_point(|mark| mark.0 <= t);
+        after.checked_sub(1).and_then(|i| self.ledgers.get(i)).copied().unwrap_or_default()
+    }
+
+    /// Where the energy went in the last whole forcing period that had ended at a time in s. None without a period, and
+    /// while the first one since the period was changed still lasts.
+    pub fn last_period(&self, t: f64) -> Option<LiveLedger> {
+        let period = self.live.model().forcing_period?;
+        let after = self.ledgers.partition_point(|mark| mark.0 <= t);
+        let (begin, end) = (self.ledgers.get(after.checked_sub(2)?)?, self.ledgers.get(after - 1)?);
+        let whole = ((end.0 - begin.0) / period - 1.0).abs() < 1e-6;
+        whole.then(|| end.1.since(&begin.1))
     }
 
     /// What will become of the motion: see [`Live::from_here`].
@@ -176,6 +237,8 @@ impl Watch {
         self.samples.drain(..spare);
         let spare = self.events.len().saturating_sub(MOST_EVENTS);
         self.events.drain(..spare);
+        let spare = self.ledgers.len().saturating_sub(MOST_LEDGERS);
+        self.ledgers.drain(..spare);
     }
 
     fn corner(&mut self, event: &Event) {

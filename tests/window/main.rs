@@ -6,3 +6,4 @@ mod flexures;
 mod keyboard;
 mod sentences;
 mod support;
+mod views;

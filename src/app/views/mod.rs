@@ -5,11 +5,16 @@
 //! keep what they must remember between frames in [`Memory`].
 
 mod before_now;
-mod displacement;
+mod chart;
+pub mod energy;
 mod flexures;
+mod force;
 mod mechanism;
+mod phase;
+mod ranges;
 mod span;
 mod stops;
+mod trace;
 mod well;
 
 use eframe::egui::Ui;
@@ -20,6 +25,7 @@ use super::session::Session;
 use super::style::Style;
 
 pub use span::Span;
+pub use trace::{Quantity, Timeline};
 
 /// What can be seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -32,11 +38,39 @@ pub enum View {
     Displacement,
     /// The state before the last gesture against the present one.
     BeforeNow,
+    /// Velocity over displacement.
+    PhasePortrait,
+    /// The force of the mechanism over displacement.
+    ForceCurve,
+    /// Where the energy went.
+    Energy,
+    /// Velocity over time.
+    Velocity,
+    /// Acceleration of the base over time.
+    BaseAcceleration,
+    /// Work of the base in a second, over time.
+    Power,
 }
 
 impl View {
     /// All of them, in the order of the menu.
-    pub const ALL: [Self; 4] = [Self::Mechanism, Self::Well, Self::Displacement, Self::BeforeNow];
+    pub const ALL: [Self; 10] = [
+        Self::Mechanism,
+        Self::Well,
+        Self::Displacement,
+        Self::BeforeNow,
+        Self::PhasePortrait,
+        Self::ForceCurve,
+        Self::Energy,
+        Self::Velocity,
+        Self::BaseAcceleration,
+        Self::Power,
+    ];
+
+    /// Whether the displacement runs along it.
+    pub fn is_along_x(self) -> bool {
+        matches!(self, Self::Mechanism | Self::Well | Self::PhasePortrait | Self::ForceCurve)
+    }
 
     /// What it is called.
     pub fn name(self) -> &'static str {
@@ -45,6 +79,12 @@ impl View {
             Self::Well => "Well",
             Self::Displacement => "Displacement",
             Self::BeforeNow => "Before / now",
+            Self::PhasePortrait => "Phase portrait",
+            Self::ForceCurve => "Force curve",
+            Self::Energy => "Energy",
+            Self::Velocity => "Velocity",
+            Self::BaseAcceleration => "Base acceleration",
+            Self::Power => "Power",
         }
     }
 }
@@ -80,8 +120,10 @@ pub struct Memory {
     pub grab: bool,
     /// The view under the pointer.
     pub hovered: Option<View>,
-    /// Time span of the displacement in s, where a person has chosen one.
-    pub time_window: Option<f64>,
+    /// What the traces share.
+    pub timeline: Timeline,
+    /// How far axes of velocity and power reach.
+    ranges: ranges::Ranges,
 }
 
 /// Draws one view. Whether it changed something.
@@ -92,7 +134,13 @@ pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
     match view {
         View::Mechanism => mechanism::mechanism_ui(ui, context),
         View::Well => well::well_ui(ui, context),
-        View::Displacement => displacement::displacement_ui(ui, context),
+        View::Displacement => trace::trace_ui(ui, Quantity::Displacement, context),
         View::BeforeNow => before_now::before_now_ui(ui, context),
+        View::PhasePortrait => phase::phase_ui(ui, context),
+        View::ForceCurve => force::force_ui(ui, context),
+        View::Energy => energy::energy_ui(ui, context),
+        View::Velocity => trace::trace_ui(ui, Quantity::Velocity, context),
+        View::BaseAcceleration => trace::trace_ui(ui, Quantity::BaseAcceleration, context),
+        View::Power => trace::trace_ui(ui, Quantity::Power, context),
     }
 }

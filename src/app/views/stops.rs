@@ -16,13 +16,25 @@ const KEY_STEP: f64 = 0.05;
 /// Thickness of a wall in points.
 const WALL: f32 = 10.0;
 
-/// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged. Whether they were.
+/// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged, for a mass that is drawn
+/// as a ball. Whether they were.
 pub fn stops_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, top: f32, bottom: f32) -> bool {
+    stops_beside_ui(ui, context, rect, (top, bottom), BALL)
+}
+
+/// The same for a mass that is drawn with another radius: 0 where a wall's face is the place of the stop.
+pub fn stops_beside_ui(
+    ui: &mut Ui,
+    context: &mut ViewContext<'_>,
+    rect: Rect,
+    (top, bottom): (f32, f32),
+    radius: f32,
+) -> bool {
     let (left, right) = stop_distances(context.session.scene());
     let mut changed = false;
     for (mm, way) in [(left, -1.0_f32), (right, 1.0)] {
         let Some(mm) = mm else { continue };
-        let x = context.span.screen_from_world(mm / 1e3, rect) + way * BALL;
+        let x = context.span.screen_from_world(mm / 1e3, rect) + way * radius;
         let wall = Rect::from_two_pos(pos2(x, top), pos2(x + way * WALL, bottom));
         if x < rect.left() - WALL || x > rect.right() + WALL {
             continue;
@@ -39,7 +51,7 @@ pub fn stops_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, top: f32
         painter.rect_filled(wall, 0.0, color);
         painter.extend(hatching(wall, way, Stroke::new(1.0, style.ground())));
         if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-            let place = context.span.world_from_screen(pointer.x - way * (BALL + 0.5 * WALL), rect) * 1e3;
+            let place = context.span.world_from_screen(pointer.x - way * (radius + 0.5 * WALL), rect) * 1e3;
             // a hundredth of a millimetre is finer than a hand
             let distance = (f64::from(way) * place * 100.0).round() / 100.0;
             changed |=

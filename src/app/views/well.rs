@@ -7,19 +7,16 @@
 use eframe::egui::{self, Align2, CursorIcon, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::style::{BALL, GRAB};
-use crate::dynamics::STANDARD_GRAVITY;
 
 use super::ViewContext;
+use super::ranges::room_for_push;
 use super::stops::stops_ui;
 
 /// Points between two points of a curve.
 const CURVE_STEP: f32 = 2.0;
 
 /// Height in points of the legend over the picture.
-const LEGEND: f32 = 22.0;
-
-/// Pushes in g that the vertical range has room for.
-const ROOMS: [f64; 14] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.6, 1.0, 1.5, 2.2, 3.2, 5.0, 10.0, 20.0];
+pub(super) const LEGEND: f32 = 22.0;
 
 /// Draws it. Whether something changed.
 pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
@@ -65,8 +62,13 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let top = height(barrier.x, 0.0);
         clipped.text(top - vec2(0.0, 6.0), Align2::CENTER_BOTTOM, "barrier", style.small(), style.faint());
         for (x, name) in [(barrier.left_well, "left-hand well"), (barrier.right_well, "right-hand well")] {
-            let bottom = height(x, 0.0);
-            clipped.text(bottom + vec2(0.0, 6.0), Align2::CENTER_TOP, name, style.small(), style.faint());
+            let galley = clipped.layout_no_wrap(name.to_owned(), style.small(), style.faint());
+            let mut place = Align2::CENTER_TOP.anchor_size(height(x, 0.0) + vec2(0.0, 6.0), galley.size());
+            // not cut off at the edge
+            let outside =
+                (rect.left() + 4.0 - place.left()).max(0.0) - (place.right() + 4.0 - rect.right()).max(0.0);
+            place = place.translate(vec2(outside, 0.0));
+            clipped.galley(place.min, galley, style.faint());
         }
     }
     let ball = height(state.x, tilt) - vec2(0.0, BALL);
@@ -150,8 +152,7 @@ struct Heights {
 impl Heights {
     /// From a little below the deepest to a little above the highest place that the mass gets to.
     fn of(ui: &Ui, context: &ViewContext<'_>, rect: Rect) -> Self {
-        let push = context.session.largest_push();
-        let room = ROOMS.iter().map(|g| g * STANDARD_GRAVITY).find(|room| *room >= push).unwrap_or(push);
+        let room = room_for_push(context.session.largest_push());
         let model = context.session.model();
         let curve = &model.mechanism.curve;
         let landscape = &model.mechanism.landscape;
@@ -195,7 +196,7 @@ impl Heights {
 }
 
 /// Ticks in mm below `rect`.
-fn x_axis(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
+pub(super) fn x_axis(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
     let style = context.style;
     let (ticks, decimals) = context.span.ticks(f64::from(rect.width()) / 55.0);
     let last = ticks.len().saturating_sub(1);
@@ -214,15 +215,17 @@ fn x_axis(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
 
 fn legend(painter: &egui::Painter, context: &ViewContext<'_>, area: Rect) {
     let style = context.style;
-    let entries = [
-        (style.tray_stroke(), "potential, tipped by the base's push"),
-        (style.ghost_stroke(), "potential of the mechanism"),
-    ];
+    let entries =
+        [(style.tray_stroke(), "potential with the push"), (style.ghost_stroke(), "the mechanism's own")];
     let (mut x, y) = (area.left() + 10.0, area.top() + 0.5 * LEGEND);
     for (stroke, text) in entries {
+        let galley = painter.layout_no_wrap(text.to_owned(), style.small(), style.faint());
+        if x + 28.0 + galley.size().x > area.right() {
+            break;
+        }
         painter.line_segment([pos2(x, y), pos2(x + 22.0, y)], stroke);
-        let at = pos2(x + 28.0, y);
-        let written = painter.text(at, Align2::LEFT_CENTER, text, style.small(), style.faint());
-        x = written.right() + 20.0;
+        let (at, width) = (pos2(x + 28.0, y - 0.5 * galley.size().y), galley.size().x);
+        painter.galley(at, galley, style.faint());
+        x = at.x + width + 20.0;
     }
 }

@@ -269,6 +269,30 @@ impl Live {
 }
 
 impl LiveLedger {
+    /// What is left over: work + by hand - damping - impact - stored in J. Each term is integrated on its own, so it
+    /// is not 0 but as small as the tolerance makes it.
+    pub fn residual_j(&self) -> f64 {
+        self.work_j + self.by_hand_j - self.damping_j - self.impact_j - self.stored_j
+    }
+
+    /// |residual| over the sum of the magnitudes moved; 0 where nothing moved.
+    pub fn energy_residual(&self) -> f64 {
+        let terms = [self.work_j, self.by_hand_j, self.damping_j, self.impact_j, self.stored_j];
+        let moved: f64 = terms.iter().map(|term| term.abs()).sum();
+        if moved > 0.0 { self.residual_j().abs() / moved } else { 0.0 }
+    }
+
+    /// What was added to it since it was `earlier`.
+    pub fn since(&self, earlier: &Self) -> Self {
+        Self {
+            work_j: self.work_j - earlier.work_j,
+            damping_j: self.damping_j - earlier.damping_j,
+            impact_j: self.impact_j - earlier.impact_j,
+            by_hand_j: self.by_hand_j - earlier.by_hand_j,
+            stored_j: self.stored_j - earlier.stored_j,
+        }
+    }
+
     fn add(&mut self, sums: &Sums, model: &Model) {
         let unit = model.scales.unit();
         let energy = model.mass / (unit * unit);
@@ -289,7 +313,8 @@ fn without_end(mut model: Model) -> Model {
 
 /// Kinetic energy and potential in J at a displacement and a velocity.
 fn energy(model: &Model, (x, v): (f64, f64)) -> f64 {
-    0.5 * model.mass * v * v + model.mechanism.curve.potential(x)
+    let (kinetic, potential) = model.energies(x, v);
+    kinetic + potential
 }
 
 /// A state with the mass between the stops and within the known curve; where it had to be carried there, it has no

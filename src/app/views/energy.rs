@@ -1,0 +1,240 @@
+//! Energy: where it came from, where it went, and what is there against the barrier.
+//!
+//! Every number is the live run's own ledger, or the difference of two of them. What comes in is counted up and drawn to
+//! the right, what is taken is counted down and drawn to the left, so that a column adds up to what is stored.
+
+use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+
+use crate::app::style::Style;
+use crate::dynamics::LiveLedger;
+
+use super::ViewContext;
+use super::ranges::axis_end;
+
+/// Widths in points of the names and of the numbers.
+const NAMES: f32 = 64.0;
+const NUMBERS: f32 = 62.0;
+
+/// Room in points between a number and the bars beside it.
+const GAP: f32 = 10.0;
+
+/// Heights in points of a row: least and most.
+const ROWS: (f32, f32) = (17.0, 30.0);
+
+/// Rows of the whole view, headings and the bar of the present included.
+const COUNT: f32 = 10.0;
+
+/// Multiples of a joule, and how they are called.
+const UNITS: [(f64, &str); 5] = [(1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9, "nJ"), (1e-12, "pJ")];
+
+/// A row of the ledger: its name, what it says, its value with its sign, its colour.
+type Row = (&'static str, &'static str, fn(&LiveLedger) -> f64, fn(&Style) -> Color32);
+
+const LEDGER: [Row; 5] = [
+    ("work in", "Work of the base on the mass.", |own| own.work_j, Style::base),
+    (
+        "by hand",
+        "Put in or taken out by you: a stop dragged over the mass, a mass put elsewhere, another potential under it.",
+        |own| own.by_hand_j,
+        Style::mass,
+    ),
+    ("damping", "Taken by damping.", |own| -own.damping_j, Style::faint),
+    ("impacts", "Taken by impacts: (1 - e²) of the kinetic energy each.", |own| -own.impact_j, Style::impact),
+    ("stored", "What that leaves in the mass and its mechanism.", |own| own.stored_j, Style::ink),
+];
+
+/// The unit that suits a scene: of the energy of its own speed, so that it stays.
+pub fn unit_of(energy: f64) -> (f64, &'static str) {
+    UNITS.into_iter().find(|unit| energy >= unit.0).unwrap_or(UNITS[4])
+}
+
+/// A number of the ledger as it is written.
+pub fn written(joule: f64, unit: f64) -> String {
+    let value = joule / unit;
+    let decimals = if value.abs() >= 100.0 { 1 } else { 3 };
+    let text = format!("{value:+.decimals$}");
+    // what is written as nothing has no sign
+    if text.trim_start_matches(['+', '-', '0', '.']).is_empty() { text[1..].to_owned() } else { text }
+}
+
+/// Draws it. Whether something changed.
+pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+    let style = context.style;
+    ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
+    let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
+    if area.width() < 160.0 || area.height() < 80.0 {
+        return false;
+    }
+    let session = &context.session;
+    let (model, watch, now) = (session.model(), session.player.watch(), session.player.time());
+    let (upto, whole) = watch.ledger_at(now);
+    let period = watch.last_period(now);
+    let (unit, name) = unit_of(model.mass * model.scales.speed.powi(2));
+    let row = (area.height() / COUNT).clamp(ROWS.0, ROWS.1);
+    let shaken = model.forcing_period.is_some();
+    let columns = if shaken { 2.0 } else { 1.0 };
+    let column = (area.width() - NAMES) / columns;
+    let heads: [(Option<LiveLedger>, &str, &str); 2] = [
+        (Some(whole), "since the start", "From the start of the motion up to the time that is shown."),
+        (period, "last period", "The last whole forcing period. Steady motion repeats it."),
+    ];
+    let heads = &heads[..if shaken { 2 } else { 1 }];
+    let mut y = area.top();
+    for (i, (_, head, hover)) in heads.iter().rev().enumerate() {
+        let rect = cell(area.left() + NAMES + column * i as f32, y, column, row);
+        put_ui(ui, rect, RichText::new(*head).color(style.faint()), Align::Max, hover);
+    }
+    let hover = "What came in counts up, what was taken counts down: a column adds up to what is stored.";
+    let unit_name = RichText::new(format!("in {name}")).color(style.faint());
+    put_ui(ui, cell(area.left(), y, NAMES, row), unit_name, Align::Min, hover);
+    y += row;
+    for (name, hover, value, color) in LEDGER {
+        let names = cell(area.left(), y, NAMES, row);
+        put_ui(ui, names, RichText::new(name).color(style.ink()), Align::Min, hover);
+        for (i, (ledger, ..)) in heads.iter().rev().enumerate() {
+            let rect = cell(area.left() + NAMES + column * i as f32, y, column, row);
+            let numbers = Rect::from_min_max(pos2(rect.right() - NUMBERS, rect.top()), rect.max);
+            let Some(ledger) = ledger else {
+                put_ui(
+                    ui,
+                    numbers,
+                    RichText::new("-").color(style.faint()),
+                    Align::Max,
+                    "Not a whole period yet.",
+                );
+                continue;
+            };
+            let most = LEDGER.iter().map(|row| row.2(ledger).abs()).fold(0.0, f64::max);
+            let bars =
+                Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(numbers.left() - 4.0, rect.bottom()));
+            bar(ui, &style, bars, value(ledger), most, color(&style));
+            put_ui(ui, numbers, RichText::new(written(value(ledger), unit)), Align::Max, hover);
+        }
+        y += row;
+    }
+    let residual = whole.energy_residual();
+    let share = 100.0 * (1.0 - residual.min(1.0));
+    let hover = format!(
+        "Up to {upto:.3} s: work + by hand - damping - impacts - stored = {:.1e} J, which is {residual:.0e} of what was \
+         moved. Every term is integrated on its own, so that this is a check of the run, though not its error.",
+        whole.residual_j()
+    );
+    let text = format!("{share:.4} % of the energy accounted for");
+    put_ui(ui, cell(area.left(), y, area.width(), row), RichText::new(text), Align::Min, &hover);
+    y += 1.3 * row;
+    let rest = Rect::from_min_max(pos2(area.left(), y), area.max);
+    present_ui(ui, context, rest, (unit, name));
+    false
+}
+
+fn cell(x: f32, y: f32, width: f32, height: f32) -> Rect {
+    Rect::from_min_size(pos2(x, y), vec2(width, height))
+}
+
+fn put_ui(ui: &mut Ui, rect: Rect, text: RichText, align: Align, hover: &str) {
+    let layout = match align {
+        Align::Max => Layout::right_to_left(Align::Center),
+        _ => Layout::left_to_right(Align::Center),
+    };
+    let builder = egui::UiBuilder::new().max_rect(rect).layout(layout);
+    ui.scope_builder(builder, |ui| ui.add(egui::Label::new(text).extend()).on_hover_text(hover));
+}
+
+/// A bar from the middle: to the right what comes in, to the left what is taken.
+fn bar(ui: &Ui, style: &Style, rect: Rect, value: f64, most: f64, color: Color32) {
+    let painter = ui.painter();
+    let (middle, half) = (rect.center().x, 0.5 * rect.width() - 2.0);
+    if half > 4.0 && most > 0.0 {
+        let end = middle + (value / most) as f32 * half;
+        let thick = (0.5 * rect.height()).min(12.0);
+        let from = pos2(middle, rect.center().y - 0.5 * thick);
+        let to = pos2(end, rect.center().y + 0.5 * thick);
+        painter.rect_filled(Rect::from_two_pos(from, to), 0.0, color);
+        painter.vline(middle, rect.y_range(), style.ghost_stroke());
+    }
+}
+
+/// Potential and kinetic energy now, above the bottom of the deeper well, against the barrier.
+fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, name): (f64, &str)) {
+    let style = context.style;
+    let kinetic_room = context.memory.ranges.follow(context.session).kinetic();
+    let (session, state) = (&context.session, context.session.player.state());
+    let model = session.model();
+    let (kinetic, potential) = model.energies(state.x, state.v);
+    let landscape = &model.mechanism.landscape;
+    let wells = landscape.equilibria.iter().filter(|own| own.stable);
+    let bottom = wells
+        .map(|own| model.mechanism.curve.potential(own.x))
+        .reduce(f64::min)
+        .unwrap_or(potential.min(0.0));
+    let (potential, barrier) = (
+        (potential - bottom).max(0.0),
+        landscape.barrier.map(|barrier| model.mechanism.curve.potential(barrier.x) - bottom),
+    );
+    let most = axis_end((kinetic_room).max(1.3 * barrier.unwrap_or(0.0)).max(1e-300));
+    if rect.height() < 34.0 {
+        return;
+    }
+    let thick = (0.32 * rect.height()).clamp(10.0, 22.0);
+    let track = Rect::from_min_size(pos2(rect.left(), rect.top() + 14.0), vec2(rect.width(), thick));
+    let screen_from_energy = |energy: f64| track.left() + (energy / most).min(1.0) as f32 * track.width();
+    let response = ui.interact(rect, ui.scope_id().with("present"), Sense::hover());
+    let painter = ui.painter().with_clip_rect(rect.expand(4.0));
+    painter.rect_filled(track, 0.0, style.grid());
+    let (first, second) = (screen_from_energy(potential), screen_from_energy(potential + kinetic));
+    painter.rect_filled(Rect::from_x_y_ranges(track.left()..=first, track.y_range()), 0.0, style.ink());
+    painter.rect_filled(Rect::from_x_y_ranges(first..=second, track.y_range()), 0.0, style.mass());
+    let below = track.bottom() + 3.0;
+    let legend =
+        painter.text(pos2(track.left(), below), Align2::LEFT_TOP, "potential", style.small(), style.ink());
+    painter.text(
+        pos2(legend.right() + 8.0, below),
+        Align2::LEFT_TOP,
+        "+ kinetic now",
+        style.small(),
+        style.mass_ink(),
+    );
+    let end = format!("{} {name}", short(most / unit));
+    painter.text(pos2(track.right(), below), Align2::RIGHT_TOP, end, style.small(), style.faint());
+    if let Some(barrier) = barrier {
+        let x = screen_from_energy(barrier);
+        let heights = track.top() - 3.0..=track.bottom() + 3.0;
+        painter.vline(x, heights, Stroke::new(style.tray_stroke().width + 2.0, style.ground()));
+        painter.vline(x, track.top() - 3.0..=track.bottom() + 3.0, style.barrier_stroke());
+        painter.text(
+            pos2(x, track.top() - 2.0),
+            Align2::CENTER_BOTTOM,
+            "barrier",
+            style.small(),
+            style.faint(),
+        );
+    }
+    response.on_hover_text(format!(
+        "Now: potential {} and kinetic energy {} {name}, counted from the bottom of the deeper well. Without shaking the \
+         mass crosses only where their sum passes the barrier.",
+        short(potential / unit),
+        short(kinetic / unit)
+    ));
+}
+
+/// A number with three digits.
+fn short(value: f64) -> String {
+    let decimals = (2.0 - value.abs().max(1e-6).log10().floor()).clamp(0.0, 3.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_written_with_their_sign_and_unit() {
+        assert_eq!(unit_of(6.9e-3), (1e-3, "mJ"));
+        assert_eq!(unit_of(0.0), (1e-12, "pJ"));
+        assert_eq!(written(1.2345e-3, 1e-3), "+1.234");
+        assert_eq!(written(-0.25, 1e-3), "-250.0");
+        assert_eq!(written(-1e-9, 1e-3), "0.000");
+        assert_eq!((short(1.2), short(1000.0), short(0.0)), ("1.2".into(), "1000".into(), "0".into()));
+    }
+}

@@ -1,0 +1,149 @@
+//! The force curve: what holds the mass at x, against what pushes it.
+//!
+//! The curve is dV/dx, the force that would hold the mass there. The base pushes it with -m a_b, a level line that moves
+//! up and down. Where the line is above the curve the mass is driven to the right, where it is below to the left; on a
+//! stop it is released when the line passes the curve at the stop.
+
+use eframe::egui::{self, Align2, Painter, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use crate::app::style::BALL;
+use crate::dynamics::STANDARD_GRAVITY;
+
+use super::ViewContext;
+use super::chart::{Chart, Sign};
+use super::ranges::{axis_end, room_for_push};
+use super::stops::stops_beside_ui;
+
+/// Room above the largest force of the wells, as a factor.
+const ROOM: f64 = 1.3;
+
+/// Half the size in points of the mark of a kink and of the force at a stop.
+const MARK: f32 = 5.0;
+
+/// Distance in points of the label at a stop from it, and the room that it needs.
+const BESIDE: f32 = 16.0;
+const LABEL: f32 = 110.0;
+
+/// Draws it. Whether something changed.
+pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+    if area.width() < 60.0 || area.height() < 80.0 {
+        return false;
+    }
+    let style = context.style;
+    let end = end_of_axis(context);
+    let chart = Chart::new(area, context.span, -end, end);
+    chart.axes(ui, context, "force (N)", 1.0);
+    let painter = ui.painter().with_clip_rect(chart.rect);
+    curve(&painter, context, &chart);
+    let edges = (chart.rect.top(), chart.rect.bottom());
+    let changed = stops_beside_ui(ui, context, chart.rect, edges, 0.0);
+    let painter = ui.painter().with_clip_rect(chart.rect);
+    let model = context.session.model();
+    let (landscape, own) = (&model.mechanism.landscape, &model.mechanism.curve);
+    chart.equilibria(&painter, &style, landscape);
+    for kink in &landscape.kinks {
+        let at = chart.screen_from_world(kink.x, own.force(kink.x));
+        let points = [vec2(0.0, -MARK), vec2(MARK, 0.0), vec2(0.0, MARK), vec2(-MARK, 0.0)];
+        let diamond = points.iter().map(|step| at + *step * 1.3).collect();
+        painter.add(Shape::closed_line(diamond, Stroke::new(1.5, style.ink())));
+    }
+    releases(&painter, context, &chart);
+    let state = context.session.player.state();
+    let push = -model.mass * state.base_accel;
+    let mut legend = vec![(Sign::Line(style.tray_stroke()), "force of the mechanism")];
+    if model.is_shaken() {
+        legend.push((Sign::Line(style.arrow_stroke()), "push of the base"));
+        let at = chart.screen_from_world(state.x, push);
+        painter.hline(chart.rect.x_range(), at.y, style.arrow_stroke());
+        let from = chart.screen_from_world(state.x, own.force(state.x));
+        painter.extend(Shape::dashed_line(&[from, at], style.base_stroke(), 4.0, 3.0));
+    }
+    let at = chart.screen_from_world(state.x, own.force(state.x));
+    painter.circle(at, BALL - 2.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
+    chart.legend(ui, &style, &legend);
+    hover_ui(&response, context, &chart);
+    changed
+}
+
+/// As far up as the forces between the wells and the pushes that the scene may have.
+fn end_of_axis(context: &ViewContext<'_>) -> f64 {
+    let model = context.session.model();
+    let landscape = &model.mechanism.landscape;
+    let wells = landscape.barrier.map(|barrier| (barrier.left_well, barrier.right_well));
+    let between = |x: f64| wells.is_some_and(|(left, right)| x > left && x < right);
+    let mut most = landscape
+        .extrema
+        .iter()
+        .filter(|extremum| between(extremum.x))
+        .map(|extremum| extremum.force.abs())
+        .fold(0.0, f64::max);
+    if wells.is_none() {
+        // without a pair of wells the whole axis is of interest
+        let (domain, curve) = (model.mechanism.curve.domain(), &model.mechanism.curve);
+        for x in [context.span.low, context.span.high] {
+            most = most.max(curve.force(x.clamp(domain.0, domain.1)).abs());
+        }
+    }
+    let push = if model.is_shaken() {
+        model.mass * room_for_push(context.session.largest_push()).min(1.1 * context.session.largest_push())
+    } else {
+        0.0
+    };
+    axis_end((ROOM * most).max(1.1 * push))
+}
+
+/// The curve: thick where the mass can be, faint beyond the stops.
+fn curve(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
+    let (style, model) = (context.style, context.session.model());
+    let own = &model.mechanism.curve;
+    let (left, right) = model.stop_positions();
+    let domain = own.domain();
+    let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
+    let (inner, outer) = (left.unwrap_or(low).clamp(low, high), right.unwrap_or(high).clamp(low, high));
+    let force = |x: f64| own.force(x);
+    let faint = Stroke::new(style.ghost_stroke().width, style.faint());
+    for (from, to) in [(low, inner), (outer, high)] {
+        painter.extend(Shape::dashed_line(&chart.curve(from, to, force), faint, 5.0, 5.0));
+    }
+    painter.add(Shape::line(chart.curve(inner, outer, force), style.tray_stroke()));
+}
+
+/// The force at each stop that the mass rests against: the push has to pass it to release the mass.
+fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
+    let (style, model) = (context.style, context.session.model());
+    let (left, right) = model.stop_positions();
+    for (stop, way) in [(left, -1.0), (right, 1.0)] {
+        let Some(x) = stop else { continue };
+        let force = model.mechanism.curve.force(x);
+        // only where the mechanism presses the mass outwards
+        if !(force * way < 0.0) {
+            continue;
+        }
+        let at = chart.screen_from_world(x, force);
+        let stroke = Stroke::new(style.stop_stroke().width, style.stop());
+        let inwards = -MARK * way as f32;
+        painter.line_segment([at, at + vec2(8.0 * inwards, 0.0)], stroke);
+        // beyond the wall, out of the way of the mass; on the inner side where the picture ends
+        let text = format!("frees at {:.2} g", force.abs() / (model.mass * STANDARD_GRAVITY));
+        let room = if way > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };
+        let outwards = if room > LABEL { -inwards.signum() } else { inwards.signum() };
+        let align = if outwards > 0.0 { Align2::LEFT_CENTER } else { Align2::RIGHT_CENTER };
+        let beyond = pos2(at.x + outwards * BESIDE, at.y);
+        chart.written(painter, &style, beyond, align, &text);
+    }
+}
+
+fn hover_ui(response: &egui::Response, context: &ViewContext<'_>, chart: &Chart) {
+    let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return };
+    let (x, _) = chart.world_from_screen(pointer);
+    let force = context.session.model().mechanism.curve.force(x);
+    response.clone().on_hover_ui_at_pointer(|ui| {
+        if force.is_finite() {
+            ui.strong(format!("{force:.3} N at {:.2} mm", x * 1e3));
+        }
+        ui.label("The force that would hold the mass there. Where the push is above the curve it drives the mass to \
+                  the right, below it to the left; a mass on a stop is freed when the push passes the mark there.");
+        ui.label("Filled: stable. Hollow: unstable. Diamond: a kink, where the stiffness jumps.");
+    });
+}

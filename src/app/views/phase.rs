@@ -1,0 +1,240 @@
+//! The phase portrait: velocity over displacement, where a motion is a path and a state is a point.
+//!
+//! The separatrix is the curve of the energy that just suffices to stand on top of the barrier: without shaking and
+//! without loss a state inside one of its loops never leaves that well. Shaking and impacts carry the state across it.
+
+use std::collections::VecDeque;
+
+use eframe::egui::{self, Color32, Painter, Pos2, Sense, Shape, Stroke, Ui};
+
+use crate::app::status::Kind;
+use crate::app::widgets::kind_shapes;
+use crate::dynamics::{Phase, Sample};
+
+use super::ViewContext;
+use super::chart::{Chart, Sign};
+use super::stops::stops_beside_ui;
+
+/// Length of the trail in forcing periods; without a period, in swings of the scene's own time scale.
+const TRAIL_PERIODS: f64 = 4.0;
+const TRAIL_SWINGS: f64 = 12.0;
+
+/// The most points of the trail, and the steps in which it fades.
+const MOST_POINTS: usize = 4000;
+const FADES: usize = 16;
+
+/// What is left of its colour at the end of the trail.
+const FAINTEST: f32 = 0.12;
+
+/// The most stroboscopic points.
+const MOST_STROBES: f64 = 300.0;
+
+/// Radius in points of the state and of a stroboscopic point.
+const STATE: f32 = 6.0;
+const STROBE: f32 = 3.0;
+
+/// Draws it. Whether something changed.
+pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
+    if area.width() < 60.0 || area.height() < 80.0 {
+        return false;
+    }
+    let style = context.style;
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "states of the mass"));
+    let speed = context.memory.ranges.follow(context.session).speed();
+    let chart = Chart::new(area, context.span, -speed, speed);
+    chart.axes(ui, context, "velocity (mm/s)", 1e-3);
+    let painter = ui.painter().with_clip_rect(chart.rect);
+    let mut legend = Vec::new();
+    if separatrix(&painter, context, &chart) {
+        legend.push((Sign::Dashed(style.ghost_stroke()), "separatrix"));
+    }
+    chart.equilibria(&painter, &style, &context.session.model().mechanism.landscape);
+    let edges = (chart.rect.top(), chart.rect.bottom());
+    let changed = stops_beside_ui(ui, context, chart.rect, edges, 0.0);
+    let painter = ui.painter().with_clip_rect(chart.rect.expand(STATE));
+    trail(&painter, context, &chart);
+    if context.session.model().forcing_period.is_some() {
+        legend.push((Sign::Ring(style.base_stroke()), "once a forcing period"));
+    }
+    if context.session.model().stop_positions() != (None, None) {
+        legend.push((Sign::Dashed(style.impact_stroke()), "impact"));
+    }
+    strobes(&painter, context, &chart);
+    let state = context.session.player.state();
+    let at = chart.screen_from_world(state.x, state.v);
+    if state.phase == Phase::Free {
+        painter.circle(at, STATE, style.mass(), Stroke::new(1.5, style.mass_edge()));
+    } else {
+        painter.extend(kind_shapes(Kind::Resting, at, STATE + 2.5, style.mass_edge()));
+        painter.extend(kind_shapes(Kind::Resting, at, STATE, style.mass()));
+    }
+    chart.legend(ui, &style, &legend);
+    changed | start_ui(&response, context, &chart)
+}
+
+/// A click starts the motion at that state.
+fn start_ui(response: &egui::Response, context: &mut ViewContext<'_>, chart: &Chart) -> bool {
+    let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return false };
+    let (x, v) = chart.world_from_screen(pointer);
+    let inside = within(context, x);
+    let placed = response.clicked();
+    if placed {
+        context.session.player.place(x, if inside { v } else { 0.0 });
+        context.session.moved_by_hand();
+    }
+    response.clone().on_hover_ui_at_pointer(|ui| {
+        ui.strong(format!("{:.2} mm, {:.0} mm/s", x * 1e3, v * 1e3));
+        ui.label("Click: the motion goes on from this state.");
+        ui.label(
+            "A moving mass runs clockwise: to the right above zero, to the left below. At an impact the velocity \
+             jumps and the place stays. The separatrix needs just the energy to stand on the barrier.",
+        );
+    });
+    placed
+}
+
+/// Whether the mass can be at `x` in m.
+fn within(context: &ViewContext<'_>, x: f64) -> bool {
+    let model = context.session.model();
+    let ((left, right), domain) = (model.stop_positions(), model.mechanism.curve.domain());
+    x >= left.unwrap_or(domain.0).max(domain.0) && x <= right.unwrap_or(domain.1).min(domain.1)
+}
+
+/// The states with the energy of the barrier's top. Whether there is one.
+fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bool {
+    let model = context.session.model();
+    let Some(barrier) = model.mechanism.landscape.barrier else { return false };
+    let curve = &model.mechanism.curve;
+    let top = curve.potential(barrier.x);
+    let domain = curve.domain();
+    let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
+    let stroke = context.style.ghost_stroke();
+    // from the barrier outwards, up to where the potential is as high again
+    for end in [low, high] {
+        let place = |i: usize| barrier.x + (end - barrier.x) * i as f64 / 400.0;
+        let square = |x: f64| 2.0 * (top - curve.potential(x)) / model.mass;
+        let mut path: Vec<(f64, f64)> = vec![(barrier.x, 0.0)];
+        for i in 1..=400 {
+            let square = square(place(i));
+            if !(square > 0.0) {
+                let turn = turning(&square_at(curve, top), place(i - 1), place(i));
+                path.push((turn, 0.0));
+                break;
+            }
+            path.push((place(i), square.sqrt()));
+        }
+        for sign in [1.0, -1.0] {
+            let points: Vec<Pos2> = path.iter().map(|(x, v)| chart.screen_from_world(*x, sign * v)).collect();
+            painter.extend(Shape::dashed_line(&points, stroke, 5.0, 4.0));
+        }
+    }
+    true
+}
+
+fn square_at(curve: &crate::mechanics::ForceCurve, top: f64) -> impl Fn(f64) -> f64 {
+    move |x| top - curve.potential(x)
+}
+
+/// Where `height` comes to 0 between a place where it is above and one where it is not, as near as is seen.
+fn turning(height: &impl Fn(f64) -> f64, mut above: f64, mut below: f64) -> f64 {
+    for _ in 0..20 {
+        let middle = 0.5 * (above + below);
+        if height(middle) > 0.0 { above = middle } else { below = middle }
+    }
+    0.5 * (above + below)
+}
+
+/// The last of the path, fading; an impact is a jump, a mass put elsewhere a gap.
+fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
+    let (session, style) = (&context.session, context.style);
+    let model = session.model();
+    let natural = std::f64::consts::TAU * model.scales.time;
+    let length = model.forcing_period.map_or(TRAIL_SWINGS * natural, |period| TRAIL_PERIODS * period);
+    let state = session.player.state();
+    let path = recent(session.player.watch().samples(), state, length);
+    let level = |t: f64| {
+        let age = ((state.t - t) / length).clamp(0.0, 1.0);
+        ((age * FADES as f64) as usize).min(FADES - 1)
+    };
+    let shade = |color: Color32, level: usize| {
+        let age = level as f32 / (FADES - 1) as f32;
+        color.gamma_multiply(1.0 - (1.0 - FAINTEST) * age)
+    };
+    let (motion, impact) = (style.motion_stroke(), style.impact_stroke());
+    let mut line: Vec<Pos2> = Vec::new();
+    let mut drawn = FADES;
+    let finish = |line: &mut Vec<Pos2>, level: usize| {
+        if line.len() > 1 {
+            painter.add(Shape::line(
+                std::mem::take(line),
+                Stroke::new(motion.width, shade(motion.color, level)),
+            ));
+        }
+        line.clear();
+    };
+    for pair in path.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let (from, to) = (chart.screen_from_world(a.x, a.v), chart.screen_from_world(b.x, b.v));
+        let now = level(b.t);
+        if a.t == b.t {
+            finish(&mut line, drawn.min(FADES - 1));
+            if a.x == b.x && a.v != b.v {
+                let stroke = Stroke::new(1.5 * impact.width, shade(impact.color, now));
+                painter.extend(Shape::dashed_line(&[from, to], stroke, 4.0, 3.0));
+            }
+            continue;
+        }
+        if now != drawn || line.is_empty() {
+            finish(&mut line, drawn.min(FADES - 1));
+            line.push(from);
+            drawn = now;
+        }
+        line.push(to);
+    }
+    finish(&mut line, drawn.min(FADES - 1));
+}
+
+/// The samples of the last `length` seconds before `state`, and that.
+fn recent(samples: &VecDeque<Sample>, state: Sample, length: f64) -> Vec<Sample> {
+    let last = samples.partition_point(|sample| sample.t <= state.t);
+    let first = samples.partition_point(|sample| sample.t < state.t - length);
+    let first = first.max(last.saturating_sub(MOST_POINTS)).min(last);
+    samples.range(first..last).copied().chain([state]).collect()
+}
+
+/// The state once a forcing period, always at the same phase of it, since the last change.
+fn strobes(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
+    let session = &context.session;
+    let Some(period) = session.model().forcing_period else { return };
+    let (watch, now) = (session.player.watch(), session.player.time());
+    let begin = session.changed_at().max(watch.begin());
+    let last = (now / period).floor();
+    let first = (begin / period).ceil().max(last - MOST_STROBES);
+    let count = (last - first + 1.0).clamp(0.0, MOST_STROBES) as u32;
+    let stroke = context.style.base_stroke();
+    for i in 0..count {
+        let state = watch.state_at((first + f64::from(i)) * period);
+        painter.circle(chart.screen_from_world(state.x, state.v), STROBE, context.style.ground(), stroke);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_trail_is_capped_and_ends_at_the_state() {
+        let sample = |t: f64| Sample { t, x: t, v: 0.0, base_accel: 0.0, phase: Phase::Free };
+        let samples: VecDeque<Sample> = (0..20_000).map(|i| sample(f64::from(i) * 1e-3)).collect();
+        let path = recent(&samples, sample(10.0005), 2.0);
+        assert!(path.len() == 2001 && path.last().is_some_and(|last| last.t == 10.0005));
+        assert_eq!(recent(&samples, sample(19.0), 1e9).len(), MOST_POINTS + 1);
+        assert_eq!(recent(&VecDeque::new(), sample(0.0), 1.0).len(), 1);
+    }
+
+    #[test]
+    fn a_turning_point_is_found() {
+        assert!((turning(&|x| 1.0 - x, 0.0, 4.0) - 1.0).abs() < 1e-5);
+    }
+}

@@ -1,0 +1,281 @@
+//! Something over time: it scrolls, rests are shaded, impacts are ticks.
+//!
+//! Displacement, velocity, base acceleration and power are one view with four quantities. All traces show the same
+//! stretch of time and the same cursor, so that they can be read below each other. Their vertical ranges come from the
+//! scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
+
+use eframe::egui::{self, Ui, vec2};
+use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
+
+use crate::dynamics::{EventKind, Phase, STANDARD_GRAVITY, Sample};
+
+use super::ViewContext;
+use super::ranges::room_for_push;
+use super::span::ticks;
+
+/// Forcing periods that are shown; without a period swings of the scene's own time scale.
+const PERIODS: f64 = 6.0;
+const SWINGS: f64 = 20.0;
+
+/// Where in the window the present is.
+const PRESENT: f64 = 0.94;
+
+/// How much longer or shorter than its own a stretch of time may be chosen.
+const LONGEST: f64 = 10.0;
+const SHORTEST: f64 = 1e-3;
+
+/// The most points of a line; a longer path is drawn from fewer.
+const MOST_POINTS: usize = 20_000;
+
+/// Width in points that every vertical axis takes, so that traces below each other line up.
+const AXIS_WIDTH: f32 = 44.0;
+
+/// Height in points below which the name of the time axis is left out.
+const LOW: f32 = 150.0;
+
+/// What is drawn over time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Displacement relative to the base.
+    Displacement,
+    /// Velocity relative to the base.
+    Velocity,
+    /// Acceleration of the base.
+    BaseAcceleration,
+    /// Work of the base on the mass in a second.
+    Power,
+}
+
+impl Quantity {
+    /// Its value in the unit of its axis.
+    pub fn value(self, sample: &Sample, mass: f64) -> f64 {
+        match self {
+            Self::Displacement => sample.x * 1e3,
+            Self::Velocity => sample.v * 1e3,
+            Self::BaseAcceleration => sample.base_accel / STANDARD_GRAVITY,
+            Self::Power => sample.work_rate(mass) * 1e3,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::Velocity => "velocity",
+            Self::BaseAcceleration => "base",
+            Self::Power => "power",
+        }
+    }
+
+    fn unit(self) -> &'static str {
+        match self {
+            Self::Displacement => "mm",
+            Self::Velocity => "mm/s",
+            Self::BaseAcceleration => "g",
+            Self::Power => "mW",
+        }
+    }
+
+    fn hover(self) -> &'static str {
+        match self {
+            Self::Displacement => "Displacement of the mass from the middle, seen from the base.",
+            Self::Velocity => {
+                "Velocity of the mass, seen from the base. It jumps at an impact, which turns it round and \
+                 leaves a part of it."
+            }
+            Self::BaseAcceleration => {
+                "Acceleration of the base. The mass feels the opposite of it, as one does in a bus that brakes."
+            }
+            Self::Power => {
+                "Work of the base on the mass in a second. Below zero the mass gives energy back to the base."
+            }
+        }
+    }
+
+    /// The ends of the vertical axis, in its unit.
+    fn ends(self, context: &mut ViewContext<'_>) -> (f64, f64) {
+        let both = |most: f64| (-most, most);
+        match self {
+            Self::Displacement => (context.span.low * 1e3, context.span.high * 1e3),
+            Self::Velocity => both(context.memory.ranges.follow(context.session).speed() * 1e3),
+            Self::BaseAcceleration => {
+                both(1.12 * room_for_push(context.session.largest_push()) / STANDARD_GRAVITY)
+            }
+            Self::Power => both(context.memory.ranges.follow(context.session).power() * 1e3),
+        }
+    }
+}
+
+/// What traces share.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Timeline {
+    /// The stretch of time in s that a person has chosen.
+    pub window: Option<f64>,
+    /// The time in s under the pointer, and the pass in which it was there.
+    cursor: Option<(f64, u64)>,
+}
+
+/// Draws it. Whether something changed.
+pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) -> bool {
+    let style = context.style;
+    let (low, high) = quantity.ends(context);
+    let (now, model) = (context.session.player.time(), context.session.model());
+    let mass = model.mass;
+    let natural = std::f64::consts::TAU * model.scales.time;
+    let own = model.forcing_period.map_or(SWINGS * natural, |period| (PERIODS * period).min(200.0 * natural));
+    let window = context.memory.timeline.window.unwrap_or(own);
+    let from = (now - PRESENT * window).max(-0.02 * window);
+    let to = from + window;
+    let watch = context.session.player.watch();
+    let shown = watch.samples();
+    let first = shown.partition_point(|sample| sample.t < from).saturating_sub(1);
+    let last = shown.partition_point(|sample| sample.t <= now);
+    let state = context.session.player.state();
+    let stride = ((last.max(first) - first) / MOST_POINTS).max(1);
+    let samples: Vec<Sample> =
+        shown.range(first..last.max(first)).step_by(stride).copied().chain([state]).collect();
+    let points: Vec<PlotPoint> =
+        samples.iter().map(|sample| PlotPoint::new(sample.t, quantity.value(sample, mass))).collect();
+    let rests = rests(&samples);
+    let impacts: Vec<f64> = watch
+        .events()
+        .iter()
+        .skip(watch.events().partition_point(|event| event.t < from))
+        .take_while(|event| event.t <= now)
+        .filter(|event| event.kind == EventKind::Impact)
+        .map(|event| event.t)
+        .collect();
+    let stops = if quantity == Quantity::Displacement { model.stop_positions() } else { (None, None) };
+    let pass = ui.ctx().cumulative_pass_nr();
+    let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass).map(|cursor| cursor.0);
+    let tick = 0.035 * (high - low);
+    let line = match quantity {
+        Quantity::Displacement | Quantity::Velocity => style.motion_stroke(),
+        Quantity::BaseAcceleration | Quantity::Power => style.base_stroke(),
+    };
+    let rows = f64::from((ui.available_height() / 40.0).clamp(2.0, 6.0));
+    let columns = f64::from((ui.available_width() / 80.0).clamp(2.0, 8.0));
+    ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
+    let time_label = if ui.available_height() < LOW { "" } else { "time (s)" };
+    let response = Plot::new(quantity.name())
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .show_background(false)
+        .show_grid(false)
+        .x_grid_spacer(|_| marks(from.max(0.0), to, columns))
+        .y_grid_spacer(|_| marks(low, high, rows))
+        .x_axis_label(time_label)
+        .y_axis_label(format!("{} ({})", quantity.name(), quantity.unit()))
+        .y_axis_min_width(AXIS_WIDTH)
+        .set_margin_fraction(vec2(0.0, 0.0))
+        .x_axis_formatter(|mark, _| plain(mark))
+        .y_axis_formatter(|mark, _| plain(mark))
+        .label_formatter(|_| None)
+        .show_crosshair(false)
+        .show(ui, |plot| {
+            plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
+            for mark in marks(low, high, rows) {
+                plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
+            }
+            for (begin, end) in rests {
+                let span = Span::new("", begin..=end).fill(style.rest_shade());
+                plot.span(span.border(egui::Stroke::NONE));
+            }
+            for stop in [stops.0, stops.1].into_iter().flatten() {
+                plot.hline(
+                    HLine::new("stop", stop * 1e3)
+                        .stroke(style.stop_stroke())
+                        .style(LineStyle::dashed_loose()),
+                );
+            }
+            plot.vline(VLine::new("now", now).stroke(style.ghost_stroke()));
+            // a tick stands at the edge, out of the way of the motion
+            for t in thinned(&impacts, window) {
+                let ends = vec![[t, low], [t, low + tick]];
+                plot.line(Line::new("impact", ends).stroke(style.impact_stroke()));
+            }
+            plot.line(Line::new(quantity.name(), PlotPoints::Owned(points)).stroke(line));
+            if let Some(t) = cursor {
+                let dashed = LineStyle::dashed_dense();
+                plot.vline(VLine::new("cursor", t).stroke(style.ghost_stroke()).style(dashed));
+            }
+        });
+    let (transform, response) = (response.transform, response.response);
+    zoom(ui, &response, context, own);
+    if let Some(at) = response.hover_pos() {
+        let t = transform.value_from_position(at).x.clamp(watch_begin(context).min(now), now);
+        context.memory.timeline.cursor = Some((t, pass));
+        let value = quantity.value(&context.session.player.watch().state_at(t), mass);
+        response.on_hover_ui_at_pointer(|ui| {
+            ui.strong(format!("{value:.3} {} at {t:.3} s", quantity.unit()));
+            ui.label(quantity.hover());
+            ui.label(
+                "Grey: at rest on a stop. Ticks: impacts. The wheel zooms in time, a double click is back.",
+            );
+        });
+    }
+    false
+}
+
+fn watch_begin(context: &ViewContext<'_>) -> f64 {
+    context.session.player.watch().begin()
+}
+
+/// The wheel chooses the stretch of time, for all traces; a double click leaves it to the scene.
+fn zoom(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, own: f64) {
+    let window = &mut context.memory.timeline.window;
+    if response.double_clicked() {
+        *window = None;
+    }
+    if !response.hovered() {
+        return;
+    }
+    let by = ui.input(|input| {
+        (-f64::from(input.smooth_scroll_delta().y) / 200.0).exp() / f64::from(input.zoom_delta())
+    });
+    if by != 1.0 && by.is_finite() && by > 0.0 {
+        *window = Some((window.unwrap_or(own) * by).clamp(SHORTEST * own, LONGEST * own));
+    }
+}
+
+/// Round numbers for an axis, some `count` of them.
+fn marks(low: f64, high: f64, count: f64) -> Vec<GridMark> {
+    let (values, _) = ticks(low, high, count);
+    let step_size = values.windows(2).next().map_or(1.0, |pair| (pair[1] - pair[0]) * 1e3);
+    values.iter().map(|value| GridMark { value: value * 1e3, step_size }).collect()
+}
+
+/// A tick's number, with the decimals that tell it from the next one.
+fn plain(mark: GridMark) -> String {
+    let decimals = (-(mark.step_size * 1.001).log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{:.decimals$}", mark.value + 0.0)
+}
+
+/// From when to when the mass rests.
+fn rests(samples: &[Sample]) -> Vec<(f64, f64)> {
+    let mut spans: Vec<(f64, f64)> = Vec::new();
+    for pair in samples.windows(2) {
+        if pair[0].phase == Phase::Free {
+            continue;
+        }
+        match spans.last_mut() {
+            Some(last) if last.1 == pair[0].t => last.1 = pair[1].t,
+            _ => spans.push((pair[0].t, pair[1].t)),
+        }
+    }
+    spans
+}
+
+/// Impacts that are told apart on the screen.
+fn thinned(times: &[f64], window: f64) -> Vec<f64> {
+    let mut kept: Vec<f64> = Vec::new();
+    for t in times {
+        if kept.last().is_none_or(|last| t - last > window / 1000.0) {
+            kept.push(*t);
+        }
+    }
+    kept
+}

@@ -1,0 +1,201 @@
+//! The views: every one draws whatever moves, and a hand on one does what it says.
+
+use eframe::egui::{Key, Modifiers, Pos2, accesskit::Role, pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use interwell::app::layouts::Room;
+use interwell::app::menu::Command;
+use interwell::app::settings::Settings;
+use interwell::app::views::{View, energy};
+use interwell::app::window::Window;
+use interwell::scene::{Layout, PRESETS, Stops};
+
+use crate::support::window;
+
+const WIDE: [f32; 2] = [1280.0, 720.0];
+const PROJECTED: [f32; 2] = [853.0, 480.0];
+
+fn command(harness: &mut Harness<'_, Window>, command: Command) {
+    let ctx = harness.ctx.clone();
+    harness.state_mut().carry_out(&ctx, command);
+    harness.run_steps(3);
+}
+
+fn study(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {
+    let mut harness = window(preset, size, Settings::default());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num2);
+    harness.run_steps(3);
+    harness
+}
+
+fn click(harness: &mut Harness<'_, Window>, at: Pos2) {
+    harness.drag_at(at);
+    harness.run_steps(1);
+    harness.drop_at(at);
+    harness.run_steps(2);
+}
+
+#[test]
+fn every_view_draws_every_scene() {
+    let mut harness = study("first-look", WIDE);
+    for preset in PRESETS {
+        harness.state_mut().open_another(preset.name);
+        harness.key_press(Key::Num5);
+        for view in View::ALL {
+            command(&mut harness, Command::Show(view, true));
+        }
+        harness.run_steps(20);
+        assert!(harness.state().message().is_none(), "{}", preset.name);
+        for view in View::ALL {
+            assert!(harness.state().tiling().shows(view), "{}: {}", preset.name, view.name());
+        }
+        // looked at under the pointer, in the past and held by hand
+        for x in [300.0, 500.0, 700.0, 900.0, 1100.0] {
+            harness.hover_at(pos2(x, 400.0));
+            harness.run_steps(1);
+        }
+        harness.key_press(Key::PageUp);
+        harness.run_steps(2);
+        harness.state_mut().session.player.hold(1e-3);
+        harness.run_steps(2);
+    }
+}
+
+#[test]
+fn layouts_switch() {
+    let mut harness = study("first-look", WIDE);
+    for view in [View::PhasePortrait, View::ForceCurve, View::Energy, View::Well] {
+        assert!(harness.state().tiling().shows(view), "{}", view.name());
+        harness.get_by_label(view.name());
+    }
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num1);
+    harness.run_steps(3);
+    assert!(!harness.state().tiling().shows(View::PhasePortrait));
+    assert!(harness.query_by_label("Phase portrait").is_none());
+    // the own arrangement is what was there first, and then what becomes of it
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num4);
+    harness.run_steps(3);
+    command(&mut harness, Command::Show(View::Velocity, true));
+    command(&mut harness, Command::Show(View::BeforeNow, false));
+    command(&mut harness, Command::Arrange(Layout::Study));
+    assert!(!harness.state().tiling().shows(View::Velocity));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num4);
+    harness.run_steps(3);
+    let window = harness.state();
+    assert!(window.tiling().shows(View::Velocity) && !window.tiling().shows(View::BeforeNow));
+    let kept = window.own_arrangement().cloned();
+    assert!(kept.is_some());
+    // it outlives the scene and the program
+    harness.state_mut().open_another("paper");
+    assert_eq!(harness.state().own_arrangement(), kept.as_ref());
+    let mut again = self::window("paper", WIDE, Settings::default());
+    again.state_mut().set_own_arrangement(kept);
+    command(&mut again, Command::ArrangeOwn);
+    assert!(again.state().tiling().shows(View::Velocity) && !again.state().tiling().shows(View::BeforeNow));
+}
+
+#[test]
+fn a_projector_has_room_for_the_study() {
+    let mut harness = study("paper", PROJECTED);
+    assert_eq!(harness.state().tiling().room(), Room::Compact);
+    for name in ["Well", "Mechanism", "Phase portrait", "Force curve", "Displacement", "Energy"] {
+        let rect = harness.get_by_label(name).rect();
+        assert!(
+            rect.left() >= 0.0 && rect.right() <= PROJECTED[0] && rect.bottom() <= PROJECTED[1],
+            "{name}"
+        );
+    }
+    harness.get_by_label("Energy").click();
+    harness.run_steps(3);
+    let rect = harness.get_by_label_contains("accounted for").rect();
+    assert!(rect.right() <= PROJECTED[0] && rect.bottom() <= PROJECTED[1]);
+}
+
+#[test]
+fn a_click_in_the_phase_portrait_places_the_mass() {
+    let mut harness = study("first-look", WIDE);
+    harness.key_press(Key::Space);
+    harness.run_steps(3);
+    let before = harness.state().session.player.state();
+    let rect = harness.get_by_label("states of the mass").rect();
+    let at = pos2(rect.left() + 0.3 * rect.width(), rect.top() + 0.35 * rect.height());
+    click(&mut harness, at);
+    let session = &harness.state().session;
+    let state = session.player.state();
+    assert_eq!(state.t, before.t);
+    assert!(state.x < -1e-3 && state.v > 0.01, "{state:?}");
+    assert!(session.player.watch().ledger().by_hand_j != 0.0);
+    assert!(!session.editor.can_undo());
+}
+
+#[test]
+fn a_stop_dragged_in_the_force_curve_is_one_step() {
+    let mut harness = window("paper", WIDE, Settings::default());
+    for view in View::ALL {
+        command(&mut harness, Command::Show(view, view == View::ForceCurve));
+    }
+    let before = harness.state().session.scene().stops;
+    let wall = harness.get_by_role_and_label(Role::Slider, "right stop").rect();
+    harness.drag_at(wall.center());
+    harness.run_steps(2);
+    for step in 1..=5 {
+        harness.hover_at(wall.center() + eframe::egui::vec2(8.0 * step as f32, 0.0));
+        harness.run_steps(1);
+    }
+    harness.drop_at(wall.center() + eframe::egui::vec2(40.0, 0.0));
+    harness.run_steps(2);
+    let session = &mut harness.state_mut().session;
+    let (Stops::Rigid { travel_limit_mm: old, .. }, Stops::Rigid { travel_limit_mm: new, .. }) =
+        (before, session.scene().stops)
+    else {
+        panic!("{:?}", session.scene().stops)
+    };
+    assert!(new > old + 0.2, "{old} {new}");
+    assert!(session.undo());
+    assert_eq!(session.scene().stops, before);
+    assert!(!session.editor.can_undo());
+}
+
+#[test]
+fn the_energy_view_says_what_the_ledger_says() {
+    let mut harness = study("paper", [1920.0, 1080.0]);
+    harness.state_mut().session.player.speed = 1.0;
+    harness.run_steps(80);
+    harness.state_mut().session.player.hold(0.5e-3);
+    harness.state_mut().session.player.let_go();
+    harness.key_press(Key::Space);
+    harness.run_steps(3);
+    let session = &harness.state().session;
+    let (watch, now) = (session.player.watch(), session.player.time());
+    let model = session.model();
+    let (unit, _) = energy::unit_of(model.mass * model.scales.speed.powi(2));
+    let (at, whole) = watch.ledger_at(now);
+    assert_eq!((at, whole), (now, watch.ledger()));
+    let period = watch.last_period(now).unwrap();
+    for ledger in [whole, period] {
+        assert!(ledger.energy_residual() < 1e-6, "{ledger:?}");
+        for joule in [ledger.work_j, ledger.by_hand_j, -ledger.damping_j, -ledger.impact_j, ledger.stored_j] {
+            let text = energy::written(joule, unit);
+            assert!(harness.query_all_by_label(&text).next().is_some(), "{text}");
+        }
+    }
+    harness.get_by_label_contains("100.0000 % of the energy accounted for");
+}
+
+#[test]
+fn the_wheel_zooms_all_traces() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    command(&mut harness, Command::Show(View::Velocity, true));
+    let rect = harness.get_by_label("Velocity").rect();
+    harness.hover_at(rect.left_bottom() + eframe::egui::vec2(150.0, 60.0));
+    harness.run_steps(2);
+    harness.event(eframe::egui::Event::MouseWheel {
+        unit: eframe::egui::MouseWheelUnit::Point,
+        delta: eframe::egui::vec2(0.0, 100.0),
+        phase: eframe::egui::TouchPhase::Move,
+        source: eframe::egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(10);
+    assert!(harness.state().timeline().window.is_some());
+}
