@@ -28,9 +28,9 @@ const SHORTEST: f64 = 1e-3;
 const MOST_POINTS: usize = 20_000;
 
 /// Width in points that every vertical axis takes, so that traces below each other line up.
-const AXIS_WIDTH: f32 = 44.0;
+const AXIS_WIDTH: f32 = 58.0;
 
-/// Height in points below which the name of the time axis is left out.
+/// Height in points below which the names of the axes are left out.
 const LOW: f32 = 150.0;
 
 /// What is drawn over time.
@@ -155,7 +155,12 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
     let rows = f64::from((ui.available_height() / 40.0).clamp(2.0, 6.0));
     let columns = f64::from((ui.available_width() / 80.0).clamp(2.0, 8.0));
     ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
-    let time_label = if ui.available_height() < LOW { "" } else { "time (s)" };
+    let axis = format!("{} ({})", quantity.name(), quantity.unit());
+    // the title of the view says what it is
+    // a number at the very end of the axis would be cut off
+    let edge = 0.02 * (high - low);
+    let is_low = ui.available_height() < LOW;
+    let (time_label, axis) = if is_low { ("", quantity.unit().to_owned()) } else { ("time (s)", axis) };
     let response = Plot::new(quantity.name())
         .allow_drag(false)
         .allow_scroll(false)
@@ -166,9 +171,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
         .show_background(false)
         .show_grid(false)
         .x_grid_spacer(|_| marks(from.max(0.0), to, columns))
-        .y_grid_spacer(|_| marks(low, high, rows))
+        .y_grid_spacer(|_| marks(low + edge, high - edge, rows))
         .x_axis_label(time_label)
-        .y_axis_label(format!("{} ({})", quantity.name(), quantity.unit()))
+        .y_axis_label(axis)
         .y_axis_min_width(AXIS_WIDTH)
         .set_margin_fraction(vec2(0.0, 0.0))
         .x_axis_formatter(|mark, _| plain(mark))
@@ -243,7 +248,11 @@ fn zoom(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, own: 
 
 /// Round numbers for an axis, some `count` of them.
 fn marks(low: f64, high: f64, count: f64) -> Vec<GridMark> {
-    let (values, _) = ticks(low, high, count);
+    let (mut values, _) = ticks(low, high, count);
+    // two at least, or the axis has no scale
+    if values.len() < 2 {
+        (values, _) = ticks(low, high, 2.0 * count);
+    }
     let step_size = values.windows(2).next().map_or(1.0, |pair| (pair[1] - pair[0]) * 1e3);
     values.iter().map(|value| GridMark { value: value * 1e3, step_size }).collect()
 }
