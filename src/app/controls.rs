@@ -4,10 +4,10 @@ use eframe::egui::{self, RichText, Ui};
 
 use crate::scene::{Damping, Excitation, Stops};
 
-use super::geometry;
 use super::session::Session;
 use super::style::Style;
 use super::widgets::{Knob, Turn};
+use super::{advanced, geometry};
 
 const SHAKING_HOVER: &str =
     "Increase: the base pushes the mass harder. Beyond some amplitude it leaves its stop, then its well.";
@@ -70,7 +70,11 @@ fn heading_ui(ui: &mut Ui, text: &str) {
 }
 
 /// Applies what a knob did through `change`. Whether something changed.
-fn turn(session: &mut Session, turn: Turn, change: impl FnOnce(&mut crate::scene::Scene, f64)) -> bool {
+pub(super) fn turn(
+    session: &mut Session,
+    turn: Turn,
+    change: impl FnOnce(&mut crate::scene::Scene, f64),
+) -> bool {
     let changed = turn.value.is_some_and(|value| session.edit(|scene| change(scene, value)));
     if turn.ended {
         session.end_gesture();
@@ -210,10 +214,12 @@ fn more_ui(ui: &mut Ui, session: &mut Session, style: &Style, width: f32) -> boo
     let done = knob.ui(ui, session.scene().mass_g);
     changed |= turn(session, done, |scene, value| scene.mass_g = value.max(1e-3));
     ui.add_space(8.0);
-    let hover = "What is changed seldom: the sizes of the flexures.";
+    let hover = "What is changed seldom: sizes of the flexures, kind of shaking, uneven stops, run.";
     let heading = RichText::new("Advanced").strong();
-    let advanced = egui::CollapsingHeader::new(heading).id_salt("advanced").show(ui, |ui| {
+    let advanced = egui::CollapsingHeader::new(heading).id_salt("advanced").show_unindented(ui, |ui| {
         changed |= geometry::sizes_ui(ui, session, style, width);
+        ui.separator();
+        changed |= advanced::advanced_ui(ui, session, width);
     });
     advanced.header_response.on_hover_text(hover);
     changed
@@ -224,7 +230,7 @@ fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
         let why = if session.scene().stops == Stops::None {
             "There are no stops to rebound from: switch them on first."
         } else {
-            "The two stops have a restitution each; change them in the scene file."
+            "The two stops have a restitution each, under Advanced."
         };
         ui.add_enabled(false, egui::Label::new("restitution")).on_disabled_hover_text(why);
         return false;

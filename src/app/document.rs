@@ -5,7 +5,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::scene::{Document, Excitation, Files, Mechanism, Scene, SceneError, Start, Stops, TABLES, write};
+use crate::scene::{
+    Document, Excitation, Files, Mechanism, Scene, SceneError, Start, Stops, TABLES, numeric_fields, write,
+};
 
 use super::export;
 
@@ -76,9 +78,18 @@ impl Editor {
         &self.saved
     }
 
+    /// The document as it can be run and written: without axes of its sweep that name a field which the scene does not
+    /// have at the moment, such as the travel limit while the stops are off. The scene keeps them for when it has.
+    pub fn runnable(&self) -> Document {
+        let mut document = self.document.clone();
+        let fields = numeric_fields(&document.scene);
+        document.scene.sweep.retain(|axis| fields.contains(&axis.field));
+        document
+    }
+
     /// The scene as text.
     pub fn text(&self) -> String {
-        write(&self.document.scene)
+        write(&self.runnable().scene)
     }
 
     /// Whether the file that the scene came from has comments, which are no part of a scene.

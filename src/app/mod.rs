@@ -10,13 +10,14 @@
 //! | [`task`] | background tasks as values |
 //! | [`player`] | the clock and the live motion with its past |
 //! | [`session`] | those three together, and what is known of the scene |
-//! | `controls`, `geometry` | the hands on the scene and on its flexures |
+//! | `controls`, `geometry`, `advanced` | the hands on the scene, on its flexures, and on what is changed seldom |
 //! | [`status`] | the sentence that says what the mass does |
 //! | [`style`] | every colour and width |
 //! | [`views`] | what is seen, a file each |
 //! | [`layouts`] | where the views stand |
 //! | [`window`] | panels, menus, keys: the `eframe::App` |
 
+mod advanced;
 pub mod controls;
 pub mod document;
 pub mod export;

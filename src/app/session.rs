@@ -189,7 +189,7 @@ impl Session {
     /// Changes the mechanism as part of a gesture, if the changed one can be solved and run; if not, everything stays
     /// as it is and [`refused`](Self::refused) says why. Whether it changed.
     pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut scene::Mechanism)) -> bool {
-        let mut document = self.editor.document().clone();
+        let mut document = self.editor.runnable();
         change(&mut document.scene.mechanism);
         if document.scene.mechanism == self.scene().mechanism {
             return false;
@@ -228,7 +228,7 @@ impl Session {
         if !std::mem::take(&mut self.hurried) {
             return;
         }
-        let Ok(mechanism) = solved(self.editor.document(), FLEXURE_TOLERANCE) else { return };
+        let Ok(mechanism) = solved(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
         self.mechanism = mechanism;
         if let Ok(model) = Model::build(self.scene(), Arc::clone(&self.mechanism)) {
             self.model = Arc::new(model);
@@ -332,7 +332,7 @@ impl Session {
     }
 
     fn build(&mut self) -> Result<Model, CannotRun> {
-        let document = self.editor.document();
+        let document = &self.editor.runnable();
         document.check()?;
         let scene = &document.scene;
         if scene.mechanism != self.mechanism_of {

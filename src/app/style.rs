@@ -244,7 +244,6 @@ pub fn install(ctx: &egui::Context) {
         style.visuals.slider_trailing_fill = true;
         // what has the keyboard's focus has this frame, too
         style.visuals.widgets.active.bg_stroke = ink.focus_stroke();
-        style.visuals.widgets.active.fg_stroke = Stroke::new(2.0, ink.base());
     });
 }
 

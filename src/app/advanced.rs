@@ -1,0 +1,334 @@
+//! What is changed seldom: the kind of shaking and its numbers, stops that differ, how long and how closely a run goes.
+//!
+//! What cannot be is not offered, or is greyed with the reason.
+
+use eframe::egui::{self, ComboBox, Ui};
+
+use crate::scene::{Excitation, Scene, Stops};
+
+use super::controls::turn;
+use super::session::Session;
+use super::widgets::Knob;
+
+/// Draws it. Whether something changed.
+pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let mut changed = kind_ui(ui, session);
+    changed |= excitation_ui(ui, session, width);
+    ui.separator();
+    changed |= uneven_ui(ui, session, width);
+    ui.separator();
+    changed | run_ui(ui, session, width)
+}
+
+/// Kinds that can be chosen, as they are called.
+const KINDS: [&str; 6] = ["none", "constant", "sine", "amplitude ramp", "chirp", "noise"];
+
+fn kind(excitation: &Excitation) -> &'static str {
+    match excitation {
+        Excitation::None => KINDS[0],
+        Excitation::Constant { .. } => KINDS[1],
+        Excitation::Sine { .. } => KINDS[2],
+        Excitation::AmplitudeRamp { .. } => KINDS[3],
+        Excitation::Chirp { .. } => KINDS[4],
+        Excitation::Noise { .. } => KINDS[5],
+        Excitation::Recorded { .. } => "recorded",
+        Excitation::Sum(_) => "sum",
+    }
+}
+
+/// Another kind of shaking, as strong and as fast as the present one where that has a meaning.
+fn of_kind(name: &str, from: &Excitation) -> Excitation {
+    let (f, g) = match from {
+        Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),
+        Excitation::AmplitudeRamp { frequency_hz, to_g, .. } => (*frequency_hz, *to_g),
+        Excitation::Chirp { from_hz, to_hz, amplitude_g, .. } => (0.5 * (from_hz + to_hz), *amplitude_g),
+        Excitation::Noise { rms_g, low_hz, high_hz, .. } => (0.5 * (low_hz + high_hz), *rms_g),
+        Excitation::Constant { accel_g } => (3.0, *accel_g),
+        _ => (3.0, 0.5),
+    };
+    match name {
+        "constant" => Excitation::Constant { accel_g: g },
+        "sine" => Excitation::Sine { frequency_hz: f, amplitude_g: g, phase_deg: 0.0 },
+        "amplitude ramp" => Excitation::AmplitudeRamp { frequency_hz: f, from_g: 0.0, to_g: g, over_s: 60.0 },
+        "chirp" => Excitation::Chirp { from_hz: 0.5 * f, to_hz: 2.0 * f, over_s: 60.0, amplitude_g: g },
+        "noise" => {
+            Excitation::Noise { rms_g: g.abs(), low_hz: 0.5 * f, high_hz: 2.0 * f, seed: 1, lines: 256 }
+        }
+        _ => Excitation::None,
+    }
+}
+
+fn kind_ui(ui: &mut Ui, session: &mut Session) -> bool {
+    let present = kind(&session.scene().excitation);
+    let mut wanted = present;
+    let name = ui.label("kind of shaking");
+    let combo = ComboBox::from_id_salt("kind of shaking").selected_text(present).show_ui(ui, |ui| {
+        for own in KINDS {
+            ui.selectable_value(&mut wanted, own, own);
+        }
+        for (own, why) in [
+            ("recorded", "A record is named in the scene file: excitation: Recorded(path: ..)."),
+            ("sum", "A sum of several is written in the scene file: excitation: Sum([..])."),
+        ] {
+            ui.add_enabled(false, egui::Button::selectable(own == present, own)).on_disabled_hover_text(why);
+        }
+    });
+    combo.response.labelled_by(name.id).on_hover_text("What moves the base.");
+    wanted != present && session.edit_once(|scene| scene.excitation = of_kind(wanted, &scene.excitation))
+}
+
+/// A number of a scene; none where the scene does not have it.
+type Place = fn(&mut Scene) -> Option<&mut f64>;
+
+/// One slider of such a number, kept within its range.
+fn number_ui(ui: &mut Ui, session: &mut Session, knob: &Knob<'_>, place: Place) -> bool {
+    let mut present = session.scene().clone();
+    let Some(value) = place(&mut present).map(|value| *value) else { return false };
+    let done = knob.ui(ui, value);
+    let (low, high) = (knob.range.0.min(value), knob.range.1.max(value));
+    turn(session, done, |scene, value| {
+        if let Some(own) = place(scene) {
+            *own = value.clamp(low, high);
+        }
+    })
+}
+
+fn excitation_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let knob =
+        |name, unit, range, step, decimals, hover| Knob { name, unit, range, step, decimals, hover, width };
+    let knobs: Vec<(Knob<'_>, Place)> = match &session.scene().excitation {
+        Excitation::Constant { .. } => vec![(
+            knob(
+                "acceleration",
+                " g",
+                (-2.0, 2.0),
+                0.01,
+                2,
+                "Increase: the tray is tipped further to the left.",
+            ),
+            |scene| match &mut scene.excitation {
+                Excitation::Constant { accel_g } => Some(accel_g),
+                _ => None,
+            },
+        )],
+        Excitation::Sine { .. } => vec![(
+            knob("phase", "°", (-180.0, 180.0), 15.0, 0, "Increase: the shaking begins later in its cycle."),
+            |scene| match &mut scene.excitation {
+                Excitation::Sine { phase_deg, .. } => Some(phase_deg),
+                _ => None,
+            },
+        )],
+        Excitation::AmplitudeRamp { .. } => vec![
+            (
+                knob("from", " g", (0.0, 3.0), 0.01, 2, "Increase: the ramp begins with harder shaking."),
+                |scene| match &mut scene.excitation {
+                    Excitation::AmplitudeRamp { from_g, .. } => Some(from_g),
+                    _ => None,
+                },
+            ),
+            (
+                knob("to", " g", (0.0, 3.0), 0.01, 2, "Increase: the ramp ends with harder shaking."),
+                |scene| match &mut scene.excitation {
+                    Excitation::AmplitudeRamp { to_g, .. } => Some(to_g),
+                    _ => None,
+                },
+            ),
+            (
+                knob(
+                    "ramp frequency",
+                    " Hz",
+                    (0.5, 20.0),
+                    0.1,
+                    1,
+                    "Increase: the pushes follow each other faster.",
+                ),
+                |scene| match &mut scene.excitation {
+                    Excitation::AmplitudeRamp { frequency_hz, .. } => Some(frequency_hz),
+                    _ => None,
+                },
+            ),
+            (knob("over", " s", (1.0, 600.0), 1.0, 0, "Increase: the shaking grows more slowly."), |scene| {
+                match &mut scene.excitation {
+                    Excitation::AmplitudeRamp { over_s, .. } => Some(over_s),
+                    _ => None,
+                }
+            }),
+        ],
+        Excitation::Chirp { .. } => vec![
+            (
+                knob("from", " Hz", (0.0, 30.0), 0.1, 1, "Increase: the sweep begins at a higher frequency."),
+                |scene| match &mut scene.excitation {
+                    Excitation::Chirp { from_hz, .. } => Some(from_hz),
+                    _ => None,
+                },
+            ),
+            (
+                knob("to", " Hz", (0.0, 30.0), 0.1, 1, "Increase: the sweep ends at a higher frequency."),
+                |scene| match &mut scene.excitation {
+                    Excitation::Chirp { to_hz, .. } => Some(to_hz),
+                    _ => None,
+                },
+            ),
+            (
+                knob("over", " s", (1.0, 600.0), 1.0, 0, "Increase: the frequency changes more slowly."),
+                |scene| match &mut scene.excitation {
+                    Excitation::Chirp { over_s, .. } => Some(over_s),
+                    _ => None,
+                },
+            ),
+        ],
+        // the ends of the band stay apart: each ends where the other begins
+        Excitation::Noise { low_hz, high_hz, .. } => vec![
+            (
+                knob(
+                    "lowest",
+                    " Hz",
+                    (0.0, high_hz - 0.1),
+                    0.1,
+                    1,
+                    "Increase: the slow part of the shaking goes.",
+                ),
+                |scene| match &mut scene.excitation {
+                    Excitation::Noise { low_hz, .. } => Some(low_hz),
+                    _ => None,
+                },
+            ),
+            (
+                knob("highest", " Hz", (low_hz + 0.1, 50.0), 0.1, 1, "Increase: faster shaking comes in."),
+                |scene| match &mut scene.excitation {
+                    Excitation::Noise { high_hz, .. } => Some(high_hz),
+                    _ => None,
+                },
+            ),
+        ],
+        _ => Vec::new(),
+    };
+    let mut changed = false;
+    for (knob, place) in &knobs {
+        changed |= number_ui(ui, session, knob, *place);
+    }
+    changed
+}
+
+fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let stops = session.scene().stops;
+    let mut uneven = matches!(stops, Stops::Uneven { .. });
+    let tick = egui::Checkbox::new(&mut uneven, "stops that differ");
+    let response = ui.add_enabled(stops != Stops::None, tick);
+    let response =
+        response.on_hover_text("Each side has a distance and a restitution of its own, or is open.");
+    let switched = response.on_disabled_hover_text("There are no stops: switch them on first.").changed();
+    let mut changed = switched && session.edit_once(|scene| scene.stops = other_kind(scene.stops));
+    let Stops::Uneven { left_mm, right_mm, .. } = session.scene().stops else { return changed };
+    for (name, right, own, other) in
+        [("left stop is there", false, left_mm, right_mm), ("right stop is there", true, right_mm, left_mm)]
+    {
+        let mut there = own.is_some();
+        // without either there would be no stops, and that has a switch of its own
+        let free = own.is_none() || other.is_some();
+        let response = ui.add_enabled(free, egui::Checkbox::new(&mut there, name));
+        let response = response.on_hover_text("An open side limits nothing.");
+        let why = "One side has to have a stop; the switch Stops takes both away.";
+        if response.on_disabled_hover_text(why).changed() {
+            changed |= session.edit_once(|scene| {
+                if let Stops::Uneven { left_mm, right_mm, .. } = &mut scene.stops {
+                    *(if right { right_mm } else { left_mm }) = there.then_some(other.unwrap_or(1.5));
+                }
+            });
+        }
+    }
+    let hover = "Increase: a rebound at this side keeps more of the speed.";
+    let knob = |name| Knob { name, unit: "", range: (0.0, 1.0), step: 0.01, decimals: 2, hover, width };
+    let places: [(&str, Place); 2] = [
+        ("left restitution", |scene| match &mut scene.stops {
+            Stops::Uneven { restitution_left, .. } => restitution_left.as_mut(),
+            _ => None,
+        }),
+        ("right restitution", |scene| match &mut scene.stops {
+            Stops::Uneven { restitution_right, .. } => restitution_right.as_mut(),
+            _ => None,
+        }),
+    ];
+    for (name, place) in places {
+        changed |= number_ui(ui, session, &knob(name), place);
+    }
+    changed
+}
+
+/// Equal stops as stops that may differ, and back; back, both are as the right one, where it is there.
+fn other_kind(stops: Stops) -> Stops {
+    match stops {
+        Stops::Rigid { travel_limit_mm, restitution } => Stops::Uneven {
+            left_mm: Some(travel_limit_mm),
+            right_mm: Some(travel_limit_mm),
+            restitution_left: Some(restitution),
+            restitution_right: Some(restitution),
+        },
+        Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => Stops::Rigid {
+            travel_limit_mm: right_mm.or(left_mm).unwrap_or(1.5),
+            restitution: restitution_right.or(restitution_left).unwrap_or(0.36),
+        },
+        Stops::None => Stops::None,
+    }
+}
+
+/// Tolerances that can be chosen, as they are called.
+const TOLERANCES: [(f64, &str); 4] = [(1e-6, "1e-6"), (1e-9, "1e-9"), (1e-12, "1e-12"), (1e-14, "1e-14")];
+
+fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let knob = Knob {
+        name: "run length",
+        unit: " s",
+        range: (1.0, 120.0),
+        step: 1.0,
+        decimals: 0,
+        hover: "Increase: what is said of the settled motion rests on more periods. Its second half counts, or what \
+                comes after the time that the scene says.",
+        width,
+    };
+    let done = knob.ui(ui, session.scene().run.duration_s);
+    let mut changed = turn(session, done, |scene, value| {
+        scene.run.duration_s = value.max(1.0);
+        // a window that would begin after the end begins in the middle
+        scene.run.settle_s = scene.run.settle_s.filter(|settle| *settle < scene.run.duration_s);
+    });
+    let present = session.scene().run.tolerance;
+    let mut wanted = present;
+    let name = ui.label("tolerance");
+    let combo = ComboBox::from_id_salt("tolerance").selected_text(format!("{present:e}")).show_ui(ui, |ui| {
+        for (value, name) in TOLERANCES {
+            ui.selectable_value(&mut wanted, value, name);
+        }
+    });
+    let hover = "Error allowed in a step. Smaller: a little slower; a motion without rhythm takes another course, and \
+                 its averages stay.";
+    combo.response.labelled_by(name.id).on_hover_text(hover);
+    changed |= wanted != present && session.edit_once(|scene| scene.run.tolerance = wanted);
+    changed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Document, check};
+
+    #[test]
+    fn every_kind_of_every_preset_can_be_run() {
+        for preset in crate::scene::PRESETS {
+            let scene = Document::load(preset.name).unwrap().scene;
+            for name in KINDS {
+                let excitation = of_kind(name, &scene.excitation);
+                assert_eq!(kind(&excitation), name);
+                let changed = Scene { excitation, sweep: Vec::new(), ..scene.clone() };
+                assert!(check(&changed).faults.is_empty(), "{} {name}", preset.name);
+            }
+        }
+    }
+
+    #[test]
+    fn stops_that_differ_and_back() {
+        let stops = Stops::Rigid { travel_limit_mm: 2.0, restitution: 0.4 };
+        assert_eq!(other_kind(other_kind(stops)), stops);
+        assert_eq!(other_kind(Stops::None), Stops::None);
+    }
+}

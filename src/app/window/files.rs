@@ -1,0 +1,285 @@
+//! How do scenes come into the window, and how do they leave it? Files, drops, the clipboard, and the questions on the way.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use eframe::egui::{self, Ui};
+
+use super::super::document::Editor;
+use super::super::export;
+use super::super::leave::{self, Answer, Next};
+use super::super::menu::Command;
+use super::super::session::CannotRun;
+use super::super::style::STATUS;
+use super::Window;
+
+/// How many of the scenes opened last are kept.
+const MOST_RECENT: usize = 8;
+
+/// A file that was chosen, and what for.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Chosen {
+    Open(PathBuf),
+    Save(PathBuf),
+    Csv(PathBuf),
+    Picture(PathBuf),
+    /// The desktop has no dialog to offer.
+    NoDialog,
+}
+
+/// A dialog that is gone sooner than this in ms was never seen by anyone.
+const UNSEEN: u128 = 300;
+
+/// What a file is wanted for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Wanted {
+    Open,
+    Save,
+    Csv,
+    Picture,
+}
+
+impl Window {
+    /// Opens another scene; one that cannot be opened leaves the present one and says why.
+    pub fn open_another(&mut self, spec: &str) {
+        self.open_editor(Editor::open(spec).map_err(CannotRun::from));
+    }
+
+    fn open_editor(&mut self, editor: Result<Editor, CannotRun>) {
+        let wake = Arc::clone(&self.wake);
+        match editor.and_then(|editor| Self::on(editor, self.settings, wake)) {
+            Ok(window) => {
+                *self = Self {
+                    dialog: std::mem::take(&mut self.dialog),
+                    recent: std::mem::take(&mut self.recent),
+                    own: self.own.take(),
+                    titled: std::mem::take(&mut self.titled),
+                    applied: self.applied,
+                    ..window
+                };
+                self.remember_file();
+            }
+            Err(error) => self.say("This scene cannot be opened", error.to_string()),
+        }
+    }
+
+    pub(super) fn say(&mut self, title: &str, text: String) {
+        self.message = Some((title.to_owned(), text));
+    }
+
+    /// Puts the scene's file first among the recent ones.
+    pub fn remember_file(&mut self) {
+        let Some(path) = self.session.editor.path() else { return };
+        let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned()).to_string_lossy().into_owned();
+        self.recent.retain(|own| *own != whole);
+        self.recent.insert(0, whole);
+        self.recent.truncate(MOST_RECENT);
+    }
+
+    /// Goes on to what is next, once the changes of the present scene are saved or given up.
+    pub fn leave_for(&mut self, ctx: &egui::Context, next: Next) {
+        self.session.end_gesture();
+        if self.session.editor.is_dirty() {
+            self.asked = Some(next);
+        } else {
+            self.go_on(ctx, next);
+        }
+    }
+
+    pub(super) fn go_on(&mut self, ctx: &egui::Context, next: Next) {
+        match next {
+            Next::Open(spec) => self.open_another(&spec),
+            Next::Text(text) => self.open_editor(Editor::from_text(&text).map_err(CannotRun::from)),
+            Next::Choose => self.choose(Wanted::Open),
+            Next::Quit => {
+                self.leaving = true;
+                ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            }
+        }
+    }
+
+    /// Takes in the answer of a dialog.
+    pub(super) fn take_choice(&mut self, ctx: &egui::Context) {
+        if self.dialog.poll()
+            && let Some(chosen) = self.dialog.current().cloned()
+        {
+            self.dialog.clear();
+            match chosen {
+                Chosen::Open(path) => self.open_another(&path.to_string_lossy()),
+                Chosen::Save(path) => self.save_to(ctx, &path),
+                Chosen::Csv(path) => self.write_motion(&path),
+                Chosen::Picture(path) => self.write_picture(ctx, path),
+                Chosen::NoDialog => self.say(
+                    "No file can be chosen here",
+                    "This desktop offers no file dialog (xdg-desktop-portal or zenity would). A scene can be \
+                     dropped on the window or opened as `interwell SCENE.ron`; Edit has Copy the scene as text."
+                        .to_owned(),
+                ),
+            }
+        } else if !self.dialog.is_running() && self.over_comments.is_none() {
+            // a dialog without a choice: nothing follows
+            self.after_save = None;
+        }
+    }
+
+    /// What came from outside: a closed window, dropped files, the clipboard.
+    pub(super) fn take_in(&mut self, ctx: &egui::Context) {
+        if ctx.input(|input| input.viewport().close_requested())
+            && !self.leaving
+            && self.session.editor.is_dirty()
+        {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.leave_for(ctx, Next::Quit);
+        }
+        let dropped: Vec<PathBuf> =
+            ctx.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
+        match dropped.as_slice() {
+            [] => {}
+            [one] => self.leave_for(ctx, Next::Open(one.to_string_lossy().into_owned())),
+            _ => self.say("One scene at a time", "Drop a single scene file (.ron) on the window.".to_owned()),
+        }
+        if self.asked.is_none() && !ctx.text_edit_focused() {
+            let (mut copied, mut pasted) = (false, None);
+            ctx.input(|input| {
+                for event in &input.events {
+                    match event {
+                        egui::Event::Copy => copied = true,
+                        egui::Event::Paste(text) => pasted = Some(text.clone()),
+                        _ => {}
+                    }
+                }
+            });
+            if copied {
+                ctx.copy_text(self.session.editor.text());
+            }
+            if let Some(text) = pasted {
+                self.leave_for(ctx, Next::Text(text));
+            }
+        }
+        while let Ok(error) = self.errors.1.try_recv() {
+            self.say("Not written", error);
+        }
+        let dirty = if self.session.editor.is_dirty() { "* " } else { "" };
+        let title = format!("{dirty}{} - interwell", self.session.scene().title);
+        if title != self.titled {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.titled = title;
+        }
+    }
+
+    pub(super) fn questions_ui(&mut self, ui: &Ui, ctx: &egui::Context) {
+        if self.asked.is_some()
+            && let Some(answer) = leave::question_ui(ui, &self.session.scene().title)
+            && let Some(next) = self.asked.take()
+        {
+            match answer {
+                Answer::Save => {
+                    self.after_save = Some(next);
+                    self.carry_out(ctx, Command::Save);
+                }
+                Answer::DontSave => self.go_on(ctx, next),
+                Answer::Cancel => {}
+            }
+        }
+        let shown = self.over_comments.as_ref().map(|path| path.display().to_string());
+        if let Some(shown) = shown
+            && let Some(answer) = leave::comments_ui(ui, &shown)
+            && let Some(path) = self.over_comments.take()
+        {
+            match answer {
+                Answer::Save => self.write_scene(ctx, &path),
+                Answer::DontSave => self.choose(Wanted::Save),
+                Answer::Cancel => self.after_save = None,
+            }
+        }
+        if ui.input(|input| !input.raw.hovered_files.is_empty()) {
+            let painter =
+                ctx.layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));
+            let rect = ctx.content_rect();
+            painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color.gamma_multiply(0.8));
+            let font = egui::FontId::proportional(STATUS);
+            let (at, ink) = (rect.center(), ui.visuals().text_color());
+            painter.text(at, egui::Align2::CENTER_CENTER, "Drop the scene to open it", font, ink);
+        }
+    }
+
+    /// Saves to a file; one that was written by hand with comments only once it is said that they go.
+    pub fn save_to(&mut self, ctx: &egui::Context, path: &Path) {
+        let own = self.session.editor.path() == Some(path);
+        if own && self.session.editor.has_comments() {
+            self.over_comments = Some(path.to_owned());
+        } else {
+            self.write_scene(ctx, path);
+        }
+    }
+
+    fn write_scene(&mut self, ctx: &egui::Context, path: &Path) {
+        let next = self.after_save.take();
+        match self.session.editor.save_to(path) {
+            Ok(()) => {
+                self.remember_file();
+                if let Some(next) = next {
+                    self.go_on(ctx, next);
+                }
+            }
+            Err(error) => self.say("The scene was not saved", error),
+        }
+    }
+
+    /// Writes the motion that is remembered as CSV.
+    pub fn write_motion(&mut self, path: &Path) {
+        if let Err(error) = export::write(path, export::motion_csv(&self.session.player).as_bytes()) {
+            self.say("The motion was not written", error);
+        }
+    }
+
+    /// Has the window's picture written once it has been drawn.
+    fn write_picture(&mut self, ctx: &egui::Context, path: PathBuf) {
+        let (errors, wake) = (self.errors.0.clone(), Arc::clone(&self.wake));
+        ctx.request_screenshot(move |image| {
+            if let Err(error) = export::png(&image).and_then(|bytes| export::write(&path, &bytes)) {
+                errors.send(error).ok();
+                wake();
+            }
+        });
+    }
+
+    /// Asks for a file, without the window waiting for the answer.
+    pub(super) fn choose(&mut self, wanted: Wanted) {
+        let (kind, ending) = match wanted {
+            Wanted::Open | Wanted::Save => ("scene", "ron"),
+            Wanted::Csv => ("motion", "csv"),
+            Wanted::Picture => ("picture", "png"),
+        };
+        let path = self.session.editor.path().map(Path::to_path_buf);
+        let stem = path.as_ref().and_then(|path| path.file_stem());
+        let stem = stem.map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let folder = path.as_ref().and_then(|path| path.parent()).map(Path::to_path_buf);
+        self.dialog.ask(&self.wake, move |_| {
+            let mut dialog = rfd::FileDialog::new().add_filter(kind, &[ending]);
+            if let Some(folder) = folder.filter(|folder| folder.is_dir()) {
+                dialog = dialog.set_directory(folder);
+            }
+            let since = std::time::Instant::now();
+            let chosen = if wanted == Wanted::Open {
+                dialog.pick_file()
+            } else {
+                dialog.set_file_name(format!("{stem}.{ending}")).save_file()
+            };
+            let Some(mut path) = chosen else {
+                return (since.elapsed().as_millis() < UNSEEN).then_some(Chosen::NoDialog);
+            };
+            if wanted == Wanted::Open {
+                return Some(Chosen::Open(path));
+            }
+            if path.extension().is_none() {
+                path.set_extension(ending);
+            }
+            Some(match wanted {
+                Wanted::Csv => Chosen::Csv(path),
+                Wanted::Picture => Chosen::Picture(path),
+                _ => Chosen::Save(path),
+            })
+        });
+    }
+}
