@@ -16,6 +16,9 @@ const LEFT_SHARE: f32 = 590.0 / 1030.0;
 const MECHANISM_SHARE: f32 = 220.0 / 584.0;
 const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
 
+/// Share of the width that the map has in the layout Map.
+const MAP_SHARE: f32 = 640.0 / 1030.0;
+
 /// The tiles of one layout.
 pub struct Tiling {
     tree: Tree<View>,
@@ -25,7 +28,12 @@ pub struct Tiling {
 impl Tiling {
     /// The tiles of a layout; `compact` for a small window.
     pub fn new(layout: Layout, compact: bool) -> Self {
-        let tree = if compact { compact_tree() } else { wide_tree(layout) };
+        let tree = match (layout, compact) {
+            (Layout::Map, false) => map_tree(),
+            (Layout::Map, true) => compact_map_tree(),
+            (_, false) => wide_tree(layout),
+            (_, true) => compact_tree(),
+        };
         Self { tree, compact }
     }
 
@@ -82,6 +90,23 @@ fn compact_tree() -> Tree<View> {
     let right = tiles.insert_tab_tile(vec![displacement, card]);
     let root = pair(&mut tiles, LinearDir::Horizontal, left, right, LEFT_SHARE);
     Tree::new(egui::Id::unique("compact"), root, tiles)
+}
+
+/// The map, with the well and the card beside it.
+fn map_tree() -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let mut pane = |view| tiles.insert_pane(view);
+    let (map, well, card) = (pane(View::Map), pane(View::Well), pane(View::BeforeNow));
+    let right = pair(&mut tiles, LinearDir::Vertical, well, card, DISPLACEMENT_SHARE);
+    let root = pair(&mut tiles, LinearDir::Horizontal, map, right, MAP_SHARE);
+    Tree::new(egui::Id::unique("map"), root, tiles)
+}
+
+fn compact_map_tree() -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let views = [View::Map, View::Well, View::BeforeNow].map(|view| tiles.insert_pane(view));
+    let root = tiles.insert_tab_tile(views.to_vec());
+    Tree::new(egui::Id::unique("compact map"), root, tiles)
 }
 
 fn pair(tiles: &mut Tiles<View>, direction: LinearDir, first: TileId, second: TileId, share: f32) -> TileId {

@@ -5,6 +5,7 @@ use eframe::egui::{self, Button, Key, KeyboardShortcut, Modifiers, Ui};
 use crate::scene::{Layout, PRESETS};
 
 use super::layouts::Tiling;
+use super::map::Map;
 use super::session::Session;
 use super::settings::Settings;
 use super::views::View;
@@ -20,6 +21,10 @@ pub enum Command {
     Save,
     /// Choose a file and save the scene to it.
     SaveAs,
+    /// Choose a file and write the map to it.
+    SaveMap,
+    /// Put the command line that makes the map on the clipboard.
+    CopyMapCommand,
     /// Leave.
     Quit,
     /// A step back.
@@ -83,6 +88,12 @@ pub fn menu_ui(ui: &mut Ui, session: &Session, tiling: &Tiling, settings: Settin
             item(ui, &mut asked, "Save", Some(command(Key::S)), save, Command::Save);
             item(ui, &mut asked, "Save as...", Some(SAVE_AS), true, Command::SaveAs);
             ui.separator();
+            let map = session.map.map();
+            let whole = map.is_some_and(Map::is_whole);
+            item(ui, &mut asked, "Save the map as CSV...", None, whole, Command::SaveMap);
+            let copy = "Copy the map's command line";
+            item(ui, &mut asked, copy, None, map.is_some(), Command::CopyMapCommand);
+            ui.separator();
             item(ui, &mut asked, "Quit", Some(command(Key::Q)), true, Command::Quit);
         });
         ui.menu_button("Edit", |ui| {
@@ -128,6 +139,7 @@ fn item(
 
 fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings: Settings) {
     item(ui, asked, "Arrange as Look", Some(command(Key::Num1)), true, Command::Arrange(Layout::Look));
+    item(ui, asked, "Arrange as Map", Some(command(Key::Num3)), true, Command::Arrange(Layout::Map));
     ui.separator();
     for view in View::ALL {
         let mut shown = tiling.shows(view);
@@ -166,6 +178,7 @@ pub fn keys(ctx: &egui::Context) -> Vec<Command> {
     on(command(Key::S), Command::Save);
     on(command(Key::O), Command::Open);
     on(command(Key::Num1), Command::Arrange(Layout::Look));
+    on(command(Key::Num3), Command::Arrange(Layout::Map));
     on(plain(Key::F11), Command::FullScreen);
     on(plain(Key::PageUp), Command::PreviousEvent);
     on(plain(Key::PageDown), Command::NextEvent);

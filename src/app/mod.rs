@@ -9,6 +9,7 @@
 //! | [`task`] | background tasks as values |
 //! | [`player`] | the clock and the live motion with its past |
 //! | [`session`] | those three together, and what is known of the scene |
+//! | [`map`] | the map of the scene, made while it is looked at |
 //! | [`status`] | the sentence that says what the mass does |
 //! | [`style`] | every colour and width |
 //! | [`views`] | what is seen, a file each |
@@ -19,6 +20,7 @@ pub mod controls;
 pub mod document;
 mod hint;
 pub mod layouts;
+pub mod map;
 pub mod menu;
 pub mod player;
 pub mod session;

@@ -11,6 +11,7 @@ use crate::scene::{Layout, PRESETS};
 
 use super::document::Editor;
 use super::layouts::Tiling;
+use super::map::Map;
 use super::menu::{self, Command};
 use super::player::SPEEDS;
 use super::session::{CannotRun, Session};
@@ -27,6 +28,7 @@ use super::{controls, hint};
 enum Chosen {
     Open(PathBuf),
     Save(PathBuf),
+    SaveMap(PathBuf),
 }
 
 /// Everything that the window shows.
@@ -106,6 +108,7 @@ impl Window {
             match chosen {
                 Chosen::Open(path) => self.open_another(&path.to_string_lossy()),
                 Chosen::Save(path) => self.save_to(&path),
+                Chosen::SaveMap(path) => self.save_map_to(&path),
             }
         }
         self.session.poll();
@@ -160,6 +163,7 @@ impl Window {
             Panel::top("hint").frame(line).show(ui, |ui| self.hint.ui(ui));
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
+        self.session.map.end_frame();
         for command in asked {
             self.carry_out(&ctx, command);
         }
@@ -221,6 +225,12 @@ impl Window {
                 None => self.choose(false),
             },
             Command::SaveAs => self.choose(false),
+            Command::SaveMap => self.choose_for_map(),
+            Command::CopyMapCommand => {
+                if let Some(command) = self.session.map_command() {
+                    ctx.copy_text(command);
+                }
+            }
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::Undo => {
                 self.session.undo();
@@ -272,6 +282,21 @@ impl Window {
         if let Err(error) = self.session.editor.save_to(path) {
             self.message = Some(("The scene was not saved".to_owned(), error));
         }
+    }
+
+    fn save_map_to(&mut self, path: &std::path::Path) {
+        let Some(text) = self.session.map.map().and_then(Map::csv) else { return };
+        if let Err(error) = std::fs::write(path, text) {
+            let text = format!("cannot write {}: {error}", path.display());
+            self.message = Some(("The map was not saved".to_owned(), text));
+        }
+    }
+
+    fn choose_for_map(&mut self) {
+        self.dialog.ask(&self.wake, |_| {
+            let dialog = rfd::FileDialog::new().add_filter("table", &["csv"]).set_file_name("map.csv");
+            dialog.save_file().map(Chosen::SaveMap)
+        });
     }
 
     /// Asks for a file, without the window waiting for the answer.

@@ -6,6 +6,7 @@
 
 mod before_now;
 mod displacement;
+mod map;
 mod mechanism;
 mod span;
 mod stops;
@@ -16,6 +17,7 @@ use eframe::egui::Ui;
 use super::session::Session;
 use super::style::Style;
 
+pub use map::Quantity;
 pub use span::Span;
 
 /// What can be seen.
@@ -29,11 +31,13 @@ pub enum View {
     Displacement,
     /// The state before the last gesture against the present one.
     BeforeNow,
+    /// What every combination of two fields comes to.
+    Map,
 }
 
 impl View {
     /// All of them, in the order of the menu.
-    pub const ALL: [Self; 4] = [Self::Mechanism, Self::Well, Self::Displacement, Self::BeforeNow];
+    pub const ALL: [Self; 5] = [Self::Mechanism, Self::Well, Self::Displacement, Self::BeforeNow, Self::Map];
 
     /// What it is called.
     pub fn name(self) -> &'static str {
@@ -42,6 +46,7 @@ impl View {
             Self::Well => "Well",
             Self::Displacement => "Displacement",
             Self::BeforeNow => "Before / now",
+            Self::Map => "Map",
         }
     }
 }
@@ -73,6 +78,8 @@ pub struct Memory {
     pub hovered: Option<View>,
     /// Time span of the displacement in s, where a person has chosen one.
     pub time_window: Option<f64>,
+    /// What the map shows.
+    pub map_quantity: Quantity,
 }
 
 /// Draws one view. Whether it changed something.
@@ -85,5 +92,6 @@ pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
         View::Well => well::well_ui(ui, context),
         View::Displacement => displacement::displacement_ui(ui, context),
         View::BeforeNow => before_now::before_now_ui(ui, context),
+        View::Map => map::map_ui(ui, context),
     }
 }
