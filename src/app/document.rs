@@ -102,6 +102,11 @@ impl Editor {
         &self.document.scene
     }
 
+    /// The scene as it was opened or last saved: what stands in its file.
+    pub fn saved(&self) -> &Scene {
+        &self.saved
+    }
+
     /// The document, for what needs its files and its places.
     pub fn document(&self) -> &Document {
         &self.document

@@ -16,6 +16,9 @@ const LEFT_SHARE: f32 = 590.0 / 1030.0;
 const MECHANISM_SHARE: f32 = 220.0 / 584.0;
 const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
 
+/// Share of the width that the map has in the layout Map.
+const MAP_SHARE: f32 = 640.0 / 1030.0;
+
 /// Shares of the layout Study: columns, and the mechanism over the well.
 const STUDY_COLUMN: f32 = 0.34;
 const STUDY_MECHANISM: f32 = 0.34;
@@ -147,14 +150,16 @@ fn views_of(layout: Layout) -> Vec<View> {
     let look = [View::Well, View::Mechanism, View::Displacement, View::BeforeNow];
     let study = [View::PhasePortrait, View::ForceCurve, View::Energy];
     match layout {
-        Layout::Look | Layout::Map => look.to_vec(),
+        Layout::Look => look.to_vec(),
+        Layout::Map => vec![View::Map, View::Well, View::BeforeNow],
         Layout::Study => look.into_iter().chain(study).collect(),
     }
 }
 
 fn wide_tree(layout: Layout, large: bool) -> Tree<View> {
     match layout {
-        Layout::Look | Layout::Map => look_tree(large),
+        Layout::Look => look_tree(large),
+        Layout::Map => map_tree(),
         Layout::Study => study_tree(large),
     }
 }
@@ -210,6 +215,16 @@ fn compact_tree(views: &[View]) -> Tree<View> {
         _ => tiles.insert_horizontal_tile(groups),
     };
     Tree::new(egui::Id::unique("compact"), root, tiles)
+}
+
+/// The map, with the well and the card beside it.
+fn map_tree() -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let mut pane = |view| tiles.insert_pane(view);
+    let (map, well, card) = (pane(View::Map), pane(View::Well), pane(View::BeforeNow));
+    let right = pair(&mut tiles, LinearDir::Vertical, well, card, DISPLACEMENT_SHARE);
+    let root = pair(&mut tiles, LinearDir::Horizontal, map, right, MAP_SHARE);
+    Tree::new(egui::Id::unique("map"), root, tiles)
 }
 
 fn pair(tiles: &mut Tiles<View>, direction: LinearDir, first: TileId, second: TileId, share: f32) -> TileId {

@@ -5,6 +5,7 @@ use eframe::egui::{self, Button, Key, KeyboardShortcut, Modifiers, Ui};
 use crate::scene::{Layout, PRESETS};
 
 use super::layouts::{Room, Tiling};
+use super::map::Map;
 use super::session::Session;
 use super::settings::Settings;
 use super::views::View;
@@ -32,6 +33,10 @@ pub enum Command {
     PasteScene,
     /// The command line of what is shown to the clipboard.
     CopyCommand,
+    /// Choose a file and write the map to it.
+    SaveMap,
+    /// Put the command line that makes the map on the clipboard.
+    CopyMapCommand,
     /// Leave.
     Quit,
     /// A step back.
@@ -125,6 +130,11 @@ pub fn menu_ui(
             ui.separator();
             item(ui, &mut asked, "Save the motion as CSV...", None, true, Command::SaveMotion);
             item(ui, &mut asked, "Save a picture of the window...", None, true, Command::SavePicture);
+            let map = session.map.map();
+            let whole = map.is_some_and(Map::is_whole);
+            item(ui, &mut asked, "Save the map as CSV...", None, whole, Command::SaveMap);
+            let copy = "Copy the map's command line";
+            item(ui, &mut asked, copy, None, map.is_some(), Command::CopyMapCommand);
             ui.separator();
             item(ui, &mut asked, "Quit", Some(command(Key::Q)), true, Command::Quit);
         });
@@ -180,6 +190,7 @@ fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings
     item(ui, asked, "Your own arrangement", Some(command(Key::Num4)), true, Command::ArrangeOwn);
     let keep = tiling.room() != Room::Compact;
     item(ui, asked, "Keep this as your own", None, keep, Command::KeepOwn);
+    item(ui, asked, "Arrange as Map", Some(command(Key::Num3)), true, Command::Arrange(Layout::Map));
     ui.separator();
     for view in View::ALL {
         let mut shown = tiling.shows(view);
@@ -223,6 +234,7 @@ pub fn keys(ctx: &egui::Context) -> Vec<Command> {
     on(plain(Key::F1), Command::Shortcuts);
     on(command(Key::Num2), Command::Arrange(Layout::Study));
     on(command(Key::Num4), Command::ArrangeOwn);
+    on(command(Key::Num3), Command::Arrange(Layout::Map));
     on(plain(Key::F11), Command::FullScreen);
     on(plain(Key::PageUp), Command::PreviousEvent);
     on(plain(Key::PageDown), Command::NextEvent);

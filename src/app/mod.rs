@@ -11,6 +11,7 @@
 //! | [`player`] | the clock and the live motion with its past |
 //! | [`session`] | those three together, and what is known of the scene |
 //! | `controls`, `geometry`, `advanced` | the hands on the scene, on its flexures, and on what is changed seldom |
+//! | [`map`] | the map of the scene, made while it is looked at |
 //! | [`status`] | the sentence that says what the mass does |
 //! | [`style`] | every colour and width |
 //! | [`views`] | what is seen, a file each |
@@ -25,6 +26,7 @@ mod geometry;
 mod hint;
 pub mod layouts;
 pub mod leave;
+pub mod map;
 pub mod menu;
 pub mod player;
 pub mod session;

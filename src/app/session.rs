@@ -11,6 +11,7 @@ use crate::scene::{self, Document, Excitation, Fault, Scene, SceneError, Stops};
 use crate::study::{self, Settled, Thresholds};
 
 use super::document::Editor;
+use super::map::Mapping;
 use super::player::Player;
 use super::status::{self, Sentence, Tense};
 use super::task::{Latest, Wake};
@@ -50,6 +51,8 @@ pub struct Session {
     pub player: Player,
     settled: Latest<Settled>,
     thresholds: Latest<Thresholds>,
+    /// The map of the scene.
+    pub map: Mapping,
     before: Option<Card>,
     /// The scene that the model was built from.
     built: Scene,
@@ -134,6 +137,7 @@ impl Session {
             player,
             settled: Latest::default(),
             thresholds: Latest::default(),
+            map: Mapping::default(),
             before: None,
             mechanism_of: scene.mechanism.clone(),
             hurried: false,
@@ -173,6 +177,7 @@ impl Session {
     pub fn poll(&mut self) {
         self.settled.poll();
         self.thresholds.poll();
+        self.map.take();
         self.apply();
     }
 

@@ -30,7 +30,7 @@ const GROUPS: [(&str, &[(&str, &str)]); 4] = [
             ("Z", "the view under the pointer over the whole window"),
             ("C", "cover the results: predict first"),
             ("F11", "full screen"),
-            ("Ctrl+1, Ctrl+2, Ctrl+4", "arrange as Look, Study, your own"),
+            ("Ctrl+1, 2, 3, 4", "arrange as Look, Study, Map, your own"),
         ],
     ),
     (

@@ -7,6 +7,8 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId, Stroke, TextStyle, Theme};
 
+use crate::output::{Ink, viridis};
+
 use super::status::Kind;
 
 /// Zoom of the projector mode.
@@ -201,6 +203,60 @@ impl Style {
     /// The frame of the base.
     pub fn frame_colour(&self) -> Color32 {
         self.pick(Color32::from_gray(190), Color32::from_gray(85))
+    }
+
+    /// A share from 0 to 1 of a map's scale.
+    pub fn scale(&self, share: f64) -> Color32 {
+        let Ink(red, green, blue) = viridis(share);
+        Color32::from_rgb(red, green, blue)
+    }
+
+    /// What is not known yet.
+    pub fn panel(&self) -> Color32 {
+        self.pick(Color32::from_gray(246), Color32::from_gray(34))
+    }
+
+    /// Over a map that is not that of the scene.
+    pub fn veil(&self) -> Color32 {
+        self.pick(Color32::from_white_alpha(165), Color32::from_black_alpha(165))
+    }
+
+    /// Symbols over the colour of a kind of motion.
+    pub fn over_kind(&self) -> Color32 {
+        self.pick(Color32::WHITE, Color32::BLACK)
+    }
+
+    /// Hatching over what is at rest.
+    pub fn hatch_stroke(&self) -> Stroke {
+        Stroke::new(1.2, self.pick(Color32::from_gray(140), Color32::from_gray(125)))
+    }
+
+    /// Hatching over what has no value.
+    pub fn missing_stroke(&self) -> Stroke {
+        Stroke::new(1.2, self.faint())
+    }
+
+    /// The release over a map: its outline and itself.
+    pub fn release_strokes(&self) -> [Stroke; 2] {
+        let width = self.width(2.4);
+        [Stroke::new(width + 2.4, Color32::BLACK), Stroke::new(width, Color32::WHITE)]
+    }
+
+    /// The first crossing over a map: its outline and itself.
+    pub fn crossing_strokes(&self) -> [Stroke; 2] {
+        let width = self.width(2.4);
+        [Stroke::new(width + 2.4, Color32::WHITE), Stroke::new(width, VERMILION)]
+    }
+
+    /// Where the scene is on a map: an outline and the mark, which is the mass.
+    pub fn marker_strokes(&self) -> [Stroke; 2] {
+        let width = self.width(2.4);
+        [Stroke::new(width + 2.6, Color32::BLACK), Stroke::new(width, ORANGE)]
+    }
+
+    /// The cell under the pointer.
+    pub fn cell_stroke(&self) -> Stroke {
+        Stroke::new(self.width(2.0), self.ink())
     }
 
     /// Small text in a picture.

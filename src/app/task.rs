@@ -3,9 +3,9 @@
 //! A task is a value: dropped, it is cancelled. [`Latest`] asks again and again for the same kind of
 //! answer and shows the newest; an answer to an older question is thrown away.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// Wakes the window when an answer is there.
@@ -55,6 +55,66 @@ impl<T: Send + 'static> Task<T> {
 }
 
 impl<T> Drop for Task<T> {
+    fn drop(&mut self) {
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+}
+
+/// How often at most a stream wakes the window while it runs.
+const WAKE_EVERY: Duration = Duration::from_millis(40);
+
+/// A computation on a thread of its own whose answer comes in parts, from any thread that it uses.
+#[derive(Debug)]
+pub struct Stream<T> {
+    parts: Receiver<T>,
+    cancel: Arc<AtomicBool>,
+}
+
+impl<T: Send + 'static> Stream<T> {
+    /// Starts `job`, which looks at the flag that it is given and hands its parts over one by one; none where the
+    /// system has no thread to give.
+    pub fn start(
+        wake: &Wake,
+        job: impl FnOnce(&AtomicBool, &(dyn Fn(T) + Sync)) + Send + 'static,
+    ) -> Option<Self> {
+        let (sender, parts) = channel();
+        let cancel = Arc::new(AtomicBool::new(false));
+        let (flag, wake) = (Arc::clone(&cancel), Arc::clone(wake));
+        let last = Mutex::new(Instant::now());
+        let run = move || {
+            let each = |part: T| {
+                // nobody listens where the stream was dropped
+                if sender.send(part).is_err() {
+                    return;
+                }
+                if let Ok(mut last) = last.try_lock()
+                    && last.elapsed() > WAKE_EVERY
+                {
+                    *last = Instant::now();
+                    wake();
+                }
+            };
+            job(&flag, &each);
+            drop(sender);
+            wake();
+        };
+        let thread = std::thread::Builder::new().name("study".into());
+        thread.spawn(run).ok().map(|_| Self { parts, cancel })
+    }
+
+    /// Takes what has come, and says whether more may come.
+    pub fn take(&self, mut each: impl FnMut(T)) -> bool {
+        loop {
+            match self.parts.try_recv() {
+                Ok(part) => each(part),
+                Err(TryRecvError::Empty) => return true,
+                Err(TryRecvError::Disconnected) => return false,
+            }
+        }
+    }
+}
+
+impl<T> Drop for Stream<T> {
     fn drop(&mut self) {
         self.cancel.store(true, Ordering::Relaxed);
     }
@@ -167,6 +227,32 @@ mod tests {
         latest.ask(&wake(), |_| None::<i32>);
         assert!(!latest.wait(LONG) && !latest.is_running());
         assert_eq!(latest.newest(), Some(&2));
+    }
+
+    #[test]
+    fn parts_come_until_nobody_listens() {
+        let (sender, seen) = channel();
+        let stream = Stream::start(&wake(), move |cancel: &AtomicBool, each: &(dyn Fn(u32) + Sync)| {
+            each(1);
+            each(2);
+            while !cancel.load(Ordering::Relaxed) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            each(3);
+            sender.send(()).ok();
+        })
+        .unwrap();
+        let mut parts = Vec::new();
+        while parts.len() < 2 {
+            assert!(stream.take(|part| parts.push(part)));
+        }
+        assert_eq!(parts, [1, 2]);
+        drop(stream);
+        assert!(seen.recv_timeout(LONG).is_ok());
+        let short = Stream::start(&wake(), |_: &AtomicBool, each: &(dyn Fn(u32) + Sync)| each(4)).unwrap();
+        let mut last = 0;
+        while short.take(|part| last = part) {}
+        assert_eq!(last, 4);
     }
 
     #[test]

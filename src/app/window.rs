@@ -191,6 +191,7 @@ impl Window {
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.memory.grab = false;
+        self.session.map.end_frame();
         for command in asked {
             self.carry_out(&ctx, command);
         }
@@ -275,6 +276,12 @@ impl Window {
                     "A pasted scene has no name that the command line could open: save it first.".to_owned(),
                 ),
             },
+            Command::SaveMap => self.choose(Wanted::Map),
+            Command::CopyMapCommand => {
+                if let Some(command) = self.session.map_command() {
+                    ctx.copy_text(command);
+                }
+            }
             Command::Quit => self.leave_for(ctx, Next::Quit),
             Command::Undo => {
                 self.session.undo();

@@ -15,7 +15,7 @@ pub use json::{landscape, summary};
 pub use manifest::{Origin, manifest};
 pub use number::push_number;
 pub use plot::{
-    Caption, Figure, Format, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, Theme, UnknownFormat,
-    can_show, curve_figure, run_figure, sweep_figure,
+    Axis, Caption, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, Theme,
+    UnknownFormat, can_show, curve_figure, run_figure, speed_unit, sweep_about, sweep_figure, viridis,
 };
 pub use sink::{OpenError, Sink, is_regular, same_target};

@@ -16,6 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod arguments;
 mod axis;
 mod check;
 mod columns;
@@ -33,6 +34,7 @@ mod record;
 mod shape;
 mod text;
 
+pub use arguments::arguments;
 pub use axis::{Axis, LARGEST_AXIS, MOST_AXES, column_names};
 pub use check::{Checked, check, corners};
 pub use columns::{Columns, ColumnsError, MOST_ROWS, read_columns};

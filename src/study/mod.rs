@@ -5,9 +5,11 @@
 //! the command line ask the same studies and show the same tables.
 
 mod curve;
+mod edges;
 mod flexures;
 mod grid;
 mod inspect;
+mod levels;
 mod map;
 mod settled;
 mod simulate;
@@ -22,13 +24,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub use curve::{
     OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency, stop_positions,
 };
+pub use edges::{Edges, first_interwell_edge};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
 pub use inspect::inspect;
+pub use levels::{Levels, STRIDES};
 pub use map::{first_interwell, release_line};
 pub use settled::{Settled, Standing, Thresholds, settled, standing, thresholds};
 pub use simulate::{Keep, Sampling, Simulation, sample_times, samples_table, simulate};
-pub use sweep::{CellFaults, Sweep, SweepEnd, Tally};
+pub use sweep::{Cell, CellFaults, Sweep, SweepEnd, Tally};
 pub use table::{Column, Table, Values};
 pub use times::{MAX_SAMPLES, Step, TimesError, even_times, listed_times};
 pub use trace::{Trace, simulate_with_trace};

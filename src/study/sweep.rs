@@ -5,7 +5,7 @@
 //! number of threads.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use rayon::ThreadPool;
@@ -33,21 +33,24 @@ pub struct Sweep {
 type Built = Result<Arc<Mechanism>, BuildError>;
 
 /// What one cell came to.
-#[derive(Debug, Clone, Copy)]
-struct Cell {
-    /// The word in the CSV; empty where the sweep was told to stop before the cell was run.
-    outcome: &'static str,
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell {
+    /// The word in the CSV; empty where the cell was not run.
+    pub outcome: &'static str,
     /// The summary of its run; none where there was nothing to run.
-    summary: Option<Summary>,
+    pub summary: Option<Summary>,
 }
 
 /// The outcome of a cell whose mechanism is right and was not solved.
 const NOT_CONVERGED: &str = "not_converged";
 
 impl Cell {
+    /// A cell that has not been run.
+    pub const NOT_RUN: Self = Self { outcome: "", summary: None };
+
     /// The summary of a run that reached its settled window. Earlier there are no numbers there, and
     /// counts of 0 would lie.
-    fn settled(&self) -> Option<&Summary> {
+    pub fn settled(&self) -> Option<&Summary> {
         self.summary.as_ref().filter(|summary| summary.rms_velocity.is_some())
     }
 }
@@ -185,10 +188,34 @@ impl Sweep {
         Ok(tally)
     }
 
+    /// Runs these cells on `pool`, begun in their order, and hands each over from its thread as soon as it is there.
+    /// Whether all of them were run, which a cancelled task's are not.
+    pub fn run_cells(
+        &self,
+        pool: &ThreadPool,
+        task: &Task,
+        cells: &[u64],
+        each: &(dyn Fn(u64, Cell) + Sync),
+    ) -> bool {
+        // A shared counter keeps the order that a recursive split would lose, and no thread waits for a part.
+        let next = AtomicUsize::new(0);
+        pool.broadcast(|_| {
+            let mut scene = self.base.clone();
+            while let Some(index) = cells.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let cell = self.run_cell(*index, &mut scene, task);
+                if task.is_cancelled() {
+                    return;
+                }
+                each(*index, cell);
+                (task.tick)();
+            }
+        });
+        !task.is_cancelled()
+    }
+
     fn run_cell(&self, index: u64, scene: &mut Scene, task: &Task) -> Cell {
-        let not_run = |outcome| Cell { outcome, summary: None };
         if task.is_cancelled() {
-            return not_run("");
+            return Cell::NOT_RUN;
         }
         let request = Request { cancel: Some(task.cancel), ..Request::default() };
         match self.model(index, scene) {
@@ -197,8 +224,8 @@ impl Sweep {
                 Cell { outcome: summary.outcome.name(), summary: Some(summary) }
             }
             // Not after the sweep has been validated.
-            Some(Err(_)) => not_run(""),
-            None => not_run(NOT_CONVERGED),
+            Some(Err(_)) => Cell::NOT_RUN,
+            None => Cell { outcome: NOT_CONVERGED, summary: None },
         }
     }
 
@@ -224,7 +251,7 @@ impl Sweep {
     }
 
     /// The rows of the cells from `begin` on.
-    fn table(&self, begin: u64, rows: &[Cell]) -> Table {
+    pub fn table(&self, begin: u64, rows: &[Cell]) -> Table {
         let mut table = Table::new();
         for (i, column) in self.grid.columns().iter().enumerate() {
             let value = |row: usize| self.grid.values(begin + row as u64).nth(i).unwrap_or(f64::NAN);

@@ -5,6 +5,7 @@ mod documents;
 mod first_minute;
 mod flexures;
 mod keyboard;
+mod map;
 mod sentences;
 mod support;
 mod views;

@@ -9,6 +9,7 @@ mod chart;
 pub mod energy;
 mod flexures;
 mod force;
+mod map;
 mod mechanism;
 mod phase;
 mod ranges;
@@ -24,6 +25,7 @@ use crate::mechanics::flexure::State;
 use super::session::Session;
 use super::style::Style;
 
+pub use map::Quantity as MapQuantity;
 pub use span::Span;
 pub use trace::{Quantity, Timeline};
 
@@ -50,11 +52,13 @@ pub enum View {
     BaseAcceleration,
     /// Work of the base in a second, over time.
     Power,
+    /// What every combination of two fields comes to.
+    Map,
 }
 
 impl View {
     /// All of them, in the order of the menu.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Mechanism,
         Self::Well,
         Self::Displacement,
@@ -65,6 +69,7 @@ impl View {
         Self::Velocity,
         Self::BaseAcceleration,
         Self::Power,
+        Self::Map,
     ];
 
     /// Whether the displacement runs along it.
@@ -85,6 +90,7 @@ impl View {
             Self::Velocity => "Velocity",
             Self::BaseAcceleration => "Base acceleration",
             Self::Power => "Power",
+            Self::Map => "Map",
         }
     }
 }
@@ -124,6 +130,8 @@ pub struct Memory {
     pub timeline: Timeline,
     /// How far axes of velocity and power reach.
     ranges: ranges::Ranges,
+    /// What the map shows.
+    pub map_quantity: MapQuantity,
 }
 
 /// Draws one view. Whether it changed something.
@@ -142,5 +150,6 @@ pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
         View::Velocity => trace::trace_ui(ui, Quantity::Velocity, context),
         View::BaseAcceleration => trace::trace_ui(ui, Quantity::BaseAcceleration, context),
         View::Power => trace::trace_ui(ui, Quantity::Power, context),
+        View::Map => map::map_ui(ui, context),
     }
 }

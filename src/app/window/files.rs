@@ -8,6 +8,7 @@ use eframe::egui::{self, Ui};
 use super::super::document::Editor;
 use super::super::export;
 use super::super::leave::{self, Answer, Next};
+use super::super::map::Map;
 use super::super::menu::Command;
 use super::super::session::CannotRun;
 use super::super::style::STATUS;
@@ -22,6 +23,7 @@ pub(super) enum Chosen {
     Open(PathBuf),
     Save(PathBuf),
     Csv(PathBuf),
+    Map(PathBuf),
     Picture(PathBuf),
     /// The desktop has no dialog to offer.
     NoDialog,
@@ -36,6 +38,7 @@ pub(super) enum Wanted {
     Open,
     Save,
     Csv,
+    Map,
     Picture,
 }
 
@@ -108,6 +111,7 @@ impl Window {
                 Chosen::Open(path) => self.open_another(&path.to_string_lossy()),
                 Chosen::Save(path) => self.save_to(ctx, &path),
                 Chosen::Csv(path) => self.write_motion(&path),
+                Chosen::Map(path) => self.write_map(&path),
                 Chosen::Picture(path) => self.write_picture(ctx, path),
                 Chosen::NoDialog => self.say(
                     "No file can be chosen here",
@@ -233,6 +237,14 @@ impl Window {
         }
     }
 
+    /// Writes the map as the rows of a sweep.
+    fn write_map(&mut self, path: &Path) {
+        let Some(text) = self.session.map.map().and_then(Map::csv) else { return };
+        if let Err(error) = export::write(path, text.as_bytes()) {
+            self.say("The map was not written", error);
+        }
+    }
+
     /// Has the window's picture written once it has been drawn.
     fn write_picture(&mut self, ctx: &egui::Context, path: PathBuf) {
         let (errors, wake) = (self.errors.0.clone(), Arc::clone(&self.wake));
@@ -249,6 +261,7 @@ impl Window {
         let (kind, ending) = match wanted {
             Wanted::Open | Wanted::Save => ("scene", "ron"),
             Wanted::Csv => ("motion", "csv"),
+            Wanted::Map => ("map", "csv"),
             Wanted::Picture => ("picture", "png"),
         };
         let path = self.session.editor.path().map(Path::to_path_buf);
@@ -277,6 +290,7 @@ impl Window {
             }
             Some(match wanted {
                 Wanted::Csv => Chosen::Csv(path),
+                Wanted::Map => Chosen::Map(path),
                 Wanted::Picture => Chosen::Picture(path),
                 _ => Chosen::Save(path),
             })

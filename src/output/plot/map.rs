@@ -8,7 +8,7 @@ use super::mark::{Sample, cross, legend};
 use super::run::speed_unit;
 use super::style::{self, Theme, viridis};
 use super::sweep::{BOTTOM, LEFT, RMS, TOP, label, missing_words, words};
-use crate::study::Table;
+use crate::study::{Edges, Table, first_interwell_edge};
 
 /// The lines over a map, each where it makes sense.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -17,44 +17,6 @@ pub struct Overlay {
     pub release: Option<Table>,
     /// The first interwell cell along the amplitude.
     pub first_interwell: Option<Table>,
-}
-
-/// The values of one axis of a map in ascending order, each once, with the edges of their cells.
-struct Cells {
-    values: Vec<f64>,
-    edges: Vec<f64>,
-}
-
-impl Cells {
-    fn new(all: &[f64]) -> Self {
-        let mut values: Vec<f64> = all.iter().copied().filter(|value| value.is_finite()).collect();
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        let middle = |pair: &[f64]| 0.5 * pair[0] + 0.5 * pair[1];
-        let mut edges: Vec<f64> = values.windows(2).map(middle).collect();
-        match (values.first(), values.last()) {
-            // A cell at the end reaches as far outward as inward.
-            (Some(first), Some(last)) if edges.len() + 1 == values.len() && !edges.is_empty() => {
-                let (low, high) = (2.0 * first - edges[0], 2.0 * last - edges[edges.len() - 1]);
-                edges.insert(0, low);
-                edges.push(high);
-            }
-            (Some(only), _) => {
-                let half = if *only == 0.0 { 0.5 } else { 0.05 * only.abs() };
-                edges = vec![only - half, only + half];
-            }
-            _ => edges = vec![0.0, 1.0],
-        }
-        Self { values, edges }
-    }
-
-    fn place(&self, value: f64) -> Option<usize> {
-        self.values.binary_search_by(|own| own.total_cmp(&value)).ok()
-    }
-
-    fn ends(&self) -> (f64, f64) {
-        (self.edges[0], self.edges[self.edges.len() - 1])
-    }
 }
 
 /// What a cell of a map shows.
@@ -69,7 +31,7 @@ enum Cell {
 pub(super) fn map(figure: &mut Figure, rows: &Table, (x, y): (&str, &str), overlay: &Overlay, theme: &Theme) {
     const RIGHT: f64 = 1310.0;
     let (xs, ys) = (rows.numbers(x).unwrap_or_default(), rows.numbers(y).unwrap_or_default());
-    let (across, up) = (Cells::new(xs), Cells::new(ys));
+    let (across, up) = (Edges::new(xs), Edges::new(ys));
     let rms = rows.numbers(RMS).unwrap_or_default();
     let regimes = words(rows, "regime");
     let mut cells = vec![Cell::Missing; across.values.len() * up.values.len()];
@@ -131,30 +93,16 @@ fn over(
     figure: &mut Figure,
     frame: &Frame,
     (x, y): (&str, &str),
-    across: &Cells,
-    up: &Cells,
+    across: &Edges,
+    up: &Edges,
     overlay: &Overlay,
 ) -> Vec<(Sample, &'static str)> {
     let mut entries = Vec::new();
     let pairs = |table: &Table| -> Option<Vec<(f64, f64)>> {
         Some(table.numbers(x)?.iter().copied().zip(table.numbers(y)?.iter().copied()).collect())
     };
-    if let Some((table, points)) = overlay.first_interwell.as_ref().and_then(|t| Some((t, pairs(t)?))) {
-        // The edge of the cells, towards smaller amplitudes; the other field's cells are as wide as they are.
-        let amplitude_up = table.columns().first().is_some_and(|column| column.name == x);
-        let mut parts: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
-        for (px, py) in points {
-            let place = across.place(px).zip(up.place(py));
-            match (place, parts.last_mut()) {
-                (Some((i, j)), Some(part)) => part.extend(if amplitude_up {
-                    [(across.edges[i], up.edges[j]), (across.edges[i + 1], up.edges[j])]
-                } else {
-                    [(across.edges[i], up.edges[j]), (across.edges[i], up.edges[j + 1])]
-                }),
-                _ => parts.push(Vec::new()),
-            }
-        }
-        parts.retain(|part| !part.is_empty());
+    if let Some(table) = &overlay.first_interwell {
+        let parts = first_interwell_edge(table, (x, y), across, up);
         for (width, ink) in [(style::GUIDE + 4.0, style::WHITE), (style::GUIDE, style::OVER_MAP)] {
             parts.iter().for_each(|part| frame.line(figure, part, width, ink));
         }

@@ -17,14 +17,15 @@ mod sweep;
 
 use std::path::Path;
 
+pub use axis::Axis;
 pub use curve::curve_figure;
 pub use figure::Figure;
 pub use map::Overlay;
 pub use mark::Caption;
 pub use paint::PaintError;
-pub use run::run_figure;
-pub use style::Theme;
-pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_figure};
+pub use run::{run_figure, speed_unit};
+pub use style::{Ink, Theme, viridis};
+pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_figure};
 
 /// A kind of file that holds a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

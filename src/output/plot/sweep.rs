@@ -59,12 +59,12 @@ pub fn sweep_figure(
         [x, y] => map(&mut figure, rows, (x, y), overlay, theme),
         other => return Err(NoPicture::Fields(other.len())),
     }
-    caption.draw(&mut figure, theme, &about(grid, scene), LEFT);
+    caption.draw(&mut figure, theme, &sweep_about(grid, scene), LEFT);
     Ok(figure)
 }
 
 /// What was run, in one line.
-fn about(grid: &Grid, scene: &Scene) -> String {
+pub fn sweep_about(grid: &Grid, scene: &Scene) -> String {
     let counts: Vec<String> = grid.axes().iter().map(|axis| axis.values.len().to_string()).collect();
     let swept = |field: &str| grid.axes().iter().any(|axis| axis.field == field);
     let mut parts = vec![format!("{} runs", counts.join(" \u{d7} "))];

@@ -1,0 +1,92 @@
+//! Where on the screen is a value of the map's axes?
+
+use eframe::egui::{Align2, Painter, Pos2, Rect, Stroke, Vec2, emath::Rot2, epaint::TextShape, pos2, vec2};
+
+use crate::app::map::{Map, label};
+use crate::app::style::Style;
+use crate::output::Axis;
+
+/// Room for numbers and names beside the map, in points.
+const LEFT: f32 = 52.0;
+const BOTTOM: f32 = 40.0;
+const TOP: f32 = 8.0;
+const BAR: f32 = 16.0;
+const BAR_ROOM: f32 = 84.0;
+const PLAIN_ROOM: f32 = 12.0;
+
+/// Length of a tick in points.
+const TICK: f32 = 4.0;
+
+/// The map on the screen.
+pub struct Frame {
+    /// The cells.
+    pub rect: Rect,
+    /// The colour bar, where there is one.
+    pub bar: Option<Rect>,
+    /// Across.
+    pub x: Axis,
+    /// Up.
+    pub y: Axis,
+}
+
+impl Frame {
+    /// The map in `area`.
+    pub fn new(area: Rect, map: &Map, bar: bool) -> Self {
+        let room = if bar { BAR_ROOM } else { PLAIN_ROOM };
+        let rect = Rect::from_min_max(area.min + vec2(LEFT, TOP), area.max - vec2(room, BOTTOM));
+        let bar = bar.then(|| {
+            let left = rect.right() + 12.0;
+            Rect::from_min_max(pos2(left, rect.top()), pos2(left + BAR, rect.bottom()))
+        });
+        let names = map.grid().columns();
+        let ends = map.edges.each_ref().map(|edges| edges.ends());
+        let count = |points: f32, each: f32| (points / each).clamp(2.0, 12.0) as usize;
+        Self {
+            x: Axis::between(ends[0].0, ends[0].1, count(rect.width(), 70.0), &label(&names[0])),
+            y: Axis::between(ends[1].0, ends[1].1, count(rect.height(), 42.0), &label(&names[1])),
+            rect,
+            bar,
+        }
+    }
+
+    /// The place of a value on each axis.
+    pub fn screen_from_world(&self, (x, y): (f64, f64)) -> Pos2 {
+        let share = vec2(self.x.share(x) as f32, 1.0 - self.y.share(y) as f32);
+        self.rect.min + share * self.rect.size()
+    }
+
+    /// The values at a place.
+    pub fn world_from_screen(&self, at: Pos2) -> (f64, f64) {
+        let share = (at - self.rect.min) / self.rect.size();
+        let between = |axis: &Axis, share: f32| axis.low + f64::from(share) * (axis.high - axis.low);
+        (between(&self.x, share.x), between(&self.y, 1.0 - share.y))
+    }
+
+    /// Draws ticks, numbers and names around the map.
+    pub fn axes(&self, painter: &Painter, style: &Style) {
+        let stroke = Stroke::new(1.0, style.ink());
+        painter.rect_stroke(self.rect, 0.0, stroke, eframe::egui::StrokeKind::Outside);
+        let number = |at, align, text: &str| painter.text(at, align, text, style.small(), style.ink());
+        for (value, text) in &self.x.ticks {
+            let at = pos2(self.screen_from_world((*value, self.y.low)).x, self.rect.bottom());
+            painter.line_segment([at, at + vec2(0.0, TICK)], stroke);
+            number(at + vec2(0.0, TICK + 1.0), Align2::CENTER_TOP, text);
+        }
+        for (value, text) in &self.y.ticks {
+            let at = pos2(self.rect.left(), self.screen_from_world((self.x.low, *value)).y);
+            painter.line_segment([at, at - vec2(TICK, 0.0)], stroke);
+            number(at - vec2(TICK + 3.0, 0.0), Align2::RIGHT_CENTER, text);
+        }
+        let below = pos2(self.rect.center().x, self.rect.bottom() + BOTTOM - 2.0);
+        painter.text(below, Align2::CENTER_BOTTOM, &self.x.label, style.body(), style.ink());
+        upright(painter, style, pos2(self.rect.left() - LEFT + 10.0, self.rect.center().y), &self.y.label);
+    }
+}
+
+/// Text that reads upwards, with its middle at `at`.
+pub fn upright(painter: &Painter, style: &Style, at: Pos2, text: &str) {
+    let galley = painter.layout_no_wrap(text.to_owned(), style.body(), style.ink());
+    let half: Vec2 = Rot2::from_angle(-std::f32::consts::FRAC_PI_2) * (0.5 * galley.size());
+    let shape = TextShape::new(at - half, galley, style.ink());
+    painter.add(shape.with_angle(-std::f32::consts::FRAC_PI_2));
+}

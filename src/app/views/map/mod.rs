@@ -1,0 +1,187 @@
+//! The map: what every combination of two fields comes to, each run from rest; a click takes the scene there.
+
+mod frame;
+mod picture;
+mod quantity;
+mod tools;
+
+use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use crate::app::map::{Map, label};
+use crate::app::status::speed;
+use crate::app::style::Style;
+use crate::dynamics::{Regime, Summary};
+use crate::output::sweep_about;
+
+use super::ViewContext;
+use frame::Frame;
+use picture::{Picture, bar, lines};
+use quantity::{Scale, kind, kind_name};
+
+pub use quantity::Quantity;
+
+/// Draws it. Whether something changed.
+pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+    let style = context.style;
+    ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
+    if context.covered {
+        ui.add_space(10.0);
+        ui.label("  Covered: what do you expect? Press C to see.");
+        return false;
+    }
+    let time = ui.input(|input| input.time);
+    if context.session.want_map(time) {
+        ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
+    }
+    let mut changed = tools::tools_ui(ui, context);
+    if let Some(problem) = context.session.map.problem() {
+        ui.label(format!("  No map: {}", problem.lines().next().unwrap_or_default()));
+    }
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
+    let Some((map, current)) = context.session.map.shown() else { return changed };
+    if area.width() < 140.0 || area.height() < 110.0 {
+        return changed;
+    }
+    let quantity = context.memory.map_quantity;
+    let scale = Scale::of(quantity, map);
+    let id = ui.scope_id().with("picture");
+    let old = ui.data(|data| data.get_temp::<Option<Picture>>(id)).flatten();
+    let key = (context.session.map.version(), quantity, style, current);
+    let picture = Picture::of(ui, old, map, &scale, key);
+    let painter = ui.painter().with_clip_rect(area);
+    let about = sweep_about(map.grid(), &map.question.scene);
+    let legend = tools::legend(&painter, area, &picture, map, &style, &about);
+    let frame = Frame::new(area.with_min_y(legend), map, scale.bar.is_some());
+    let spoken = ui.interact(frame.rect, ui.scope_id().with("cells"), Sense::hover());
+    spoken.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "map"));
+    picture.draw(&painter, &frame, &style);
+    lines(&painter, &frame, map, &style);
+    frame.axes(&painter, &style);
+    bar(&painter, &frame, &scale, &style);
+    if !current {
+        painter.rect_filled(frame.rect, 0.0, style.veil());
+        let words =
+            if context.session.map.problem().is_some() { "not of this scene" } else { "of the scene before" };
+        let at = frame.rect.center_top() + vec2(0.0, 8.0);
+        painter.text(at, Align2::CENTER_TOP, words, style.body(), style.ink());
+    }
+    marker(&painter, &frame, &style, context.session.place_on_map(&map.question));
+    let hovered = response.hover_pos().and_then(|at| cell_at(&frame, map, at));
+    let mut clicked = None;
+    if let Some((column, row)) = hovered {
+        painter.add(outline(&frame, map, column, row, &style));
+        let text = reading(map, column, row);
+        if response.clicked() {
+            clicked = Some((column, row));
+        }
+        response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text_at_pointer(text);
+    }
+    ui.data_mut(|data| data.insert_temp(id, Some(picture)));
+    if let Some((column, row)) = clicked {
+        changed |= context.session.go_to_cell(column, row);
+    }
+    changed
+}
+
+/// The cell at a place on the screen.
+fn cell_at(frame: &Frame, map: &Map, at: Pos2) -> Option<(usize, usize)> {
+    let (x, y) = frame.world_from_screen(at);
+    map.edges[0].cell(x).zip(map.edges[1].cell(y))
+}
+
+/// The edge of a cell.
+fn outline(frame: &Frame, map: &Map, column: usize, row: usize, style: &Style) -> Shape {
+    let (x, y) = (&map.edges[0].edges, &map.edges[1].edges);
+    let corners =
+        [(x[column], y[row]), (x[column + 1], y[row + 1])].map(|corner| frame.screen_from_world(corner));
+    let rect = Rect::from_two_pos(corners[0], corners[1]);
+    Shape::rect_stroke(rect, 0.0, style.cell_stroke(), egui::StrokeKind::Outside)
+}
+
+/// What a cell says.
+fn reading(map: &Map, column: usize, row: usize) -> String {
+    let names = map.grid().columns();
+    let place = [map.edges[0].values[column], map.edges[1].values[row]];
+    let mut lines: Vec<String> =
+        names.iter().zip(place).map(|(name, value)| named(&label(name), value)).collect();
+    match map.cell(column, row) {
+        None => lines.push("not run yet".to_owned()),
+        Some((cell, own)) => {
+            if !own {
+                lines.push("so far that of a neighbour:".to_owned());
+            }
+            if cell.outcome != "done" {
+                lines.push(format!("the run ended early: {}", cell.outcome.replace('_', " ")));
+            }
+            if let Some(settled) = cell.settled() {
+                lines.push(kind_name(kind(settled.regime)).to_owned());
+            }
+            let moves = |summary: &&Summary| summary.regime != Regime::Rest;
+            if let Some(settled) = cell.settled().filter(moves) {
+                let rms = settled.rms_velocity.map_or("-".to_owned(), speed);
+                lines.push(format!("RMS velocity {rms} mm/s"));
+                if let Some(reach) = settled.max_abs_x {
+                    lines.push(format!("reach {:.2} mm", reach * 1e3));
+                }
+                lines.push(format!(
+                    "{} impacts, {} crossings in {} s",
+                    settled.impacts,
+                    settled.crossings,
+                    map.window_s()
+                ));
+                if let Some(period) = settled.period {
+                    let plural = if period == 1 { "" } else { "s" };
+                    lines.push(format!("repeats after {period} forcing period{plural}"));
+                }
+            }
+            lines.push("click: take the scene there".to_owned());
+        }
+    }
+    lines.join("\n")
+}
+
+/// `travel limit 1.5 mm` of `travel limit, mm` and 1.5.
+fn named(label: &str, value: f64) -> String {
+    match label.split_once(", ") {
+        Some((name, unit)) => format!("{name} {} {unit}", crate::app::map::short(value)),
+        None => format!("{label} {}", crate::app::map::short(value)),
+    }
+}
+
+/// Where the scene is: a ring, or an arrow at the edge that it lies beyond.
+fn marker(painter: &egui::Painter, frame: &Frame, style: &Style, place: [Option<f64>; 2]) {
+    // without a stop the mass goes as far as it would with one far out
+    let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));
+    let inside = |axis: &crate::output::Axis, value: f64| (axis.low..=axis.high).contains(&value);
+    let at =
+        frame.screen_from_world((x.clamp(frame.x.low, frame.x.high), y.clamp(frame.y.low, frame.y.high)));
+    let [halo, line] = style.marker_strokes();
+    if inside(&frame.x, x) && inside(&frame.y, y) {
+        for stroke in [halo, line] {
+            painter.circle_stroke(at, 8.0, stroke);
+            for way in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
+                painter.line_segment([at + way * 5.0, at + way * 13.0], stroke);
+            }
+        }
+        return;
+    }
+    let way = vec2(
+        if inside(&frame.x, x) { 0.0 } else { (x - frame.x.low).signum() as f32 },
+        if inside(&frame.y, y) { 0.0 } else { -(y - frame.y.low).signum() as f32 },
+    )
+    .normalized();
+    let (tip, back, side) = (at - way * 2.0, at - way * 16.0, way.rot90() * 8.0);
+    let points = vec![tip, back + side, back - side];
+    painter.add(Shape::convex_polygon(points, line.color, Stroke::new(1.5, halo.color)));
+    let words = if place[0].is_none() { "no stops" } else { "now: further out" };
+    let galley = painter.layout_no_wrap(words.to_owned(), style.body(), Color32::PLACEHOLDER);
+    let room = frame.rect.shrink(4.0);
+    let size = galley.size();
+    let wanted = back - way * (10.0 + 0.5 * size.x) - 0.5 * size;
+    let corner = pos2(
+        wanted.x.clamp(room.left(), (room.right() - size.x).max(room.left())),
+        wanted.y.clamp(room.top(), (room.bottom() - size.y).max(room.top())),
+    );
+    painter.rect_filled(Rect::from_min_size(corner, size).expand(3.0), 3.0, style.ground());
+    painter.galley_with_override_text_color(corner, galley, style.ink());
+}

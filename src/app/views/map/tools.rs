@@ -1,0 +1,198 @@
+//! What the map shows, over which fields, and how far it is; its legend.
+
+use eframe::egui::{self, Align2, ComboBox, Painter, Rect, RichText, Ui, pos2, vec2};
+
+use crate::app::map::{Map, label};
+use crate::app::style::Style;
+use crate::app::widgets::kind_shapes;
+use crate::scene::column_names;
+
+use super::super::ViewContext;
+use super::picture::{Picture, kinds};
+use super::quantity::{Look, Quantity, kind_name};
+
+/// Width in points below which the choices take two rows.
+const NARROW: f32 = 560.0;
+
+/// Width in points from which on the legend stands beside what was run.
+const WIDE: f32 = 760.0;
+
+/// Title, choices, progress. Whether something changed.
+pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+    ui.add_space(2.0);
+    let narrow = ui.available_width() < NARROW;
+    ui.horizontal(|ui| {
+        ui.add_space(8.0);
+        quantity_ui(ui, &mut context.memory.map_quantity);
+        ui.label(RichText::new("from rest").heading())
+            .on_hover_text("Every cell is a run of its own from rest.");
+        if !narrow {
+            axes_ui(ui, context);
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.add_space(8.0);
+            progress_ui(ui, context);
+        });
+    });
+    if narrow {
+        ui.horizontal(|ui| {
+            ui.add_space(8.0);
+            axes_ui(ui, context);
+        });
+    }
+    false
+}
+
+fn quantity_ui(ui: &mut Ui, quantity: &mut Quantity) {
+    let combo = ComboBox::from_id_salt("quantity")
+        .width(118.0)
+        .selected_text(RichText::new(quantity.name()).heading());
+    let inner = combo.show_ui(ui, |ui| {
+        for one in Quantity::ALL {
+            ui.selectable_value(quantity, one, one.name());
+        }
+    });
+    let name = quantity.name();
+    inner
+        .response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, format!("map of {name}")));
+    inner.response.on_hover_text("What the colour says.");
+}
+
+fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let Some(axes) = context.session.map_axes() else { return };
+    let known = context.session.map_fields();
+    let mut wanted: Option<(usize, String)> = None;
+    for (i, (axis, word)) in axes.iter().zip(["over", "and"]).enumerate() {
+        ui.label(word);
+        let name = field_name(&axis.field);
+        let combo = ComboBox::from_id_salt(("axis", i)).width(112.0).selected_text(&name);
+        let inner = combo.show_ui(ui, |ui| {
+            for path in known.iter().filter(|path| **path != axes[1 - i].field) {
+                if ui.selectable_label(*path == axis.field, field_name(path)).clicked() {
+                    wanted = Some((i, path.clone()));
+                }
+            }
+        });
+        let role = if i == 0 { "across" } else { "up" };
+        let spoken = format!("{role}: {name}");
+        inner.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, spoken.clone()));
+        let range = format!("The axis {role}: from {} to {} in steps of {}.", axis.from, axis.to, axis.step);
+        inner.response.on_hover_text(range);
+    }
+    if let Some((i, path)) = wanted.filter(|(i, path)| axes[*i].field != *path) {
+        let mut chosen = axes;
+        chosen[i] = context.session.map_axis(&path);
+        context.session.map.choose(Some(chosen));
+    }
+}
+
+/// The name of a field without its unit.
+fn field_name(path: &str) -> String {
+    let column = column_names(&[path]).pop().unwrap_or_default();
+    let label = label(&column);
+    label.split_once(", ").map_or(label.clone(), |(name, _)| name.to_owned())
+}
+
+fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let mapping = &mut context.session.map;
+    let Some(map) = mapping.map() else { return };
+    let (known, all) = (map.known(), map.len());
+    let took = map.took.as_secs_f64();
+    if mapping.is_running() {
+        if ui.button("Stop").on_hover_text("Leave the map as it is now.").clicked() {
+            mapping.stop();
+        }
+        let share = known as f32 / all as f32;
+        let bar = egui::ProgressBar::new(share).desired_width(90.0).desired_height(12.0);
+        ui.add(bar).on_hover_text(format!("{known} of {all} runs"));
+        return;
+    }
+    let (text, hover) = if known == all {
+        ("Recompute", format!("{all} runs in {took:.1} s. Runs them all again."))
+    } else {
+        ("Continue", format!("{known} of {all} runs are done. Runs the others."))
+    };
+    if ui.button(text).on_hover_text(hover).clicked() {
+        mapping.go_on();
+    }
+}
+
+/// Draws what was run, and what hatching, lines and symbols mean. Returns its lower edge.
+pub fn legend(
+    painter: &Painter,
+    area: Rect,
+    picture: &Picture,
+    map: &Map,
+    style: &Style,
+    about: &str,
+) -> f32 {
+    const ROW: f32 = 20.0;
+    const SAMPLE: f32 = 24.0;
+    let left = area.left() + 12.0;
+    let (mut x, mut y) = (left, area.top() + 0.5 * ROW);
+    let text = |at, words: &str| painter.text(at, Align2::LEFT_CENTER, words, style.small(), style.faint());
+    let after = text(pos2(x, y), about).right() + 18.0;
+    if area.width() > WIDE {
+        x = after;
+    } else {
+        y += ROW;
+    }
+    let mut entry = |words: &str, sample: &dyn Fn(Rect)| {
+        let width = painter.layout_no_wrap(words.to_owned(), style.small(), style.faint()).size().x;
+        if x + SAMPLE + 6.0 + width > area.right() {
+            (x, y) = (left, y + ROW);
+        }
+        sample(Rect::from_min_size(pos2(x, y - 6.0), vec2(SAMPLE, 12.0)));
+        x = text(pos2(x + SAMPLE + 6.0, y), words).right() + 16.0;
+    };
+    let patch = |rect: Rect, strokes: &[(f32, egui::Stroke)]| {
+        painter.rect_filled(rect, 0.0, style.rest_shade());
+        let clipped = painter.with_clip_rect(rect);
+        for (way, stroke) in strokes {
+            for i in 0..6 {
+                let foot = pos2(rect.left() + (i as f32 - 1.0) * 7.0, rect.bottom());
+                let (from, to) = if *way > 0.0 {
+                    (foot, foot + vec2(12.0, -12.0))
+                } else {
+                    (foot + vec2(0.0, -12.0), foot + vec2(12.0, 0.0))
+                };
+                clipped.line_segment([from, to], *stroke);
+            }
+        }
+        painter.rect_stroke(rect, 0.0, style.grid_stroke(), egui::StrokeKind::Inside);
+    };
+    if picture.shows(Look::Rest) {
+        entry("at rest", &|rect| patch(rect, &[(1.0, style.hatch_stroke())]));
+    }
+    for kind in kinds(picture) {
+        entry(kind_name(kind), &|rect| {
+            painter.rect_filled(rect, 0.0, style.kind(kind));
+            painter.extend(kind_shapes(kind, rect.center(), 4.5, style.over_kind()));
+        });
+    }
+    if picture.shows(Look::None) {
+        entry("does not repeat", &|rect| patch(rect, &[(-1.0, style.hatch_stroke())]));
+    }
+    if picture.shows(Look::Missing) {
+        entry("ended early", &|rect| {
+            patch(rect, &[(1.0, style.missing_stroke()), (-1.0, style.missing_stroke())])
+        });
+    }
+    let line = |rect: Rect, [halo, stroke]: [egui::Stroke; 2], dashed: bool| {
+        let ends = [rect.left_center(), rect.right_center()];
+        painter.line_segment(ends, halo);
+        if dashed {
+            painter.extend(egui::Shape::dashed_line(&ends, stroke, 6.0, 4.0));
+        } else {
+            painter.line_segment(ends, stroke);
+        }
+    };
+    if !map.release.is_empty() {
+        entry("release (closed form)", &|rect| line(rect, style.release_strokes(), true));
+    }
+    if !map.crossing.is_empty() {
+        entry("first crossing", &|rect| line(rect, style.crossing_strokes(), false));
+    }
+    y + 0.5 * ROW
+}

@@ -1,0 +1,97 @@
+//! Where do the cells of a map begin and end, and along which of their edges does interwell motion begin?
+
+use super::table::Table;
+
+/// The values of one axis of a map in ascending order, each once, with the edges of their cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edges {
+    /// The values.
+    pub values: Vec<f64>,
+    /// One more edge than there are values: half way between neighbours.
+    pub edges: Vec<f64>,
+}
+
+impl Edges {
+    /// The cells of these values; those that are not finite do not count.
+    pub fn new(all: &[f64]) -> Self {
+        let mut values: Vec<f64> = all.iter().copied().filter(|value| value.is_finite()).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        let middle = |pair: &[f64]| 0.5 * pair[0] + 0.5 * pair[1];
+        let mut edges: Vec<f64> = values.windows(2).map(middle).collect();
+        match (values.first(), values.last()) {
+            // A cell at the end reaches as far outward as inward.
+            (Some(first), Some(last)) if edges.len() + 1 == values.len() && !edges.is_empty() => {
+                let (low, high) = (2.0 * first - edges[0], 2.0 * last - edges[edges.len() - 1]);
+                edges.insert(0, low);
+                edges.push(high);
+            }
+            (Some(only), _) => {
+                let half = if *only == 0.0 { 0.5 } else { 0.05 * only.abs() };
+                edges = vec![only - half, only + half];
+            }
+            _ => edges = vec![0.0, 1.0],
+        }
+        Self { values, edges }
+    }
+
+    /// Which of the values this is.
+    pub fn place(&self, value: f64) -> Option<usize> {
+        self.values.binary_search_by(|own| own.total_cmp(&value)).ok()
+    }
+
+    /// In which cell a number lies; none outside all of them.
+    pub fn cell(&self, value: f64) -> Option<usize> {
+        let above = self.edges.partition_point(|edge| *edge <= value);
+        (1..=self.values.len()).contains(&above).then(|| above - 1)
+    }
+
+    /// The outermost edges.
+    pub fn ends(&self) -> (f64, f64) {
+        (self.edges[0], self.edges[self.edges.len() - 1])
+    }
+}
+
+/// The line of [`first_interwell`](super::first_interwell) over a map of `x` and `y`: along the edges of its cells,
+/// towards smaller amplitudes, in one part for each stretch without a gap.
+pub fn first_interwell_edge(
+    table: &Table,
+    (x, y): (&str, &str),
+    across: &Edges,
+    up: &Edges,
+) -> Vec<Vec<(f64, f64)>> {
+    let (Some(xs), Some(ys)) = (table.numbers(x), table.numbers(y)) else { return Vec::new() };
+    // The other field's cells are as wide as they are.
+    let amplitude_up = table.columns().first().is_some_and(|column| column.name == x);
+    let mut parts: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
+    for (px, py) in xs.iter().zip(ys) {
+        let place = across.place(*px).zip(up.place(*py));
+        match (place, parts.last_mut()) {
+            (Some((i, j)), Some(part)) => part.extend(if amplitude_up {
+                [(across.edges[i], up.edges[j]), (across.edges[i + 1], up.edges[j])]
+            } else {
+                [(across.edges[i], up.edges[j]), (across.edges[i], up.edges[j + 1])]
+            }),
+            _ => parts.push(Vec::new()),
+        }
+    }
+    parts.retain(|part| !part.is_empty());
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_lies_in_the_cell_of_the_nearest_value() {
+        let edges = Edges::new(&[3.0, 1.0, 2.0, f64::NAN]);
+        assert_eq!(edges.edges, [0.5, 1.5, 2.5, 3.5]);
+        assert_eq!(
+            [0.4, 0.5, 1.4, 2.6, 3.4, 3.6].map(|x| edges.cell(x)),
+            [None, Some(0), Some(0), Some(2), Some(2), None]
+        );
+        assert_eq!(Edges::new(&[0.0]).ends(), (-0.5, 0.5));
+        assert_eq!((edges.place(2.0), edges.cell(f64::NAN)), (Some(1), None));
+    }
+}

@@ -1,0 +1,94 @@
+//! In which order is a map made, so that the whole of it can be seen early?
+//!
+//! Every eighth value of each axis first, then every fourth, every second, every one. The cells of a level are among
+//! those of the next, so nothing is run twice, and the last level is the grid itself.
+
+use super::grid::Grid;
+
+/// The strides of the levels, coarse first; each divides the one before.
+pub const STRIDES: [usize; 4] = [8, 4, 2, 1];
+
+/// The cells of a grid, coarse first.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Levels {
+    /// Every cell once, those of a coarser level before those that a finer one adds.
+    pub order: Vec<u64>,
+    /// How many cells of the order make up each level.
+    pub ends: [usize; STRIDES.len()],
+    lengths: Vec<usize>,
+}
+
+impl Levels {
+    /// The levels of a grid.
+    pub fn of(grid: &Grid) -> Self {
+        let lengths: Vec<usize> = grid.axes().iter().map(|axis| axis.values.len()).collect();
+        let mut order = Vec::with_capacity(grid.cells() as usize);
+        let mut ends = [0; STRIDES.len()];
+        for (level, stride) in STRIDES.iter().enumerate() {
+            let on = |index: &u64, stride: usize| places(&lengths, *index).all(|p| p.is_multiple_of(stride));
+            let before = level.checked_sub(1).map(|coarser| STRIDES[coarser]);
+            let new = |index: &u64| on(index, *stride) && before.is_none_or(|coarser| !on(index, coarser));
+            order.extend((0..grid.cells()).filter(new));
+            ends[level] = order.len();
+        }
+        Self { order, ends, lengths }
+    }
+
+    /// The finest level that is whole once so many cells of the order are known.
+    pub fn whole(&self, known: usize) -> Option<usize> {
+        self.ends.iter().rposition(|end| known >= *end)
+    }
+
+    /// The cell that stands for cell `index` on a level: the nearest one that the level has.
+    pub fn stand_in(&self, index: u64, level: usize) -> u64 {
+        let stride = STRIDES[level];
+        let nearest = places(&self.lengths, index).zip(&self.lengths).map(|(place, length)| {
+            let last = (length - 1) / stride * stride;
+            ((place + stride / 2) / stride * stride).min(last)
+        });
+        nearest.zip(&self.lengths).fold(0, |index, (place, length)| index * *length as u64 + place as u64)
+    }
+}
+
+/// Where cell `index` stands on each axis, the slowest first.
+fn places(lengths: &[usize], index: u64) -> impl Iterator<Item = usize> {
+    let mut below: u64 = lengths.iter().map(|length| *length as u64).product();
+    lengths.iter().map(move |length| {
+        below /= *length as u64;
+        (index / below % *length as u64) as usize
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Document;
+
+    #[test]
+    fn every_cell_comes_once_and_coarse_ones_first() {
+        let document = Document::load("nominal-cubic").unwrap();
+        let over = ["stops.travel_limit_mm=1:3:0.1", "excitation.amplitude_g=0:1:0.1"];
+        let grid = Grid::new(document.axes(&over).unwrap()).unwrap();
+        let levels = Levels::of(&grid);
+        assert_eq!(levels.ends, [3 * 2, 6 * 3, 11 * 6, 21 * 11]);
+        let mut sorted = levels.order.clone();
+        sorted.sort_unstable();
+        assert!(sorted.into_iter().eq(0..grid.cells()));
+        assert_eq!(
+            [5, 6, 17, 18, 231].map(|known| levels.whole(known)),
+            [None, Some(0), Some(0), Some(1), Some(3)]
+        );
+        for (level, end) in levels.ends.into_iter().enumerate() {
+            for index in 0..grid.cells() {
+                let other = levels.stand_in(index, level);
+                assert!(levels.order[..end].contains(&other));
+                assert_eq!(levels.stand_in(other, level), other);
+            }
+        }
+        // the nearest one: of 21 values place 12 is half way between 8 and 16, place 20 has nothing above 16
+        assert_eq!(
+            [11 * 11, 12 * 11, 20 * 11 + 10].map(|i| levels.stand_in(i, 0)),
+            [8 * 11, 16 * 11, 16 * 11 + 8]
+        );
+    }
+}

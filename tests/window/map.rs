@@ -1,0 +1,196 @@
+//! The map: it fills, stops, is thrown away and made again; a click takes the scene there; it is the command line's sweep.
+
+use eframe::egui::{Key, Modifiers, accesskit::Role};
+use egui_kittest::{Harness, kittest::Queryable as _};
+use interwell::app::map::Map;
+use interwell::app::settings::Settings;
+use interwell::app::window::Window;
+use interwell::scene::{Layout, Start, Stops, SweepAxis};
+
+use crate::support::{LONG, session, window};
+
+const WIDE: [f32; 2] = [1280.0, 720.0];
+
+/// A small map, so that a test takes no longer than it must.
+fn axes(steps: (f64, f64)) -> [SweepAxis; 2] {
+    let axis = |field: &str, from, to, step| SweepAxis { field: field.to_owned(), from, to, step };
+    [axis("stops.travel_limit_mm", 1.0, 3.0, steps.0), axis("excitation.amplitude_g", 0.5, 1.5, steps.1)]
+}
+
+fn open(preset: &str, size: [f32; 2], steps: (f64, f64)) -> Harness<'static, Window> {
+    let mut harness = window(preset, size, Settings::default());
+    harness.state_mut().session.map.choose(Some(axes(steps)));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
+    harness.run_steps(3);
+    harness
+}
+
+fn fill(harness: &mut Harness<'static, Window>) {
+    assert!(harness.state_mut().session.wait_for_map(LONG));
+    harness.run_steps(3);
+}
+
+fn map(window: &Window) -> &Map {
+    window.session.map.map().unwrap()
+}
+
+#[test]
+fn it_fills_and_a_click_is_one_step() {
+    let mut harness = open("paper", WIDE, (0.25, 0.25));
+    assert_eq!(map(harness.state()).len(), 9 * 5);
+    fill(&mut harness);
+    assert!(map(harness.state()).is_whole() && !harness.state().session.map.is_running());
+    assert!(!map(harness.state()).release.is_empty());
+    assert!(!map(harness.state()).crossing.is_empty());
+    let place = harness.get_by_role_and_label(Role::Image, "map").rect();
+    let (before, state) = (harness.state().session.scene().clone(), harness.state().session.player.state());
+    // the cell at the middle is 2 mm and 1 g
+    harness.drag_at(place.center());
+    harness.run_steps(1);
+    harness.drop_at(place.center());
+    harness.run_steps(1);
+    let session = &mut harness.state_mut().session;
+    assert_eq!(session.scene().stops, Stops::Rigid { travel_limit_mm: 2.0, restitution: 0.36 });
+    assert_eq!(session.amplitude_g(), Some(1.0));
+    // the motion goes on
+    assert!(session.player.state().t >= state.t && session.player.watch().time() >= state.t);
+    // only the marker moves
+    assert!(session.map.map().is_some_and(Map::is_whole));
+    assert!(session.undo() && *session.scene() == before && !session.undo());
+}
+
+#[test]
+fn it_stops_and_goes_on() {
+    let mut harness = open("paper", WIDE, (0.02, 0.02));
+    harness.get_by_label("Stop").click();
+    harness.run_steps(3);
+    let known = map(harness.state()).known();
+    assert!(!harness.state().session.map.is_running() && known < map(harness.state()).len());
+    std::thread::sleep(std::time::Duration::from_millis(50));
+    harness.run_steps(3);
+    assert_eq!(map(harness.state()).known(), known);
+    harness.get_by_label("Continue").click();
+    harness.run_steps(3);
+    assert!(harness.state().session.map.is_running());
+}
+
+#[test]
+fn hidden_it_computes_nothing() {
+    let mut harness = window("paper", WIDE, Settings::default());
+    harness.run_steps(5);
+    assert!(harness.state().session.map.map().is_none());
+    harness.state_mut().session.map.choose(Some(axes((0.02, 0.02))));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
+    harness.run_steps(3);
+    assert!(harness.state().session.map.is_running());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num1);
+    harness.run_steps(3);
+    assert!(!harness.state().session.map.is_running());
+    let known = map(harness.state()).known();
+    harness.run_steps(3);
+    assert_eq!(map(harness.state()).known(), known);
+    // what is known is kept
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
+    harness.run_steps(3);
+    assert!(harness.state().session.map.is_running() && map(harness.state()).known() >= known);
+}
+
+#[test]
+fn what_it_depends_on_makes_another() {
+    let mut harness = open("paper", WIDE, (0.25, 0.25));
+    fill(&mut harness);
+    let session = &mut harness.state_mut().session;
+    session.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 1.2, restitution: 0.36 });
+    session.edit_once(|scene| scene.start = Start::At { x_mm: 0.5, v_m_per_s: 0.0 });
+    harness.run_steps(2);
+    assert!(map(harness.state()).is_whole());
+    // while a hand moves it waits, and the one before stays to be seen
+    let session = &mut harness.state_mut().session;
+    session.edit(|scene| scene.mass_g = 16.0);
+    let asked = session.want_map(1000.0);
+    assert!(asked && !session.map.is_running());
+    assert!(session.map.shown().is_some_and(|(map, current)| map.question.scene.mass_g == 15.2 && !current));
+    session.end_gesture();
+    assert!(!session.want_map(1000.0));
+    assert!(session.map.is_running());
+    fill(&mut harness);
+    assert_eq!(map(harness.state()).question.scene.mass_g, 16.0);
+    assert!(harness.state().session.map.shown().is_some_and(|(_, current)| current));
+    harness.get_by_label("Recompute").click();
+    harness.run_steps(2);
+    fill(&mut harness);
+}
+
+/// The final level, byte for byte, with the command that the menu copies.
+#[test]
+fn it_is_the_sweep_of_the_command_line() {
+    let changes: [&[&str]; 3] = [
+        &[],
+        &["damping.xi=0.05", "start=At(x_mm: 0.5, v_m_per_s: 0)", "excitation.frequency_hz=2.5"],
+        &["stops=None"],
+    ];
+    for changes in changes {
+        let mut session = session("paper", &[]);
+        let mut document = session.editor.document().clone();
+        changes.iter().for_each(|change| document.set(change).unwrap());
+        session.edit_once(|scene| *scene = document.scene);
+        session.map.choose(Some(axes((0.25, 0.125))));
+        session.want_map(0.0);
+        assert!(session.wait_for_map(LONG));
+        let command = session.map_command().unwrap();
+        let words: Vec<String> = words(&command);
+        assert_eq!(words[0], "interwell");
+        let output = assert_cmd::Command::cargo_bin("interwell").unwrap().args(&words[1..]).output().unwrap();
+        assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+        let own = session.map.map().and_then(Map::csv).unwrap();
+        assert_eq!(own, String::from_utf8(output.stdout).unwrap(), "{command}");
+    }
+}
+
+/// The words of a command as a shell reads them.
+fn words(command: &str) -> Vec<String> {
+    let mut all = vec![String::new()];
+    let mut quoted = false;
+    for c in command.chars() {
+        match c {
+            '\'' => quoted = !quoted,
+            ' ' if !quoted => all.push(String::new()),
+            c => all.last_mut().unwrap().push(c),
+        }
+    }
+    all
+}
+
+#[test]
+fn it_fits() {
+    for size in [WIDE, [1920.0, 1080.0], [853.0, 480.0]] {
+        let mut harness = open("paper", size, (0.25, 0.25));
+        fill(&mut harness);
+        let place = harness.get_by_role_and_label(Role::Image, "map").rect();
+        assert!(place.right() <= size[0] && place.bottom() <= size[1], "{place}");
+        assert!(place.width() > 0.3 * size[0] && place.height() > 0.35 * size[1], "{size:?}: {place}");
+        for label in ["from rest", "Recompute"] {
+            let rect = harness.get_by_label(label).rect();
+            assert!(rect.right() <= size[0] && rect.left() >= 0.0, "{label}: {rect}");
+        }
+    }
+}
+
+#[test]
+fn every_preset_has_a_map_or_says_why_not() {
+    for preset in interwell::scene::PRESETS {
+        let mut harness = window(preset.name, WIDE, Settings::default());
+        harness.state_mut().carry_out(
+            &eframe::egui::Context::default(),
+            interwell::app::menu::Command::Arrange(Layout::Map),
+        );
+        harness.run_steps(4);
+        let mapping = &harness.state().session.map;
+        assert!(
+            mapping.map().is_some() && mapping.problem().is_none(),
+            "{}: {:?}",
+            preset.name,
+            mapping.problem()
+        );
+    }
+}
