@@ -67,6 +67,7 @@ impl Tiling {
     /// The tiles of a layout.
     pub fn new(layout: Layout, room: Room) -> Self {
         let tree = match room {
+            Room::Compact if layout == Layout::Map => tabs_tree(&views_of(layout)),
             Room::Compact => compact_tree(&views_of(layout)),
             Room::Wide | Room::Large => wide_tree(layout, room == Room::Large),
         };
@@ -215,6 +216,14 @@ fn compact_tree(views: &[View]) -> Tree<View> {
         _ => tiles.insert_horizontal_tile(groups),
     };
     Tree::new(egui::Id::unique("compact"), root, tiles)
+}
+
+/// One view at a time over the whole width.
+fn tabs_tree(views: &[View]) -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let panes = views.iter().map(|view| tiles.insert_pane(*view)).collect();
+    let root = tiles.insert_tab_tile(panes);
+    Tree::new(egui::Id::unique("compact map"), root, tiles)
 }
 
 /// The map, with the well and the card beside it.
