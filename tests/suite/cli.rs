@@ -1,6 +1,7 @@
 //! Does the command line do what its page says: every command, option, column and exit status?
 
 mod bad_input;
+mod flexure_numbers;
 mod flexures;
 mod outputs;
 

@@ -1,4 +1,6 @@
-//! Statics: force curves, fitted tables, landscapes.
+//! Statics: force curves, fitted tables, landscapes; flexures in a module of their own.
+
+mod flexures;
 
 use std::sync::Arc;
 

@@ -91,8 +91,6 @@ pub(super) struct Terms {
     pub deflection_by_lateral: f64,
     /// Strain energy.
     pub energy: f64,
-    /// Deflection of the middle beyond the sway's, divided by sqrt(q).
-    pub bump: f64,
 }
 
 /// cos(sqrt(q) psi), sin(sqrt(q) psi)/sqrt(q) and the derivative of the latter by q: analytic, also for q < 0.
@@ -191,7 +189,6 @@ impl Beam {
             t.shortening_by_lateral -= 0.5 * weight * kappa * c_2 * sine_2;
             t.deflection_by_lateral -= 0.5 * weight * kappa * c_2 * cosine_2;
             t.energy += 0.25 * weight * kappa * c_2 * difference;
-            t.bump -= 0.5 * weight * (s * cosine + kappa * s_2 * along);
             let by_axial = cosine * shear - sine * normal;
             let by_lateral = sine * shear + cosine * normal;
             let even_by = [

@@ -25,6 +25,13 @@ const BEYOND_KINK: f64 = 1.15;
 /// How far it reaches at least, as a part of the shortest flexure.
 const LEAST_REACH: f64 = 0.1;
 
+/// How far beyond its wells a curve reaches at least, as a multiple of their distance: those of thick flexures, whose
+/// taut branch rises slowly, may lie well beyond the kink.
+const BEYOND_WELL: f64 = 1.1;
+
+/// Kinks nearer to each other than this, relatively, are one: equal groups lose their bumps together.
+const SAME_KINK: f64 = 1e-11;
+
 /// More kinks than any two groups of flexures have; a chain that has not ended by then goes in circles.
 const MOST_SEGMENTS: usize = 8;
 
@@ -100,12 +107,20 @@ fn chain(solver: &mut Solver, mut start: Point, least: f64) -> Result<Vec<Segmen
         let from = start.x;
         let end = (BEYOND_KINK * from).max(least);
         let buckled = start.shapes.contains(&Shape::Bump);
-        let (segment, next) = if buckled {
+        let (mut segment, mut next) = if buckled {
             march(solver, start, 0.35 * (solver.taut_at() - from).abs().max(0.02 * end), None)?
         } else {
             let part = if start.shapes.contains(&Shape::Bowed) { 0.1 } else { 0.25 };
             march(solver, start, part * (end - from), Some(end))?
         };
+        while let (None, Some(farther)) = (&next, beyond_well(solver, &mut segment)?) {
+            let last = segment.points[segment.points.len() - 1].clone();
+            let step = 0.5 * (farther - last.x);
+            let (rest, after) = march(solver, last, step, Some(farther))?;
+            segment.points.extend(rest.points.into_iter().skip(1));
+            segment.to = rest.to;
+            next = after;
+        }
         segments.push(segment);
         match next {
             Some(point) if segments.len() < MOST_SEGMENTS => start = point,
@@ -113,6 +128,25 @@ fn chain(solver: &mut Solver, mut start: Point, least: f64) -> Result<Vec<Segmen
             None => return Ok(segments),
         }
     }
+}
+
+/// Where a segment that ends at or before its well has to end instead; none where it reaches far enough.
+fn beyond_well(solver: &mut Solver, segment: &mut Segment) -> Result<Option<f64>, Lost> {
+    let pulled = segment.points.iter().rposition(|p| p.x > 0.0 && p.force < 0.0);
+    let Some(pulled) = pulled else { return Ok(None) };
+    let Some(next) = segment.points.get(pulled + 1) else {
+        return Ok(Some(BEYOND_KINK * segment.to));
+    };
+    let (mut low, mut high) = (segment.points[pulled].x, next.x);
+    if BEYOND_WELL * high <= segment.to {
+        return Ok(None);
+    }
+    // So near to the end that it matters where between the two it is.
+    while high - low > 1e-3 * high {
+        let middle = segment.at(solver, 0.5 * (low + high))?;
+        if middle.force < 0.0 { low = middle.x } else { high = middle.x }
+    }
+    Ok(Some(BEYOND_WELL * high).filter(|end| *end > segment.to))
 }
 
 /// The stable state at x = 0: straight, or with the bumps that lower the energy.
@@ -299,6 +333,7 @@ fn pitchfork(
 ) -> Result<(Segment, Option<Point>), Lost> {
     let last = segment.points[segment.points.len() - 1].clone();
     let mut first: Option<(usize, Point)> = None;
+    let mut places = [f64::NAN; 2];
     let mut lost = Lost::Unstable { x: beyond.x };
     for g in (0..2).filter(|g| changed[*g]) {
         let vanishes = beyond.shapes[g] == Shape::Bump;
@@ -316,6 +351,7 @@ fn pitchfork(
         let guess = solver.reshaped(&known.guess(x), shapes);
         match solver.solve(&guess, Prescribed::BumpVanishes(g)) {
             Ok(kink) => {
+                places[g] = kink.x;
                 let within = kink.x >= segment.from && kink.x <= beyond.x;
                 if within && first.as_ref().is_none_or(|(_, other)| kink.x < other.x) {
                     first = Some((g, kink));
@@ -328,6 +364,10 @@ fn pitchfork(
     // The kink as each side sees it; both share force and position.
     let mut shapes = kink.shapes;
     shapes[g] = Shape::Straight;
+    let both = beyond.shapes == [Shape::Bump; 2] && (places[0] - places[1]).abs() <= SAME_KINK * kink.x;
+    if both {
+        shapes = [Shape::Straight; 2];
+    }
     let straight = solver.reshaped(&kink, shapes);
     let straight = solver.solve(&straight, Prescribed::Displacement(kink.x))?;
     let (inner, outer) = if beyond.shapes[g] == Shape::Bump { (kink, straight) } else { (straight, kink) };

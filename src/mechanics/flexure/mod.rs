@@ -78,7 +78,7 @@ pub struct Geometry {
 pub struct Accuracy {
     /// Error of the force inside, relative to its largest magnitude between the wells.
     pub force: f64,
-    /// Error of the potential inside, relative to the barrier.
+    /// Error of the potential inside, relative to the barrier; NaN with one well.
     pub potential: f64,
     /// Error of the stiffness inside, relative to its magnitude at x = 0.
     pub stiffness: f64,
@@ -177,7 +177,7 @@ impl Flexures {
     /// Solves the mechanism.
     ///
     /// Returns its force curve, odd bit for bit, with the flexures behind it. The domain reaches 1.15 times the
-    /// last kink, and a tenth of the shortest flexure at least; breaks are the kinks, and joints of pieces that meet
+    /// last kink, 1.1 times the wells and a tenth of the shortest flexure at least; breaks are the kinks, and joints of pieces that meet
     /// smoothly.
     ///
     /// Preconditions: sizes above 0, a preload from 0 to half of the shorter flexure, a thickness of at most a tenth of it.
@@ -196,6 +196,11 @@ impl Flexures {
             Lost::Unstable { x } => FlexureError::Unstable { x: x * units.length },
         };
         let mut segments = branch::trace(&mut solver).map_err(lost)?;
+        // Potentials are differences from this state, and wells may be shallow beside the energy of the preload.
+        let coarse = std::mem::replace(&mut solver.tail, FINE_TAIL);
+        let rest = solver.solve(&segments[0].points[0], Prescribed::Displacement(0.0)).map_err(lost)?;
+        segments[0].points[0] = rest;
+        solver.tail = coarse;
         let scale = Scale::of(&segments);
         let stretches = pieces::fit(&mut solver, &mut segments, scale, tolerance).map_err(lost)?;
         let curve = curve(&stretches, units);
@@ -220,7 +225,9 @@ impl Flexures {
         solver.tail = FINE_TAIL;
         let distance = x.abs() / self.units.length;
         let last = self.segments.len() - 1;
-        let segment = &self.segments[self.segments.partition_point(|s| s.to < distance).min(last)];
+        // In metres, as the curve has its breaks: x/length may round to the other side of a kink.
+        let beyond = |segment: &Segment| segment.to * self.units.length < x.abs();
+        let segment = &self.segments[self.segments.partition_point(beyond).min(last)];
         let mut point = solver
             .solve(&segment.guess(distance), Prescribed::Displacement(distance))
             .map_err(|_| FlexureError::NotConverged { x, residual: f64::NAN })?;
@@ -236,22 +243,19 @@ impl Flexures {
     fn described(&self, solver: &mut Solver, point: &Point, x: f64) -> State {
         let Units { length, force } = self.units;
         let system = solver.system(point.even[0].len()).clone();
-        let terms = system.terms(point);
-        let bump = (0..2).fold(0.0_f64, |most, g| {
-            let size = if point.shapes[g] == Shape::Straight { 0.0 } else { point.q[g].max(0.0).sqrt() };
-            most.max((terms[g].bump * size).abs())
-        });
         let bent: [Bent; 2] = std::array::from_fn(|g| Bent::of(&system.beams[g], point, g));
         let curvature = bent[0].curvature().max(bent[1].curvature()) / length;
+        let lines = bent.each_ref().map(Bent::line);
+        let bumps = (0..2).filter(|g| point.shapes[*g] != Shape::Straight).map(|g| shape::bump(&lines[g]));
+        let bump = bumps.fold(0.0, f64::max);
         let clamp = (0..2).map(|g| system.beams[g].length - system.beams[g].natural_shortening).sum::<f64>()
             - system.preload;
         let line = |g: usize, flexure: &'static str| CentreLine {
             flexure,
-            points: bent[g]
-                .line()
-                .into_iter()
+            points: lines[g]
+                .iter()
                 .map(|[s, along, across]| {
-                    let along = if g == 0 { along } else { clamp - along };
+                    let along = if g == 0 { *along } else { clamp - along };
                     [s * length, along * length, across * length]
                 })
                 .collect(),
@@ -280,12 +284,13 @@ fn measured(
 ) -> Accuracy {
     let Units { length, force } = units;
     let start = segments[0].points[0].energy;
-    let points = segments.iter().flat_map(|s| &s.points);
-    let deepest = points.fold(0.0_f64, |most, p| most.max(start - p.energy));
+    let inside = segments.iter().flat_map(|s| &s.points).filter(|p| p.x > 0.0 && p.x <= scale.inside);
+    let two_wells = inside.clone().any(|p| p.force < 0.0);
+    let deepest = inside.fold(0.0_f64, |most, p| most.max(start - p.energy));
     let none = if scale.inside > 0.0 { 0.0 } else { f64::NAN };
     let mut own = Accuracy {
         force: none,
-        potential: none,
+        potential: if two_wells { 0.0 } else { f64::NAN },
         stiffness: none,
         outer_force: 0.0,
         solves: solver.solves,
@@ -301,7 +306,9 @@ fn measured(
         let potential = curve.potential(x) / (force * length) - (point.energy - start);
         let stiffness = curve.stiffness(x) * length / force - point.stiffness;
         own.force = own.force.max(missed);
-        own.potential = own.potential.max(potential.abs() / deepest);
+        if two_wells {
+            own.potential = own.potential.max(potential.abs() / deepest);
+        }
         own.stiffness = own.stiffness.max(stiffness.abs() / scale.stiffness);
     }
     own

@@ -7,11 +7,16 @@ use super::beam::{Beam, Shape};
 use super::equilibrium::Point;
 use crate::numeric::GaussLegendre;
 
-/// Points of a centre line.
+/// Points of a centre line; an odd number, so that the middle is one.
 const LINE_POINTS: usize = 65;
 
 /// Places at which the curvature is looked at, dense at the clamps, where it is largest on the taut branch.
 const CURVATURE_POINTS: usize = 257;
+
+/// How far the middle of a centre line is from the middle of its ends, across.
+pub(super) fn bump(line: &[[f64; 3]]) -> f64 {
+    (line[line.len() / 2][2] - 0.5 * line[line.len() - 1][2]).abs()
+}
 
 /// One flexure of a group, as bent.
 pub(super) struct Bent<'a> {

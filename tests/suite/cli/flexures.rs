@@ -15,7 +15,7 @@ const SCENE: &str = "(title: \"Flexures\", mass_g: 15.2, damping: Ratio(0.023),
     excitation: Sine(frequency_hz: 3, amplitude_g: 1), run: (duration_s: 0.5, settle_s: 0))";
 
 /// A folder with the scene in it.
-fn scene() -> (tempfile::TempDir, PathBuf) {
+pub(super) fn scene() -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("flexures.ron");
     fs::write(&path, SCENE).unwrap();
@@ -23,13 +23,13 @@ fn scene() -> (tempfile::TempDir, PathBuf) {
 }
 
 /// What `COMMAND scene OPTIONS` writes to standard output.
-fn stdout(command: &str, path: &std::path::Path, options: &str) -> String {
+pub(super) fn stdout(command: &str, path: &std::path::Path, options: &str) -> String {
     let mut own = headless(command);
     own.arg(path).args(options.split_whitespace());
     String::from_utf8(own.assert().success().get_output().stdout.clone()).unwrap()
 }
 
-fn numbers(csv: &str, name: &str) -> Vec<f64> {
+pub(super) fn numbers(csv: &str, name: &str) -> Vec<f64> {
     column(csv, name).iter().map(|text| text.parse().unwrap()).collect()
 }
 
