@@ -218,7 +218,7 @@ impl Style {
 
     /// Over a map that is not that of the scene.
     pub fn veil(&self) -> Color32 {
-        self.pick(Color32::from_white_alpha(165), Color32::from_black_alpha(165))
+        self.pick(Color32::from_white_alpha(140), Color32::from_black_alpha(130))
     }
 
     /// Symbols over the colour of a kind of motion.

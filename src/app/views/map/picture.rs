@@ -75,7 +75,6 @@ impl Picture {
         self.hatch(painter, frame.rect, Look::Rest, 1.0, style.hatch_stroke());
         self.hatch(painter, frame.rect, Look::Missing, 1.0, style.missing_stroke());
         self.hatch(painter, frame.rect, Look::Missing, -1.0, style.missing_stroke());
-        self.hatch(painter, frame.rect, Look::None, -1.0, style.hatch_stroke());
         if self.key.1 == Quantity::Regime {
             self.symbols(painter, frame.rect, style);
         }
@@ -143,8 +142,8 @@ impl Picture {
 fn colour(style: &Style, look: Look) -> Color32 {
     match look {
         Look::Unknown => style.panel(),
-        Look::Missing => style.ground(),
-        Look::Rest | Look::None => style.rest_shade(),
+        Look::Missing | Look::None => style.ground(),
+        Look::Rest => style.rest_shade(),
         Look::Kind(kind) => style.kind(kind),
         Look::Share(share) => style.scale(f64::from(share)),
     }

@@ -104,12 +104,14 @@ fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             mapping.stop();
         }
         let share = known as f32 / all as f32;
-        let bar = egui::ProgressBar::new(share).desired_width(90.0).desired_height(12.0);
+        let bar = egui::ProgressBar::new(share).desired_width(50.0).desired_height(12.0);
         ui.add(bar).on_hover_text(format!("{known} of {all} runs"));
         return;
     }
     let (text, hover) = if known == all {
-        ("Recompute", format!("{all} runs in {took:.1} s. Runs them all again."))
+        let coarse = map.coarse_after.unwrap_or(map.took).as_secs_f64();
+        let hover = format!("Coarse after {coarse:.2} s, all {all} runs after {took:.1} s. Runs them again.");
+        ("Recompute", hover)
     } else {
         ("Continue", format!("{known} of {all} runs are done. Runs the others."))
     };
@@ -146,8 +148,8 @@ pub fn legend(
         sample(Rect::from_min_size(pos2(x, y - 6.0), vec2(SAMPLE, 12.0)));
         x = text(pos2(x + SAMPLE + 6.0, y), words).right() + 16.0;
     };
-    let patch = |rect: Rect, strokes: &[(f32, egui::Stroke)]| {
-        painter.rect_filled(rect, 0.0, style.rest_shade());
+    let patch = |rect: Rect, ground: egui::Color32, strokes: &[(f32, egui::Stroke)]| {
+        painter.rect_filled(rect, 0.0, ground);
         let clipped = painter.with_clip_rect(rect);
         for (way, stroke) in strokes {
             for i in 0..6 {
@@ -160,10 +162,10 @@ pub fn legend(
                 clipped.line_segment([from, to], *stroke);
             }
         }
-        painter.rect_stroke(rect, 0.0, style.grid_stroke(), egui::StrokeKind::Inside);
+        painter.rect_stroke(rect, 0.0, style.ghost_stroke(), egui::StrokeKind::Inside);
     };
     if picture.shows(Look::Rest) {
-        entry("at rest", &|rect| patch(rect, &[(1.0, style.hatch_stroke())]));
+        entry("at rest", &|rect| patch(rect, style.rest_shade(), &[(1.0, style.hatch_stroke())]));
     }
     for kind in kinds(picture) {
         entry(kind_name(kind), &|rect| {
@@ -172,11 +174,11 @@ pub fn legend(
         });
     }
     if picture.shows(Look::None) {
-        entry("does not repeat", &|rect| patch(rect, &[(-1.0, style.hatch_stroke())]));
+        entry("does not repeat", &|rect| patch(rect, style.ground(), &[]));
     }
     if picture.shows(Look::Missing) {
         entry("ended early", &|rect| {
-            patch(rect, &[(1.0, style.missing_stroke()), (-1.0, style.missing_stroke())])
+            patch(rect, style.ground(), &[(1.0, style.missing_stroke()), (-1.0, style.missing_stroke())])
         });
     }
     let line = |rect: Rect, [halo, stroke]: [egui::Stroke; 2], dashed: bool| {
