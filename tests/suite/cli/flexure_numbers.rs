@@ -23,7 +23,10 @@ fn the_curve_in_csv() {
     // The parallel flexures give way a little, so that the bump is just below that of the whole preload.
     near_relative(bump[1], 0.192607640414 * 27.7e-3, 1e-3);
     assert!(bump[1] > bump[2] && bump[2] > bump[4] && bump[4] > 0.0 && bump[5] == 0.0);
-    assert_eq!((bump[0], stress[0], axial[0]), (bump[2], stress[2], axial[2]));
+    // Each state is solved and its line summed for itself.
+    for both in [&bump, &stress, &axial] {
+        near_relative(both[0], both[2], 1e-12);
+    }
     // E t/2 times the curvature at the middle of the elastica.
     assert!(stress[1] > 1.2e9 && stress[1] < 1.5e9, "{stress:?}");
     assert!(force[5] > 0.0 && stiffness[5] > 4000.0);
