@@ -113,7 +113,8 @@ fn chain(solver: &mut Solver, mut start: Point, least: f64) -> Result<Vec<Segmen
             let part = if start.shapes.contains(&Shape::Bowed) { 0.1 } else { 0.25 };
             march(solver, start, part * (end - from), Some(end))?
         };
-        while let (None, Some(farther)) = (&next, beyond_well(solver, &mut segment)?) {
+        while next.is_none() {
+            let Some(farther) = beyond_well(solver, &mut segment)? else { break };
             let last = segment.points[segment.points.len() - 1].clone();
             let step = 0.5 * (farther - last.x);
             let (rest, after) = march(solver, last, step, Some(farther))?;
