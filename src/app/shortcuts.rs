@@ -29,6 +29,9 @@ const GROUPS: [(&str, &[(&str, &str)]); 4] = [
         &[
             ("Z", "the view under the pointer over the whole window"),
             ("C", "cover the results: predict first"),
+            ("H", "what it would take to cross"),
+            ("P", "projector: light, larger, thicker lines"),
+            ("D", "light letters on a dark ground"),
             ("F11", "full screen"),
             ("Ctrl+1, 2, 3, 4", "arrange as Look, Study, Map, your own"),
         ],

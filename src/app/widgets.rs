@@ -3,6 +3,7 @@
 use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
 
 use super::status::Kind;
+use super::style::COMPACT_BELOW;
 
 /// A slider of a number of the scene.
 pub struct Knob<'a> {
@@ -42,15 +43,15 @@ impl Knob<'_> {
             .clamping(egui::SliderClamping::Never)
             .smart_aim(false)
             .step_by(self.step);
-        let name = ui.label(self.name).on_hover_text(self.hover);
+        let name = hover_beside(ui.label(self.name), self.hover);
         let response = ui
             .scope(|ui| {
                 ui.spacing_mut().slider_width = self.width;
                 ui.add(slider)
             })
             .inner
-            .labelled_by(name.id)
-            .on_hover_text(self.hover);
+            .labelled_by(name.id);
+        let response = hover_beside(response, self.hover);
         if turned != value && !response.dragged() && response.has_focus() && ui.input(|i| i.modifiers.shift) {
             turned = value + 10.0 * (turned - value);
         }
@@ -65,6 +66,18 @@ impl Knob<'_> {
             ended: response.drag_stopped() || (changed && !response.dragged()),
         }
     }
+}
+
+/// A hover text that stands beside what it explains, where the window has a column of controls: below it would cover the
+/// next one.
+pub fn hover_beside(response: Response, text: &str) -> Response {
+    if response.ctx.content_rect().width() < COMPACT_BELOW {
+        return response.on_hover_text(text);
+    }
+    let mut tooltip = egui::Tooltip::for_enabled(&response);
+    tooltip.popup = tooltip.popup.align(egui::RectAlign::RIGHT_START);
+    tooltip.show(|ui| ui.label(text));
+    response
 }
 
 /// What a button shows.

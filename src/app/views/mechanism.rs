@@ -63,7 +63,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
             let middle = 0.5 * (top + bottom);
             let x = context.span.screen_from_world(state.x, rect);
             flexures(&painter, context, rect, (x, middle, half), (top, bottom));
-            (middle, "schematic, seen from the base; no flexures behind this force".to_owned())
+            (middle, "a drawing only: this scene gives a force, not flexures".to_owned())
         }
     };
     let x = context.span.screen_from_world(state.x, rect);

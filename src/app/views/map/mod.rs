@@ -108,7 +108,7 @@ fn reading(map: &Map, column: usize, row: usize) -> String {
         None => lines.push("not run yet".to_owned()),
         Some((cell, own)) => {
             if !own {
-                lines.push("so far that of a neighbour:".to_owned());
+                lines.push("not run yet; its neighbour:".to_owned());
             }
             if cell.outcome != "done" {
                 lines.push(format!("the run ended early: {}", cell.outcome.replace('_', " ")));
