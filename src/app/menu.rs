@@ -203,19 +203,9 @@ fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings
     item(ui, asked, "Keep this as your own", None, keep, Command::KeepOwn);
     ui.separator();
     let mut wanted = settings;
-    let toggle = |ui: &mut Ui, on: &mut bool, text: &str, key: Option<Key>, hover: &str| {
-        ui.horizontal(|ui| {
-            ui.checkbox(on, text).on_hover_text(hover);
-            if let Some(key) = key {
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    ui.weak(ui.ctx().format_shortcut(&plain(key)));
-                });
-            }
-        });
-    };
-    toggle(ui, &mut wanted.projector, "Projector", Some(Key::P), "Light, larger, thicker lines");
-    toggle(ui, &mut wanted.dark, "Dark", Some(Key::D), "Light letters on a dark ground");
-    toggle(ui, &mut wanted.reduce_motion, "Reduce motion", None, "No rings at impacts");
+    ui.checkbox(&mut wanted.projector, "Projector").on_hover_text("Light, larger, thicker lines (P)");
+    ui.checkbox(&mut wanted.dark, "Dark").on_hover_text("Light letters on a dark ground (D)");
+    ui.checkbox(&mut wanted.reduce_motion, "Reduce motion").on_hover_text("No rings at impacts");
     if wanted != settings {
         asked.push(Command::Set(wanted));
     }

@@ -68,6 +68,12 @@ impl Knob<'_> {
     }
 }
 
+/// What waits for an answer, over everything else.
+pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
+    let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
+    egui::Modal::new(egui::Id::unique(id)).frame(frame)
+}
+
 /// A hover text that stands beside what it explains, where the window has a column of controls: below it would cover the
 /// next one.
 pub fn hover_beside(response: Response, text: &str) -> Response {

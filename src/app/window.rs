@@ -23,7 +23,7 @@ use super::style::{self, PROJECTOR_ZOOM, Style};
 use super::task::{Latest, Wake};
 use super::transport::{self, EVENT_AHEAD};
 use super::views::{self, Memory, Span, View, ViewContext};
-use super::widgets::{Icon, icon_button_ui};
+use super::widgets::{Icon, dialog, icon_button_ui};
 use super::{controls, export, hint, shortcuts};
 
 /// Where the scenes opened last are kept between two starts of the program.
@@ -206,12 +206,12 @@ impl Window {
                 });
             });
         }
-        if self.hint.is_shown(&self.session) {
-            Panel::top("hint").frame(line).show(ui, |ui| self.hint.ui(ui));
-        }
+        let hinted = self.hint.is_shown(&self.session);
         if self.ways && !self.covered {
             let ways = self.session.ways();
             Panel::top("ways").frame(line).show(ui, |ui| ui.label(ways));
+        } else if hinted {
+            Panel::top("hint").frame(line).show(ui, |ui| self.hint.ui(ui));
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.memory.grab = false;
@@ -265,7 +265,7 @@ impl Window {
 
     fn message_ui(&mut self, ui: &Ui) {
         let Some((title, text)) = &self.message else { return };
-        let answer = egui::Modal::new(egui::Id::unique("message")).show(ui.ctx(), |ui| {
+        let answer = dialog(ui.ctx(), "message").show(ui.ctx(), |ui| {
             ui.set_max_width(560.0);
             ui.heading(title);
             ui.add_space(6.0);

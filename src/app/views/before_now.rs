@@ -24,7 +24,7 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let now = context.session.now_card();
         let before = context.session.before_card().cloned();
         let columns = ui.available_width() / 3.0 - 12.0;
-        Grid::new("before and now").num_columns(3).min_col_width(columns).spacing([8.0, 8.0]).show(
+        Grid::new("before and now").num_columns(3).min_col_width(columns).spacing([8.0, 6.0]).show(
             ui,
             |ui| {
                 ui.label("");

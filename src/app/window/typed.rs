@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{self, Key, Modal, RichText, TextEdit, Ui};
+use eframe::egui::{self, Key, RichText, TextEdit, Ui};
+
+use crate::app::widgets::dialog;
 
 use super::files::Wanted;
 
@@ -53,7 +55,7 @@ impl Typed {
 
     /// Draws the question; the answer once there is one.
     pub fn ui(&mut self, ui: &Ui) -> Option<Ended> {
-        let answer = Modal::new(egui::Id::unique("path")).show(ui.ctx(), |ui| {
+        let answer = dialog(ui.ctx(), "path").show(ui.ctx(), |ui| {
             ui.set_width(520.0_f32.min(ui.ctx().content_rect().width() - 60.0));
             ui.heading(self.wanted.question());
             ui.label("This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one).");
