@@ -5,14 +5,14 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::dynamics::{Model, STANDARD_GRAVITY};
+use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FLEXURE_TOLERANCE, FlexureError, Mechanism};
 use crate::scene::{self, Document, Excitation, Fault, Scene, SceneError, Stops};
 use crate::study::{self, Settled, Thresholds};
 
 use super::document::Editor;
 use super::map::Mapping;
-use super::player::Player;
+use super::player::{Player, fitting_speed};
 use super::status::{self, Sentence, Tense};
 use super::task::{Latest, Wake};
 
@@ -23,9 +23,6 @@ const FUTURE_PERIODS: f64 = 3.0;
 /// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and what it is
 /// off by is not seen. At the end of the gesture they are solved as every study solves them.
 const HANDLED_TOLERANCE: f64 = 1e-6;
-
-/// The speed of a scene that does not say one.
-const SPEED: f64 = 0.1;
 
 /// Stops that appear where a scene does not say which.
 const STOPS_WHEN_ON: Stops = Stops::Rigid { travel_limit_mm: 1.5, restitution: 0.36 };
@@ -129,7 +126,8 @@ impl Session {
         let model =
             Model::build(&scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
         let hints = scene.app.clone().unwrap_or_default();
-        let player = Player::new(&model, hints.speed.unwrap_or(SPEED));
+        let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.pace()));
+        let player = Player::new(&model, speed);
         let remembered_stops = match scene.stops {
             Stops::None => hints.stops_when_on.unwrap_or(STOPS_WHEN_ON),
             stops => stops,
@@ -166,6 +164,11 @@ impl Session {
     /// The model that moves.
     pub fn model(&self) -> &Model {
         &self.model
+    }
+
+    /// The model of what is shown: the one that held then, where the past is looked at.
+    pub fn shown(&self) -> &Model {
+        if self.player.is_past() { self.player.shown_model() } else { &self.model }
     }
 
     /// Why the scene as it stands cannot be run; the motion is that of the last one that could.
@@ -284,7 +287,8 @@ impl Session {
         self.travel(Editor::back_to_start);
         self.before = None;
         self.restart();
-        self.player.speed = self.scene().app.as_ref().and_then(|hints| hints.speed).unwrap_or(SPEED);
+        let hinted = self.scene().app.as_ref().and_then(|hints| hints.speed);
+        self.player.speed = hinted.unwrap_or_else(|| fitting_speed(self.model.pace()));
         self.player.set_playing(true);
     }
 
@@ -491,22 +495,6 @@ impl Session {
             Excitation::Sine { amplitude_g, .. } => Some(amplitude_g),
             _ => None,
         }
-    }
-
-    /// The largest acceleration of the base that a view makes room for, in m/s^2.
-    pub fn largest_push(&self) -> f64 {
-        let g = match &self.scene().excitation {
-            Excitation::Sine { amplitude_g, .. } => amplitude_g.abs(),
-            Excitation::AmplitudeRamp { from_g, to_g, .. } => from_g.abs().max(to_g.abs()),
-            Excitation::Chirp { amplitude_g, .. } => amplitude_g.abs(),
-            Excitation::Constant { accel_g } => accel_g.abs(),
-            Excitation::Noise { rms_g, .. } => 2.5 * rms_g,
-            Excitation::Recorded { record, .. } => {
-                record.as_ref().map_or(0.0, |record| record.peak() / STANDARD_GRAVITY)
-            }
-            Excitation::None | Excitation::Sum(_) => 1.0,
-        };
-        g * STANDARD_GRAVITY
     }
 }
 

@@ -5,6 +5,10 @@ use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui
 use super::status::Kind;
 use super::style::COMPACT_BELOW;
 
+/// Room in points that a slider leaves for its number, and what is left of the slider for a long one.
+const NUMBER: f32 = 72.0;
+const LEAST_SLIDER: f32 = 30.0;
+
 /// A slider of a number of the scene.
 pub struct Knob<'a> {
     /// Its name.
@@ -33,6 +37,15 @@ pub struct Turn {
 }
 
 impl Knob<'_> {
+    /// What a long number takes more than the usual one, the slider has less: together they keep their room.
+    fn slider_width(&self, ui: &Ui, value: f64) -> f32 {
+        let text = format!("{value:.*}{}", self.decimals, self.unit);
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let text = ui.painter().layout_no_wrap(text, font, Color32::PLACEHOLDER).size().x;
+        let number = text + 2.0 * ui.spacing().button_padding.x;
+        (self.width - (number - NUMBER).max(0.0)).max(LEAST_SLIDER)
+    }
+
     /// Draws it and says what was done to it.
     pub fn ui(&self, ui: &mut Ui, value: f64) -> Turn {
         let mut turned = value;
@@ -44,9 +57,10 @@ impl Knob<'_> {
             .smart_aim(false)
             .step_by(self.step);
         let name = hover_beside(ui.label(self.name), self.hover);
+        let width = self.slider_width(ui, value);
         let response = ui
             .scope(|ui| {
-                ui.spacing_mut().slider_width = self.width;
+                ui.spacing_mut().slider_width = width;
                 ui.add(slider)
             })
             .inner

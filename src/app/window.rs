@@ -22,7 +22,7 @@ use super::settings::Settings;
 use super::style::{self, PROJECTOR_ZOOM, Style};
 use super::task::{Latest, Wake};
 use super::transport::{self, EVENT_AHEAD};
-use super::views::{self, Memory, Span, View, ViewContext};
+use super::views::{self, Memory, View, ViewContext};
 use super::widgets::{Icon, dialog, icon_button_ui};
 use super::{controls, export, hint, shortcuts};
 
@@ -227,7 +227,7 @@ impl Window {
     }
 
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {
-        let span = Span::of(&self.session);
+        let span = self.memory.span(&self.session);
         let mut context = ViewContext {
             session: &mut self.session,
             style,
@@ -252,7 +252,7 @@ impl Window {
         let mut close = false;
         ui.horizontal(|ui| {
             ui.add_space(8.0);
-            ui.heading(view.name());
+            ui.heading(view.name()).on_hover_text(view.about());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 close = icon_button_ui(ui, Icon::Fill, 24.0, "all views", "All views again (Z)").clicked();
             });

@@ -7,6 +7,7 @@ mod contact;
 mod describe;
 mod drive;
 mod equation;
+mod extent;
 mod live;
 mod model;
 mod motion;
