@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use super::HardCase;
 use super::ball::times;
 use crate::dynamics::{EventKind, Outcome, Run};
-use crate::mechanics::{ForceCurve, Piece};
 use crate::study::accuracy::Stopped;
+use crate::study::accuracy::exact::Corner;
 use crate::study::accuracy::measure::{Bench, STEP_ERROR, Variant, off};
 use crate::study::accuracy::scenes::{Setup, polynomial, right_stop, rigid, sine, unit_well};
 
@@ -21,42 +21,22 @@ pub(super) const KINK: HardCase = HardCase {
     find: kink,
 };
 
-/// Slope 1 N/m left of the break at `b`, `outer` right of it; force 0 at x = 0. The origins of the two pieces are off the
-/// break, so that its two sides differ in rounding.
-fn corner(b: f64, outer: f64) -> ForceCurve {
-    let inner = Piece { origin: -0.1, coefficients: vec![-0.1, 1.0], potential_at_origin: 0.0 };
-    let far = b + 0.7;
-    let right =
-        Piece { origin: far, coefficients: vec![b + outer * (far - b), outer], potential_at_origin: 0.0 };
-    ForceCurve::from_pieces(vec![inner, right], vec![b], (-5.0, 5.0), false, None)
-}
-
-/// Period of the orbit on the corner that passes x = 0 with speed `v`: half a turn to the left of 0, twice the way from 0
-/// to the break, and the time beyond it, y'' = -b - outer y from y = 0 with the speed there.
-fn corner_period(b: f64, outer: f64, v: f64) -> f64 {
-    let at_break = (v * v - b * b).sqrt();
-    let w = outer.sqrt();
-    PI + 2.0 * (b / v).asin() + 2.0 * (PI / 2.0 - (b / outer * w / at_break).atan()) / w
-}
-
 fn kink(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     Ok(vec![flexures(bench)?, straight(bench)?])
 }
 
 fn straight(bench: &Bench) -> Result<Variant, Stopped> {
     const PERIODS: f64 = 5000.0;
-    let (b, outer, v) = (0.3, 25.0, 1.0);
-    let period = corner_period(b, outer, v);
-    let setup = Setup::new(polynomial(&[0.0]), (0.0, v), PERIODS * period).on(corner(b, outer));
+    let (corner, v) = (Corner { at: 0.3, outer: 25.0 }, 1.0);
+    let period = corner.period(v);
+    let setup = Setup::new(polynomial(&[0.0]), (0.0, v), PERIODS * period).on(corner.curve());
     let model = setup.model()?;
     let run = bench.run(&model, &[])?;
     let summary = &run.summary;
     let scales = model.scales;
     let steps = summary.steps as f64;
-    // the largest force is at the right turn: v^2/2 = b y + outer y^2/2 + b^2/2
-    let turn = ((b * b + outer * (v * v - b * b)).sqrt() - b) / outer;
-    let energy_step = STEP_ERROR * ((b + outer * turn) * scales.length + v * scales.speed);
-    let slope = (corner_period(b, outer, v + 1e-6) - corner_period(b, outer, v - 1e-6)).abs() / 2e-6 / v;
+    let energy_step = STEP_ERROR * (corner.largest_force(v) * scales.length + v * scales.speed);
+    let slope = (corner.period(v + 1e-6) - corner.period(v - 1e-6)).abs() / 2e-6 / v;
     let each = steps / PERIODS;
     let late = slope * each * energy_step * PERIODS * (PERIODS + 1.0) / 2.0
         + steps * STEP_ERROR * scales.time
@@ -130,8 +110,11 @@ pub(super) const STOP_ON_A_BREAK: HardCase = HardCase {
 
 fn stop_on_a_break(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let b = 300.0 / 1e3;
-    let setup =
-        |v: f64| Setup::new(polynomial(&[0.0]), (b, v), 2.0).on(corner(b, 1e6)).stops(right_stop(300.0, 0.5));
+    let setup = |v: f64| {
+        Setup::new(polynomial(&[0.0]), (b, v), 2.0)
+            .on(Corner { at: b, outer: 1e6 }.curve())
+            .stops(right_stop(300.0, 0.5))
+    };
     let model = setup(0.5).model()?;
     let run = bench.run(&model, &[])?;
     let exact = b.hypot(0.25) * (2.0 + 0.25_f64.atan2(b)).cos();
