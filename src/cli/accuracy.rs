@@ -119,3 +119,30 @@ fn bar(parts: u64, quiet: bool) -> ProgressBar {
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} parts  {eta} left");
     ProgressBar::new(parts).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interwell::study::accuracy::{Check, Variant};
+
+    #[test]
+    fn a_case_that_falls_short_is_a_failure_that_names_it() {
+        let variant = |holds| Variant {
+            name: "1e-12 m before",
+            steps: 2,
+            evaluations: 2,
+            cpu_s: 0.0,
+            checks: vec![("one impact", Check::Fact(holds))],
+        };
+        let report = |holds: &[bool]| Report {
+            points: Vec::new(),
+            cases: vec![("grazing", holds.iter().copied().map(variant).collect())],
+        };
+        assert!(verdict(&report(&[true, true])).is_ok());
+        let failure = verdict(&report(&[true, false])).unwrap_err();
+        assert!(matches!(failure, Failure::Failed(_)));
+        assert_eq!(failure.to_string(), "a hard case falls short: grazing (1e-12 m before): one impact");
+        let failure = verdict(&report(&[false, false])).unwrap_err();
+        assert!(failure.to_string().starts_with("2 of the hard cases' checks fall short: "), "{failure}");
+    }
+}

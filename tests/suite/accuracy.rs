@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 use std::f64::consts::TAU;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use interwell::dynamics::{Model, Phase};
 use interwell::study::Task;
@@ -47,6 +47,32 @@ fn names_are_distinct_and_each_selects_its_own() {
         assert!(Selection::of(&[(*name).to_owned()]).unwrap().parts() >= 1);
     }
     assert!(Selection::of(&["separatrices".to_owned()]).unwrap_err().to_string().contains("separatrix"));
+}
+
+#[test]
+fn progress_is_told_part_by_part() {
+    let selection = Selection::of(&["grazing".to_owned(), "p1".to_owned(), "shock".to_owned()]).unwrap();
+    let (cancel, ticks) = (free(), AtomicU64::new(0));
+    let tick = || {
+        ticks.fetch_add(1, Ordering::Relaxed);
+    };
+    let report = accuracy(&selection, &Task { tick: &tick, cancel: &cancel }).unwrap();
+    assert_eq!(ticks.into_inner(), selection.parts());
+    assert_eq!(report.cases.iter().map(|case| case.0).collect::<Vec<_>>(), ["grazing", "shock"]);
+    // the program's own method reaches all digits and follows its tolerance, the others as theirs allow
+    let best = |method: &str| {
+        let own = report.points.iter().filter(|point| point.method == method);
+        own.map(|point| point.error).fold(f64::INFINITY, f64::min)
+    };
+    assert!(best("Taylor series") < 1e-14 && best("RK4") < 1e-11 && best("Dormand-Prince 5(4)") < 1e-11);
+    assert!(best("velocity Verlet") < 1e-6 && best("semi-implicit Euler") < 1e-4);
+    assert!(best("semi-implicit Euler") > best("velocity Verlet"));
+    let table = report.table();
+    let checks: usize =
+        report.cases.iter().flat_map(|case| &case.1).map(|variant| variant.checks.len()).sum();
+    assert_eq!(table.rows(), report.points.len() + checks);
+    assert_eq!(report.cost_table().rows(), 5);
+    assert_eq!(report.case_table().rows(), 4);
 }
 
 #[test]

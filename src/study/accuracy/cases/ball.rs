@@ -4,7 +4,7 @@ use super::HardCase;
 use crate::dynamics::{EventKind, Outcome, Run};
 use crate::numeric::Scalar;
 use crate::study::accuracy::Stopped;
-use crate::study::accuracy::exact::{first_hit, impact_time, rest_time};
+use crate::study::accuracy::exact::{dd, first_hit, impact_time, rest_time};
 use crate::study::accuracy::measure::{Bench, STEP_ERROR, Variant, off};
 use crate::study::accuracy::scenes::{Setup, left_stop, polynomial};
 
@@ -38,15 +38,15 @@ fn bouncing_ball(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         let impacts = run.events.iter().filter(|event| event.kind == EventKind::Impact);
         let (mut late, mut slow) = (Vec::new(), Vec::new());
         // the closed form summed as it goes along: impact_time anew for each would be quadratic
-        let mut power = crate::study::accuracy::exact::dd(1.0);
-        let mut sum = crate::study::accuracy::exact::dd(0.0);
+        let mut power = dd(1.0);
+        let mut sum = dd(0.0);
         for (i, impact) in impacts.enumerate() {
             let count = i as f64 + 1.0;
-            let exact = first * (crate::study::accuracy::exact::dd(1.0) + sum + sum);
+            let exact = first * (dd(1.0) + sum + sum);
             late.push((off(impact.t, exact.to_f64(), exact.to_f64()), STEP_ERROR * (1.0 + count.min(reach))));
             let exact = speed * power.to_f64();
             slow.push((off(impact.v_in.abs(), exact, exact), STEP_ERROR * (1.0 + count)));
-            power = power * crate::study::accuracy::exact::dd(e);
+            power = power * dd(e);
             sum += power;
         }
         let rests = times(&run, EventKind::Rest);

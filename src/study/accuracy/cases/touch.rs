@@ -70,7 +70,7 @@ fn crest(bench: &Bench, name: &'static str, stop: f64) -> Result<Variant, Stoppe
         let (late, slow) = impacts.first().map_or((f64::NAN, f64::NAN), |impact| {
             (off(impact.t, angle, angle), off(impact.v_in, speed, speed))
         });
-        // x = sin(t - 2 (t - pi/2)..): the crest is cut, the rest of the wave comes sooner by twice the time cut off
+        // the crest is cut off: the rest of the wave comes sooner by the time that it takes
         let cut = 2.0 * (FRAC_PI_2 - angle);
         let error = off(run.summary.final_x, (3.0 + cut).sin(), 1.0);
         variant
