@@ -124,7 +124,8 @@ impl Step {
             }
         }
         let mut high = 1.0;
-        while high - low > f64::EPSILON * high {
+        // to 2^-60 of the step: a contact at its very begin has no relative digits to find
+        for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if middle <= low || middle >= high {
                 break;
