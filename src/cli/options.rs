@@ -15,9 +15,11 @@ Examples:
   interwell --headless simulate elastic-box --at 0,0.5,1 --events - --out /dev/null
   interwell --headless sweep --out map.csv --plot map.png
   interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
+  interwell --headless accuracy --plot accuracy.png
 
 A scene is a .ron file or the name of a built-in one; `presets --write DIR` copies those out.
-Exit status: 0 done; 1 the run or the writing failed; 2 the arguments or the scene are wrong.";
+Exit status: 0 done; 1 the run or the writing failed, or a case of `accuracy` falls short; 2 the arguments or the
+scene are wrong.";
 
 /// Bistable mechanisms with hard travel limits: see and compute how stops start interwell motion.
 #[derive(Debug, Parser)]
@@ -54,6 +56,9 @@ pub enum Command {
     /// Run a grid of scenes: CSV with a row for each cell
     #[command(override_usage = "interwell --headless sweep [SCENE] [OPTIONS]")]
     Sweep(SweepOptions),
+    /// Speed against error beside other methods, and the hard cases with the digits that they allow and reach
+    #[command(override_usage = "interwell --headless accuracy [OPTIONS]")]
+    Accuracy(AccuracyOptions),
 }
 
 impl Command {
@@ -65,6 +70,7 @@ impl Command {
             Self::Curve(_) => "curve",
             Self::Simulate(_) => "simulate",
             Self::Sweep(_) => "sweep",
+            Self::Accuracy(_) => "accuracy",
         }
     }
 }
@@ -228,4 +234,28 @@ pub struct SweepOptions {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+/// `accuracy`.
+#[derive(Debug, Args)]
+pub struct AccuracyOptions {
+    /// Run this case alone (repeatable): p1, p2 or flexures for speed against error, or a hard case
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
+    pub case: Vec<String>,
+
+    /// List the cases: what each runs, how its answer is known, why so many digits are allowed
+    #[arg(long)]
+    pub list: bool,
+
+    /// Write everything as CSV; `-` is standard output, and the table then goes to standard error
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub out: Option<PathBuf>,
+
+    /// The picture: error over time, of the problems p1, p2 and flexures.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// Say nothing on standard error but errors
+    #[arg(long)]
+    pub quiet: bool,
 }

@@ -20,8 +20,10 @@ mod series;
 mod summary;
 mod tone;
 
+pub(crate) use base::BaseTone;
 pub use base::STANDARD_GRAVITY;
 pub use live::{Live, LiveLedger, Passage};
+pub(crate) use model::StopAt;
 pub use model::{Model, Request};
 pub use result::*;
 pub use scales::Scales;

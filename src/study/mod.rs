@@ -4,6 +4,7 @@
 //! [`Task`], and answers with a [`Table`]. It reads no arguments and writes no files: the window and
 //! the command line ask the same studies and show the same tables.
 
+pub mod accuracy;
 mod curve;
 mod edges;
 mod flexures;

@@ -3,6 +3,7 @@
 //! A plot writes a [`Figure`], a list of plain shapes; [`Format::bytes`] paints it. Light or dark, the data and
 //! their places are the same, and the same data give the same bytes.
 
+mod accuracy;
 mod axis;
 mod curve;
 mod figure;
@@ -17,6 +18,7 @@ mod sweep;
 
 use std::path::Path;
 
+pub use accuracy::accuracy_figure;
 pub use axis::Axis;
 pub use curve::curve_figure;
 pub use figure::Figure;
