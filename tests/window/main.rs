@@ -6,6 +6,7 @@ mod first_minute;
 mod flexures;
 mod keyboard;
 mod map;
+mod past;
 mod sentences;
 mod support;
 mod views;

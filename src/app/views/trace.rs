@@ -4,7 +4,7 @@
 //! stretch of time and the same cursor, so that they can be read below each other. Their vertical ranges come from the
 //! scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
 
-use eframe::egui::{self, Align2, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Align2, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
 
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
@@ -169,6 +169,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
     let (time_label, axis) = if is_low { ("", quantity.unit().to_owned()) } else { ("time (s)", axis) };
     let plot = area.with_min_x(area.left() + MARGIN).with_min_y(area.top() + LEGEND);
     let mut ui = ui.new_child(UiBuilder::new().max_rect(plot));
+    // axes are written as those of the other views
+    ui.style_mut().text_styles.insert(TextStyle::Body, style.small());
+    ui.visuals_mut().override_text_color = Some(style.faint());
     let response = Plot::new(quantity.name())
         .allow_drag(false)
         .allow_scroll(false)
