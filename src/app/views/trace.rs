@@ -16,7 +16,8 @@ use super::legend::{LEGEND, Sign, legend};
 use super::ranges::room_for_push;
 use super::span::ticks;
 
-/// Forcing periods that are shown; without a period swings of the mechanism. No more of these than are told apart.
+/// Forcing periods that are shown; without a period multiples of the motion's pace. No more swings of the mechanism than
+/// are told apart.
 const PERIODS: f64 = 6.0;
 const SWINGS: f64 = 8.0;
 const MOST_SWINGS: f64 = 200.0;
@@ -235,8 +236,8 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
 
 /// How many seconds are shown of a motion by a model.
 fn stretch(model: &Model) -> f64 {
-    let swing = model.swing();
-    model.forcing_period.map_or(SWINGS * swing, |period| (PERIODS * period).min(MOST_SWINGS * swing))
+    let most = MOST_SWINGS * model.swing();
+    model.forcing_period.map_or(SWINGS * model.pace(), |period| (PERIODS * period).min(most))
 }
 
 fn watch_begin(context: &ViewContext<'_>) -> f64 {
