@@ -11,14 +11,26 @@ const UNSHAKEN: f64 = super::STANDARD_GRAVITY;
 const NOISE_ROOM: f64 = 2.5;
 
 impl Model {
-    /// A typical time in s in which the motion does something and comes back: the forcing period; without one the
-    /// period of small oscillations in the stiffest well; without a stiffness the flight to a stop and back; without all of
-    /// them the scene's own time scale.
+    /// A typical time in s in which the motion does something and comes back: the forcing period; without one that of the
+    /// drive's middle frequency; without a drive that of the mechanism, [`swing`](Self::swing).
     pub fn pace(&self) -> f64 {
-        self.forcing_period.unwrap_or_else(|| self.swing())
+        self.forcing_period.or_else(|| self.rhythm()).unwrap_or_else(|| self.swing())
     }
 
-    /// The same of the mechanism alone, whatever shakes it.
+    /// A typical period in s of a drive that has none: of the middle of a noise's band, of the fast end of a chirp, and of
+    /// how often a record passes its mean.
+    fn rhythm(&self) -> Option<f64> {
+        let drive = &self.drive;
+        let noises = drive.noises.iter().map(|noise| 2.0 / (noise.low + noise.high));
+        let chirps = drive.chirps.iter().map(|chirp| 1.0 / chirp.from.max(chirp.to));
+        let records =
+            drive.records.iter().map(|record| 2.0 * between_passages(&record.times, &record.accelerations));
+        let all = noises.chain(chirps).chain(records);
+        all.filter(|time| time.is_finite() && *time > 0.0).reduce(f64::min)
+    }
+
+    /// A typical time in s of the mechanism, whatever shakes it: the period of small oscillations in the stiffest well; without
+    /// a stiffness the flight to a stop and back; without both the scene's own time scale.
     pub fn swing(&self) -> f64 {
         let landscape = &self.mechanism.landscape;
         let wells = landscape.equilibria.iter().filter(|own| own.stable);
@@ -79,6 +91,14 @@ impl Model {
     }
 }
 
+/// Mean time between two passages of a signal through its mean.
+fn between_passages(times: &[f64], values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let passages = values.windows(2).filter(|pair| (pair[0] > mean) != (pair[1] > mean)).count();
+    let length = times.last().copied().unwrap_or(0.0) - times.first().copied().unwrap_or(0.0);
+    length / passages as f64
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
@@ -110,6 +130,13 @@ mod tests {
         near(model("bouncing-ball", &[]).pace(), 2.0 * (2.0_f64 / 9.81).sqrt());
         // 10 mm at 50 mm/s, and back
         near(model("elastic-box", &[]).pace(), 0.4);
+        // noise from 1 to 6 Hz
+        near(model("random-shaking", &[]).pace(), 1.0 / 3.5);
+        let wave: Vec<f64> = (0..1000).map(|i| (0.05 * f64::from(i)).sin()).collect();
+        let times: Vec<f64> = (0..1000).map(f64::from).collect();
+        assert!((between_passages(&times, &wave) / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.1);
+        let walking = model("walking", &[]).pace();
+        assert!((0.05..1.0).contains(&walking), "{walking}");
         let nothing = model("elastic-box", &["stops=None", "start=At(x_mm: 0, v_m_per_s: 0)"]);
         assert!(nothing.pace().is_finite() && nothing.pace() > 0.0);
     }

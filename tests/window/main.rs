@@ -7,6 +7,7 @@ mod flexures;
 mod guidance;
 mod keyboard;
 mod map;
+mod past;
 mod sentences;
 mod support;
 mod views;

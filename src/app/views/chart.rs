@@ -111,7 +111,8 @@ impl Chart {
             let at = self.screen_from_world(self.span.low, value * unit).y;
             if at > self.rect.top() + 26.0 && at < self.rect.bottom() - 8.0 {
                 let text = format!("{:.decimals$}", value + 0.0);
-                write(pos2(self.rect.left() + 4.0, at), Align2::LEFT_CENTER, &text);
+                // on its row, which does not cross it
+                write(pos2(self.rect.left() + 4.0, at - 1.0), Align2::LEFT_BOTTOM, &text);
             }
         }
         write(self.rect.left_top() + vec2(4.0, 3.0), Align2::LEFT_TOP, name);

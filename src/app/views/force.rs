@@ -22,6 +22,9 @@ const ROOM: f64 = 1.3;
 /// Half the size in points of the mark of a kink and of the force at a stop.
 const MARK: f32 = 5.0;
 
+/// Length of the line at a stop, in marks.
+const LINE: f32 = 8.0;
+
 /// Distance in points of the label at a stop from it, and the room that it needs.
 const BESIDE: f32 = 16.0;
 const LABEL: f32 = 110.0;
@@ -50,7 +53,6 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let diamond = points.iter().map(|step| at + *step * 1.3).collect();
         painter.add(Shape::closed_line(diamond, Stroke::new(1.5, style.ink())));
     }
-    releases(&painter, context, &chart);
     let state = context.session.player.state();
     let push = -model.mass * state.base_accel;
     let mut legend = vec![(Sign::Line(style.tray_stroke()), "force of the mechanism")];
@@ -61,6 +63,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let from = chart.screen_from_world(state.x, own.force(state.x));
         painter.extend(Shape::dashed_line(&[from, at], style.base_stroke(), 4.0, 3.0));
     }
+    releases(&painter, context, &chart);
     let at = chart.screen_from_world(state.x, own.force(state.x));
     painter.circle(at, BALL - 2.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
     chart.numbers(ui, &style, "force (N)", 1.0);
@@ -134,13 +137,14 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
         let at = chart.screen_from_world(x, force);
         let stroke = Stroke::new(style.stop_stroke().width, style.stop());
         let inwards = -MARK * way as f32;
-        painter.line_segment([at, at + vec2(8.0 * inwards, 0.0)], stroke);
+        painter.line_segment([at, at + vec2(LINE * inwards, 0.0)], stroke);
         // beyond the wall, out of the way of the mass; on the inner side where the picture ends
         let text = format!("frees at {:.2} g", force.abs() / (model.mass * STANDARD_GRAVITY));
         let room = if way > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };
         let outwards = if room > LABEL { -inwards.signum() } else { inwards.signum() };
         let align = if outwards > 0.0 { Align2::LEFT_CENTER } else { Align2::RIGHT_CENTER };
-        let beyond = pos2(at.x + outwards * BESIDE, at.y);
+        let off = if room > LABEL { BESIDE } else { BESIDE + LINE * MARK };
+        let beyond = pos2(at.x + outwards * off, at.y);
         haloed(painter, &style, (beyond, align), &text, (style.small(), style.faint()));
     }
 }

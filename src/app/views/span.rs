@@ -103,8 +103,39 @@ pub(super) fn ticks(low: f64, high: f64, count: f64) -> (Vec<f64>, usize) {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::sync::Arc;
+
     use eframe::egui::pos2;
+
+    use super::*;
+    use crate::app::document::Editor;
+    use crate::app::views::Memory;
+
+    /// Whether everything that happened in some seconds is within the axis, which then did not grow too often.
+    fn holds_what_happens(preset: &str, seconds: f64) {
+        let mut session = Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap();
+        let mut memory = Memory::default();
+        session.player.speed = 1.0;
+        let (mut spans, mut last) = (0, Span { low: 0.0, high: 0.0 });
+        while session.player.time() < seconds {
+            session.player.tick(0.02);
+            let span = memory.span(&session);
+            spans += usize::from(span != last);
+            last = span;
+            let x = session.player.state().x;
+            assert!(span.low < x && x < span.high, "{preset}: {x} {span:?}");
+        }
+        assert!(spans <= 12, "{preset}: {spans}");
+        let seen = session.player.watch().samples();
+        assert!(seen.iter().all(|sample| sample.x > last.low && sample.x < last.high), "{preset}");
+    }
+
+    #[test]
+    fn what_happens_is_seen() {
+        for (preset, seconds) in [("monostable", 2.0), ("bouncing-ball", 5.0), ("duffing", 40.0)] {
+            holds_what_happens(preset, seconds);
+        }
+    }
 
     #[test]
     fn screen_and_world_are_inverse() {

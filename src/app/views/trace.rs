@@ -4,7 +4,7 @@
 //! stretch of time and the same cursor, so that they can be read below each other. Their vertical ranges come from the
 //! scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
 
-use eframe::egui::{self, Align2, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Align2, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
 
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
@@ -16,7 +16,8 @@ use super::legend::{LEGEND, Sign, legend};
 use super::ranges::room_for_push;
 use super::span::ticks;
 
-/// Forcing periods that are shown; without a period swings of the mechanism. No more of these than are told apart.
+/// Forcing periods that are shown; without a period multiples of the motion's pace. No more swings of the mechanism than
+/// are told apart.
 const PERIODS: f64 = 6.0;
 const SWINGS: f64 = 8.0;
 const MOST_SWINGS: f64 = 200.0;
@@ -169,6 +170,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
     let (time_label, axis) = if is_low { ("", quantity.unit().to_owned()) } else { ("time (s)", axis) };
     let plot = area.with_min_x(area.left() + MARGIN).with_min_y(area.top() + LEGEND);
     let mut ui = ui.new_child(UiBuilder::new().max_rect(plot));
+    // axes are written as those of the other views
+    ui.style_mut().text_styles.insert(TextStyle::Body, style.small());
+    ui.visuals_mut().override_text_color = Some(style.faint());
     let response = Plot::new(quantity.name())
         .allow_drag(false)
         .allow_scroll(false)
@@ -232,8 +236,8 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
 
 /// How many seconds are shown of a motion by a model.
 fn stretch(model: &Model) -> f64 {
-    let swing = model.swing();
-    model.forcing_period.map_or(SWINGS * swing, |period| (PERIODS * period).min(MOST_SWINGS * swing))
+    let most = MOST_SWINGS * model.swing();
+    model.forcing_period.map_or(SWINGS * model.pace(), |period| (PERIODS * period).min(most))
 }
 
 fn watch_begin(context: &ViewContext<'_>) -> f64 {
