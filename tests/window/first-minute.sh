@@ -38,17 +38,18 @@ key() { for one in "$@"; do xdotool key "$one"; sleep 0.15; done; }
 # A number typed into a field: click, all of it, the new one.
 type_into() { xdotool mousemove "$1" "$2" click 1; sleep 0.3; key ctrl+a; xdotool type "$3"; key Return; sleep 0.2; }
 
-# Every position is in points of the layout, times the zoom.
-at() { echo $(( $1 * zoom / 10 )) $(( $2 * zoom / 10 )); }
-
 minute() {
     local width=$1 height=$2 style=$3
     name=${width}x$height-$style
-    zoom=10
-    [ "$style" = projector ] && zoom=15
+    # where the number of the shaking, the switch of the stops and the number of the limit stand
+    local shaking="190 142" stops="19 184" limit="196 232"
+    case $name in
+        1920*-light | 1920*-dark) shaking="240 142" limit="240 232" ;;
+        1280*-projector) shaking="507 129" stops="592 129" limit="1027 130" ;;
+        1920*-projector) shaking="282 213" stops="28 276" limit="294 348" ;;
+    esac
     local kept display
     kept=$(mktemp -d)
-    mkdir -p "$kept/interwell"
     exec 9>"$kept/display"
     Xvfb -displayfd 9 -screen 0 "${width}x${height}x24" -nolisten tcp 2>/dev/null &
     server=$!
@@ -74,16 +75,8 @@ minute() {
     xdotool windowsize "$window" "$width" "$height" windowmove "$window" 0 0
     xdotool windowfocus --sync "$window"
     sleep 1
-    # the style, from the menu View, by keyboard
-    if [ "$style" != light ]; then
-        xdotool mousemove 98 13 click 1
-        sleep 0.4
-        xdotool mousemove 98 "$([ "$style" = dark ] && echo "$dark_y" || echo "$projector_y")" click 1
-        sleep 0.4
-        key Escape
-        xdotool mousemove $((width / 2)) $((height - 5))
-        sleep 0.5
-    fi
+    case $style in dark) key d ;; projector) key p ;; esac
+    sleep 1
     key Home
     sleep 2
     shot 1-opened
@@ -142,3 +135,11 @@ minute() {
     server=
     rm -r "$kept"
 }
+
+[ -n "${ONLY:-}" ] && { minute $ONLY; exit 0; }
+for size in "1280 720" "1920 1080"; do
+    for style in light dark projector; do
+        minute $size $style
+    done
+done
+echo "pictures in $folder"
