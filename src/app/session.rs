@@ -457,7 +457,9 @@ impl Session {
 pub fn stop_distances(scene: &Scene) -> (Option<f64>, Option<f64>) {
     match scene.stops {
         scene::Stops::None => (None, None),
-        scene::Stops::Rigid { travel_limit_mm, .. } => (Some(-travel_limit_mm), Some(travel_limit_mm)),
+        scene::Stops::Rigid { travel_limit_mm, .. } | scene::Stops::Hertz { travel_limit_mm, .. } => {
+            (Some(-travel_limit_mm), Some(travel_limit_mm))
+        }
         scene::Stops::Uneven { left_mm, right_mm, .. } => (left_mm.map(|mm| -mm), right_mm),
     }
 }

@@ -2,6 +2,7 @@
 
 mod base;
 mod clock;
+mod compliant;
 mod composite;
 mod contact;
 mod describe;
@@ -10,6 +11,8 @@ mod equation;
 mod live;
 mod model;
 mod motion;
+mod path;
+mod penetration;
 mod prepare;
 mod record;
 mod regime;

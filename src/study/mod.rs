@@ -4,6 +4,7 @@
 //! [`Task`], and answers with a [`Table`]. It reads no arguments and writes no files: the window and
 //! the command line ask the same studies and show the same tables.
 
+mod contact;
 mod curve;
 mod edges;
 mod flexures;
@@ -21,6 +22,7 @@ mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+pub use contact::{contact, yield_speed, yield_warning};
 pub use curve::{
     OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency, stop_positions,
 };

@@ -4,6 +4,7 @@ mod absent;
 #[path = "../../benches/by_hand/mod.rs"]
 mod by_hand;
 mod cli;
+mod compliant;
 mod convergence;
 mod drives;
 mod impacts;

@@ -4,6 +4,7 @@
 //! their places are the same, and the same data give the same bytes.
 
 mod axis;
+mod contact;
 mod curve;
 mod figure;
 mod font;
@@ -18,6 +19,7 @@ mod sweep;
 use std::path::Path;
 
 pub use axis::Axis;
+pub use contact::contact_figure;
 pub use curve::curve_figure;
 pub use figure::Figure;
 pub use map::Overlay;
