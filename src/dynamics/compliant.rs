@@ -5,8 +5,9 @@
 //! depth is 0 again; in between nothing of it is searched for in free flight, whose steps stay as long as ever.
 //!
 //! Resting on such a stop is an oscillation of some kilohertz about a depth of a tenth of a micrometre, and it is
-//! followed: some steps for each period as long as it is larger than the tolerance, and about as many afterwards, since
-//! an explicit method cannot step over a stiffness that no longer shows.
+//! followed: on the prototype's stops at tolerance 1e-9 some 36 steps a period where it reaches up to the surface, and one
+//! or two where it has died out, since an explicit method cannot step over a stiffness that no longer shows. One impact
+//! takes 12 to 18 steps from tolerance 1e-3 to 1e-14.
 
 use super::contact::side;
 use super::drive::Drive;
@@ -20,12 +21,18 @@ use super::penetration::{Entry, FEWEST_LEVELS, Penetration};
 use super::prepare::base_at;
 use super::record::StepView;
 use super::result::Outcome;
+use super::series::fast_log2;
 use crate::numeric::{PolynomialRoots, Scalar};
 
 /// Speed of a touch without speed, in roundings of a rounding of the speed scale. The parameter of a contact begins with a
 /// speed; a mass that is pressed onto the surface at rest gets one so small that it is nowhere seen: it grows with the
 /// press by some e-foldings, which are one step or two.
 const NUDGE: f64 = 1.0;
+
+/// The least speed that the tolerance in contact is relative to, as a share of the scene's. It is relative to the speed that
+/// the energy in the contact makes, up to the scene's own: a mass that trembles on its stop moves at some thousandth of
+/// that, and errors of the scene's size would be all that is seen of it. Far below, they are not seen at all.
+const LEAST_SPEED: f64 = 1e-4;
 
 /// Where a step of contact ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -246,10 +253,13 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let (u, w) = (entry.root.to_f64(), entry.speed.abs().to_f64());
         let longest = self.settings.longest;
         let cap = 2.0 * longest / (u + (u * u + w * longest).sqrt());
-        let settings = (self.settings.speed_log2, self.settings.tolerance_log2);
+        let stored = self.equation.compliant?.stored(entry.root);
+        let energetic = (entry.speed * entry.speed + stored + stored).sqrt();
+        let speed = self.settings.speed.smaller(energetic.larger(self.settings.speed * T::of(LEAST_SPEED)));
+        let settings = (fast_log2(speed.to_f64()), self.settings.tolerance_log2);
         let mut whole = T::of(path.natural_step(settings.0, settings.1, cap));
         let border = self.drive.segment_end(self.segment);
-        let allowed = T::of(RESIDUAL * order as f64 * self.settings.tolerance) * self.settings.speed;
+        let allowed = T::of(RESIDUAL * order as f64 * self.settings.tolerance) * speed;
         for _ in 0..MOST_HALVINGS {
             if !(whole > T::zero()) {
                 return None;
@@ -259,7 +269,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             let mut duration = path.time(length);
             if levels < D::ZERO_FROM && levels < order {
                 let neglected = path.neglected_drive(self.drive, &mut self.roll, duration);
-                if neglected > T::of(self.settings.tolerance) * self.settings.speed {
+                if neglected > T::of(self.settings.tolerance) * speed {
                     // A drive as fast as the contact: all its terms.
                     levels = order;
                     path.extend_drive(levels, self.drive, &mut self.roll);

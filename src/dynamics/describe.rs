@@ -99,9 +99,9 @@ pub(crate) fn describe(model: &Model) -> Vec<String> {
 /// Impact speeds in m/s at which a compliant stop is described: a gentle one and a hard one of the prototype.
 const SPEEDS: [f64; 2] = [0.1, 0.5];
 
-/// Steps of the integrator in a period of the oscillation on a compliant stop, measured at the default tolerance with
-/// the oscillation still larger than that.
-const STEPS_PER_PERIOD: f64 = 10.0;
+/// Steps of the integrator in a period of the oscillation on a compliant stop, measured on the prototype at the default
+/// tolerance: at a quiet rest, whose depth follows the drive, and trembling without loss as far as the surface.
+const STEPS_PER_PERIOD: (f64, f64) = (1.5, 36.0);
 
 /// What a compliant stop is, what one impact on it does, and what resting on it costs.
 fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
@@ -139,11 +139,12 @@ fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
         let stiffness = 1.5 * stop.stiffness * depth.sqrt();
         let frequency = (stiffness / model.mass).sqrt() / std::f64::consts::TAU;
         lines.push(format!(
-            "resting on one is an oscillation of {} Hz about a depth of {} um, and it is followed: some {} steps for each \
-             second of it",
+            "resting on one is an oscillation of {} Hz about a depth of {} um, and it is followed: each second of it takes \
+             some {} steps where it is quiet and up to {} where it trembles",
             short(frequency),
             short(depth * 1e6),
-            short(frequency * STEPS_PER_PERIOD)
+            short((frequency * STEPS_PER_PERIOD.0).round()),
+            short((frequency * STEPS_PER_PERIOD.1).round())
         ));
     }
     lines

@@ -101,7 +101,7 @@ pub(super) struct Settings<T> {
     pub tolerance: f64,
     pub tolerance_log2: f64,
     pub speed: T,
-    pub speed_log2: f64,
+    speed_log2: f64,
     pub longest: f64,
 }
 

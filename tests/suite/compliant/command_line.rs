@@ -141,5 +141,8 @@ fn a_run_on_compliant_stops_is_drawn() {
     ))
     .assert()
     .success();
-    assert!(std::fs::read_to_string(picture).unwrap().contains("<svg"));
+    let drawn = std::fs::read_to_string(picture).unwrap();
+    for words in ["450 impacts", "in contact", "contact force up to"] {
+        assert!(drawn.contains(words), "{words}");
+    }
 }

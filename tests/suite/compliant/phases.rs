@@ -159,3 +159,20 @@ fn resting_costs_what_is_said_and_a_hopeless_rest_ends_by_the_budget() {
         run.summary
     );
 }
+
+#[test]
+fn a_quiet_rest_is_followed_and_its_small_energies_add_up() {
+    // Shaken by less than frees it, the mass follows the drive by a thousandth of the depth: far below the scene's scales,
+    // and yet known, since the tolerance of a contact is relative to the energy in it.
+    let at = |tolerance: &str| run(&prototype(&["excitation.amplitude_g=0.3", tolerance]));
+    let exact = at("run.tolerance=1e-12").summary;
+    for (tolerance, bound) in
+        [("run.tolerance=1e-3", 1e-2), ("run.tolerance=1e-6", 1e-5), ("run.tolerance=1e-9", 1e-8)]
+    {
+        let run = at(tolerance);
+        near_relative(run.summary.rms_velocity.unwrap(), exact.rms_velocity.unwrap(), bound);
+        near(run.summary.ledger.unwrap().energy_residual, 0.0, bound);
+        assert_eq!((run.summary.regime.name(), run.summary.rested_share), ("rest", Some(1.0)));
+        assert!(run.summary.steps < 100_000, "{}", run.summary.steps);
+    }
+}
