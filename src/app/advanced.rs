@@ -213,7 +213,7 @@ fn excitation_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
 fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let stops = session.scene().stops;
     let mut uneven = matches!(stops, Stops::Uneven { .. });
-    let tick = egui::Checkbox::new(&mut uneven, "stops that differ");
+    let tick = egui::Checkbox::new(&mut uneven, "different stops left and right");
     let rigid = matches!(stops, Stops::Rigid { .. } | Stops::Uneven { .. });
     let response = ui.add_enabled(rigid, tick);
     let response =
@@ -287,8 +287,8 @@ fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
         range: (1.0, 120.0),
         step: 1.0,
         decimals: 0,
-        hover: "Increase: what is said of the settled motion rests on more periods. Its second half counts, or what \
-                comes after the time that the scene says.",
+        hover: "Increase: what is said of the motion rests on more periods. The second half of the run counts, or \
+                what comes after the settling time of the scene.",
         width,
     };
     let done = knob.ui(ui, session.scene().run.duration_s);

@@ -6,11 +6,11 @@ use crate::scene::{Damping, Excitation, Stops};
 
 use super::session::Session;
 use super::style::Style;
-use super::widgets::{Knob, Turn};
+use super::widgets::{Knob, Turn, hover_beside};
 use super::{advanced, geometry};
 
 const SHAKING_HOVER: &str =
-    "Increase: the base pushes the mass harder. Beyond some amplitude it leaves its stop, then its well.";
+    "Increase: the base pushes the mass harder. Beyond some amplitude it crosses to the other well.";
 const LIMIT_HOVER: &str = "Increase: the stops move outward. Inside the wells the mass then rests lower on the hill: it takes more \
      shaking to free it and travels further once it crosses.";
 
@@ -45,7 +45,8 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, style: &Style, more: &mut bool
         changed |= limit_ui(ui, session, width);
         let hover = "Restitution, preload, frequency, damping and mass.";
         let button = ui.selectable_label(*more, "More").on_hover_text(hover);
-        if button.clicked() {
+        let escaped = *more && ui.input(|input| input.key_pressed(egui::Key::Escape));
+        if button.clicked() || escaped {
             *more = !*more;
         }
         if *more {
@@ -144,7 +145,7 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) -> bool {
     let mut on = session.scene().stops != Stops::None;
     let text = RichText::new("Stops").heading();
     let hover = "Rigid walls that limit the travel of the mass on both sides.";
-    ui.checkbox(&mut on, text).on_hover_text(hover).changed() && session.switch_stops(on)
+    hover_beside(ui.checkbox(&mut on, text), hover).changed() && session.switch_stops(on)
 }
 
 fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {

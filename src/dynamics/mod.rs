@@ -8,6 +8,7 @@ mod contact;
 mod describe;
 mod drive;
 mod equation;
+mod extent;
 mod live;
 mod model;
 mod motion;

@@ -2,11 +2,14 @@
 //!
 //! The path is sampled for the eye: some eighty times a swing, and at every event, so that rebounds are
 //! corners and rests are flat. The energy ledger is kept at the end of every forcing period. The oldest of it is
-//! forgotten.
+//! forgotten. The models by which it went are kept with it ([`models`](super::models)).
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use crate::dynamics::{Event, EventKind, Live, LiveLedger, Model, Outcome, Passage, Phase, Sample, Side};
+
+use super::models::{Held, Models};
 
 /// Samples in a period of the drive or of small oscillations, whichever is shorter.
 const PER_PERIOD: f64 = 80.0;
@@ -26,6 +29,7 @@ const MOST_AT_ONCE: f64 = 20_000.0;
 #[derive(Debug, Clone)]
 pub struct Watch {
     live: Live,
+    models: Models,
     samples: VecDeque<Sample>,
     events: VecDeque<Event>,
     /// Ledgers at the start and at multiples of the forcing period.
@@ -43,6 +47,7 @@ impl Watch {
         let now = live.state();
         let mut own = Self {
             live,
+            models: Models::new(Arc::new(model.clone())),
             samples: VecDeque::new(),
             events: VecDeque::new(),
             ledgers: VecDeque::from([(0.0, LiveLedger::default())]),
@@ -96,6 +101,7 @@ impl Watch {
         let mut passage = Passage::default();
         self.live.change(model, &mut passage);
         self.step = sampling_step(model);
+        self.models.change(self.now.t, Arc::new(model.clone()), self.step);
         self.take(passage);
         self.now = self.live.state();
     }
@@ -170,6 +176,21 @@ impl Watch {
         &self.events
     }
 
+    /// The model that held at a time in s, as far back as there are samples.
+    pub fn model_at(&self, t: f64) -> &Arc<Model> {
+        self.models.at(t)
+    }
+
+    /// From when on in s it held.
+    pub fn model_since(&self, t: f64) -> f64 {
+        self.models.since(t)
+    }
+
+    /// Which models held from `from` to `to` in s, in order of time.
+    pub fn models_between(&self, from: f64, to: f64) -> impl Iterator<Item = Held<'_>> {
+        self.models.between(from, to)
+    }
+
     /// The first time in s that is remembered.
     pub fn begin(&self) -> f64 {
         self.samples.front().map_or(0.0, |sample| sample.t)
@@ -240,6 +261,7 @@ impl Watch {
         self.events.drain(..spare);
         let spare = self.ledgers.len().saturating_sub(MOST_LEDGERS);
         self.ledgers.drain(..spare);
+        self.models.forget(self.begin());
     }
 
     fn corner(&mut self, event: &Event) {
@@ -269,6 +291,6 @@ impl Watch {
 }
 
 fn sampling_step(model: &Model) -> f64 {
-    let swing = std::f64::consts::TAU * model.scales.time;
+    let swing = model.swing();
     model.forcing_period.map_or(swing, |period| period.min(swing)) / PER_PERIOD
 }

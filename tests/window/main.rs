@@ -4,6 +4,7 @@ mod advanced;
 mod documents;
 mod first_minute;
 mod flexures;
+mod guidance;
 mod keyboard;
 mod map;
 mod sentences;
