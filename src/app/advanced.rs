@@ -214,10 +214,15 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let stops = session.scene().stops;
     let mut uneven = matches!(stops, Stops::Uneven { .. });
     let tick = egui::Checkbox::new(&mut uneven, "different stops left and right");
-    let response = ui.add_enabled(stops != Stops::None, tick);
+    let rigid = matches!(stops, Stops::Rigid { .. } | Stops::Uneven { .. });
+    let response = ui.add_enabled(rigid, tick);
     let response =
         response.on_hover_text("Each side has a distance and a restitution of its own, or is open.");
-    let switched = response.on_disabled_hover_text("There are no stops: switch them on first.").changed();
+    let why = match stops {
+        Stops::None => "There are no stops: switch them on first.",
+        _ => "These stops are compliant, and compliant stops are equal.",
+    };
+    let switched = response.on_disabled_hover_text(why).changed();
     let mut changed = switched && session.edit_once(|scene| scene.stops = other_kind(scene.stops));
     let Stops::Uneven { left_mm, right_mm, .. } = session.scene().stops else { return changed };
     for (name, right, own, other) in
@@ -268,7 +273,7 @@ fn other_kind(stops: Stops) -> Stops {
             travel_limit_mm: right_mm.or(left_mm).unwrap_or(1.5),
             restitution: restitution_right.or(restitution_left).unwrap_or(0.36),
         },
-        Stops::None => Stops::None,
+        Stops::None | Stops::Hertz { .. } => stops,
     }
 }
 

@@ -157,10 +157,14 @@ fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let range = (0.1, ((1.2 * reach).max(1.0) * 10.0).round() / 10.0);
     let knob = |name| Knob { name, unit: " mm", range, step: 0.05, decimals: 2, hover: LIMIT_HOVER, width };
     match shown {
-        Stops::Rigid { travel_limit_mm, restitution } => {
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
             // remembered while off: moving it then says where they will be
             let done = knob("at ±").ui(ui, travel_limit_mm);
-            let put = |value: f64| Stops::Rigid { travel_limit_mm: value.max(1e-3), restitution };
+            let put = |value: f64| {
+                let mut moved = shown;
+                put_side(&mut moved, true, value);
+                moved
+            };
             if on {
                 turn(session, done, |scene, value| scene.stops = put(value))
             } else {
@@ -188,7 +192,7 @@ pub fn put_side(stops: &mut Stops, right: bool, mm: f64) {
     let mm = mm.max(1e-3);
     match stops {
         Stops::None => {}
-        Stops::Rigid { travel_limit_mm, .. } => *travel_limit_mm = mm,
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => *travel_limit_mm = mm,
         Stops::Uneven { left_mm, right_mm, .. } => {
             let own = if right { right_mm } else { left_mm };
             if own.is_some() {
@@ -228,10 +232,12 @@ fn more_ui(ui: &mut Ui, session: &mut Session, style: &Style, width: f32) -> boo
 
 fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let Stops::Rigid { restitution, .. } = session.scene().stops else {
-        let why = if session.scene().stops == Stops::None {
-            "There are no stops to rebound from: switch them on first."
-        } else {
-            "The two stops have a restitution each, under Advanced."
+        let why = match session.scene().stops {
+            Stops::None => "There are no stops to rebound from: switch them on first.",
+            Stops::Hertz { .. } => {
+                "These stops are compliant: a faster impact keeps a smaller share of its speed."
+            }
+            _ => "The two stops have a restitution each, under Advanced.",
         };
         ui.add_enabled(false, egui::Label::new("restitution")).on_disabled_hover_text(why);
         return false;

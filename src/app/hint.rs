@@ -53,7 +53,9 @@ impl Hint {
             event.kind == EventKind::Crossing && event.t >= session.changed_at() && session.changed_at() > 0.0
         });
         let limit_mm = match session.scene().stops {
-            Stops::Rigid { travel_limit_mm, .. } => Some(travel_limit_mm),
+            Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
+                Some(travel_limit_mm)
+            }
             _ => None,
         };
         self.stage = match (self.stage, limit_mm) {

@@ -501,7 +501,7 @@ impl Session {
 /// The coefficient of restitution of stops that have one.
 fn restitution(stops: &Stops) -> Option<f64> {
     match stops {
-        Stops::None => None,
+        Stops::None | Stops::Hertz { .. } => None,
         Stops::Rigid { restitution, .. } => Some(*restitution),
         Stops::Uneven { restitution_left, restitution_right, .. } => restitution_right.or(*restitution_left),
     }
@@ -511,7 +511,9 @@ fn restitution(stops: &Stops) -> Option<f64> {
 pub fn stop_distances(scene: &Scene) -> (Option<f64>, Option<f64>) {
     match scene.stops {
         scene::Stops::None => (None, None),
-        scene::Stops::Rigid { travel_limit_mm, .. } => (Some(-travel_limit_mm), Some(travel_limit_mm)),
+        scene::Stops::Rigid { travel_limit_mm, .. } | scene::Stops::Hertz { travel_limit_mm, .. } => {
+            (Some(-travel_limit_mm), Some(travel_limit_mm))
+        }
         scene::Stops::Uneven { left_mm, right_mm, .. } => (left_mm.map(|mm| -mm), right_mm),
     }
 }

@@ -85,7 +85,7 @@ fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Even
     let rank = |event: &Event| match event.kind {
         EventKind::Crossing => 0,
         EventKind::Release => 1,
-        EventKind::Impact | EventKind::Rest => 2,
+        EventKind::Impact | EventKind::Rest | EventKind::Contact | EventKind::Separate => 2,
     };
     let mut shown = Vec::new();
     let mut number = (begin / stretch).floor();

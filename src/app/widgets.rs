@@ -55,6 +55,8 @@ impl Knob<'_> {
             .suffix(self.unit)
             .clamping(egui::SliderClamping::Never)
             .smart_aim(false)
+            // a number that is half typed is not meant yet
+            .update_while_editing(false)
             .step_by(self.step);
         let name = hover_beside(ui.label(self.name), self.hover);
         let width = self.slider_width(ui, value);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Parser, Subcommand};
 
 const USAGE: &str = "interwell [SCENE]
        interwell --headless COMMAND [SCENE] [OPTIONS]";
@@ -101,13 +101,14 @@ pub struct Common {
 
 /// What the commands take that can draw.
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("picture").multiple(true))]
 pub struct PlotOptions {
     /// Draw a picture; the name ends in .png or .svg
-    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub plot: Option<PathBuf>,
 
-    /// With --plot: light on dark
-    #[arg(long, requires = "plot")]
+    /// With a picture: light on dark
+    #[arg(long, requires = "picture")]
     pub dark: bool,
 }
 
@@ -170,6 +171,19 @@ pub struct CurveOptions {
     /// clamped at (both lengths less the preload, 0) and ends at the same place
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub shapes: Option<PathBuf>,
+
+    /// Of a compliant stop: write what one impact on it does over the impact speed as CSV, speed_m_per_s, restitution,
+    /// rigid_restitution, contact_time_s, depth_m, peak_force_n, peak_pressure_pa, in closed form
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub contact: Option<PathBuf>,
+
+    /// Draw restitution over impact speed, beside a rigid stop's constant; the name ends in .png or .svg
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
+    pub contact_plot: Option<PathBuf>,
+
+    /// With --contact and --contact-plot: the restitution of the rigid stop, 0 to 1
+    #[arg(long, value_name = "E", allow_hyphen_values = true, default_value = "0.36")]
+    pub rigid: String,
 
     /// Write equilibria, barrier, force extrema and kinks as JSON
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]

@@ -2,6 +2,7 @@
 
 mod base;
 mod clock;
+mod compliant;
 mod composite;
 mod contact;
 mod describe;
@@ -11,6 +12,8 @@ mod extent;
 mod live;
 mod model;
 mod motion;
+mod path;
+mod penetration;
 mod prepare;
 mod record;
 mod regime;

@@ -5,6 +5,7 @@
 //! the command line ask the same studies and show the same tables.
 
 pub mod accuracy;
+mod contact;
 mod curve;
 mod edges;
 mod flexures;
@@ -25,6 +26,7 @@ mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+pub use contact::{contact, yield_speed, yield_warning};
 pub use curve::{
     OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency, stop_positions,
 };

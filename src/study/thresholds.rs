@@ -66,7 +66,7 @@ pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Opt
 /// The amplitude in g at which the base's push reaches the force that presses the mass on the stop that it rests on.
 fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let right = match scene.stops {
-        Stops::Rigid { travel_limit_mm, .. } => travel_limit_mm / 1e3,
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => travel_limit_mm / 1e3,
         Stops::Uneven { right_mm, .. } => right_mm? / 1e3,
         Stops::None => return None,
     };

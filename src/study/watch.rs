@@ -230,8 +230,9 @@ impl Watch {
         let lone = |i: &usize| {
             let event = &self.events[*i];
             let before = i.checked_sub(1).map(|j| &self.events[j]);
-            !matches!(event.kind, EventKind::Impact | EventKind::Rest)
-                || before.is_none_or(|before| before.kind != EventKind::Impact || before.side != event.side)
+            let struck = |kind| matches!(kind, EventKind::Impact | EventKind::Contact | EventKind::Separate);
+            !(struck(event.kind) || event.kind == EventKind::Rest)
+                || before.is_none_or(|before| !struck(before.kind) || before.side != event.side)
         };
         let split = |own: f64| self.events.partition_point(|event| event.t <= own);
         let found = if later {
@@ -279,6 +280,12 @@ impl Watch {
             }
             EventKind::Release => self.samples.push_back(sample(0.0, Phase::Free)),
             EventKind::Crossing => {}
+            // The path has no corner there, only an end of the stretch in contact.
+            EventKind::Contact => {
+                let phase = if event.side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
+                self.samples.push_back(sample(event.v_in, phase));
+            }
+            EventKind::Separate => self.samples.push_back(sample(event.v_out, Phase::Free)),
         }
     }
 }

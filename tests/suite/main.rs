@@ -5,6 +5,7 @@ mod accuracy;
 #[path = "../../benches/by_hand/mod.rs"]
 mod by_hand;
 mod cli;
+mod compliant;
 mod convergence;
 mod drives;
 mod impacts;

@@ -101,6 +101,7 @@ fn stops(scene: &Scene) -> String {
     match scene.stops {
         Stops::None => "none".to_owned(),
         Stops::Rigid { travel_limit_mm, .. } => format!("±{travel_limit_mm:.2} mm"),
+        Stops::Hertz { travel_limit_mm, .. } => format!("±{travel_limit_mm:.2} mm, compliant"),
         Stops::Uneven { left_mm, right_mm, .. } => {
             let side =
                 |mm: Option<f64>, sign: &str| mm.map_or("open".to_owned(), |mm| format!("{sign}{mm:.2} mm"));

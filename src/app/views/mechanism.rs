@@ -220,8 +220,13 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
         for event in watch.events().range(first..).take_while(|event| event.t <= to) {
             let side = usize::from(event.side == Side::Right);
             let busy = context.memory.rings[side].is_some_and(|ring| now - ring.began < RING_SECONDS);
-            let taken = (event.v_in * event.v_in - event.v_out * event.v_out) / scale;
-            if event.kind == EventKind::Impact && !busy && taken > 1e-4 {
+            // A compliant stop takes its share over the contact that begins here.
+            let kept = match &model.compliant {
+                Some(stop) => stop.restitution(event.v_in.abs()) * event.v_in,
+                None => event.v_out,
+            };
+            let taken = (event.v_in * event.v_in - kept * kept) / scale;
+            if matches!(event.kind, EventKind::Impact | EventKind::Contact) && !busy && taken > 1e-4 {
                 context.memory.rings[side] = Some(Ring { began: now, size: taken.min(1.0) });
             }
         }

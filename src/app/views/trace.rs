@@ -137,7 +137,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
         .iter()
         .skip(watch.events().partition_point(|event| event.t < from))
         .take_while(|event| event.t <= now)
-        .filter(|event| event.kind == EventKind::Impact)
+        .filter(|event| matches!(event.kind, EventKind::Impact | EventKind::Contact))
         .map(|event| event.t)
         .collect();
     let stops = if quantity == Quantity::Displacement { stop_lines(watch, from, to) } else { Vec::new() };

@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod axis;
+mod contact;
 mod curve;
 mod figure;
 mod font;
@@ -20,6 +21,7 @@ use std::path::Path;
 
 pub use accuracy::accuracy_figure;
 pub use axis::Axis;
+pub use contact::contact_figure;
 pub use curve::curve_figure;
 pub use figure::Figure;
 pub use map::Overlay;
