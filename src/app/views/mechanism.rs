@@ -23,7 +23,7 @@ const FLEXURE_POINTS: usize = 24;
 const ARROW_HEAD: f32 = 12.0;
 
 /// Room in points that the base's own motion needs.
-const INSET: f32 = 200.0;
+const INSET: f32 = 184.0;
 
 /// A ring that grows and fades.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,6 +9,9 @@ use super::ranges::axis_end;
 /// Room beside the outermost thing that is shown.
 const ROOM: f64 = 1.18;
 
+/// Stops from the first to the second multiple of the wells' distance widen the axis to the second.
+const STOP_STEP: (f64, f64) = (1.1, 1.35);
+
 /// Room beside what has been seen, before the next step.
 const STEP_ROOM: f64 = 1.05;
 
@@ -39,6 +42,13 @@ impl Span {
             show(barrier.left_well * ROOM);
             show(barrier.right_well * ROOM);
             let size = barrier.left_well.abs().max(barrier.right_well.abs());
+            let (left, right) = model.stop_positions();
+            for stop in [left, right].into_iter().flatten() {
+                // stops a little outside the wells, in one step
+                if (STOP_STEP.0..STOP_STEP.1).contains(&(stop.abs() / size)) {
+                    show(stop.signum() * size * STOP_STEP.1);
+                }
+            }
             for x in reach.into_iter().filter(|x| x.abs() > ROOM * size) {
                 show(x.signum() * size * (x.abs() / size * 4.0 * 1.02).ceil() / 4.0);
             }

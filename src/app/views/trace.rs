@@ -25,6 +25,9 @@ const MOST_SWINGS: f64 = 200.0;
 /// Where in the window the present is.
 const PRESENT: f64 = 0.94;
 
+/// Share of the stretch at its end where a number would be cut off.
+const NO_NUMBER: f64 = 0.05;
+
 /// How much longer or shorter than its own a stretch of time may be chosen.
 const LONGEST: f64 = 10.0;
 const SHORTEST: f64 = 1e-3;
@@ -182,7 +185,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
         .allow_double_click_reset(false)
         .show_background(false)
         .show_grid(false)
-        .x_grid_spacer(|_| marks(from.max(0.0), to, columns))
+        .x_grid_spacer(|_| marks(from.max(0.0), to - NO_NUMBER * window, columns))
         .y_grid_spacer(|_| marks(low + edge, high - edge, rows))
         .x_axis_label(time_label)
         .y_axis_label(axis)
