@@ -1,6 +1,6 @@
 //! Time: play, pause, step, go to events, choose a speed, and scrub through what has been seen.
 
-use eframe::egui::{self, ComboBox, Rect, Sense, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Color32, ComboBox, Rect, Sense, Stroke, Ui, pos2, vec2};
 
 use crate::dynamics::EventKind;
 
@@ -15,7 +15,7 @@ pub const EVENT_AHEAD: f64 = 5.0;
 /// Size of a button in points.
 const BUTTON: f32 = 32.0;
 
-/// The most ticks of events that are drawn.
+/// The most events that are looked at for their ticks.
 const MOST_TICKS: usize = 2000;
 
 /// Draws the transport. Whether something changed.
@@ -84,7 +84,7 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style) -> bool {
     painter.rect_filled(bar, 2.0, style.grid());
     let events = watch.events();
     let stride = (events.len() / MOST_TICKS).max(1);
-    let mut last = f32::NEG_INFINITY;
+    let mut ticks: Vec<(f32, f32, Color32)> = Vec::new();
     for event in events.iter().step_by(stride) {
         let x = screen_from_time(event.t);
         let (color, height) = match event.kind {
@@ -92,11 +92,18 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style) -> bool {
             EventKind::Release => (style.stop(), 7.0),
             _ => (style.faint(), 5.0),
         };
-        // more than one a point is not seen
-        if x - last >= 1.0 || height > 5.0 {
-            painter.vline(x, bar.top() - height..=bar.top(), Stroke::new(1.0, color));
-            last = x;
+        match ticks.last_mut() {
+            // of those within a point the highest is seen
+            Some(last) if x - last.0 < 1.0 => {
+                if height > last.1 {
+                    (last.1, last.2) = (height, color);
+                }
+            }
+            _ => ticks.push((x, height, color)),
         }
+    }
+    for (x, height, color) in ticks {
+        painter.vline(x, bar.top() - height..=bar.top(), Stroke::new(1.0, color));
     }
     let now = pos2(screen_from_time(session.player.time()), bar.center().y);
     painter.circle(now, 7.0, style.mass(), Stroke::new(1.5, style.mass_edge()));

@@ -68,6 +68,8 @@ pub struct Window {
     /// The title that the window has.
     titled: String,
     dialog: Latest<Chosen>,
+    /// Whether files are asked for.
+    dialogs: bool,
     hint: hint::Hint,
     wake: Wake,
     /// What was applied last, to be applied again only where it changes.
@@ -105,6 +107,7 @@ impl Window {
             errors: channel(),
             titled: String::new(),
             dialog: Latest::default(),
+            dialogs: true,
             wake,
             applied: None,
         })
@@ -192,6 +195,7 @@ impl Window {
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.memory.grab = false;
         self.session.map.end_frame();
+        self.session.player.end_frame();
         for command in asked {
             self.carry_out(&ctx, command);
         }

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Rangef, Rect};
 
-use crate::app::session::{Session, stop_distances};
+use crate::app::session::Session;
 
 /// Room beside the outermost thing that is shown.
 const ROOM: f64 = 1.18;
@@ -42,9 +42,10 @@ impl Span {
                 }
             }
         } else {
-            let (left, right) = stop_distances(session.scene());
+            // those of the motion: the scene may be one that cannot be run
+            let (left, right) = model.stop_positions();
             for x in [left, right].into_iter().flatten() {
-                show(x / 1e3, ROOM);
+                show(x, ROOM);
             }
             let (least, most) = session.settled().and_then(|settled| settled.range).unwrap_or((0.0, 0.0));
             for x in [least, most, session.player.watch().samples().front().map_or(0.0, |s| s.x), 0.0] {

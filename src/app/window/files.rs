@@ -54,6 +54,7 @@ impl Window {
             Ok(window) => {
                 *self = Self {
                     dialog: std::mem::take(&mut self.dialog),
+                    dialogs: self.dialogs,
                     recent: std::mem::take(&mut self.recent),
                     own: self.own.take(),
                     titled: std::mem::take(&mut self.titled),
@@ -256,8 +257,17 @@ impl Window {
         });
     }
 
+    /// From now on no dialog of the desktop is opened, as where there is none: the window says so in its place.
+    pub fn without_dialogs(&mut self) {
+        self.dialogs = false;
+    }
+
     /// Asks for a file, without the window waiting for the answer.
     pub(super) fn choose(&mut self, wanted: Wanted) {
+        if !self.dialogs {
+            self.dialog.ask(&self.wake, |_| Some(Chosen::NoDialog));
+            return;
+        }
         let (kind, ending) = match wanted {
             Wanted::Open | Wanted::Save => ("scene", "ron"),
             Wanted::Csv => ("motion", "csv"),
