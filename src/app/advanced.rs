@@ -213,11 +213,16 @@ fn excitation_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
 fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let stops = session.scene().stops;
     let mut uneven = matches!(stops, Stops::Uneven { .. });
-    let tick = egui::Checkbox::new(&mut uneven, "stops that differ");
-    let response = ui.add_enabled(stops != Stops::None, tick);
+    let tick = egui::Checkbox::new(&mut uneven, "different stops left and right");
+    let rigid = matches!(stops, Stops::Rigid { .. } | Stops::Uneven { .. });
+    let response = ui.add_enabled(rigid, tick);
     let response =
         response.on_hover_text("Each side has a distance and a restitution of its own, or is open.");
-    let switched = response.on_disabled_hover_text("There are no stops: switch them on first.").changed();
+    let why = match stops {
+        Stops::None => "There are no stops: switch them on first.",
+        _ => "These stops are compliant, and compliant stops are equal.",
+    };
+    let switched = response.on_disabled_hover_text(why).changed();
     let mut changed = switched && session.edit_once(|scene| scene.stops = other_kind(scene.stops));
     let Stops::Uneven { left_mm, right_mm, .. } = session.scene().stops else { return changed };
     for (name, right, own, other) in
@@ -268,7 +273,7 @@ fn other_kind(stops: Stops) -> Stops {
             travel_limit_mm: right_mm.or(left_mm).unwrap_or(1.5),
             restitution: restitution_right.or(restitution_left).unwrap_or(0.36),
         },
-        Stops::None => Stops::None,
+        Stops::None | Stops::Hertz { .. } => stops,
     }
 }
 
@@ -282,8 +287,8 @@ fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
         range: (1.0, 120.0),
         step: 1.0,
         decimals: 0,
-        hover: "Increase: what is said of the settled motion rests on more periods. Its second half counts, or what \
-                comes after the time that the scene says.",
+        hover: "Increase: what is said of the motion rests on more periods. The second half of the run counts, or \
+                what comes after the settling time of the scene.",
         width,
     };
     let done = knob.ui(ui, session.scene().run.duration_s);

@@ -6,11 +6,11 @@ use crate::scene::{Damping, Excitation, Stops};
 
 use super::session::Session;
 use super::style::Style;
-use super::widgets::{Knob, Turn};
+use super::widgets::{Knob, Turn, hover_beside};
 use super::{advanced, geometry};
 
 const SHAKING_HOVER: &str =
-    "Increase: the base pushes the mass harder. Beyond some amplitude it leaves its stop, then its well.";
+    "Increase: the base pushes the mass harder. Beyond some amplitude it crosses to the other well.";
 const LIMIT_HOVER: &str = "Increase: the stops move outward. Inside the wells the mass then rests lower on the hill: it takes more \
      shaking to free it and travels further once it crosses.";
 
@@ -45,7 +45,8 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, style: &Style, more: &mut bool
         changed |= limit_ui(ui, session, width);
         let hover = "Restitution, preload, frequency, damping and mass.";
         let button = ui.selectable_label(*more, "More").on_hover_text(hover);
-        if button.clicked() {
+        let escaped = *more && ui.input(|input| input.key_pressed(egui::Key::Escape));
+        if button.clicked() || escaped {
             *more = !*more;
         }
         if *more {
@@ -144,7 +145,7 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) -> bool {
     let mut on = session.scene().stops != Stops::None;
     let text = RichText::new("Stops").heading();
     let hover = "Rigid walls that limit the travel of the mass on both sides.";
-    ui.checkbox(&mut on, text).on_hover_text(hover).changed() && session.switch_stops(on)
+    hover_beside(ui.checkbox(&mut on, text), hover).changed() && session.switch_stops(on)
 }
 
 fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
@@ -156,10 +157,14 @@ fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let range = (0.1, ((1.2 * reach).max(1.0) * 10.0).round() / 10.0);
     let knob = |name| Knob { name, unit: " mm", range, step: 0.05, decimals: 2, hover: LIMIT_HOVER, width };
     match shown {
-        Stops::Rigid { travel_limit_mm, restitution } => {
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
             // remembered while off: moving it then says where they will be
             let done = knob("at ±").ui(ui, travel_limit_mm);
-            let put = |value: f64| Stops::Rigid { travel_limit_mm: value.max(1e-3), restitution };
+            let put = |value: f64| {
+                let mut moved = shown;
+                put_side(&mut moved, true, value);
+                moved
+            };
             if on {
                 turn(session, done, |scene, value| scene.stops = put(value))
             } else {
@@ -187,7 +192,7 @@ pub fn put_side(stops: &mut Stops, right: bool, mm: f64) {
     let mm = mm.max(1e-3);
     match stops {
         Stops::None => {}
-        Stops::Rigid { travel_limit_mm, .. } => *travel_limit_mm = mm,
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => *travel_limit_mm = mm,
         Stops::Uneven { left_mm, right_mm, .. } => {
             let own = if right { right_mm } else { left_mm };
             if own.is_some() {
@@ -227,10 +232,12 @@ fn more_ui(ui: &mut Ui, session: &mut Session, style: &Style, width: f32) -> boo
 
 fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let Stops::Rigid { restitution, .. } = session.scene().stops else {
-        let why = if session.scene().stops == Stops::None {
-            "There are no stops to rebound from: switch them on first."
-        } else {
-            "The two stops have a restitution each, under Advanced."
+        let why = match session.scene().stops {
+            Stops::None => "There are no stops to rebound from: switch them on first.",
+            Stops::Hertz { .. } => {
+                "These stops are compliant: a faster impact keeps a smaller share of its speed."
+            }
+            _ => "The two stops have a restitution each, under Advanced.",
         };
         ui.add_enabled(false, egui::Label::new("restitution")).on_disabled_hover_text(why);
         return false;

@@ -229,7 +229,9 @@ fn records<'a>(excitation: &'a Excitation, names: &mut Vec<&'a str>) {
 fn keep_start_inside(scene: &mut Scene) {
     let (left, right) = match scene.stops {
         Stops::None => return,
-        Stops::Rigid { travel_limit_mm, .. } => (-travel_limit_mm, travel_limit_mm),
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
+            (-travel_limit_mm, travel_limit_mm)
+        }
         Stops::Uneven { left_mm, right_mm, .. } => {
             (left_mm.map_or(f64::NEG_INFINITY, |mm| -mm), right_mm.unwrap_or(f64::INFINITY))
         }

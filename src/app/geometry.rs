@@ -69,16 +69,16 @@ pub fn sizes_ui(ui: &mut Ui, session: &mut Session, style: &Style, width: f32) -
             Mechanism::Flexures { thickness_mm, .. } => Some(thickness_mm),
             _ => None,
         }),
-        (knob("parallel, length", longer, (10.0, 60.0), 0.1, 1), |mechanism| {
+        (knob("parallel flexures, length", longer, (10.0, 60.0), 0.1, 1), |mechanism| {
             parallel(mechanism).map(|group| &mut group.length_mm)
         }),
-        (knob("parallel, width", wider, (1.0, 60.0), 0.1, 1), |mechanism| {
+        (knob("parallel flexures, width", wider, (1.0, 60.0), 0.1, 1), |mechanism| {
             parallel(mechanism).map(|group| &mut group.width_mm)
         }),
-        (knob("buckling, length", buckling, (10.0, 60.0), 0.1, 1), |mechanism| {
+        (knob("buckling flexure, length", buckling, (10.0, 60.0), 0.1, 1), |mechanism| {
             bulging(mechanism).map(|group| &mut group.length_mm)
         }),
-        (knob("buckling, width", broader, (1.0, 60.0), 0.1, 1), |mechanism| {
+        (knob("buckling flexure, width", broader, (1.0, 60.0), 0.1, 1), |mechanism| {
             bulging(mechanism).map(|group| &mut group.width_mm)
         }),
     ];

@@ -261,6 +261,18 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
         26.0
     }
 
+    fn on_tab_button(
+        &mut self,
+        tiles: &mut Tiles<View>,
+        id: TileId,
+        button: egui::Response,
+    ) -> egui::Response {
+        match tiles.get_pane(&id) {
+            Some(view) => button.on_hover_text(view.about()),
+            None => button,
+        }
+    }
+
     fn top_bar_right_ui(
         &mut self,
         tiles: &Tiles<View>,

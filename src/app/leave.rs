@@ -1,6 +1,8 @@
 //! What is asked before a scene that is not saved gives way to another, or to nothing.
 
-use eframe::egui::{self, Modal, Ui};
+use eframe::egui::Ui;
+
+use super::widgets::dialog;
 
 /// What is to come once the present scene may go.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,7 +55,7 @@ pub fn comments_ui(ui: &Ui, path: &str) -> Option<Answer> {
 
 /// Two ways on, and Cancel, which is `Some(None)`.
 fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, ways: [&str; 2]) -> Option<Option<usize>> {
-    let answer = Modal::new(egui::Id::unique(id)).show(ui.ctx(), |ui: &mut Ui| {
+    let answer = dialog(ui.ctx(), id).show(ui.ctx(), |ui: &mut Ui| {
         ui.set_max_width(460.0);
         ui.heading(heading);
         ui.add_space(6.0);

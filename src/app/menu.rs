@@ -1,8 +1,10 @@
 //! The menu bar: what is asked for. What is done about it is the window's business.
 
+use std::sync::LazyLock;
+
 use eframe::egui::{self, Button, Key, KeyboardShortcut, Modifiers, Ui};
 
-use crate::scene::{Layout, PRESETS};
+use crate::scene::{Document, Layout, PRESETS};
 
 use super::layouts::{Room, Tiling};
 use super::map::Map;
@@ -73,6 +75,8 @@ pub enum Command {
     Set(Settings),
     /// Take hold of the mass.
     Grab,
+    /// What it would take to cross, or no longer.
+    Ways,
     /// The list of keys.
     Shortcuts,
     /// About the program.
@@ -104,12 +108,15 @@ pub fn menu_ui(
     egui::MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| {
             ui.menu_button("Open built-in scene", |ui| {
-                for preset in PRESETS {
-                    if ui.button(preset.name).on_hover_text(preset.summary).clicked() {
-                        asked.push(Command::OpenPreset(preset.name));
-                        ui.close();
+                scroll_ui(ui, |ui| {
+                    for (preset, title) in PRESETS.iter().zip(TITLES.iter()) {
+                        let hover = format!("{}: {}", preset.name, preset.summary);
+                        if ui.button(title).on_hover_text(hover).clicked() {
+                            asked.push(Command::OpenPreset(preset.name));
+                            ui.close();
+                        }
                     }
-                }
+                });
             });
             item(ui, &mut asked, "Open...", Some(command(Key::O)), true, Command::Open);
             ui.add_enabled_ui(!recent.is_empty(), |ui| {
@@ -148,7 +155,9 @@ pub fn menu_ui(
             item(ui, &mut asked, "Paste a scene", Some(command(Key::V)), true, Command::PasteScene);
             item(ui, &mut asked, "Copy the command line", Some(COPY_COMMAND), true, Command::CopyCommand);
         });
-        ui.menu_button("View", |ui| view_menu_ui(ui, &mut asked, tiling, settings));
+        ui.menu_button("View", |ui| {
+            scroll_ui(ui, |ui| view_menu_ui(ui, &mut asked, tiling, settings));
+        });
         ui.menu_button("Help", |ui| {
             item(ui, &mut asked, "Keys", Some(plain(Key::F1)), true, Command::Shortcuts);
             item(ui, &mut asked, "About", None, true, Command::About);
@@ -157,7 +166,8 @@ pub fn menu_ui(
         let dirty = if session.editor.is_dirty() { " *" } else { "" };
         ui.strong(format!("{}{dirty}", session.scene().title));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let hover = "Scene and time as they were opened; it can be undone (Home)";
+            let hover =
+                "Scene and views as they were opened, from time 0 (Home). The scene comes back with undo.";
             if ui.button("Back to start").on_hover_text(hover).clicked() {
                 asked.push(Command::BackToStart);
             }
@@ -187,10 +197,18 @@ fn item(
 fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings: Settings) {
     item(ui, asked, "Arrange as Look", Some(command(Key::Num1)), true, Command::Arrange(Layout::Look));
     item(ui, asked, "Arrange as Study", Some(command(Key::Num2)), true, Command::Arrange(Layout::Study));
+    item(ui, asked, "Arrange as Map", Some(command(Key::Num3)), true, Command::Arrange(Layout::Map));
     item(ui, asked, "Your own arrangement", Some(command(Key::Num4)), true, Command::ArrangeOwn);
     let keep = tiling.room() != Room::Compact;
     item(ui, asked, "Keep this as your own", None, keep, Command::KeepOwn);
-    item(ui, asked, "Arrange as Map", Some(command(Key::Num3)), true, Command::Arrange(Layout::Map));
+    ui.separator();
+    let mut wanted = settings;
+    ui.checkbox(&mut wanted.projector, "Projector").on_hover_text("Light, larger, thicker lines (P)");
+    ui.checkbox(&mut wanted.dark, "Dark").on_hover_text("Light letters on a dark ground (D)");
+    ui.checkbox(&mut wanted.reduce_motion, "Reduce motion").on_hover_text("No rings at impacts");
+    if wanted != settings {
+        asked.push(Command::Set(wanted));
+    }
     ui.separator();
     for view in View::ALL {
         let mut shown = tiling.shows(view);
@@ -201,19 +219,24 @@ fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings
     ui.separator();
     item(ui, asked, "One view over the window", Some(plain(Key::Z)), true, Command::Fill);
     item(ui, asked, "Cover the results", Some(plain(Key::C)), true, Command::Cover);
+    item(ui, asked, "What it would take", Some(plain(Key::H)), true, Command::Ways);
     item(ui, asked, "Full screen", Some(plain(Key::F11)), true, Command::FullScreen);
-    ui.separator();
-    let mut wanted = settings;
-    ui.checkbox(&mut wanted.dark, "Dark");
-    ui.checkbox(&mut wanted.projector, "Projector").on_hover_text("Light, larger, thicker lines");
-    ui.checkbox(&mut wanted.reduce_motion, "Reduce motion").on_hover_text("No rings at impacts");
-    if wanted != settings {
-        asked.push(Command::Set(wanted));
-    }
 }
 
+/// What may be longer than the window is high.
+fn scroll_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    let room = (ui.ctx().content_rect().bottom() - ui.cursor().top() - 16.0).max(120.0);
+    egui::ScrollArea::vertical().max_height(room).show(ui, contents);
+}
+
+/// The titles of the built-in scenes.
+static TITLES: LazyLock<Vec<String>> = LazyLock::new(|| {
+    let title = |name: &str| Document::load(name).map_or_else(|_| name.to_owned(), |found| found.scene.title);
+    PRESETS.iter().map(|preset| title(preset.name)).collect()
+});
+
 /// What the keyboard asks for; nothing while a number is being typed.
-pub fn keys(ctx: &egui::Context) -> Vec<Command> {
+pub fn keys(ctx: &egui::Context, settings: Settings) -> Vec<Command> {
     let typing = ctx.text_edit_focused();
     let mut asked = Vec::new();
     let mut on = |keys: KeyboardShortcut, what: Command| {
@@ -247,6 +270,9 @@ pub fn keys(ctx: &egui::Context) -> Vec<Command> {
     on(plain(Key::Z), Command::Fill);
     on(plain(Key::C), Command::Cover);
     on(plain(Key::G), Command::Grab);
+    on(plain(Key::H), Command::Ways);
+    on(plain(Key::P), Command::Set(Settings { projector: !settings.projector, ..settings }));
+    on(plain(Key::D), Command::Set(Settings { dark: !settings.dark, ..settings }));
     for (i, key) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5].into_iter().enumerate() {
         on(plain(key), Command::Speed(i));
     }

@@ -12,13 +12,14 @@
 //! | [`session`] | those three together, and what is known of the scene |
 //! | `controls`, `geometry`, `advanced` | the hands on the scene, on its flexures, and on what is changed seldom |
 //! | [`map`] | the map of the scene, made while it is looked at |
-//! | [`status`] | the sentence that says what the mass does |
+//! | [`status`], `announce` | the sentence that says what the mass does, and when it is spoken |
 //! | [`style`] | every colour and width |
 //! | [`views`] | what is seen, a file each |
 //! | [`layouts`] | where the views stand |
 //! | [`window`] | panels, menus, keys: the `eframe::App` |
 
 mod advanced;
+mod announce;
 pub mod controls;
 pub mod document;
 pub mod export;

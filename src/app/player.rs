@@ -3,12 +3,23 @@
 //! The motion is live: playing advances it, and a change acts from its present state. Its past is remembered and can be
 //! looked at; playing from there goes through it once more and then on.
 
+use std::sync::Arc;
+
 use crate::dynamics::{Model, Outcome, Sample};
 use crate::study::Watch;
 
 /// Speeds relative to real time, and how they are called; the keys 1 to 5.
 pub const SPEEDS: [(f64, &str); 5] =
     [(1e-3, "1/1000"), (1e-2, "1/100"), (0.1, "1/10"), (0.5, "1/2"), (1.0, "real time")];
+
+/// Time on the screen in s that a period of the motion should take.
+const PERIOD_ON_SCREEN: f64 = 3.0;
+
+/// The speed that suits a motion whose [`pace`](Model::pace) is so many seconds.
+pub fn fitting_speed(pace: f64) -> f64 {
+    let off = |speed: f64| (pace / speed / PERIOD_ON_SCREEN).ln().abs();
+    SPEEDS.iter().map(|own| own.0).min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(1.0)
+}
 
 /// Longest stretch of real time in s that one frame plays: after a pause of the window it goes on where it was.
 const LONGEST_FRAME: f64 = 0.1;
@@ -155,6 +166,16 @@ impl Player {
         self.past.unwrap_or(self.watch.time())
     }
 
+    /// Back from the past to the present.
+    pub fn to_present(&mut self) {
+        self.past = None;
+    }
+
+    /// The model that held at the time that is shown.
+    pub fn shown_model(&self) -> &Arc<Model> {
+        self.watch.model_at(self.time())
+    }
+
     /// Whether the past is shown.
     pub fn is_past(&self) -> bool {
         self.past.is_some()
@@ -173,5 +194,16 @@ impl Player {
     /// How the run ended, where it did.
     pub fn ended(&self) -> Option<Outcome> {
         self.watch.ended()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slow_motion_is_played_fast() {
+        // 3 Hz, 0.2 Hz, 40 Hz, 1 kHz
+        assert_eq!([0.333, 5.2, 0.025, 1e-3, 1e9].map(fitting_speed), [0.1, 1.0, 0.01, 1e-3, 1.0]);
     }
 }

@@ -5,14 +5,14 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::dynamics::{Model, STANDARD_GRAVITY};
+use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FLEXURE_TOLERANCE, FlexureError, Mechanism};
 use crate::scene::{self, Document, Excitation, Fault, Scene, SceneError, Stops};
 use crate::study::{self, Settled, Thresholds};
 
 use super::document::Editor;
 use super::map::Mapping;
-use super::player::Player;
+use super::player::{Player, fitting_speed};
 use super::status::{self, Sentence, Tense};
 use super::task::{Latest, Wake};
 
@@ -24,9 +24,6 @@ const FUTURE_PERIODS: f64 = 3.0;
 /// off by is not seen. At the end of the gesture they are solved as every study solves them.
 const HANDLED_TOLERANCE: f64 = 1e-6;
 
-/// The speed of a scene that does not say one.
-const SPEED: f64 = 0.1;
-
 /// Stops that appear where a scene does not say which.
 const STOPS_WHEN_ON: Stops = Stops::Rigid { travel_limit_mm: 1.5, restitution: 0.36 };
 
@@ -37,6 +34,8 @@ pub struct Card {
     pub scene: Scene,
     /// What it settles to, once that is known.
     pub settled: Option<Settled>,
+    /// How much shaking it takes, once that is known.
+    pub thresholds: Option<Thresholds>,
 }
 
 /// An open scene.
@@ -51,6 +50,8 @@ pub struct Session {
     pub player: Player,
     settled: Latest<Settled>,
     thresholds: Latest<Thresholds>,
+    /// The travel limit in mm with which it would cross; searched for only when somebody asks.
+    stops_that_cross: Latest<Option<f64>>,
     /// The map of the scene.
     pub map: Mapping,
     before: Option<Card>,
@@ -125,7 +126,8 @@ impl Session {
         let model =
             Model::build(&scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
         let hints = scene.app.clone().unwrap_or_default();
-        let player = Player::new(&model, hints.speed.unwrap_or(SPEED));
+        let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.pace()));
+        let player = Player::new(&model, speed);
         let remembered_stops = match scene.stops {
             Stops::None => hints.stops_when_on.unwrap_or(STOPS_WHEN_ON),
             stops => stops,
@@ -137,6 +139,7 @@ impl Session {
             player,
             settled: Latest::default(),
             thresholds: Latest::default(),
+            stops_that_cross: Latest::default(),
             map: Mapping::default(),
             before: None,
             mechanism_of: scene.mechanism.clone(),
@@ -163,6 +166,11 @@ impl Session {
         &self.model
     }
 
+    /// The model of what is shown: the one that held then, where the past is looked at.
+    pub fn shown(&self) -> &Model {
+        if self.player.is_past() { self.player.shown_model() } else { &self.model }
+    }
+
     /// Why the scene as it stands cannot be run; the motion is that of the last one that could.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
@@ -177,6 +185,7 @@ impl Session {
     pub fn poll(&mut self) {
         self.settled.poll();
         self.thresholds.poll();
+        self.stops_that_cross.poll();
         self.map.take();
         self.apply();
     }
@@ -278,6 +287,8 @@ impl Session {
         self.travel(Editor::back_to_start);
         self.before = None;
         self.restart();
+        let hinted = self.scene().app.as_ref().and_then(|hints| hints.speed);
+        self.player.speed = hinted.unwrap_or_else(|| fitting_speed(self.model.pace()));
         self.player.set_playing(true);
     }
 
@@ -326,12 +337,14 @@ impl Session {
                 self.player.change(&self.model);
                 self.changed_at = self.player.watch().time();
                 self.thresholds.clear();
+                self.stops_that_cross.clear();
                 self.ask_settled();
             }
             Err(error) => {
                 self.fault = Some(error.to_string());
                 self.settled.clear();
                 self.thresholds.clear();
+                self.stops_that_cross.clear();
             }
         }
     }
@@ -355,16 +368,46 @@ impl Session {
     }
 
     fn ask_thresholds(&mut self) {
-        if self.thresholds.is_running() || self.fault.is_some() {
+        if self.thresholds.is_running() || !self.is_searched() {
             return;
         }
         let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
-        if !matches!(scene.excitation, Excitation::Sine { .. }) || mechanism.landscape.barrier.is_none() {
-            return;
-        }
         self.thresholds.ask(&self.wake, move |cancel| {
             study::thresholds(&scene, &mechanism, &study::Task { tick: &|| (), cancel })
         });
+    }
+
+    /// What it would take to cross, in words: asked for, it is searched for.
+    pub fn ways(&mut self) -> String {
+        if !self.is_searched() {
+            return "What it would take is searched for where a sine shakes a mass with two wells."
+                .to_owned();
+        }
+        if self.stops_that_cross.current().is_none()
+            && !self.stops_that_cross.is_running()
+            && !self.editor.in_gesture()
+        {
+            let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
+            let restitution =
+                restitution(&scene.stops).or(restitution(&self.remembered_stops)).unwrap_or(1.0);
+            self.stops_that_cross.ask(&self.wake, move |cancel| {
+                let task = study::Task { tick: &|| (), cancel };
+                study::stops_that_cross(&scene, &mechanism, restitution, &task)
+            });
+        }
+        match (self.settled.current(), self.thresholds.current(), self.stops_that_cross.current()) {
+            (Some(settled), Some(thresholds), Some(stops)) => {
+                status::ways(self.scene(), settled, thresholds, *stops)
+            }
+            _ => "Looking for what it would take.".to_owned(),
+        }
+    }
+
+    /// Whether what it would take is searched for.
+    fn is_searched(&self) -> bool {
+        self.fault.is_none()
+            && matches!(self.built.excitation, Excitation::Sine { .. })
+            && self.mechanism.landscape.barrier.is_some()
     }
 
     /// Waits for what is being computed, at most so long.
@@ -373,6 +416,9 @@ impl Session {
         self.settled.wait(most);
         if self.thresholds.is_running() {
             self.thresholds.wait(most);
+        }
+        if self.stops_that_cross.is_running() {
+            self.stops_that_cross.wait(most);
         }
     }
 
@@ -383,7 +429,11 @@ impl Session {
 
     /// The scene as it stands, for the card.
     pub fn now_card(&self) -> Card {
-        Card { scene: self.scene().clone(), settled: self.settled.current().copied() }
+        Card {
+            scene: self.scene().clone(),
+            settled: self.settled.current().copied(),
+            thresholds: self.thresholds.current().copied(),
+        }
     }
 
     /// The scene before the last gesture, for the card.
@@ -423,9 +473,20 @@ impl Session {
             return status::unshaken(&self.model, &state);
         }
         let Some(settled) = self.settled.current() else { return Sentence::waiting() };
-        let early = self.changed_at > 0.0 && self.periods_since_change().is_some_and(|p| p < FUTURE_PERIODS);
-        let tense = if early { Tense::Future } else { Tense::Present };
+        let tense = if self.is_early(settled) { Tense::Future } else { Tense::Present };
         status::driven(self.scene(), &self.model, settled, self.thresholds.current(), tense)
+    }
+
+    /// Whether what the sentence tells is still to be seen: after a change for some periods, and where the shaking has
+    /// no period or grows until what was played reaches what is told of.
+    fn is_early(&self, settled: &Settled) -> bool {
+        match self.periods_since_change().filter(|_| !status::is_swept(self.scene())) {
+            Some(periods) => self.changed_at > 0.0 && periods < FUTURE_PERIODS,
+            None => {
+                let gone = self.player.watch().time() - self.changed_at;
+                gone < self.model.settle() + status::seen_after(self.scene(), settled)
+            }
+        }
     }
 
     /// Amplitude of the shaking in g, where it is a sine.
@@ -435,21 +496,14 @@ impl Session {
             _ => None,
         }
     }
+}
 
-    /// The largest acceleration of the base that a view makes room for, in m/s^2.
-    pub fn largest_push(&self) -> f64 {
-        let g = match &self.scene().excitation {
-            Excitation::Sine { amplitude_g, .. } => amplitude_g.abs(),
-            Excitation::AmplitudeRamp { from_g, to_g, .. } => from_g.abs().max(to_g.abs()),
-            Excitation::Chirp { amplitude_g, .. } => amplitude_g.abs(),
-            Excitation::Constant { accel_g } => accel_g.abs(),
-            Excitation::Noise { rms_g, .. } => 2.5 * rms_g,
-            Excitation::Recorded { record, .. } => {
-                record.as_ref().map_or(0.0, |record| record.peak() / STANDARD_GRAVITY)
-            }
-            Excitation::None | Excitation::Sum(_) => 1.0,
-        };
-        g * STANDARD_GRAVITY
+/// The coefficient of restitution of stops that have one.
+fn restitution(stops: &Stops) -> Option<f64> {
+    match stops {
+        Stops::None | Stops::Hertz { .. } => None,
+        Stops::Rigid { restitution, .. } => Some(*restitution),
+        Stops::Uneven { restitution_left, restitution_right, .. } => restitution_right.or(*restitution_left),
     }
 }
 
@@ -457,7 +511,9 @@ impl Session {
 pub fn stop_distances(scene: &Scene) -> (Option<f64>, Option<f64>) {
     match scene.stops {
         scene::Stops::None => (None, None),
-        scene::Stops::Rigid { travel_limit_mm, .. } => (Some(-travel_limit_mm), Some(travel_limit_mm)),
+        scene::Stops::Rigid { travel_limit_mm, .. } | scene::Stops::Hertz { travel_limit_mm, .. } => {
+            (Some(-travel_limit_mm), Some(travel_limit_mm))
+        }
         scene::Stops::Uneven { left_mm, right_mm, .. } => (left_mm.map(|mm| -mm), right_mm),
     }
 }

@@ -1,6 +1,8 @@
 //! Which keys do what? The list that F1 shows.
 
-use eframe::egui::{self, Grid, Modal, RichText, Ui};
+use eframe::egui::{self, Grid, RichText, Ui};
+
+use super::widgets::dialog;
 
 /// Keys and what they do, in groups.
 const GROUPS: [(&str, &[(&str, &str)]); 4] = [
@@ -29,6 +31,9 @@ const GROUPS: [(&str, &[(&str, &str)]); 4] = [
         &[
             ("Z", "the view under the pointer over the whole window"),
             ("C", "cover the results: predict first"),
+            ("H", "what it would take to cross"),
+            ("P", "projector: light, larger, thicker lines"),
+            ("D", "light letters on a dark ground"),
             ("F11", "full screen"),
             ("Ctrl+1, 2, 3, 4", "arrange as Look, Study, Map, your own"),
         ],
@@ -47,7 +52,7 @@ const GROUPS: [(&str, &[(&str, &str)]); 4] = [
 
 /// Shows the list; false once it is to be closed.
 pub fn shortcuts_ui(ui: &Ui) -> bool {
-    let answer = Modal::new(egui::Id::unique("shortcuts")).show(ui.ctx(), |ui| {
+    let answer = dialog(ui.ctx(), "shortcuts").show(ui.ctx(), |ui| {
         ui.heading("Keys");
         let room = (ui.ctx().content_rect().height() - 120.0).max(120.0);
         egui::ScrollArea::vertical().max_height(room).show(ui, |ui| {

@@ -77,10 +77,20 @@ pub fn speed(m_per_s: f64) -> String {
     if mm < 9.95 { format!("{mm:.1}") } else { format!("{mm:.0}") }
 }
 
-fn mm(m: f64) -> String {
+/// Length in mm: one decimal, two below 1 mm.
+pub fn mm(m: f64) -> String {
     // -0.0 is no place
-    let rounded = (m * 1e4).round() / 10.0 + 0.0;
-    format!("{rounded:.1}")
+    let tenths = (m * 1e4).round() / 10.0 + 0.0;
+    if tenths == 0.0 || m.abs() >= 0.95e-3 { format!("{tenths:.1}") } else { format!("{:.2}", m * 1e3) }
+}
+
+/// A travel limit in mm as it was set: one decimal, or the two that a slider has.
+fn limit_mm(mm: f64) -> String {
+    let text = format!("{mm:.2}");
+    match text.strip_suffix('0') {
+        Some(short) => short.to_owned(),
+        None => text,
+    }
 }
 
 fn energy(j: f64) -> String {
@@ -95,7 +105,9 @@ fn times(count: f64) -> String {
     if count < 0.1 {
         return "less than once in ten periods".to_owned();
     }
+    let rare = (1.0 / count).round();
     match count {
+        c if rare > 1.0 && (1.0 / c - rare).abs() < 0.05 * rare => format!("once in {rare:.0} periods"),
         c if (c - 1.0).abs() < 0.05 => "once a period".to_owned(),
         c if (c - 2.0).abs() < 0.05 => "twice a period".to_owned(),
         c if (c - c.round()).abs() < 0.05 => format!("{c:.0} times a period"),
@@ -276,7 +288,9 @@ pub fn driven(
                     mm(range.1)
                 )
             } else {
-                format!("Crossed {} times in {:.0} s; {rms_text}.", summary.crossings, settled.window)
+                let (cross, count) =
+                    (if tense == Tense::Future { "Will cross" } else { "Crossed" }, summary.crossings);
+                format!("{cross} {count} times in {:.0} s; {rms_text}.", settled.window)
             };
             Sentence::new(if summary.crossings == 0 { Kind::Intrawell } else { Kind::Irregular }, text)
         }
@@ -343,7 +357,7 @@ pub fn driven(
             let text = match (stopped, equal, summary.impact_share) {
                 (true, Some((_, limit)), Some(share)) => format!(
                     "Interwell: {how}, from stop to stop at ±{} mm; {rms_text}, impacts take {:.0} % of the work.",
-                    mm(limit),
+                    limit_mm(limit * 1e3),
                     share * 100.0
                 ),
                 (true, _, Some(share)) => format!(
@@ -357,6 +371,11 @@ pub fn driven(
             Sentence::new(Kind::Interwell, text)
         }
     };
+    if is_swept(scene) {
+        // the shaking grows until then: what it settles to is its end
+        let from = format!(" from {:.0} s on:", model.settle());
+        sentence.text = sentence.text.replacen(':', &from, 1);
+    }
     if let Some(untouched) = untouched {
         sentence.text = format!("{} {untouched}", sentence.text);
     }
@@ -387,8 +406,60 @@ fn remedy(scene: &Scene, regime: Regime, hops: bool, g: f64, found: &Thresholds)
         (Regime::Interwell, Thresholds { crosses_from: Some(from), .. }) if stopped && *from < g => {
             format!("{:.2} g to spare.", g - from)
         }
+        (Regime::Interwell | Regime::Irregular, Thresholds { crosses_from: Some(from), .. })
+            if !stopped && g - from > 0.05 =>
+        {
+            format!("About {:.1} g to spare.", g - from)
+        }
         _ => String::new(),
     }
+}
+
+/// What it would take to cross, or to cross every period: more shaking or stops, where they were searched for.
+///
+/// `stops_mm` is the travel limit that [`study::stops_that_cross`](crate::study::stops_that_cross) found.
+pub fn ways(scene: &Scene, settled: &Settled, thresholds: &Thresholds, stops_mm: Option<f64>) -> String {
+    let Some(g) = amplitude(scene) else { return String::new() };
+    let stopped = scene.stops != crate::scene::Stops::None;
+    let stops = stops_mm.map(|limit| format!("with stops at ±{} mm", at_least_one_decimal(limit)));
+    match settled.summary.regime {
+        Regime::OneWell => "There is no barrier, so nothing to cross.".to_owned(),
+        Regime::Interwell => "It crosses already, again and again in the same way.".to_owned(),
+        Regime::Irregular => match stops {
+            Some(stops) => format!("Crosses in the same way every time {stops}."),
+            None => "It crosses already, if not regularly.".to_owned(),
+        },
+        Regime::Rest | Regime::Intrawell => {
+            let more = thresholds.crosses_at.filter(|at| *at > g).map(|at| match stopped {
+                true => format!("with {:.2} g more", at - g),
+                false => format!("with about {:.1} g more", (at - g).max(0.1)),
+            });
+            match (more, stops) {
+                (Some(more), Some(stops)) => format!("Crosses {more}, or {stops}."),
+                (Some(more), None) => format!("Crosses {more}; no stops alone would do it."),
+                (None, Some(stops)) => format!("Crosses {stops}."),
+                (None, None) => "Neither 2 g more nor any stops would make it cross.".to_owned(),
+            }
+        }
+    }
+}
+
+/// A decimal with one place, or as many as it has.
+fn at_least_one_decimal(mm: f64) -> String {
+    let text = format!("{mm}");
+    if text.contains('.') { text } else { format!("{mm:.1}") }
+}
+
+/// Whether the shaking itself changes on the way.
+pub fn is_swept(scene: &Scene) -> bool {
+    use crate::scene::Excitation::{AmplitudeRamp, Chirp};
+    matches!(scene.excitation, AmplitudeRamp { .. } | Chirp { .. })
+}
+
+/// How far into the settled window in s a motion is to be seen before its sentence speaks of the present: a shaking that
+/// changes has to come to the window, one without a period to its end.
+pub fn seen_after(scene: &Scene, settled: &Settled) -> f64 {
+    if is_swept(scene) { 0.0 } else { settled.window }
 }
 
 fn amplitude(scene: &Scene) -> Option<f64> {
@@ -408,7 +479,7 @@ fn untouched(scene: &Scene, model: &Model, settled: &Settled) -> Option<String> 
     }
     match stop_distances(scene) {
         (Some(left), Some(right)) if left == -right => {
-            Some(format!("Stops at ±{right:.1} mm are not touched."))
+            Some(format!("Stops at ±{} mm are not touched.", limit_mm(right)))
         }
         _ => Some("The stops are not touched.".to_owned()),
     }

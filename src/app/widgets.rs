@@ -3,6 +3,11 @@
 use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
 
 use super::status::Kind;
+use super::style::COMPACT_BELOW;
+
+/// Room in points that a slider leaves for its number, and what is left of the slider for a long one.
+const NUMBER: f32 = 72.0;
+const LEAST_SLIDER: f32 = 30.0;
 
 /// A slider of a number of the scene.
 pub struct Knob<'a> {
@@ -32,6 +37,15 @@ pub struct Turn {
 }
 
 impl Knob<'_> {
+    /// What a long number takes more than the usual one, the slider has less: together they keep their room.
+    fn slider_width(&self, ui: &Ui, value: f64) -> f32 {
+        let text = format!("{value:.*}{}", self.decimals, self.unit);
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let text = ui.painter().layout_no_wrap(text, font, Color32::PLACEHOLDER).size().x;
+        let number = text + 2.0 * ui.spacing().button_padding.x;
+        (self.width - (number - NUMBER).max(0.0)).max(LEAST_SLIDER)
+    }
+
     /// Draws it and says what was done to it.
     pub fn ui(&self, ui: &mut Ui, value: f64) -> Turn {
         let mut turned = value;
@@ -41,16 +55,19 @@ impl Knob<'_> {
             .suffix(self.unit)
             .clamping(egui::SliderClamping::Never)
             .smart_aim(false)
+            // a number that is half typed is not meant yet
+            .update_while_editing(false)
             .step_by(self.step);
-        let name = ui.label(self.name).on_hover_text(self.hover);
+        let name = hover_beside(ui.label(self.name), self.hover);
+        let width = self.slider_width(ui, value);
         let response = ui
             .scope(|ui| {
-                ui.spacing_mut().slider_width = self.width;
+                ui.spacing_mut().slider_width = width;
                 ui.add(slider)
             })
             .inner
-            .labelled_by(name.id)
-            .on_hover_text(self.hover);
+            .labelled_by(name.id);
+        let response = hover_beside(response, self.hover);
         if turned != value && !response.dragged() && response.has_focus() && ui.input(|i| i.modifiers.shift) {
             turned = value + 10.0 * (turned - value);
         }
@@ -65,6 +82,24 @@ impl Knob<'_> {
             ended: response.drag_stopped() || (changed && !response.dragged()),
         }
     }
+}
+
+/// What waits for an answer, over everything else.
+pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
+    let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
+    egui::Modal::new(egui::Id::unique(id)).frame(frame)
+}
+
+/// A hover text that stands beside what it explains, where the window has a column of controls: below it would cover the
+/// next one.
+pub fn hover_beside(response: Response, text: &str) -> Response {
+    if response.ctx.content_rect().width() < COMPACT_BELOW {
+        return response.on_hover_text(text);
+    }
+    let mut tooltip = egui::Tooltip::for_enabled(&response);
+    tooltip.popup = tooltip.popup.align(egui::RectAlign::RIGHT_START);
+    tooltip.show(|ui| ui.label(text));
+    response
 }
 
 /// What a button shows.

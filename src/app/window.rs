@@ -6,11 +6,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Sense, Ui, Vec2};
+use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, Ui};
 use egui_tiles::Tree;
 
 use crate::scene::{Layout, PRESETS};
 
+use super::announce::Announcer;
 use super::document::Editor;
 use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::Next;
@@ -18,11 +19,11 @@ use super::menu::{self, Command};
 use super::player::SPEEDS;
 use super::session::{CannotRun, Session};
 use super::settings::Settings;
-use super::style::{self, BODY, PROJECTOR_ZOOM, STATUS, STATUS_COMPACT, Style};
+use super::style::{self, PROJECTOR_ZOOM, Style};
 use super::task::{Latest, Wake};
 use super::transport::{self, EVENT_AHEAD};
-use super::views::{self, Memory, Span, View, ViewContext};
-use super::widgets::{Icon, icon_button_ui, kind_shapes};
+use super::views::{self, Memory, View, ViewContext};
+use super::widgets::{Icon, dialog, icon_button_ui};
 use super::{controls, export, hint, shortcuts};
 
 /// Where the scenes opened last are kept between two starts of the program.
@@ -32,8 +33,14 @@ pub const RECENT: &str = "recent";
 pub const OWN_KEY: &str = "arrangement";
 
 mod files;
+mod release;
+mod status_line;
+mod typed;
 
 use files::{Chosen, Wanted};
+use release::Later;
+use status_line::{covered_ui, status_ui};
+use typed::Typed;
 
 /// Everything that the window shows.
 pub struct Window {
@@ -61,6 +68,9 @@ pub struct Window {
     over_comments: Option<PathBuf>,
     /// The list of keys is shown.
     shortcuts: bool,
+    /// What it would take to cross is shown.
+    ways: bool,
+    announcer: Announcer,
     /// The changes may go: the window closes without another question.
     leaving: bool,
     /// Errors of what is written elsewhere than in this thread.
@@ -70,6 +80,10 @@ pub struct Window {
     dialog: Latest<Chosen>,
     /// Whether files are asked for.
     dialogs: bool,
+    /// A path that is typed where there is no dialog.
+    typed: Option<Typed>,
+    /// Input that waits for the next frame.
+    later: Later,
     hint: hint::Hint,
     wake: Wake,
     /// What was applied last, to be applied again only where it changes.
@@ -104,10 +118,14 @@ impl Window {
             over_comments: None,
             leaving: false,
             shortcuts: false,
+            ways: false,
+            announcer: Announcer::default(),
             errors: channel(),
             titled: String::new(),
             dialog: Latest::default(),
             dialogs: true,
+            typed: None,
+            later: Later::default(),
             wake,
             applied: None,
         })
@@ -151,7 +169,7 @@ impl Window {
     /// Draws it all.
     pub fn ui(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
-        for command in menu::keys(&ctx) {
+        for command in menu::keys(&ctx, self.settings) {
             self.carry_out(&ctx, command);
         }
         let style = Style::of(&ctx, self.settings.projector);
@@ -167,12 +185,14 @@ impl Window {
         Panel::top("menu").frame(bar).exact_size(32.0).show(ui, |ui| {
             asked = menu::menu_ui(ui, &self.session, &self.tiling, self.settings, &self.recent);
         });
-        if !self.covered {
-            let height = if compact { 40.0 } else { 44.0 };
-            Panel::top("status").frame(line).exact_size(height).show(ui, |ui| {
-                status_ui(ui, &self.session, &style, compact);
-            });
-        }
+        let height = if compact { 40.0 } else { 44.0 };
+        Panel::top("status").frame(line).exact_size(height).show(ui, |ui| {
+            if self.covered {
+                covered_ui(ui);
+            } else {
+                status_ui(ui, &mut self.session, &mut self.announcer, &style, compact);
+            }
+        });
         Panel::bottom("transport").frame(feet).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
             transport::transport_ui(ui, &mut self.session, &style);
         });
@@ -189,7 +209,11 @@ impl Window {
                 });
             });
         }
-        if self.hint.is_shown(&self.session) {
+        let hinted = self.hint.is_shown(&self.session);
+        if self.ways && !self.covered {
+            let ways = self.session.ways();
+            Panel::top("ways").frame(line).show(ui, |ui| ui.label(ways));
+        } else if hinted {
             Panel::top("hint").frame(line).show(ui, |ui| self.hint.ui(ui));
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
@@ -207,7 +231,7 @@ impl Window {
     }
 
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {
-        let span = Span::of(&self.session);
+        let span = self.memory.span(&self.session);
         let mut context = ViewContext {
             session: &mut self.session,
             style,
@@ -232,7 +256,7 @@ impl Window {
         let mut close = false;
         ui.horizontal(|ui| {
             ui.add_space(8.0);
-            ui.heading(view.name());
+            ui.heading(view.name()).on_hover_text(view.about());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 close = icon_button_ui(ui, Icon::Fill, 24.0, "all views", "All views again (Z)").clicked();
             });
@@ -245,7 +269,7 @@ impl Window {
 
     fn message_ui(&mut self, ui: &Ui) {
         let Some((title, text)) = &self.message else { return };
-        let answer = egui::Modal::new(egui::Id::unique("message")).show(ui.ctx(), |ui| {
+        let answer = dialog(ui.ctx(), "message").show(ui.ctx(), |ui| {
             ui.set_max_width(560.0);
             ui.heading(title);
             ui.add_space(6.0);
@@ -297,6 +321,7 @@ impl Window {
                 self.session.back_to_start();
                 (self.filled, self.covered) = (None, false);
                 self.memory = Memory::default();
+                self.hint = hint::Hint::for_scene(&self.session);
                 self.arrange(self.tiling.room());
             }
             Command::PlayPause => {
@@ -344,6 +369,7 @@ impl Window {
             }
             Command::Set(settings) => self.settings = settings,
             Command::Grab => self.memory.grab = true,
+            Command::Ways => self.ways = !self.ways,
             Command::Shortcuts => self.shortcuts = !self.shortcuts,
             Command::About => self.message = Some(about()),
         }
@@ -389,41 +415,6 @@ fn about() -> (String, String) {
     ("interwell".to_owned(), text)
 }
 
-/// The line that says what the mass does.
-fn status_ui(ui: &mut Ui, session: &Session, style: &Style, compact: bool) {
-    let sentence = session.sentence();
-    let size = if compact { STATUS_COMPACT } else { STATUS };
-    ui.horizontal_centered(|ui| {
-        let (rect, _) = ui.allocate_exact_size(Vec2::splat(size + 6.0), Sense::hover());
-        ui.painter().extend(kind_shapes(
-            sentence.kind,
-            rect.center(),
-            size * 0.42,
-            style.kind(sentence.kind),
-        ));
-        let settling = session.settling().map(|(gone, of)| format!("settling: {gone} of {of} periods"));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if let Some(settling) = settling {
-                let hover = "How far the motion has settled since your last change";
-                ui.label(RichText::new(settling).color(style.faint())).on_hover_text(hover);
-            }
-            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                let text = sentence.whole();
-                let size = fitted(ui, &text, size);
-                ui.add(egui::Label::new(RichText::new(text).size(size)).wrap());
-            });
-        });
-    });
-}
-
-/// The size at which a text stands in one line, or the smallest one, at which it takes two.
-fn fitted(ui: &Ui, text: &str, size: f32) -> f32 {
-    let font = egui::FontId::proportional(size);
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER);
-    let share = ui.available_width() / galley.size().x.max(1.0);
-    (size * share.min(1.0) - 0.05).clamp(BODY.min(size), size)
-}
-
 impl eframe::App for Window {
     fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
         Self::logic(self, ctx);
@@ -431,6 +422,12 @@ impl eframe::App for Window {
 
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         Self::ui(self, ui);
+    }
+
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        if self.later.hold_back(input) {
+            ctx.request_repaint();
+        }
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {

@@ -1,11 +1,15 @@
 //! `curve`: force, potential and stiffness of the mechanism, and what its flexures do.
 
+use std::sync::Arc;
+
+use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::mechanics::flexure::State;
-use interwell::output::{curve_figure, landscape};
+use interwell::output::{contact_figure, curve_figure, landscape};
+use interwell::scene::Document;
 use interwell::study::{
-    StatesError, Task, curve, default_positions, even_positions, flexures_at, full_curve, metres, shapes,
-    states, stop_positions, stress_warning,
+    StatesError, Table, Task, contact, curve, default_positions, even_positions, flexures_at, full_curve,
+    metres, shapes, states, stop_positions, stress_warning,
 };
 
 use super::failure::Failure;
@@ -26,6 +30,8 @@ const PICTURE_POINTS: usize = 3001;
 pub fn run(options: &CurveOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
+    let contact_picture = Picture::of("--contact-plot", options.contact_plot.as_deref(), &options.plot)?;
+    let rigid = restitution(&options.rigid)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let range = options.range_mm.as_deref().map(range).transpose()?;
     let even = |points: usize| match range {
@@ -44,11 +50,23 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
             flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
         }
     }
+    let contact_path = options.contact.as_deref().map(|path| ("--contact", path));
+    let contacts = match contact_path.or(contact_picture.map(|own| own.output())) {
+        Some((option, _)) => Some(contact_table(&document, &mechanism, option, rigid)?),
+        None => None,
+    };
     let landscape_path = options.landscape.as_deref().map(|path| ("--landscape", path));
     let shapes_path = options.shapes.as_deref().map(|path| ("--shapes", path));
     let mut sinks = open(
         &inputs(&options.scene, &document),
-        [Some(("--out", &common.out)), landscape_path, picture.map(|own| own.output()), shapes_path],
+        [
+            Some(("--out", &common.out)),
+            landscape_path,
+            picture.map(|own| own.output()),
+            shapes_path,
+            contact_path,
+            contact_picture.map(|own| own.output()),
+        ],
     )?;
     let table = if options.full {
         let rows = solved(&mechanism, &positions(POINTS), &document.name, "--full")?;
@@ -73,7 +91,41 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
         let drawn = solved(&mechanism, &positions(SHAPES), &document.name, "--shapes")?;
         write_table(&mut sinks[3], &shapes(&drawn))?;
     }
+    if let Some((table, model)) = &contacts {
+        write_table(&mut sinks[4], table)?;
+        if let Some((picture, stop)) = contact_picture.zip(model.compliant) {
+            let figure = contact_figure(table, &stop, model.mass, &caption(&document), picture.theme);
+            picture.write(&mut sinks[5], &figure)?;
+        }
+    }
     finish(sinks)
+}
+
+/// What one impact on the scene's compliant stop does, and the model that it belongs to.
+fn contact_table(
+    document: &Document,
+    mechanism: &Arc<Mechanism>,
+    option: &str,
+    rigid: f64,
+) -> Result<(Table, Model), Failure> {
+    let model =
+        Model::build(&document.scene, Arc::clone(mechanism)).map_err(|faults| document.error_from(faults))?;
+    match contact(&model, rigid) {
+        Some(table) => Ok((table, model)),
+        None => Err(Failure::argument(format!(
+            "{option}: the stops of {} are not compliant; give it some, such as --set 'stops=Hertz(travel_limit_mm: 1.5, \
+             radius_mm: 5, young_gpa: 69, loss_s_per_m: 4.9)'",
+            document.name
+        ))),
+    }
+}
+
+/// The restitution of a rigid stop as given to `--rigid`.
+fn restitution(text: &str) -> Result<f64, Failure> {
+    let number = text.trim().parse().ok().filter(|own| (0.0..=1.0).contains(own));
+    number.ok_or_else(|| {
+        Failure::argument(format!("--rigid {text}: give a coefficient of restitution, 0 to 1, such as 0.36"))
+    })
 }
 
 /// The flexures at these positions in m, unless Ctrl-C comes first; `scene` and `option` are what an error names.

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use interwell::output::{NoPicture, OpenError};
 use interwell::scene::{ArgumentError, SceneError};
+use interwell::study::accuracy::UnknownCase;
 use interwell::study::{CellFaults, GridError, OutsideCurve, TimesError};
 
 /// An error of a command, by whose fault it is.
@@ -58,7 +59,7 @@ macro_rules! arguments_are_wrong {
     )*};
 }
 
-arguments_are_wrong!(SceneError, ArgumentError, GridError, TimesError, OutsideCurve, NoPicture);
+arguments_are_wrong!(SceneError, ArgumentError, GridError, TimesError, OutsideCurve, NoPicture, UnknownCase);
 
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {

@@ -1,5 +1,6 @@
 //! The command line: arguments in, a study asked, its table written. Nothing is computed here.
 
+mod accuracy;
 mod check;
 mod curve;
 mod failure;
@@ -46,7 +47,7 @@ pub fn run(
     window: impl FnOnce(Option<&str>) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let Options { headless, scene, command } = options;
-    let commands = "presets, check, curve, simulate or sweep";
+    let commands = "presets, check, curve, simulate, sweep or accuracy";
     match (command, headless, scene) {
         (Some(_), _, Some(scene)) => {
             Err(Failure::argument(format!("`{scene}` stands before the command: put the scene after it")))
@@ -62,6 +63,7 @@ pub fn run(
             Command::Curve(options) => curve::run(&options),
             Command::Simulate(options) => simulate::run(&options),
             Command::Sweep(options) => sweep::run(&options),
+            Command::Accuracy(options) => accuracy::run(&options),
         },
         (None, true, None) => Err(Failure::argument(format!(
             "--headless needs a command: {commands}, such as interwell --headless simulate paper; see interwell --help"

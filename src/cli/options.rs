@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Parser, Subcommand};
 
 const USAGE: &str = "interwell [SCENE]
        interwell --headless COMMAND [SCENE] [OPTIONS]";
@@ -15,9 +15,11 @@ Examples:
   interwell --headless simulate elastic-box --at 0,0.5,1 --events - --out /dev/null
   interwell --headless sweep --out map.csv --plot map.png
   interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
+  interwell --headless accuracy --plot accuracy.png
 
 A scene is a .ron file or the name of a built-in one; `presets --write DIR` copies those out.
-Exit status: 0 done; 1 the run or the writing failed; 2 the arguments or the scene are wrong.";
+Exit status: 0 done; 1 the run or the writing failed, or a case of `accuracy` falls short; 2 the arguments or the
+scene are wrong.";
 
 /// Bistable mechanisms with hard travel limits: see and compute how stops start interwell motion.
 #[derive(Debug, Parser)]
@@ -54,6 +56,9 @@ pub enum Command {
     /// Run a grid of scenes: CSV with a row for each cell
     #[command(override_usage = "interwell --headless sweep [SCENE] [OPTIONS]")]
     Sweep(SweepOptions),
+    /// Speed against error beside other methods, and the hard cases with the digits that they allow and reach
+    #[command(override_usage = "interwell --headless accuracy [OPTIONS]")]
+    Accuracy(AccuracyOptions),
 }
 
 impl Command {
@@ -65,6 +70,7 @@ impl Command {
             Self::Curve(_) => "curve",
             Self::Simulate(_) => "simulate",
             Self::Sweep(_) => "sweep",
+            Self::Accuracy(_) => "accuracy",
         }
     }
 }
@@ -95,13 +101,14 @@ pub struct Common {
 
 /// What the commands take that can draw.
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("picture").multiple(true))]
 pub struct PlotOptions {
     /// Draw a picture; the name ends in .png or .svg
-    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub plot: Option<PathBuf>,
 
-    /// With --plot: light on dark
-    #[arg(long, requires = "plot")]
+    /// With a picture: light on dark
+    #[arg(long, requires = "picture")]
     pub dark: bool,
 }
 
@@ -164,6 +171,19 @@ pub struct CurveOptions {
     /// clamped at (both lengths less the preload, 0) and ends at the same place
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub shapes: Option<PathBuf>,
+
+    /// Of a compliant stop: write what one impact on it does over the impact speed as CSV, speed_m_per_s, restitution,
+    /// rigid_restitution, contact_time_s, depth_m, peak_force_n, peak_pressure_pa, in closed form
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub contact: Option<PathBuf>,
+
+    /// Draw restitution over impact speed, beside a rigid stop's constant; the name ends in .png or .svg
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
+    pub contact_plot: Option<PathBuf>,
+
+    /// With --contact and --contact-plot: the restitution of the rigid stop, 0 to 1
+    #[arg(long, value_name = "E", allow_hyphen_values = true, default_value = "0.36")]
+    pub rigid: String,
 
     /// Write equilibria, barrier, force extrema and kinks as JSON
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
@@ -228,4 +248,28 @@ pub struct SweepOptions {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+/// `accuracy`.
+#[derive(Debug, Args)]
+pub struct AccuracyOptions {
+    /// Run this case alone (repeatable): p1, p2 or flexures for speed against error, or a hard case
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
+    pub case: Vec<String>,
+
+    /// List the cases: what each runs, how its answer is known, why so many digits are allowed
+    #[arg(long)]
+    pub list: bool,
+
+    /// Write everything as CSV; `-` is standard output, and the table then goes to standard error
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub out: Option<PathBuf>,
+
+    /// The picture: error over time, of the problems p1, p2 and flexures.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// Say nothing on standard error but errors
+    #[arg(long)]
+    pub quiet: bool,
 }

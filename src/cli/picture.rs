@@ -15,21 +15,31 @@ pub struct Picture<'a> {
     pub path: &'a Path,
     /// Light or dark.
     pub theme: &'static Theme,
+    option: &'static str,
     format: Format,
 }
 
 impl<'a> Picture<'a> {
     /// The picture that `options` ask for; an error where its name does not end like one.
     pub fn asked(options: &'a PlotOptions) -> Result<Option<Self>, Failure> {
-        let Some(path) = options.plot.as_deref() else { return Ok(None) };
+        Self::of("--plot", options.plot.as_deref(), options)
+    }
+
+    /// The picture at `path`, which `option` gave; light or dark as `options` say.
+    pub fn of(
+        option: &'static str,
+        path: Option<&'a Path>,
+        options: &PlotOptions,
+    ) -> Result<Option<Self>, Failure> {
+        let Some(path) = path else { return Ok(None) };
         let format = Format::of(path)
-            .map_err(|problem| Failure::argument(format!("--plot {}: {problem}", path.display())))?;
-        Ok(Some(Self { path, theme: Theme::of(options.dark), format }))
+            .map_err(|problem| Failure::argument(format!("{option} {}: {problem}", path.display())))?;
+        Ok(Some(Self { path, theme: Theme::of(options.dark), option, format }))
     }
 
     /// What an output is opened by.
     pub fn output(&self) -> (&'static str, &'a Path) {
-        ("--plot", self.path)
+        (self.option, self.path)
     }
 
     /// Writes the picture.

@@ -2,7 +2,7 @@
 
 use interwell::dynamics::{Model, Outcome};
 use interwell::output::{run_figure, summary};
-use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_trace};
+use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_trace, yield_warning};
 
 use super::failure::Failure;
 use super::options::SimulateOptions;
@@ -54,6 +54,9 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
         picture.write(plot, &figure)?;
     }
     finish(sinks)?;
+    if let Some(warning) = yield_warning(&model, &simulation.summary).filter(|_| !common.quiet) {
+        say(&format!("warning: {}: {warning}", document.name));
+    }
     if let Some(reason) = early_end(simulation.summary.outcome) {
         say(&format!("{}: {reason}", document.name));
     }

@@ -91,6 +91,12 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
             ),
         };
         say(&format!("{cells} in {:.2} s{early}", watch.wall_s()));
+        if tally.yielding > 0 {
+            say(&format!(
+                "warning: {}: in {} of them the contact with a stop yields, which the model does not follow",
+                document.name, tally.yielding
+            ));
+        }
     }
     Ok(())
 }

@@ -19,6 +19,12 @@ const PAST_A_TOUCH: f64 = 1e-6;
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// Decides what a start on a surface is.
     pub(super) fn place_at_start(&mut self) {
+        if self.equation.compliant.is_some() && self.start_pressed_in() {
+            return;
+        }
+        if self.contact != Contact::Free {
+            return;
+        }
         let arena = &self.equation.arenas[self.arena];
         for end in [End::Low, End::High] {
             let (level, kind) = arena.end(end);
@@ -26,7 +32,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 continue;
             }
             let outward = end.sign::<T>() * self.v;
-            if kind == EndKind::Stop {
+            if kind == EndKind::Compliant {
+                self.meet(end, outward);
+            } else if kind == EndKind::Stop {
                 if outward > T::zero() {
                     self.strike(end, outward);
                 } else if outward < T::zero() {
@@ -46,7 +54,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     }
 
     /// Outward acceleration of a mass held at the stop of `end`, and its first two time derivatives.
-    fn press(&mut self, end: End) -> [T; 3] {
+    pub(super) fn press(&mut self, end: End) -> [T; 3] {
         self.drive.seed(&self.clock, &self.at, self.segment, &mut self.series.a, &mut self.roll);
         let sign = end.sign::<T>();
         let stop = self.equation.stop(end).map_or(T::zero(), |s| s.press);
@@ -160,7 +168,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     }
 
     /// The mass passes the break at `end` of its arena.
-    fn enter_neighbour(&mut self, end: End) {
+    pub(super) fn enter_neighbour(&mut self, end: End) {
         match end {
             End::Low => self.arena -= 1,
             End::High => self.arena += 1,
@@ -251,6 +259,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 self.record.rest(&self.at, side(end));
             }
             EndKind::Stop => self.settle(end), // a touch without speed is no impact
+            EndKind::Compliant if outward > T::zero() || at_once => self.enter_stop(end, outward),
+            EndKind::Compliant => self.meet(end, outward),
             EndKind::Break if outward > T::zero() => self.enter_neighbour(end),
             EndKind::Break => {
                 // A touch of the break; where both sides lead out, by rounding, it stays on this one.
@@ -274,7 +284,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     }
 }
 
-fn side(end: End) -> Side {
+pub(super) fn side(end: End) -> Side {
     match end {
         End::Low => Side::Left,
         End::High => Side::Right,

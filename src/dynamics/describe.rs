@@ -1,6 +1,7 @@
 //! What does a scene model, and what does it leave out? In words, for `check`.
 
 use super::model::{Model, StopAt};
+use crate::mechanics::Hertz;
 use crate::numeric::short;
 
 /// A line for each thing that is modelled, then what is left out. The force curve and the meaning of a
@@ -14,6 +15,9 @@ pub(crate) fn describe(model: &Model) -> Vec<String> {
         absent.push("damping");
     }
     match &model.stops {
+        _ if model.compliant.is_some() => {
+            lines.extend(model.compliant.iter().flat_map(|own| compliant(model, own)))
+        }
         Some(pair) => {
             let stop = |side: &str, at: Option<StopAt>| match at {
                 Some(s) => format!("{side} at {} mm with restitution {}", short(s.x * 1e3), s.restitution),
@@ -89,5 +93,59 @@ pub(crate) fn describe(model: &Model) -> Vec<String> {
         short(model.scales.time)
     ));
     lines.push(format!("left out: {}", absent.join(", ")));
+    lines
+}
+
+/// Impact speeds in m/s at which a compliant stop is described: a gentle one and a hard one of the prototype.
+const SPEEDS: [f64; 2] = [0.1, 0.5];
+
+/// Steps of the integrator in a period of the oscillation on a compliant stop, measured on the prototype at the default
+/// tolerance: at a quiet rest, whose depth follows the drive, and trembling without loss as far as the surface.
+const STEPS_PER_PERIOD: (f64, f64) = (1.5, 36.0);
+
+/// What a compliant stop is, what one impact on it does, and what resting on it costs.
+fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
+    let place = |at: Option<f64>| short(at.unwrap_or(f64::NAN) * 1e3);
+    let (left, right) = model.stop_positions();
+    let mut lines = vec![format!(
+        "compliant stops at {} and {} mm: contact by Hertz, k = {} N/m^1.5, loss by Hunt and Crossley, a = {} s/m",
+        place(left),
+        place(right),
+        short(stop.stiffness),
+        short(stop.loss)
+    )];
+    for speed in SPEEDS {
+        let force = stop.peak_force(model.mass, speed);
+        let pressure = stop.pressure(force).map(|own| format!(", {} GPa", short(own / 1e9)));
+        lines.push(format!(
+            "an impact at {speed} m/s on one: {} ms of contact, restitution {}, {} um deep, {} N{}",
+            short(stop.contact_time(model.mass, speed) * 1e3),
+            short(stop.restitution(speed)),
+            short(stop.depth(model.mass, speed) * 1e6),
+            short(force),
+            pressure.unwrap_or_default()
+        ));
+    }
+    if let Some(material) = stop.material {
+        lines.push(format!(
+            "the contact yields from {} GPa on, 1.6 times the yield strength; that is not modelled",
+            short(material.yield_pressure() / 1e9)
+        ));
+    }
+    // Pressed by the mechanism alone, at the right-hand stop.
+    let pressed = right.map_or(0.0, |at| -model.mechanism.curve.force(at));
+    if pressed > 0.0 {
+        let depth = stop.static_depth(pressed);
+        let stiffness = 1.5 * stop.stiffness * depth.sqrt();
+        let frequency = (stiffness / model.mass).sqrt() / std::f64::consts::TAU;
+        lines.push(format!(
+            "resting on one is an oscillation of {} Hz about a depth of {} um, and it is followed: each second of it takes \
+             some {} steps where it is quiet and up to {} where it trembles",
+            short(frequency),
+            short(depth * 1e6),
+            short((frequency * STEPS_PER_PERIOD.0).round()),
+            short((frequency * STEPS_PER_PERIOD.1).round())
+        ));
+    }
     lines
 }

@@ -53,6 +53,8 @@ impl<T: Scalar> PieceForce<T> {
 pub(crate) enum EndKind {
     /// A rigid stop.
     Stop,
+    /// The surface of a compliant stop, free flight on one side and contact on the other.
+    Compliant,
     /// A break: the neighbouring piece begins.
     Break,
     /// Nothing is known beyond.
@@ -84,9 +86,26 @@ impl End {
     }
 }
 
+/// A compliant stop: stiffness d^1.5 (1 + loss d') over mass, kernel units.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Compliant<T> {
+    pub stiffness: T,
+    pub loss: T,
+}
+
+impl<T: Scalar> Compliant<T> {
+    /// Elastic energy over mass at a root of the depth.
+    pub fn stored(&self, root: T) -> T {
+        let square = root * root;
+        self.stiffness * (square * square * root) * T::of(2.0) / T::of(5.0)
+    }
+}
+
 /// The interval in which one polynomial rules.
 #[derive(Debug, Clone)]
 pub(crate) struct Arena<T> {
+    /// The piece of the force curve that it lies in.
+    pub piece: usize,
     pub force: PieceForce<T>,
     pub origin: T,
     pub low: T,
@@ -125,16 +144,46 @@ pub(crate) struct Equation<T> {
     pub arenas: Vec<Arena<T>>,
     pub left: Option<Stop<T>>,
     pub right: Option<Stop<T>>,
+    /// What the two stops are made of, where they are compliant.
+    pub compliant: Option<Compliant<T>>,
     /// Seconds per kernel time unit.
     pub unit: f64,
+}
+
+/// The arenas with the surface of a compliant stop at `x` between two of them; a curve that ends there or before has
+/// no stop.
+fn cut<T: Scalar>(arenas: Vec<Arena<T>>, x: T) -> Vec<Arena<T>> {
+    let mut parts = Vec::with_capacity(arenas.len() + 1);
+    let last = arenas.len() - 1;
+    for (index, mut arena) in arenas.into_iter().enumerate() {
+        if arena.low < x && x < arena.high {
+            let beyond = Arena { low: x, low_kind: EndKind::Compliant, ..arena.clone() };
+            (arena.high, arena.high_kind) = (x, EndKind::Compliant);
+            parts.extend([arena, beyond]);
+            continue;
+        }
+        if arena.low == x && index > 0 {
+            arena.low_kind = EndKind::Compliant;
+        }
+        if arena.high == x && index < last {
+            arena.high_kind = EndKind::Compliant;
+        }
+        parts.push(arena);
+    }
+    parts
 }
 
 impl<T: Scalar> Equation<T> {
     pub fn new(model: &Model, unit: f64) -> Self {
         let curve = &model.mechanism.curve;
         let square = T::of(unit * unit) / T::of(model.mass);
+        let compliant = model.compliant.map(|own| Compliant {
+            stiffness: T::of(own.stiffness) * square,
+            loss: T::of(own.loss) / T::of(unit),
+        });
         let left_stop = model.stops.as_ref().and_then(|s| s.left);
         let right_stop = model.stops.as_ref().and_then(|s| s.right);
+        let rigid = |stop: Option<StopAt>| stop.filter(|_| compliant.is_none());
         let mut arenas: Vec<Arena<T>> = Vec::with_capacity(curve.pieces().len());
         for (index, piece) in curve.pieces().iter().enumerate() {
             let (left, right) = curve.piece_interval(index);
@@ -149,9 +198,12 @@ impl<T: Scalar> Equation<T> {
                 _ => (T::of(x), EndKind::Break),
             };
             let last = index + 1 == curve.pieces().len();
-            let (low, low_kind) = end(left, index == 0, left_stop, left_stop.is_some_and(|s| s.x >= left));
-            let (high, high_kind) = end(right, last, right_stop, right_stop.is_some_and(|s| s.x <= right));
+            let (low, low_kind) =
+                end(left, index == 0, rigid(left_stop), left_stop.is_some_and(|s| s.x >= left));
+            let (high, high_kind) =
+                end(right, last, rigid(right_stop), right_stop.is_some_and(|s| s.x <= right));
             arenas.push(Arena {
+                piece: index,
                 force: PieceForce { coefficients, odd },
                 origin: T::of(piece.origin),
                 low,
@@ -174,7 +226,33 @@ impl<T: Scalar> Equation<T> {
         };
         let left = stop(left_stop, T::of(-1.0));
         let right = stop(right_stop, T::of(1.0));
-        Self { damping: T::of(model.damping * unit) / T::of(model.mass), arenas, left, right, unit }
+        if compliant.is_some() {
+            for at in [left_stop, right_stop].into_iter().flatten() {
+                arenas = cut(arenas, T::of(at.x));
+            }
+        }
+        Self {
+            damping: T::of(model.damping * unit) / T::of(model.mass),
+            arenas,
+            left,
+            right,
+            compliant,
+            unit,
+        }
+    }
+
+    /// The arena of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant stop the one
+    /// outside it.
+    pub fn arena_at(&self, x: T, piece: usize) -> usize {
+        if self.compliant.is_none() {
+            return piece;
+        }
+        let surface = |end: End, arena: &Arena<T>| arena.end(end) == (x, EndKind::Compliant);
+        let holds = |arena: &Arena<T>| arena.piece == piece && arena.low <= x && x <= arena.high;
+        let middle = x < T::zero();
+        let outside = |arena: &Arena<T>| surface(if middle { End::Low } else { End::High }, arena);
+        let found = self.arenas.iter().position(outside).or(self.arenas.iter().position(holds));
+        found.unwrap_or(piece)
     }
 
     /// The stop at an end.

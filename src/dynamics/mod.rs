@@ -2,14 +2,18 @@
 
 mod base;
 mod clock;
+mod compliant;
 mod composite;
 mod contact;
 mod describe;
 mod drive;
 mod equation;
+mod extent;
 mod live;
 mod model;
 mod motion;
+mod path;
+mod penetration;
 mod prepare;
 mod record;
 mod regime;
@@ -19,8 +23,10 @@ mod series;
 mod summary;
 mod tone;
 
+pub(crate) use base::BaseTone;
 pub use base::STANDARD_GRAVITY;
 pub use live::{Live, LiveLedger, Passage};
+pub(crate) use model::StopAt;
 pub use model::{Model, Request};
 pub use result::*;
 pub use scales::Scales;

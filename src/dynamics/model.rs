@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use super::base::BaseMotion;
 use super::result::Run;
 use super::scales::{Landmarks, Scales};
-use crate::mechanics::Mechanism;
+use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::DoubleDouble;
 use crate::scene::{Damping, Fault, Scene, Start, Stops};
 
@@ -32,6 +32,8 @@ pub struct Model {
     pub tolerance: f64,
     pub(crate) settle: f64,
     pub(crate) stops: Option<StopPair>,
+    /// What the stops are made of, where they are compliant.
+    pub compliant: Option<Hertz>,
     pub(crate) drive: BaseMotion,
     pub(crate) start: (f64, f64),
     /// At rest in an equilibrium with nothing to move it.
@@ -50,7 +52,7 @@ pub(crate) struct StopPair {
     pub right: Option<StopAt>,
 }
 
-/// One rigid stop. SI.
+/// One stop. SI. A compliant one takes energy by its own law and has the restitution 1 here.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StopAt {
     pub x: f64,
@@ -98,7 +100,8 @@ impl Model {
             },
         };
         let stops = stop_pair(&scene.stops);
-        let start = match start_state(scene, &mechanism, stops.as_ref()) {
+        let compliant = Hertz::of(&scene.stops);
+        let start = match start_state(scene, &mechanism, stops.as_ref(), compliant.as_ref()) {
             Ok(start) => start,
             Err(found) => {
                 faults.push(found);
@@ -140,6 +143,7 @@ impl Model {
             tolerance: scene.run.tolerance,
             settle: scene.run.settle_s.unwrap_or(scene.run.duration_s * 0.5),
             stops,
+            compliant,
             drive,
             start,
             motionless,
@@ -170,9 +174,19 @@ impl Model {
         self.stops.map_or((None, None), |pair| (at(pair.left), at(pair.right)))
     }
 
-    /// Kinetic energy and potential in J at a displacement in m and a velocity in m/s; the potential is 0 at x = 0.
+    /// Kinetic energy and potential in J at a displacement in m and a velocity in m/s; the potential is 0 at x = 0 and
+    /// holds what a compliant stop stores.
     pub fn energies(&self, x: f64, v: f64) -> (f64, f64) {
-        (0.5 * self.mass * v * v, self.mechanism.curve.potential(x))
+        let potential = self.mechanism.curve.potential(x);
+        let pressed = self.compliant.zip(self.pressed_depth(x)).map(|(own, (depth, _))| own.energy(depth));
+        (0.5 * self.mass * v * v, pressed.map_or(potential, |stored| potential + stored))
+    }
+
+    /// How deep in m a mass at `x` in m has pressed a stop in, and whether that is the right one; none outside both.
+    pub fn pressed_depth(&self, x: f64) -> Option<(f64, bool)> {
+        let (left, right) = self.stop_positions();
+        let right = right.map(|stop| (x - stop, true));
+        left.map(|stop| (stop - x, false)).into_iter().chain(right).find(|(depth, _)| *depth > 0.0)
     }
 
     /// Whether the base moves at all.
@@ -211,6 +225,10 @@ fn stop_pair(stops: &Stops) -> Option<StopPair> {
     let at = |mm: f64, sign: f64, restitution: f64| Some(StopAt { x: sign * (mm / 1e3), restitution });
     match *stops {
         Stops::None => None,
+        Stops::Hertz { travel_limit_mm, .. } => {
+            let [left, right] = [-1.0, 1.0].map(|sign| at(travel_limit_mm, sign, 1.0));
+            Some(StopPair { left, right })
+        }
         Stops::Rigid { travel_limit_mm, restitution } => {
             let [left, right] = [-1.0, 1.0].map(|sign| at(travel_limit_mm, sign, restitution));
             Some(StopPair { left, right })
@@ -225,7 +243,12 @@ fn stop_pair(stops: &Stops) -> Option<StopPair> {
     }
 }
 
-fn start_state(scene: &Scene, mechanism: &Mechanism, stops: Option<&StopPair>) -> Result<(f64, f64), Fault> {
+fn start_state(
+    scene: &Scene,
+    mechanism: &Mechanism,
+    stops: Option<&StopPair>,
+    compliant: Option<&Hertz>,
+) -> Result<(f64, f64), Fault> {
     let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
     let domain = mechanism.curve.domain();
     match scene.start {
@@ -243,6 +266,9 @@ fn start_state(scene: &Scene, mechanism: &Mechanism, stops: Option<&StopPair>) -
             }
             if let Some(stop) = left {
                 x = x.max(stop.x);
+            }
+            if let Some(hertz) = compliant.filter(|_| x != equilibrium.x) {
+                x = pressed_in(mechanism, hertz, x, equilibrium.x);
             }
             Ok((x, 0.0))
         }
@@ -269,6 +295,31 @@ fn start_state(scene: &Scene, mechanism: &Mechanism, stops: Option<&StopPair>) -
             Ok((x, v_m_per_s))
         }
     }
+}
+
+/// Where a mass rests that the mechanism presses on the compliant stop at `surface` towards the equilibrium at
+/// `equilibrium` beyond it, in m: where the stop's force is the mechanism's. The two meet between the surface, where the
+/// mechanism alone presses, and the equilibrium, where it does not.
+fn pressed_in(mechanism: &Mechanism, hertz: &Hertz, surface: f64, equilibrium: f64) -> f64 {
+    let sign = (equilibrium - surface).signum();
+    let pressed = |depth: f64| -sign * mechanism.curve.force(surface + sign * depth);
+    let excess = |depth: f64| hertz.stiffness * depth * depth.sqrt() - pressed(depth);
+    let (mut low, mut high) = (0.0, (equilibrium - surface).abs());
+    // The depth is far less than the way to the equilibrium: halve its logarithm first.
+    let near = hertz.static_depth(pressed(0.0).max(0.0));
+    for guess in [0.5 * near, 2.0 * near] {
+        if guess > low && guess < high {
+            *(if excess(guess) > 0.0 { &mut high } else { &mut low }) = guess;
+        }
+    }
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        *(if excess(middle) > 0.0 { &mut high } else { &mut low }) = middle;
+    }
+    surface + sign * high
 }
 
 fn scales(scene: &Scene, mass: f64, mechanism: &Mechanism, drive: &BaseMotion, start: (f64, f64)) -> Scales {

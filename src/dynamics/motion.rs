@@ -22,6 +22,7 @@ use super::clock::{Clock, Instant};
 use super::drive::Drive;
 use super::equation::{End, EndKind, Equation};
 use super::model::{Model, Request};
+use super::penetration::Penetration;
 use super::prepare::base_at;
 use super::record::{Recorder, StepView};
 use super::result::{Outcome, Phase, Run};
@@ -34,19 +35,23 @@ use crate::numeric::{PolynomialRoots, Scalar};
 const STEP_BUDGET: u64 = 20_000_000;
 const IMPACT_BUDGET: u64 = 2_000_000;
 
+/// What a step in contact with a compliant stop takes beyond one of free flight, in steps of the budget: six products of
+/// series in place of two or three, measured.
+const CONTACT_WEIGHT: u64 = 3;
+
 /// The tolerance of a step relative to that of the scene: errors of some hundred steps add up, and even the energy
 /// of an undamped run of some hundred periods then stays within the tolerance. A fifth of it costs a tenth more.
 const LOCAL_SHARE: f64 = 0.02;
 
 /// How many times the neglected term that the step was chosen for the residual at its end may be. It is rarely above
 /// 3 where the coefficients tell the truth, and above 1e3 soon where they do not.
-const RESIDUAL: f64 = 20.0;
+pub(super) const RESIDUAL: f64 = 20.0;
 
 /// Roundings of the terms that add up in a residual.
-const ROUNDINGS: f64 = 32.0;
+pub(super) const ROUNDINGS: f64 = 32.0;
 
 /// A step halved so often is no step.
-const MOST_HALVINGS: u32 = 200;
+pub(super) const MOST_HALVINGS: u32 = 200;
 
 /// Steps between two looks at the cancel flag.
 const CANCEL_STRIDE: u64 = 256;
@@ -75,16 +80,29 @@ pub(super) enum Contact {
     Resting(End),
     /// At rest in an equilibrium that nothing disturbs.
     Motionless,
+    /// Pressing in the compliant stop of this end.
+    Pressing(End),
+    /// Behind its surface, with the stop not following: it would have to pull.
+    Trailed(End),
+}
+
+/// How far a mass has pressed in a compliant stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Depth<T> {
+    /// Root of the depth; 0 outside.
+    pub root: T,
+    /// The stop began or ceased to trail right here.
+    pub turned: bool,
 }
 
 /// Settings of the stepper that follow from the tolerance.
 pub(super) struct Settings<T> {
-    order: usize,
+    pub order: usize,
     pub tolerance: f64,
-    tolerance_log2: f64,
+    pub tolerance_log2: f64,
     pub speed: T,
     speed_log2: f64,
-    longest: f64,
+    pub longest: f64,
 }
 
 impl<T: Scalar> Settings<T> {
@@ -124,7 +142,12 @@ pub(super) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     pub refused: Option<Instant<T>>,
     /// Whether the mass has been handed across a break without moving.
     pub turned_back: bool,
+    pub depth: Depth<T>,
+    /// Workspace of contact with a compliant stop, made at the first.
+    pub penetration: Option<Box<Penetration<T>>>,
     pub steps: u64,
+    /// Those of the steps that were in contact with a compliant stop.
+    pub contact_steps: u64,
     pub evaluations: u64,
 }
 
@@ -141,7 +164,26 @@ pub(super) struct Carried<T> {
     pub contact: Contact,
     pub refused: Option<Instant<T>>,
     pub turned_back: bool,
+    pub depth: Depth<T>,
     pub barrier_side: i8,
+}
+
+impl<T: Scalar> Carried<T> {
+    /// What a sample here is.
+    pub fn phase(&self) -> Phase {
+        match self.contact {
+            Contact::Resting(End::Low) | Contact::Pressing(End::Low) | Contact::Trailed(End::Low) => {
+                Phase::LeftStop
+            }
+            Contact::Resting(End::High) | Contact::Pressing(End::High) | Contact::Trailed(End::High) => {
+                Phase::RightStop
+            }
+            // The stops stand on both sides of 0.
+            Contact::Motionless if self.depth.root > T::zero() && self.x < T::zero() => Phase::LeftStop,
+            Contact::Motionless if self.depth.root > T::zero() => Phase::RightStop,
+            Contact::Free | Contact::Motionless => Phase::Free,
+        }
+    }
 }
 
 /// A step that has been chosen.
@@ -182,23 +224,23 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             end: clock.at(model.duration),
             x,
             v,
-            arena: model.mechanism.curve.piece_index(model.start.0),
+            arena: equation.arena_at(x, model.mechanism.curve.piece_index(model.start.0)),
             touch: None,
             contact: if model.motionless { Contact::Motionless } else { Contact::Free },
             refused: None,
             turned_back: false,
+            depth: Depth { root: T::zero(), turned: false },
+            penetration: None,
             steps: 0,
+            contact_steps: 0,
             evaluations: 0,
         }
     }
 
     pub fn run(mut self, model: &Model, request: &Request) -> Run {
         let start_v = self.v;
-        let potential = |arena: usize, x: T| model.mechanism.curve.pieces()[arena].potential(x.to_f64());
-        let start_potential = potential(self.arena, self.x);
-        if self.contact == Contact::Free {
-            self.place_at_start();
-        }
+        self.place_at_start();
+        let start_potential = self.potential(model);
         let outcome = loop {
             let left = self.clock.between(&self.at, &self.end);
             if !(left > T::zero()) {
@@ -217,16 +259,12 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
                 let count = self.record.total_impacts();
                 break Outcome::ImpactBudget { at: self.clock.seconds(&self.at), count };
             }
-            if self.steps >= STEP_BUDGET {
+            if self.steps + CONTACT_WEIGHT * self.contact_steps >= STEP_BUDGET {
                 break Outcome::StepBudget { at: self.clock.seconds(&self.at), count: self.steps };
             }
         };
-        let phase = match self.contact {
-            Contact::Resting(End::Low) => Phase::LeftStop,
-            Contact::Resting(End::High) => Phase::RightStop,
-            _ => Phase::Free,
-        };
-        let potentials = (start_potential, potential(self.arena, self.x));
+        let phase = self.carry().phase();
+        let potentials = (start_potential, self.potential(model));
         let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
         let mut run = self.record.finish(
             &Ending { at: self.at, state: (self.x, self.v), start_v, phase, potentials, outcome },
@@ -237,12 +275,25 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         run
     }
 
+    /// Potential in J at the present place, with what a compliant stop stores.
+    fn potential(&self, model: &Model) -> f64 {
+        let piece = self.equation.arenas[self.arena].piece;
+        let potential = model.mechanism.curve.pieces()[piece].potential(self.x.to_f64());
+        match &self.equation.compliant {
+            Some(stop) => {
+                let unit = self.equation.unit;
+                potential + stop.stored(self.depth.root).to_f64() * model.mass / (unit * unit)
+            }
+            None => potential,
+        }
+    }
+
     /// Goes on by one step of flight or one rest; `left` is the time to the end of the run.
     #[inline]
     pub fn proceed(&mut self, left: T) -> Flow {
         match self.contact {
             Contact::Motionless => {
-                self.stand(self.end, Phase::Free);
+                self.stand(self.end, self.carry().phase());
                 None
             }
             Contact::Resting(end) => {
@@ -250,6 +301,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
                 None
             }
             Contact::Free => self.fly(left),
+            Contact::Pressing(end) | Contact::Trailed(end) => self.press_in(end, left),
         }
     }
 
@@ -265,6 +317,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             contact: self.contact,
             refused: self.refused,
             turned_back: self.turned_back,
+            depth: self.depth,
             barrier_side: self.record.barrier_side,
         }
     }
@@ -280,6 +333,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         self.contact = carried.contact;
         self.refused = carried.refused;
         self.turned_back = carried.turned_back;
+        self.depth = carried.depth;
         self.record.barrier_side = carried.barrier_side;
     }
 
@@ -304,7 +358,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         // A rebound that is pressed back announces the length of its flight.
         let mut flight = None;
         if let Some(Touch { end, order: BY_SPEED }) = self.touch
-            && arena.end(end).1 == EndKind::Stop
+            && matches!(arena.end(end).1, EndKind::Stop | EndKind::Compliant)
         {
             let sign = end.sign::<T>();
             let a = &self.series.a;
@@ -337,11 +391,12 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         }
         self.steps += 1;
         let view = StepView {
-            series: &self.series,
+            path: &self.series,
             origin: arena.origin,
             at: self.at,
             whole: h,
             length,
+            duration: length,
             bound: end.bound,
             limits: (arena.low, arena.high),
             x,

@@ -2,6 +2,8 @@
 
 use super::clock::{Clock, Instant};
 use super::model::{Model, Request};
+use super::path::Path;
+use super::penetration::Penetration;
 use super::regime::{CrossingLog, Strobe};
 use super::result::{Event, EventKind, Phase, Sample, Side};
 use super::series::Series;
@@ -12,16 +14,18 @@ use crate::numeric::{CompensatedSum, GaussLegendre, PolynomialRoots, Scalar};
 const KEPT: usize = 1 << 16;
 
 /// One accepted step, as the recorder sees it.
-pub(crate) struct StepView<'a, T> {
-    pub series: &'a Series<T>,
+pub(crate) struct StepView<'a, T, P = Series<T>> {
+    pub path: &'a P,
     /// Origin that the series is about.
     pub origin: T,
     /// When the step starts.
     pub at: Instant<T>,
-    /// Length of the step as it was chosen.
+    /// Length of the step as it was chosen, in the path's parameter.
     pub whole: T,
     /// Length that is kept, up to the whole.
     pub length: T,
+    /// The time that it takes.
+    pub duration: T,
     /// Bound of |x - x(start)| over the step.
     pub bound: T,
     /// Ends of the arena: x never passes them.
@@ -31,10 +35,10 @@ pub(crate) struct StepView<'a, T> {
     pub v: T,
 }
 
-impl<T: Scalar> StepView<'_, T> {
-    /// Displacement at time `t` into the step, never beyond the arena by the rounding of its origin.
+impl<T: Scalar, P: Path<T>> StepView<'_, T, P> {
+    /// Displacement at a parameter of the step, never beyond the arena by the rounding of its origin.
     fn x_at(&self, t: T) -> T {
-        let x = self.series.position(t) + self.origin;
+        let x = self.path.position(t) + self.origin;
         x.larger(self.limits.0).smaller(self.limits.1)
     }
 }
@@ -84,6 +88,8 @@ pub(crate) struct Recorder<'a, T, const LEDGER: bool> {
     pub(super) next_strobe: Option<Instant<T>>,
     pub(super) strobe_cycles: i64,
     pub(super) counts: Counts,
+    /// Largest force of a compliant stop over mass, kernel units.
+    pub(super) peak_contact: T,
     /// What integrals over a step are taken with, made for the first of them, and the order of the series.
     pub(super) rule: Option<GaussLegendre<T>>,
     pub(super) order: usize,
@@ -143,6 +149,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             next_strobe: (periods > 0).then_some(from),
             strobe_cycles: cycles,
             counts: Counts::default(),
+            peak_contact: T::zero(),
             rule: None,
             order,
         }
@@ -161,16 +168,16 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             && self.clock.between(at, &self.window.1) > T::zero()
     }
 
-    /// Takes in a step of free flight.
+    /// Takes in a step of free flight, or of contact with a compliant stop.
     #[inline]
-    pub fn step(&mut self, step: &StepView<T>, mut base: impl FnMut(&Instant<T>) -> f64) {
-        let overlap = self.overlap(&step.at, step.length);
+    pub fn step<P: Path<T>>(&mut self, step: &StepView<T, P>, mut base: impl FnMut(&Instant<T>) -> f64) {
+        let overlap = self.overlap(&step.at, step.duration);
         if self.rule.is_none() && (LEDGER || overlap.is_some()) {
             self.rule = Some(GaussLegendre::new(self.order / 2 + 1));
         }
-        let full = overlap.is_some_and(|(from, to)| from == T::zero() && to == step.length);
+        let full = overlap.is_some_and(|(from, to)| from == T::zero() && to == step.duration);
         if LEDGER && let Some(rule) = &self.rule {
-            let (squared, av) = step.series.integrals::<true>(rule, T::zero(), step.length);
+            let (squared, av) = step.path.integrals::<true>(rule, T::zero(), step.length);
             self.whole.squared_velocity.add(squared);
             self.whole.work.add(-av);
             self.work_moved += av.to_f64().abs();
@@ -180,20 +187,24 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
                 self.settled.work.add(-av);
             }
         }
-        if let Some((from, to)) = overlap {
+        if let Some((begin, end)) = overlap {
+            let (from, to) = (step.path.parameter(begin, step.length), step.path.parameter(end, step.length));
             if (!LEDGER || !full)
                 && let Some(rule) = &self.rule
             {
-                let (squared, av) = step.series.integrals::<LEDGER>(rule, from, to);
+                let (squared, av) = step.path.integrals::<LEDGER>(rule, from, to);
                 self.settled.squared_velocity.add(squared);
                 self.settled.work.add(-av);
             }
-            self.covered.add(to - from);
+            self.covered.add(end - begin);
+            if P::IN_CONTACT {
+                self.settled.rested.add(end - begin);
+            }
             self.extremes(step, from, to, full);
         }
         if let Some(barrier) = self.barrier {
             let end_side = side_of(step.x, barrier);
-            let gap = (step.series.y[0] + step.origin) - barrier;
+            let gap = (step.path.start() + step.origin) - barrier;
             if end_side != self.barrier_side || !(gap.abs() > step.bound) {
                 self.crossings(step, gap, end_side);
             }
@@ -202,28 +213,29 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             self.strobes(step);
         }
         if self.next_time < self.times.len() {
-            let end = self.clock.seconds(&self.clock.advance(&step.at, step.length));
+            let end = self.clock.seconds(&self.clock.advance(&step.at, step.duration));
             while let Some(t) = self.times.get(self.next_time).copied().filter(|t| *t < end) {
                 let instant = self.clock.at(t);
-                let into = self.clock.between(&step.at, &instant).larger(T::zero()).smaller(step.length);
+                let into = self.clock.between(&step.at, &instant).larger(T::zero()).smaller(step.duration);
+                let into = step.path.parameter(into, step.length);
                 self.samples.push(Sample {
                     t,
                     x: step.x_at(into).to_f64(),
-                    v: step.series.velocity(into).to_f64() / self.unit,
+                    v: step.path.velocity(into).to_f64() / self.unit,
                     base_accel: base(&instant),
-                    phase: Phase::Free,
+                    phase: step.path.phase(),
                 });
                 self.next_time += 1;
             }
         }
     }
 
-    fn extremes(&mut self, step: &StepView<T>, from: T, to: T, full: bool) {
+    fn extremes<P: Path<T>>(&mut self, step: &StepView<T, P>, from: T, to: T, full: bool) {
         let mut widen = |x: T| {
             self.low = self.low.smaller(x);
             self.high = self.high.larger(x);
         };
-        let start = step.series.y[0] + step.origin;
+        let start = step.path.start() + step.origin;
         if full {
             widen(step.x_at(T::zero()));
             widen(step.x);
@@ -235,9 +247,9 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         let lowest = (start - step.bound).larger(step.limits.0);
         if highest > self.high || lowest < self.low {
             // A turning point inside may lie beyond both ends.
-            let n = step.series.known;
+            let n = step.path.known();
             let mut slope = [T::zero(); super::series::ROOM];
-            let scaled = step.series.scaled(step.whole);
+            let scaled = step.path.scaled(step.whole);
             for (k, slot) in (1..n).zip(slope.iter_mut()) {
                 *slot = scaled[k] * T::of(k as f64);
             }
@@ -258,9 +270,9 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     }
 
     /// Takes in the passages of the top within a step that starts `gap` to the right of it and ends on `end_side`.
-    fn crossings(&mut self, step: &StepView<T>, gap: T, end_side: i8) {
-        let n = step.series.known;
-        let mut g = step.series.scaled(step.whole);
+    fn crossings<P: Path<T>>(&mut self, step: &StepView<T, P>, gap: T, end_side: i8) {
+        let n = step.path.known();
+        let mut g = step.path.scaled(step.whole);
         g[0] = gap;
         // A step that starts on the top leaves it by its first coefficient that is not 0.
         let first = g[..n].iter().position(|c| *c != T::zero());
@@ -316,11 +328,11 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
 
     /// Whether it must be known when within the step a crossing happens, not only that it does: events list it, and
     /// so does what tells the regime; a step cut short or near an end of the window may hold a crossing beyond it.
-    fn instants_matter(&self, step: &StepView<T>) -> bool {
+    fn instants_matter<P: Path<T>>(&self, step: &StepView<T, P>) -> bool {
         // By two lengths: more than rounding can hide.
         let clear = |border: &Instant<T>| {
             let left = self.clock.between(&step.at, border);
-            left <= T::zero() || left > step.length + step.length
+            left <= T::zero() || left > step.duration + step.duration
         };
         self.events.is_some()
             || step.length != step.whole
@@ -328,10 +340,10 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             || (self.period > T::zero() && self.in_window(&step.at))
     }
 
-    fn crossing(&mut self, step: &StepView<T>, into: T) {
+    fn crossing<P: Path<T>>(&mut self, step: &StepView<T, P>, into: T) {
         self.barrier_side = -self.barrier_side;
-        let at = self.clock.advance(&step.at, into);
-        let v = step.series.velocity(into).to_f64() / self.unit;
+        let at = self.clock.advance(&step.at, step.path.time(into));
+        let v = step.path.velocity(into).to_f64() / self.unit;
         let side = if self.barrier_side > 0 { Side::Right } else { Side::Left };
         self.counts.total_crossings += 1;
         if self.in_window(&at) {
@@ -344,14 +356,15 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         self.event(&at, EventKind::Crossing, side, v, v);
     }
 
-    fn strobes(&mut self, step: &StepView<T>) {
+    fn strobes<P: Path<T>>(&mut self, step: &StepView<T, P>) {
         while let Some(strobe) = self.next_strobe {
             let into = self.clock.between(&step.at, &strobe);
-            if into >= step.length {
+            if into >= step.duration {
                 return;
             }
+            let into = step.path.parameter(into, step.length);
             let x = step.x_at(into);
-            let v = step.series.velocity(into);
+            let v = step.path.velocity(into);
             self.strobe(x, v);
         }
     }
@@ -420,6 +433,48 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             self.counts.impacts += 1;
         }
         self.event(at, EventKind::Impact, side, v_in.to_f64() / self.unit, v_out.to_f64() / self.unit);
+    }
+
+    /// What a compliant stop took and how hard it was pressed, over a step in contact that has been taken in.
+    pub fn contact(&mut self, step: &StepView<T, Penetration<T>>) {
+        if LEDGER && let Some(rule) = &self.rule {
+            let whole = step.path.loss(rule, T::zero(), step.length);
+            self.whole.impact.add(whole);
+            match self.overlap(&step.at, step.duration) {
+                Some((from, to)) if from == T::zero() && to == step.duration => {
+                    self.settled.impact.add(whole)
+                }
+                Some((from, to)) => {
+                    let parameter = |time: T| step.path.parameter(time, step.length);
+                    self.settled.impact.add(step.path.loss(rule, parameter(from), parameter(to)));
+                }
+                None => {}
+            }
+        }
+        let until = if step.whole > T::zero() { step.length / step.whole } else { T::zero() };
+        self.peak_contact = step.path.peak(step.whole, until, self.peak_contact);
+    }
+
+    /// The mass touches a compliant stop with this signed velocity in kernel units. `strikes`: it came from outside, and
+    /// does not stand there from the start.
+    pub fn touch(&mut self, at: &Instant<T>, side: Side, v: T, strikes: bool) {
+        if strikes {
+            self.counts.total_impacts += 1;
+            if self.in_window(at) {
+                self.counts.impacts += 1;
+            }
+        }
+        if LEDGER {
+            self.peak_kinetic = self.peak_kinetic.max(0.5 * (v * v).to_f64());
+        }
+        let v = v.to_f64() / self.unit;
+        self.event(at, EventKind::Contact, side, v, v);
+    }
+
+    /// The mass leaves a compliant stop with this signed velocity in kernel units.
+    pub fn separate(&mut self, at: &Instant<T>, side: Side, v: T) {
+        let v = v.to_f64() / self.unit;
+        self.event(at, EventKind::Separate, side, v, v);
     }
 
     /// A chatter summed in closed form from speed `v`: what is left of the kinetic energy goes.

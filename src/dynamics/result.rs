@@ -1,13 +1,13 @@
 //! What a run returns: samples, events, statistics, outcome and ledger. All SI.
 
-/// Whether the mass flies or rests on a stop.
+/// Whether the mass flies or is on a stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// Between the stops, or touching one for an instant.
     Free,
-    /// At rest on the left stop.
+    /// At rest on the left stop, or in contact with it where it is compliant.
     LeftStop,
-    /// At rest on the right stop.
+    /// At rest on the right stop, or in contact with it where it is compliant.
     RightStop,
 }
 
@@ -74,6 +74,10 @@ pub enum EventKind {
     Release,
     /// A passage of the barrier top.
     Crossing,
+    /// The mass touched a compliant stop.
+    Contact,
+    /// The mass separated from a compliant stop.
+    Separate,
 }
 
 impl EventKind {
@@ -84,6 +88,8 @@ impl EventKind {
             Self::Rest => "rest",
             Self::Release => "release",
             Self::Crossing => "crossing",
+            Self::Contact => "contact",
+            Self::Separate => "separate",
         }
     }
 }
@@ -200,7 +206,7 @@ pub struct Ledger {
     pub work_j: f64,
     /// Taken by damping in J.
     pub damping_j: f64,
-    /// Taken by impacts in J.
+    /// Taken by impacts in J, the loss of compliant stops among them.
     pub impact_j: f64,
     /// Change of kinetic energy and potential in J.
     pub stored_j: f64,
@@ -223,7 +229,7 @@ pub struct Summary {
     pub regime: Regime,
     /// Crossings in the settled window.
     pub crossings: u64,
-    /// Impacts in the settled window.
+    /// Impacts in the settled window; the contacts of a compliant stop are impacts too.
     pub impacts: u64,
     /// Releases in the settled window.
     pub releases: u64,
@@ -233,7 +239,7 @@ pub struct Summary {
     pub travel: Option<f64>,
     /// Share of the work that impacts took in the settled window; none without work or ledger.
     pub impact_share: Option<f64>,
-    /// Share of the settled window spent at rest on a stop.
+    /// Share of the settled window spent at rest on a stop, or in contact with a compliant one.
     pub rested_share: Option<f64>,
     /// Crossings over the whole run.
     pub total_crossings: u64,
@@ -245,6 +251,12 @@ pub struct Summary {
     pub rests: u64,
     /// Period of the response in forcing periods; none where it has none up to 12.
     pub period: Option<u32>,
+    /// Largest force in N of a compliant stop on the mass over the whole run; none where the stops are not compliant.
+    pub peak_contact_force: Option<f64>,
+    /// Pressure in Pa at the middle of the contact under that force; none where the stop's material is not known.
+    pub peak_contact_pressure: Option<f64>,
+    /// Whether that pressure is one at which the material yields.
+    pub contact_yields: bool,
     /// How the run ended.
     pub outcome: Outcome,
     /// Steps of the integrator.

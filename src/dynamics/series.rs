@@ -113,7 +113,7 @@ impl<T: Scalar> Series<T> {
 
     /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones have been asked for before.
     #[inline]
-    fn force_coefficient(&mut self, force: &PieceForce<T>, k: usize) -> T {
+    pub(super) fn force_coefficient(&mut self, force: &PieceForce<T>, k: usize) -> T {
         let c = force.coefficients();
         let constant = if k == 0 { c[0] } else { T::zero() };
         if c.len() <= 2 {
@@ -143,6 +143,11 @@ impl<T: Scalar> Series<T> {
             self.nested[j][k] = if k == 0 { product + c[j] } else { product };
         }
         self.nested[0][k]
+    }
+
+    /// Adds coefficient `k` of the drive, at or above [`SEEDED`]; once each and in ascending order.
+    pub(super) fn extend_drive<D: Drive<T>>(&mut self, k: usize, drive: &D, roll: &mut D::Rolling) {
+        drive.extend(k, &mut self.a, &self.inverse, roll);
     }
 
     /// The longest step whose first neglected term in the velocity stays below `tolerance` times `speed`,

@@ -74,7 +74,15 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         let scales = &self.model.scales;
         let counts = &self.counts;
         let left = counts.crossings + counts.impacts + counts.releases > 0;
-        let moved = seen && (left || travel > STILL * scales.length);
+        let compliant = self.model.compliant;
+        // Pressed on a compliant stop throughout, it trembles there and has not left it.
+        let pressed = compliant.is_some() && value(&self.settled.rested) == covered;
+        let moved = seen && (left || (travel > STILL * scales.length && !pressed));
+        let pressed_by = |force: f64| compliant.and_then(|own| own.pressure(force));
+        let force = compliant.map(|_| self.peak_contact.to_f64() * m / (self.unit * self.unit));
+        let pressure = force.and_then(pressed_by);
+        let material = compliant.and_then(|own| own.material);
+        let yields = pressure.zip(material).is_some_and(|(own, of)| own > of.yield_pressure());
         let work = value(&self.settled.work);
         let impact_share = (LEDGER && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
         let regime = if self.model.one_well {
@@ -110,6 +118,9 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 chatter_sums: self.counts.sums,
                 rests: self.counts.rests,
                 period,
+                peak_contact_force: force,
+                peak_contact_pressure: pressure,
+                contact_yields: yields,
                 outcome,
                 steps: 0,
                 evaluations: 0,

@@ -3,6 +3,7 @@
 mod curve;
 mod fit;
 pub mod flexure;
+mod hertz;
 mod landscape;
 mod local;
 mod table;
@@ -10,6 +11,7 @@ mod table;
 pub use curve::{FitReport, ForceCurve, Piece};
 pub use fit::{fit, force_scale};
 pub use flexure::{FlexureError, Flexures};
+pub use hertz::{ContactMaterial, Hertz};
 pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Landscape};
 pub use table::{FEWEST_POINTS, MOST_POINTS, Table, TableError};
 

@@ -9,7 +9,7 @@ use crate::mechanics::{Landscape, Mechanism};
 use crate::scene::Scene;
 use crate::study::small_amplitude_frequency;
 
-/// The summary of a run of `scene`, as text. A run that ended early has two keys more, `ended_at_s`
+/// The summary of a run of `scene`, as text. Compliant stops add two keys, their peak force and pressure. A run that ended early has two keys more, `ended_at_s`
 /// and, where a budget ran out, `ended_after`, the impacts or steps made.
 pub fn summary(summary: &Summary, scene: &Scene, origin: &Origin) -> String {
     // Before the settled window began there is nothing to count in it.
@@ -44,6 +44,10 @@ pub fn summary(summary: &Summary, scene: &Scene, origin: &Origin) -> String {
     }
     if let Outcome::ImpactBudget { count, .. } | Outcome::StepBudget { count, .. } = summary.outcome {
         add("ended_after", json!(count));
+    }
+    if let Some(force) = summary.peak_contact_force {
+        add("peak_contact_force_n", json!(force));
+        add("peak_contact_pressure_pa", json!(summary.peak_contact_pressure));
     }
     add("steps", json!(summary.steps));
     add("evaluations", json!(summary.evaluations));

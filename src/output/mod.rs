@@ -1,4 +1,4 @@
-//! A table in, bytes out: CSV, JSON, pictures, and the files and pipes that they go to.
+//! A table in, bytes out: CSV, JSON, text for a terminal, pictures, and the files and pipes that they go to.
 //!
 //! Nothing here computes: a number is written in the shortest form that parses back to the same
 //! double, a missing one as an empty cell (CSV) or `null` (JSON).
@@ -9,6 +9,7 @@ mod manifest;
 mod number;
 mod plot;
 mod sink;
+mod text;
 
 pub use csv::{header, rows};
 pub use json::{landscape, summary};
@@ -16,6 +17,8 @@ pub use manifest::{Origin, manifest};
 pub use number::push_number;
 pub use plot::{
     Axis, Caption, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, Theme,
-    UnknownFormat, can_show, curve_figure, run_figure, speed_unit, sweep_about, sweep_figure, viridis,
+    UnknownFormat, accuracy_figure, can_show, contact_figure, curve_figure, run_figure, speed_unit,
+    sweep_about, sweep_figure, viridis,
 };
 pub use sink::{OpenError, Sink, is_regular, same_target};
+pub use text::aligned;

@@ -128,6 +128,11 @@ impl Sink {
         &self.name
     }
 
+    /// Whether it is standard output.
+    pub fn is_stdout(&self) -> bool {
+        matches!(self.kind, Kind::Stdout)
+    }
+
     /// Whether the reader of this pipe has gone: whatever is still written is thrown away.
     pub fn is_closed(&self) -> bool {
         self.closed

@@ -77,7 +77,9 @@ fn mechanism(mechanism: &Mechanism, checked: &mut Checked) {
 }
 
 fn stops(field: &str, stops: &Stops, checked: &mut Checked) {
-    let Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } = stops else { return };
+    let Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } = stops else {
+        return hertz(field, stops, checked);
+    };
     if left_mm.is_none() && right_mm.is_none() {
         checked.fault(field, "Uneven()", "give left_mm, right_mm or both; `stops: None` is no stops");
     } else if restitution_left.is_none() && restitution_right.is_none() {
@@ -97,11 +99,44 @@ fn stops(field: &str, stops: &Stops, checked: &mut Checked) {
     }
 }
 
+/// A compliant stop has a stiffness, or cylinders that it follows from, and not both.
+fn hertz(field: &str, stops: &Stops, checked: &mut Checked) {
+    let Stops::Hertz { stiffness_n_per_m1_5, radius_mm, young_gpa, poisson, yield_gpa, .. } = *stops else {
+        return;
+    };
+    let cylinders =
+        [("radius_mm", radius_mm), ("young_gpa", young_gpa), ("poisson", poisson), ("yield_gpa", yield_gpa)];
+    match stiffness_n_per_m1_5 {
+        Some(_) => {
+            for (name, value) in cylinders {
+                if let Some(value) = value {
+                    let problem =
+                        "belongs to cylinders, and stiffness_n_per_m1_5 is given; leave one of the two out";
+                    checked.fault(format!("{field}.{name}"), number_text(value), problem);
+                }
+            }
+        }
+        None => {
+            let missing: Vec<&str> =
+                cylinders[..2].iter().filter(|own| own.1.is_none()).map(|own| own.0).collect();
+            if !missing.is_empty() {
+                let problem = format!(
+                    "needs {}; give radius_mm and young_gpa of the cylinders, or stiffness_n_per_m1_5 alone",
+                    missing.join(" and ")
+                );
+                checked.fault(field, "Hertz(..)", problem);
+            }
+        }
+    }
+}
+
 /// Distances of the stops in mm; an open side is at infinity.
 fn distances(stops: &Stops) -> (f64, f64) {
     match *stops {
         Stops::None => (f64::INFINITY, f64::INFINITY),
-        Stops::Rigid { travel_limit_mm, .. } => (travel_limit_mm, travel_limit_mm),
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
+            (travel_limit_mm, travel_limit_mm)
+        }
         Stops::Uneven { left_mm, right_mm, .. } => {
             (left_mm.unwrap_or(f64::INFINITY), right_mm.unwrap_or(f64::INFINITY))
         }

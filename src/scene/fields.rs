@@ -223,6 +223,23 @@ fn walk_stops(stops: &mut Stops, v: &mut impl Visitor) {
             optional(v, &ranges::RESTITUTION_LEFT, restitution_left);
             optional(v, &ranges::RESTITUTION_RIGHT, restitution_right);
         }
+        Stops::Hertz {
+            travel_limit_mm,
+            stiffness_n_per_m1_5,
+            loss_s_per_m,
+            radius_mm,
+            young_gpa,
+            poisson,
+            yield_gpa,
+        } => {
+            number(v, &ranges::TRAVEL_LIMIT, travel_limit_mm);
+            optional(v, &ranges::CONTACT_STIFFNESS, stiffness_n_per_m1_5);
+            number(v, &ranges::LOSS, loss_s_per_m);
+            optional(v, &ranges::RADIUS, radius_mm);
+            optional(v, &ranges::CONTACT_YOUNG, young_gpa);
+            optional(v, &ranges::POISSON, poisson);
+            optional(v, &ranges::CONTACT_YIELD, yield_gpa);
+        }
     }
 }
 

@@ -81,7 +81,9 @@ pub fn metres(mm: f64) -> f64 {
 /// Distances in mm of the left and the right stop from x = 0.
 fn stops_mm(stops: &Stops) -> [Option<f64>; 2] {
     match *stops {
-        Stops::Rigid { travel_limit_mm, .. } => [Some(travel_limit_mm); 2],
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
+            [Some(travel_limit_mm); 2]
+        }
         Stops::Uneven { left_mm, right_mm, .. } => [left_mm, right_mm],
         Stops::None => [None; 2],
     }

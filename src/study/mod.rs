@@ -4,6 +4,8 @@
 //! [`Task`], and answers with a [`Table`]. It reads no arguments and writes no files: the window and
 //! the command line ask the same studies and show the same tables.
 
+pub mod accuracy;
+mod contact;
 mod curve;
 mod edges;
 mod flexures;
@@ -11,16 +13,20 @@ mod grid;
 mod inspect;
 mod levels;
 mod map;
+mod models;
+mod passage;
 mod settled;
 mod simulate;
 mod sweep;
 mod table;
+mod thresholds;
 mod times;
 mod trace;
 mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+pub use contact::{contact, yield_speed, yield_warning};
 pub use curve::{
     OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency, stop_positions,
 };
@@ -30,10 +36,13 @@ pub use grid::{Grid, GridError, MAX_CELLS};
 pub use inspect::inspect;
 pub use levels::{Levels, STRIDES};
 pub use map::{first_interwell, release_line};
-pub use settled::{Settled, Standing, Thresholds, settled, standing, thresholds};
+pub use models::Held;
+pub use passage::between;
+pub use settled::{Settled, Standing, settled, standing};
 pub use simulate::{Keep, Sampling, Simulation, sample_times, samples_table, simulate};
 pub use sweep::{Cell, CellFaults, Sweep, SweepEnd, Tally};
 pub use table::{Column, Table, Values};
+pub use thresholds::{Thresholds, stops_that_cross, thresholds};
 pub use times::{MAX_SAMPLES, Step, TimesError, even_times, listed_times};
 pub use trace::{Trace, simulate_with_trace};
 pub use watch::Watch;

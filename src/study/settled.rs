@@ -1,14 +1,8 @@
-//! What does a scene settle to, and how much more or less shaking would change that?
+//! What does a scene settle to, and where does a mass stand that nothing shakes?
 
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::Task;
-use crate::dynamics::{
-    Event, EventKind, Model, Outcome, Phase, Regime, Request, STANDARD_GRAVITY, Sample, Side, Summary,
-};
-use crate::mechanics::Mechanism;
-use crate::scene::{Excitation, Scene, Start, Stops};
+use crate::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Sample, Side, Summary};
 
 /// The settled motion of one run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,74 +56,6 @@ pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Settled> {
         release_periods: periods_with(EventKind::Release),
         window,
     })
-}
-
-/// How much shaking it takes, in g, each from rest at the scene's frequency.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Thresholds {
-    /// The least amplitude that frees the mass from the stop it rests on, in closed form.
-    pub frees_at: Option<f64>,
-    /// Up from the scene's own amplitude the first one whose run is interwell; without stops, where regular windows
-    /// are rare and far up, the first one whose settled motion crosses at all.
-    pub crosses_at: Option<f64>,
-    /// Down from the scene's own amplitude the last one up to which every run is interwell.
-    pub crosses_from: Option<f64>,
-}
-
-/// Step of the search in g, and how far up it goes.
-const STEP: f64 = 0.01;
-const MOST_STEPS: u32 = 200;
-
-/// Searches the amplitudes of a sine around the scene's own. None where the drive is no sine, or the search was cancelled.
-///
-/// The amplitudes that cross are no interval, so nothing is bisected: every step of 0.01 g is run.
-pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
-    let Excitation::Sine { amplitude_g, .. } = scene.excitation else { return None };
-    let mut trial = Scene { start: Start::Rest, ..scene.clone() };
-    let mut crosses = |tried: f64| -> Option<bool> {
-        if let Excitation::Sine { amplitude_g, .. } = &mut trial.excitation {
-            *amplitude_g = tried;
-        }
-        let model = Model::build(&trial, Arc::clone(mechanism)).ok()?;
-        let run = model.run(&Request { cancel: Some(task.cancel), ..Request::default() });
-        (task.tick)();
-        let irregular_counts = scene.stops == Stops::None && run.summary.regime == Regime::Irregular;
-        (!task.is_cancelled()).then_some(irregular_counts || run.summary.regime == Regime::Interwell)
-    };
-    let mut found = Thresholds { frees_at: frees_at(scene, mechanism), ..Thresholds::default() };
-    let own = amplitude_g.abs();
-    if crosses(own)? {
-        let mut last = own;
-        for i in 1..=MOST_STEPS {
-            let tried = ((own - STEP * f64::from(i)) / STEP).round() * STEP;
-            if tried <= 0.0 || !crosses(tried)? {
-                break;
-            }
-            last = tried;
-        }
-        found.crosses_from = Some(last);
-    } else {
-        for i in 1..=MOST_STEPS {
-            let tried = ((own + STEP * f64::from(i)) / STEP).round() * STEP;
-            if crosses(tried)? {
-                found.crosses_at = Some(tried);
-                break;
-            }
-        }
-    }
-    Some(found)
-}
-
-/// The amplitude in g at which the base's push reaches the force that presses the mass on the stop that it rests on.
-fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
-    let right = match scene.stops {
-        Stops::Rigid { travel_limit_mm, .. } => travel_limit_mm / 1e3,
-        Stops::Uneven { right_mm, .. } => right_mm? / 1e3,
-        Stops::None => return None,
-    };
-    let well = mechanism.landscape.right_stable()?.x;
-    let press = -mechanism.curve.force(right);
-    (right < well && press > 0.0).then(|| press / (scene.mass_g / 1e3) / STANDARD_GRAVITY)
 }
 
 /// Where a mass stands, or swings, that nothing shakes.

@@ -82,6 +82,8 @@ pub struct Tally {
     pub ended_early: u64,
     /// Cells whose mechanism was not solved.
     pub not_converged: u64,
+    /// Cells in which the contact with a compliant stop was pressed beyond what its material bears.
+    pub yielding: u64,
     /// Mechanisms built: one for each combination of the swept fields of the mechanism, however many cells share it.
     pub mechanisms: u64,
     /// Cells by outcome.
@@ -94,6 +96,7 @@ impl Tally {
     fn count(&mut self, cell: &Cell) {
         self.ended_early += u64::from(cell.summary.is_some_and(|row| row.outcome != Outcome::Done));
         self.not_converged += u64::from(cell.outcome == NOT_CONVERGED);
+        self.yielding += u64::from(cell.summary.is_some_and(|row| row.contact_yields));
         *self.outcomes.entry(cell.outcome).or_default() += 1;
         if let Some(row) = cell.settled().filter(|row| !row.regime.name().is_empty()) {
             *self.regimes.entry(row.regime.name()).or_default() += 1;

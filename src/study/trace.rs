@@ -148,11 +148,17 @@ fn path(samples: &[Sample], events: &[Event], stops: (f64, f64)) -> Table {
 }
 
 fn impacts(events: &[Event]) -> Table {
-    let impacts = || events.iter().filter(|event| event.kind == EventKind::Impact);
+    let struck = |event: &&Event| {
+        event.kind == EventKind::Impact || (event.kind == EventKind::Contact && event.v_in != 0.0)
+    };
+    let impacts = || events.iter().filter(struck);
     Table::new()
         .with("t_s", Values::Numbers(impacts().map(|event| event.t).collect()))
         .with("side", Values::Words(impacts().map(|event| event.side.name()).collect()))
 }
+
+/// Contacts with a compliant stop that take a smaller share of the run are impacts to the eye.
+const SHORTEST_SPAN: f64 = 5e-4;
 
 /// Spans from a rest to the release that follows, or to the end of the run.
 fn rests(events: &[Event], first: Option<&Sample>, end: f64) -> Table {
@@ -164,7 +170,11 @@ fn rests(events: &[Event], first: Option<&Sample>, end: f64) -> Table {
     });
     for event in events {
         match event.kind {
-            EventKind::Rest => open = open.or(Some((event.t, event.side))),
+            EventKind::Rest | EventKind::Contact => open = open.or(Some((event.t, event.side))),
+            EventKind::Separate => {
+                let long = open.take().filter(|(from, _)| event.t - from > end * SHORTEST_SPAN);
+                spans.extend(long.map(|(from, side)| (from, event.t, side)));
+            }
             EventKind::Release => {
                 spans.extend(open.take().map(|(from, side)| (from, event.t, side)));
             }

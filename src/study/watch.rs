@@ -2,11 +2,14 @@
 //!
 //! The path is sampled for the eye: some eighty times a swing, and at every event, so that rebounds are
 //! corners and rests are flat. The energy ledger is kept at the end of every forcing period while somebody looks at it.
-//! The oldest of it is forgotten.
+//! The oldest of it is forgotten. The models by which it went are kept with it ([`models`](super::models)).
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use crate::dynamics::{Event, EventKind, Live, LiveLedger, Model, Outcome, Passage, Phase, Sample, Side};
+
+use super::models::{Held, Models};
 
 /// Samples in a period of the drive or of small oscillations, whichever is shorter.
 const PER_PERIOD: f64 = 80.0;
@@ -26,6 +29,7 @@ const MOST_AT_ONCE: f64 = 20_000.0;
 #[derive(Debug, Clone)]
 pub struct Watch {
     live: Live,
+    models: Models,
     samples: VecDeque<Sample>,
     events: VecDeque<Event>,
     /// Ledgers at the start and at multiples of the forcing period.
@@ -44,6 +48,7 @@ impl Watch {
         let now = live.state();
         let mut own = Self {
             live,
+            models: Models::new(Arc::new(model.clone())),
             samples: VecDeque::new(),
             events: VecDeque::new(),
             ledgers: VecDeque::from([(0.0, LiveLedger::default())]),
@@ -115,6 +120,7 @@ impl Watch {
         let mut passage = Passage::default();
         self.live.change(model, &mut passage);
         self.step = sampling_step(model);
+        self.models.change(self.now.t, Arc::new(model.clone()), self.step);
         self.take(passage);
         self.now = self.live.state();
     }
@@ -161,7 +167,7 @@ impl Watch {
         if t >= self.now.t {
             return Some((self.now.t, self.ledger()));
         }
-        let period = self.live.model().forcing_period?;
+        let period = self.models.at(t).forcing_period?;
         let after = self.ledgers.partition_point(|mark| mark.0 <= t);
         let mark = self.ledgers.get(after.checked_sub(1)?)?;
         (t - mark.0 < period * (1.0 + 1e-9)).then_some(*mark)
@@ -170,7 +176,7 @@ impl Watch {
     /// Where the energy went in the last whole forcing period that had ended at a time in s. None without a period, and
     /// while the first one since the period was changed, or since ledgers are kept, still lasts.
     pub fn last_period(&self, t: f64) -> Option<LiveLedger> {
-        let period = self.live.model().forcing_period?;
+        let period = self.models.at(t).forcing_period?;
         let after = self.ledgers.partition_point(|mark| mark.0 <= t);
         let (begin, end) = (self.ledgers.get(after.checked_sub(2)?)?, self.ledgers.get(after - 1)?);
         let whole = ((end.0 - begin.0) / period - 1.0).abs() < 1e-6;
@@ -191,6 +197,21 @@ impl Watch {
     /// The events that are remembered, ascending in time.
     pub fn events(&self) -> &VecDeque<Event> {
         &self.events
+    }
+
+    /// The model that held at a time in s, as far back as there are samples.
+    pub fn model_at(&self, t: f64) -> &Arc<Model> {
+        self.models.at(t)
+    }
+
+    /// From when on in s it held.
+    pub fn model_since(&self, t: f64) -> f64 {
+        self.models.since(t)
+    }
+
+    /// Which models held from `from` to `to` in s, in order of time.
+    pub fn models_between(&self, from: f64, to: f64) -> impl Iterator<Item = Held<'_>> {
+        self.models.between(from, to)
     }
 
     /// The first time in s that is remembered.
@@ -232,8 +253,9 @@ impl Watch {
         let lone = |i: &usize| {
             let event = &self.events[*i];
             let before = i.checked_sub(1).map(|j| &self.events[j]);
-            !matches!(event.kind, EventKind::Impact | EventKind::Rest)
-                || before.is_none_or(|before| before.kind != EventKind::Impact || before.side != event.side)
+            let struck = |kind| matches!(kind, EventKind::Impact | EventKind::Contact | EventKind::Separate);
+            !(struck(event.kind) || event.kind == EventKind::Rest)
+                || before.is_none_or(|before| !struck(before.kind) || before.side != event.side)
         };
         let split = |own: f64| self.events.partition_point(|event| event.t <= own);
         let found = if later {
@@ -262,6 +284,7 @@ impl Watch {
         self.events.drain(..spare);
         let spare = self.ledgers.len().saturating_sub(MOST_LEDGERS);
         self.ledgers.drain(..spare);
+        self.models.forget(self.begin());
     }
 
     fn corner(&mut self, event: &Event) {
@@ -280,11 +303,17 @@ impl Watch {
             }
             EventKind::Release => self.samples.push_back(sample(0.0, Phase::Free)),
             EventKind::Crossing => {}
+            // The path has no corner there, only an end of the stretch in contact.
+            EventKind::Contact => {
+                let phase = if event.side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
+                self.samples.push_back(sample(event.v_in, phase));
+            }
+            EventKind::Separate => self.samples.push_back(sample(event.v_out, Phase::Free)),
         }
     }
 }
 
 fn sampling_step(model: &Model) -> f64 {
-    let swing = std::f64::consts::TAU * model.scales.time;
+    let swing = model.swing();
     model.forcing_period.map_or(swing, |period| period.min(swing)) / PER_PERIOD
 }

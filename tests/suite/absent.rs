@@ -46,6 +46,7 @@ fn no_step_allocates() {
         &["stops=None", ONE_WELL],
         &[],
         &["stops.travel_limit_mm=7.5", "stops.restitution=0.9"],
+        &["stops=Hertz(travel_limit_mm: 4, stiffness_n_per_m1_5: 1e9, loss_s_per_m: 5)"],
         &["excitation=Sum([Sine(frequency_hz: 3, amplitude_g: 1), Sine(frequency_hz: 7, amplitude_g: 1)])"],
         &["excitation=AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 2, over_s: 100)"],
         &["excitation=Noise(rms_g: 0.5, low_hz: 1, high_hz: 20, seed: 1, lines: 32)"],

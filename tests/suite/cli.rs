@@ -1,5 +1,6 @@
 //! Does the command line do what its page says: every command, option, column and exit status?
 
+mod accuracy;
 mod bad_input;
 mod flexure_numbers;
 mod flexures;
@@ -60,10 +61,10 @@ fn without_headless_it_says_what_to_write() {
         let text = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
         assert!(text.contains("--headless") && text.lines().count() == 1, "{text}");
     }
-    for command in ["presets", "check", "curve", "simulate", "sweep"] {
+    for command in ["presets", "check", "curve", "simulate", "sweep", "accuracy"] {
         refused(plain(command), &["--headless", command]);
     }
-    refused(plain("--headless"), &["presets, check, curve, simulate or sweep"]);
+    refused(plain("--headless"), &["presets, check, curve, simulate, sweep or accuracy"]);
     refused(headless("swep"), &["`swep`", "sweep"]);
     refused(headless("sweep --bogus"), &["--bogus"]);
     refused(headless("check --plot a.png"), &["--plot"]);
@@ -73,7 +74,7 @@ fn without_headless_it_says_what_to_write() {
 #[test]
 fn help_and_version() {
     plain("--version").assert().success().stdout(format!("interwell {}\n", env!("CARGO_PKG_VERSION")));
-    let all = ["presets", "check", "curve", "simulate", "sweep", "Examples", "Exit status"];
+    let all = ["presets", "check", "curve", "simulate", "sweep", "accuracy", "Examples", "Exit status"];
     for word in all {
         plain("--help").assert().success().stdout(contains(word));
     }

@@ -16,7 +16,7 @@ const SCENES: [&str; 7] = [
 ];
 
 /// Advances to the end of the model's run in pieces of `piece` s with a sample every `dt` s.
-fn in_pieces(model: &Model, duration: f64, piece: f64, times: &[f64]) -> (Live, Passage) {
+pub fn in_pieces(model: &Model, duration: f64, piece: f64, times: &[f64]) -> (Live, Passage) {
     let mut live = Live::new(model);
     let mut passage = Passage::default();
     let mut next = 0;

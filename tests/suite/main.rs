@@ -1,9 +1,11 @@
 //! One test binary; each module holds one kind of evidence.
 
 mod absent;
+mod accuracy;
 #[path = "../../benches/by_hand/mod.rs"]
 mod by_hand;
 mod cli;
+mod compliant;
 mod convergence;
 mod drives;
 mod impacts;

@@ -89,13 +89,3 @@ pub fn same_bits(a: &Run, b: &Run) {
     };
     assert_eq!(bare(a), bare(b));
 }
-
-/// The complete elliptic integral K of modulus k, given k^2 in [0, 1): pi over twice the arithmetic-geometric
-/// mean of 1 and sqrt(1 - k^2) (Gauss), good to some ulps.
-pub fn elliptic_k(k_squared: f64) -> f64 {
-    let (mut a, mut b) = (1.0, (1.0 - k_squared).sqrt());
-    for _ in 0..12 {
-        (a, b) = (0.5 * (a + b), (a * b).sqrt());
-    }
-    std::f64::consts::FRAC_PI_2 / a
-}

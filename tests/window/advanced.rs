@@ -47,7 +47,7 @@ fn the_kind_of_shaking_is_chosen() {
 #[test]
 fn stops_may_differ_and_one_stays() {
     let mut harness = opened("paper");
-    harness.get_by_label("stops that differ").click();
+    harness.get_by_label("different stops left and right").click();
     harness.run_steps(3);
     harness.get_by_label("left stop is there").click();
     harness.run_steps(3);

@@ -5,7 +5,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use interwell::app::settings::Settings;
 use interwell::scene::Stops;
 
-use crate::support::window;
+use crate::support::{says, window};
 
 const WIDE: [f32; 2] = [1280.0, 720.0];
 
@@ -15,7 +15,7 @@ fn the_mass_is_held_moved_and_let_go() {
     harness.key_press(Key::G);
     harness.run_steps(3);
     assert!(harness.state().session.player.is_held());
-    harness.get_by_label_contains("Held at ");
+    says(&harness, "Held at ");
     let (time, x) = (harness.state().session.player.time(), harness.state().session.player.state().x);
     for _ in 0..3 {
         harness.key_press(Key::ArrowLeft);

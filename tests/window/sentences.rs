@@ -61,8 +61,12 @@ fn shaken() {
         "One well: there is no barrier, so nothing to cross; swings ±3.6 mm, RMS velocity 66 mm/s."
     ));
 
+    // nobody has seen it yet
     let (_, text) = of("random-shaking", &[]);
-    assert!(text.starts_with("Crossed 85 times in "), "{text}");
+    assert!(text.starts_with("Will cross 85 times in "), "{text}");
+
+    let (_, text) = of("paper-ramp", &[]);
+    assert!(text.starts_with("Interwell from 120 s on: will cross twice a period"), "{text}");
 
     let (_, text) = of("first-look", &[&stops(9.0)]);
     assert!(text.contains("Stops at ±9.0 mm are not touched."), "{text}");

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use eframe::egui::Role;
 use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
 use interwell::app::document::Editor;
 use interwell::app::session::Session;
 use interwell::app::settings::Settings;
@@ -36,4 +38,11 @@ pub fn session(preset: &str, changes: &[&str]) -> Session {
     let mut session = Session::new(Editor::new(document, None), Arc::new(|| ())).unwrap();
     session.wait(LONG);
     session
+}
+
+/// Whether the sentence that can be read on the window holds `words`; it is spoken as well.
+pub fn says(harness: &Harness<'static, Window>, words: &str) {
+    let read =
+        harness.query_all_by_label_contains(words).filter(|node| node.accesskit_node().role() == Role::Label);
+    assert_eq!(read.count(), 1, "{words}");
 }

@@ -117,9 +117,21 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
     SweepAxis { field: path.to_owned(), from, to, step }
 }
 
-/// What a person calls a field, with its unit: `travel limit, mm`. `column` is its name in a table.
+/// What a person calls a field, and its unit, where it has one: `travel limit` and `mm`. `column` is its name in a table.
+pub fn name_and_unit(column: &str) -> (String, Option<String>) {
+    let label = Column { name: column.to_owned(), values: Values::Words(Vec::new()) }.label();
+    match label.split_once(", ") {
+        Some((name, unit)) => (name.to_owned(), Some(unit.to_owned())),
+        None => (label, None),
+    }
+}
+
+/// The same as the name of an axis: `travel limit (mm)`.
 pub fn label(column: &str) -> String {
-    Column { name: column.to_owned(), values: Values::Words(Vec::new()) }.label()
+    match name_and_unit(column) {
+        (name, Some(unit)) => format!("{name} ({unit})"),
+        (name, None) => name,
+    }
 }
 
 /// The `--over` argument of an axis.

@@ -20,7 +20,7 @@ use super::document::Editor;
 use super::task::{Stream, Wake};
 
 pub use crate::numeric::short;
-pub use axes::{axis, fields, label, over};
+pub use axes::{axis, fields, label, name_and_unit, over};
 pub use cells::Map;
 
 /// Seconds for which a hand has to be still before a map is begun in the middle of a gesture.

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Grid, RichText, Sense, Ui, Vec2};
 
 use crate::app::session::Card;
-use crate::app::status::{Kind, speed};
+use crate::app::status::{Kind, mm, speed};
 use crate::app::widgets::kind_shapes;
 use crate::dynamics::Regime;
 use crate::scene::{Excitation, Scene, Stops};
@@ -24,7 +24,7 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let now = context.session.now_card();
         let before = context.session.before_card().cloned();
         let columns = ui.available_width() / 3.0 - 12.0;
-        Grid::new("before and now").num_columns(3).min_col_width(columns).spacing([8.0, 8.0]).show(
+        Grid::new("before and now").num_columns(3).min_col_width(columns).spacing([8.0, 6.0]).show(
             ui,
             |ui| {
                 ui.label("");
@@ -48,18 +48,30 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
                     value(card, |s| s.summary.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))
                 });
                 row(ui, "reach", &|card| {
-                    value(card, |s| s.summary.max_abs_x.map(|reach| format!("{:.1} mm", reach * 1e3)))
+                    value(card, |s| s.summary.max_abs_x.map(|reach| format!("{} mm", mm(reach))))
                 });
+                row(ui, "crosses from", &crosses_from);
             },
         );
         if before.is_none() {
             ui.add_space(6.0);
             ui.label(
-                RichText::new("Change something, and the column before fills itself.").color(style.faint()),
+                RichText::new("Change something: the state before it stays here to compare.")
+                    .color(style.faint()),
             );
         }
     });
     false
+}
+
+/// The least shaking that crosses, as far as it was searched for.
+fn crosses_from(card: &Card) -> String {
+    let found = card.thresholds.and_then(|found| found.crosses_from.or(found.crosses_at));
+    match found {
+        Some(g) if card.scene.stops == Stops::None => format!("about {g:.1} g"),
+        Some(g) => format!("{g:.2} g"),
+        None => dash(),
+    }
 }
 
 fn dash() -> String {
@@ -89,10 +101,11 @@ fn stops(scene: &Scene) -> String {
     match scene.stops {
         Stops::None => "none".to_owned(),
         Stops::Rigid { travel_limit_mm, .. } => format!("±{travel_limit_mm:.2} mm"),
+        Stops::Hertz { travel_limit_mm, .. } => format!("±{travel_limit_mm:.2} mm, compliant"),
         Stops::Uneven { left_mm, right_mm, .. } => {
             let side =
-                |mm: Option<f64>, sign: &str| mm.map_or("open".to_owned(), |mm| format!("{sign}{mm:.2}"));
-            format!("{}, {} mm", side(left_mm, "-"), side(right_mm, "+"))
+                |mm: Option<f64>, sign: &str| mm.map_or("open".to_owned(), |mm| format!("{sign}{mm:.2} mm"));
+            format!("{}, {}", side(left_mm, "-"), side(right_mm, "+"))
         }
     }
 }

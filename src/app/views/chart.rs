@@ -3,14 +3,16 @@
 //! The x axis is the one that all views share, over the whole width, so that pictures above each other line up; what
 //! belongs to the vertical axis is written into the picture.
 
-use eframe::egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{Align2, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
 use crate::app::style::Style;
 use crate::mechanics::Landscape;
 
 use super::ViewContext;
+use super::labels::haloed;
+use super::legend::{LEGEND, Sign, legend};
 use super::span::{Span, ticks};
-use super::well::{LEGEND, x_axis};
+use super::well::x_axis;
 
 /// How far outside the picture in points is far enough.
 const FAR: f32 = 4000.0;
@@ -23,16 +25,6 @@ const MARK: f32 = 5.0;
 
 /// Height in points of the name of the x axis.
 const NAME: f32 = 16.0;
-
-/// An entry of the legend.
-pub enum Sign {
-    /// A line.
-    Line(Stroke),
-    /// A dashed line.
-    Dashed(Stroke),
-    /// A ring.
-    Ring(Stroke),
-}
 
 /// Where things stand.
 #[derive(Debug, Clone, Copy)]
@@ -86,62 +78,56 @@ impl Chart {
         (0..=count).map(point).collect()
     }
 
-    /// Ground, grid and ticks; `name` says what the vertical axis is, with the unit of which one is `unit`.
-    pub fn axes(&self, ui: &Ui, context: &ViewContext<'_>, name: &str, unit: f64) {
+    /// Values of the grid's rows in the unit of which one is `unit`, and the decimals to write them.
+    fn rows(&self, unit: f64) -> (Vec<f64>, usize) {
+        let rows = f64::from((self.rect.height() / 40.0).clamp(2.0, 7.0));
+        let (values, decimals) = ticks(self.low / unit, self.high / unit, rows);
+        (values.iter().map(|value| value * 1e3).collect(), decimals)
+    }
+
+    /// Ground, grid and the axis below; the vertical axis has a row at multiples of `unit`.
+    pub fn axes(&self, ui: &Ui, context: &ViewContext<'_>, unit: f64) {
         let (style, rect) = (context.style, self.rect);
         let painter = ui.painter().with_clip_rect(self.area);
         painter.rect_filled(self.area, 0.0, style.ground());
         x_axis(&painter, context, rect);
         let below = pos2(rect.center().x, self.area.bottom() - 3.0);
         painter.text(below, Align2::CENTER_BOTTOM, "displacement (mm)", style.small(), style.faint());
-        let rows = f64::from((rect.height() / 40.0).clamp(2.0, 7.0));
-        let (values, decimals) = ticks(self.low / unit, self.high / unit, rows);
-        for value in values.iter().map(|value| value * 1e3) {
+        for value in self.rows(unit).0 {
             let at = self.screen_from_world(self.span.low, value * unit).y;
             let stroke = if value == 0.0 { style.ghost_stroke() } else { style.grid_stroke() };
             painter.hline(rect.x_range(), at, stroke);
-            if at > rect.top() + 26.0 && at < rect.bottom() - 8.0 {
-                let text = format!("{:.decimals$}", value + 0.0);
-                self.written(&painter, &style, pos2(rect.left() + 4.0, at), Align2::LEFT_CENTER, &text);
-            }
         }
-        let corner = rect.left_top() + vec2(4.0, 3.0);
-        self.written(&painter, &style, corner, Align2::LEFT_TOP, name);
     }
 
-    /// Small text that hides the grid behind it.
-    pub fn written(&self, painter: &Painter, style: &Style, at: Pos2, align: Align2, text: &str) {
-        let galley = painter.layout_no_wrap(text.to_owned(), style.small(), style.faint());
-        let place = align.anchor_size(at, galley.size());
-        painter.rect_filled(place.expand2(vec2(5.0, 0.0)), 2.0, style.ground());
-        painter.galley(place.min, galley, style.faint());
+    /// What belongs to the vertical axis, over what is drawn: its name, with the unit of which one is `unit`, and numbers.
+    pub fn numbers(&self, ui: &Ui, style: &Style, name: &str, unit: f64) {
+        let painter = ui.painter().with_clip_rect(self.area);
+        let write = |at: Pos2, align: Align2, text: &str| {
+            haloed(&painter, style, (at, align), text, (style.small(), style.faint()));
+        };
+        let (values, decimals) = self.rows(unit);
+        for value in values {
+            let at = self.screen_from_world(self.span.low, value * unit).y;
+            if at > self.rect.top() + 26.0 && at < self.rect.bottom() - 8.0 {
+                let text = format!("{:.decimals$}", value + 0.0);
+                // on its row, which does not cross it
+                write(pos2(self.rect.left() + 4.0, at - 1.0), Align2::LEFT_BOTTOM, &text);
+            }
+        }
+        write(self.rect.left_top() + vec2(4.0, 3.0), Align2::LEFT_TOP, name);
+    }
+
+    /// What is under the pointer, below the picture.
+    pub fn readout(&self, ui: &Ui, style: &Style, text: &str) {
+        let painter = ui.painter().with_clip_rect(self.area);
+        let at = (self.area.right_bottom() - vec2(6.0, 3.0), Align2::RIGHT_BOTTOM);
+        haloed(&painter, style, at, text, (style.small(), style.ink()));
     }
 
     /// What the lines mean, above the picture; what has no room is left out.
     pub fn legend(&self, ui: &Ui, style: &Style, entries: &[(Sign, &str)]) {
-        let painter = ui.painter().with_clip_rect(self.area);
-        let (mut x, y) = (self.area.left() + 8.0, self.area.top() + 0.5 * LEGEND);
-        for (sign, text) in entries {
-            let galley = painter.layout_no_wrap((*text).to_owned(), style.small(), style.faint());
-            if x + 24.0 + galley.size().x > self.area.right() - 4.0 {
-                break;
-            }
-            let (from, to) = (pos2(x, y), pos2(x + 18.0, y));
-            match sign {
-                Sign::Line(stroke) => {
-                    painter.line_segment([from, to], *stroke);
-                }
-                Sign::Dashed(stroke) => {
-                    painter.extend(Shape::dashed_line(&[from, to], *stroke, 4.0, 3.0));
-                }
-                Sign::Ring(stroke) => {
-                    painter.circle_stroke(from + vec2(9.0, 0.0), 3.0, *stroke);
-                }
-            }
-            let width = galley.size().x;
-            painter.galley(pos2(x + 24.0, y - 0.5 * galley.size().y), galley, style.faint());
-            x += 24.0 + width + 14.0;
-        }
+        legend(&ui.painter().with_clip_rect(self.area), style, self.area, self.area.right(), entries);
     }
 
     /// Equilibria where the vertical axis is 0: filled where stable, hollow where not.

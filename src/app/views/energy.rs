@@ -48,13 +48,24 @@ pub fn unit_of(energy: f64) -> (f64, &'static str) {
     UNITS.into_iter().find(|unit| energy >= unit.0).unwrap_or(UNITS[4])
 }
 
+/// Decimals of all numbers of a ledger: three, or one where there are large ones.
+pub fn decimals(ledger: &LiveLedger, unit: f64) -> usize {
+    let most = LEDGER.iter().map(|row| row.2(ledger).abs()).fold(0.0, f64::max);
+    if most / unit >= 100.0 { 1 } else { 3 }
+}
+
 /// A number of the ledger as it is written.
-pub fn written(joule: f64, unit: f64) -> String {
+pub fn written(joule: f64, unit: f64, decimals: usize) -> String {
     let value = joule / unit;
-    let decimals = if value.abs() >= 100.0 { 1 } else { 3 };
     let text = format!("{value:+.decimals$}");
     // what is written as nothing has no sign
     if text.trim_start_matches(['+', '-', '0', '.']).is_empty() { text[1..].to_owned() } else { text }
+}
+
+/// How much of the energy is accounted for in per cent: with decimals only where they say something.
+fn accounted(residual: f64) -> String {
+    let missing = 100.0 * residual.clamp(0.0, 1.0);
+    if missing < 0.005 { "100".to_owned() } else { format!("{:.2}", 100.0 - missing) }
 }
 
 /// Draws it. Whether something changed.
@@ -67,7 +78,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     }
     context.session.player.want_ledgers();
     let session = &context.session;
-    let (model, watch, now) = (session.model(), session.player.watch(), session.player.time());
+    let (model, watch, now) = (session.shown(), session.player.watch(), session.player.time());
     let whole = watch.ledger_at(now);
     let period = watch.last_period(now);
     let (unit, name) = unit_of(model.mass * model.scales.speed.powi(2));
@@ -113,19 +124,24 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
             let bars =
                 Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(numbers.left() - 4.0, rect.bottom()));
             bar(ui, &style, bars, value(ledger), most, color(&style));
-            put_ui(ui, numbers, RichText::new(written(value(ledger), unit)), Align::Max, hover);
+            put_ui(
+                ui,
+                numbers,
+                RichText::new(written(value(ledger), unit, decimals(ledger, unit))),
+                Align::Max,
+                hover,
+            );
         }
         y += row;
     }
     if let Some((upto, whole)) = whole {
         let residual = whole.energy_residual();
-        let share = 100.0 * (1.0 - residual.min(1.0));
         let hover = format!(
             "Up to {upto:.3} s: work + by hand - damping - impacts - stored = {:.1e} J, which is {residual:.0e} of what \
              was moved. Every term is integrated on its own, so that this is a check of the run, though not its error.",
             whole.residual_j()
         );
-        let text = format!("{share:.4} % of the energy accounted for");
+        let text = format!("{} % of the energy accounted for", accounted(residual));
         put_ui(ui, cell(area.left(), y, area.width(), row), RichText::new(text), Align::Min, &hover);
     }
     y += 1.3 * row;
@@ -166,7 +182,7 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     let style = context.style;
     let kinetic_room = context.memory.ranges.follow(context.session).kinetic();
     let (session, state) = (&context.session, context.session.player.state());
-    let model = session.model();
+    let model = session.shown();
     let (kinetic, potential) = model.energies(state.x, state.v);
     let landscape = &model.mechanism.landscape;
     let wells = landscape.equilibria.iter().filter(|own| own.stable);
@@ -239,9 +255,13 @@ mod tests {
     fn numbers_are_written_with_their_sign_and_unit() {
         assert_eq!(unit_of(6.9e-3), (1e-3, "mJ"));
         assert_eq!(unit_of(0.0), (1e-12, "pJ"));
-        assert_eq!(written(1.2345e-3, 1e-3), "+1.234");
-        assert_eq!(written(-0.25, 1e-3), "-250.0");
-        assert_eq!(written(-1e-9, 1e-3), "0.000");
+        assert_eq!(written(1.2345e-3, 1e-3, 3), "+1.234");
+        assert_eq!(written(-0.25, 1e-3, 1), "-250.0");
+        assert_eq!(written(-1e-9, 1e-3, 3), "0.000");
+        // one large number of a column is enough
+        let ledger = LiveLedger { work_j: 0.3, damping_j: 1e-3, ..LiveLedger::default() };
+        assert_eq!((decimals(&ledger, 1e-3), decimals(&LiveLedger::default(), 1e-3)), (1, 3));
+        assert_eq!([0.0, 1e-9, 3e-4, 2.0].map(accounted), ["100", "100", "99.97", "0.00"]);
         assert_eq!((short(1.2), short(1000.0), short(0.0)), ("1.2".into(), "1000".into(), "0".into()));
     }
 }

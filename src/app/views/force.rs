@@ -4,13 +4,15 @@
 //! up and down. Where the line is above the curve the mass is driven to the right, where it is below to the left; on a
 //! stop it is released when the line passes the curve at the stop.
 
-use eframe::egui::{self, Align2, Painter, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{Align2, Painter, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::style::BALL;
 use crate::dynamics::STANDARD_GRAVITY;
 
 use super::ViewContext;
-use super::chart::{Chart, Sign};
+use super::chart::Chart;
+use super::labels::haloed;
+use super::legend::Sign;
 use super::ranges::{axis_end, room_for_push};
 use super::stops::stops_beside_ui;
 
@@ -19,6 +21,9 @@ const ROOM: f64 = 1.3;
 
 /// Half the size in points of the mark of a kink and of the force at a stop.
 const MARK: f32 = 5.0;
+
+/// Length of the line at a stop, in marks.
+const LINE: f32 = 8.0;
 
 /// Distance in points of the label at a stop from it, and the room that it needs.
 const BESIDE: f32 = 16.0;
@@ -33,13 +38,13 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let style = context.style;
     let end = end_of_axis(context);
     let chart = Chart::new(area, context.span, -end, end);
-    chart.axes(ui, context, "force (N)", 1.0);
+    chart.axes(ui, context, 1.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
     curve(&painter, context, &chart);
     let edges = (chart.rect.top(), chart.rect.bottom());
     let changed = stops_beside_ui(ui, context, chart.rect, edges, 0.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
-    let model = context.session.model();
+    let model = context.session.shown();
     let (landscape, own) = (&model.mechanism.landscape, &model.mechanism.curve);
     chart.equilibria(&painter, &style, landscape);
     for kink in &landscape.kinks {
@@ -48,7 +53,6 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let diamond = points.iter().map(|step| at + *step * 1.3).collect();
         painter.add(Shape::closed_line(diamond, Stroke::new(1.5, style.ink())));
     }
-    releases(&painter, context, &chart);
     let state = context.session.player.state();
     let push = -model.mass * state.base_accel;
     let mut legend = vec![(Sign::Line(style.tray_stroke()), "force of the mechanism")];
@@ -59,16 +63,24 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let from = chart.screen_from_world(state.x, own.force(state.x));
         painter.extend(Shape::dashed_line(&[from, at], style.base_stroke(), 4.0, 3.0));
     }
+    releases(&painter, context, &chart);
     let at = chart.screen_from_world(state.x, own.force(state.x));
     painter.circle(at, BALL - 2.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
+    chart.numbers(ui, &style, "force (N)", 1.0);
     chart.legend(ui, &style, &legend);
-    hover_ui(&response, context, &chart);
+    if let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) {
+        let (x, _) = chart.world_from_screen(pointer);
+        let force = context.session.shown().mechanism.curve.force(x);
+        if force.is_finite() {
+            chart.readout(ui, &style, &format!("{force:.3} N at {:.2} mm", x * 1e3));
+        }
+    }
     changed
 }
 
 /// As far up as the forces between the wells and the pushes that the scene may have.
 fn end_of_axis(context: &ViewContext<'_>) -> f64 {
-    let model = context.session.model();
+    let model = context.session.shown();
     let landscape = &model.mechanism.landscape;
     let wells = landscape.barrier.map(|barrier| (barrier.left_well, barrier.right_well));
     let between = |x: f64| wells.is_some_and(|(left, right)| x > left && x < right);
@@ -86,7 +98,9 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
         }
     }
     let push = if model.is_shaken() {
-        model.mass * room_for_push(context.session.largest_push()).min(1.1 * context.session.largest_push())
+        model.mass
+            * room_for_push(context.session.shown().largest_push())
+                .min(1.1 * context.session.shown().largest_push())
     } else {
         0.0
     };
@@ -95,7 +109,7 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
 
 /// The curve: thick where the mass can be, faint beyond the stops.
 fn curve(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
-    let (style, model) = (context.style, context.session.model());
+    let (style, model) = (context.style, context.session.shown());
     let own = &model.mechanism.curve;
     let (left, right) = model.stop_positions();
     let domain = own.domain();
@@ -111,7 +125,7 @@ fn curve(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
 
 /// The force at each stop that the mass rests against: the push has to pass it to release the mass.
 fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
-    let (style, model) = (context.style, context.session.model());
+    let (style, model) = (context.style, context.session.shown());
     let (left, right) = model.stop_positions();
     for (stop, way) in [(left, -1.0), (right, 1.0)] {
         let Some(x) = stop else { continue };
@@ -123,27 +137,14 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
         let at = chart.screen_from_world(x, force);
         let stroke = Stroke::new(style.stop_stroke().width, style.stop());
         let inwards = -MARK * way as f32;
-        painter.line_segment([at, at + vec2(8.0 * inwards, 0.0)], stroke);
+        painter.line_segment([at, at + vec2(LINE * inwards, 0.0)], stroke);
         // beyond the wall, out of the way of the mass; on the inner side where the picture ends
         let text = format!("frees at {:.2} g", force.abs() / (model.mass * STANDARD_GRAVITY));
         let room = if way > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };
         let outwards = if room > LABEL { -inwards.signum() } else { inwards.signum() };
         let align = if outwards > 0.0 { Align2::LEFT_CENTER } else { Align2::RIGHT_CENTER };
-        let beyond = pos2(at.x + outwards * BESIDE, at.y);
-        chart.written(painter, &style, beyond, align, &text);
+        let off = if room > LABEL { BESIDE } else { BESIDE + LINE * MARK };
+        let beyond = pos2(at.x + outwards * off, at.y);
+        haloed(painter, &style, (beyond, align), &text, (style.small(), style.faint()));
     }
-}
-
-fn hover_ui(response: &egui::Response, context: &ViewContext<'_>, chart: &Chart) {
-    let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return };
-    let (x, _) = chart.world_from_screen(pointer);
-    let force = context.session.model().mechanism.curve.force(x);
-    response.clone().on_hover_ui_at_pointer(|ui| {
-        if force.is_finite() {
-            ui.strong(format!("{force:.3} N at {:.2} mm", x * 1e3));
-        }
-        ui.label("The force that would hold the mass there. Where the push is above the curve it drives the mass to \
-                  the right, below it to the left; a mass on a stop is freed when the push passes the mark there.");
-        ui.label("Filled: stable. Hollow: unstable. Diamond: a kink, where the stiffness jumps.");
-    });
 }

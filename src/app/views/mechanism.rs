@@ -9,11 +9,11 @@ use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, 
 
 use crate::app::style::{BALL, RING_SECONDS};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
-use crate::scene::Excitation;
 
 use super::ViewContext;
 use super::flexures::{CLAMP, Place, Scale, bulge_words, clamp, state_at};
-use super::stops::stops_ui;
+use super::labels::ago;
+use super::stops::stops_beside_ui;
 use super::well::mass_ui;
 
 /// Points of a drawn flexure.
@@ -21,6 +21,9 @@ const FLEXURE_POINTS: usize = 24;
 
 /// Length in points of an arrow's head.
 const ARROW_HEAD: f32 = 12.0;
+
+/// Room in points that the base's own motion needs.
+const INSET: f32 = 200.0;
 
 /// A ring that grows and fades.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,19 +66,19 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
             let middle = 0.5 * (top + bottom);
             let x = context.span.screen_from_world(state.x, rect);
             flexures(&painter, context, rect, (x, middle, half), (top, bottom));
-            (middle, "schematic, seen from the base; no flexures behind this force".to_owned())
+            (middle, "schematic, seen from the base".to_owned())
         }
     };
     let x = context.span.screen_from_world(state.x, rect);
     let body = Rect::from_center_size(pos2(x, middle), half * 2.0);
     let edge = Stroke::new(1.5, style.mass_edge());
     painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
-    let mut changed = stops_ui(ui, context, rect, middle - half.y - 4.0, middle + half.y + 4.0);
+    let heights = (middle - half.y - 4.0, middle + half.y + 4.0);
+    let mut changed = stops_beside_ui(ui, context, rect, heights, BALL);
     changed |= mass_ui(ui, context, pos2(x, middle), rect);
     rings(ui, context, rect, middle);
     push_arrow(&painter, context, body, state.base_accel, rect);
-    inset(&painter, context, rect, state.base_accel);
-    painter.text(rect.left_top() + vec2(10.0, 4.0), Align2::LEFT_TOP, words, style.small(), style.faint());
+    words_ui(&painter, context, rect, &words, state.base_accel);
     changed
 }
 
@@ -89,7 +92,7 @@ fn bent_ui(
 ) -> Option<(f32, String)> {
     let bent = state_at(context, x)?;
     let style = context.style;
-    let mechanism = &context.session.model().mechanism;
+    let mechanism = &context.session.shown().mechanism;
     let geometry = mechanism.flexures.as_ref()?.geometry();
     let scale = Scale::of(geometry, place);
     let reach = mechanism.landscape.right_stable().map_or(0.0, |well| well.x.abs());
@@ -101,8 +104,9 @@ fn bent_ui(
     painter.extend(scale.shapes(geometry, &bent, context.span, rect, style.flexure_stroke()));
     scale.bar(painter, &style, pos2(rect.right() - 18.0, place.bottom - 8.0));
     let words = bulge_words(&bent);
-    let at = pos2(rect.left() + 12.0, place.top + 8.0);
-    painter.text(at, Align2::LEFT_TOP, words, style.body(), style.ink());
+    // beside the feet of the flexures, where these never are
+    let at = pos2(rect.left() + 12.0, place.bottom - 5.0);
+    painter.text(at, Align2::LEFT_BOTTOM, words, style.body(), style.ink());
     let words = format!("seen from the base, {}", scale.words(context.span, rect));
     Some((scale.middle(&bent), words))
 }
@@ -117,7 +121,7 @@ fn flexures(
 ) {
     let stroke = context.style.flexure_stroke();
     let zero = context.span.screen_from_world(0.0, rect);
-    let landscape = &context.session.model().mechanism.landscape;
+    let landscape = &context.session.shown().mechanism.landscape;
     // The bump is largest at the barrier and gone at the wells, where the flexure is straight.
     let (place, well) = match landscape.barrier {
         Some(barrier) => {
@@ -147,12 +151,12 @@ fn flexures(
 /// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g). It lies at the mass's height on the
 /// inner side of the body, where neither flexures nor stops are.
 fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, base_accel: f64, rect: Rect) {
-    if !context.session.model().is_shaken() {
+    if !context.session.shown().is_shaken() {
         return;
     }
     let style = context.style;
     let full = f64::from(rect.width()) * 0.16;
-    let room = context.session.largest_push().max(1e-9);
+    let room = context.session.shown().largest_push().max(1e-9);
     let push = (-base_accel / room * full) as f32;
     let inner = if body.center().x > rect.center().x { -1.0 } else { 1.0 };
     let near = body.center().x + inner * (body.width() * 0.5 + 6.0);
@@ -165,22 +169,30 @@ fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, ba
         let points = vec![pos2(tip, y), pos2(tip - head, y - 6.0), pos2(tip - head, y + 6.0)];
         painter.add(Shape::convex_polygon(points, stroke.color, Stroke::NONE));
     }
-    let text = format!("push {:.2} g", (base_accel / STANDARD_GRAVITY).abs());
-    let galley = painter.layout_no_wrap(text, style.small(), style.base());
-    let align = if inner > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_BOTTOM };
-    let place = align.anchor_size(pos2(near, y - 7.0), galley.size());
-    painter.rect_filled(place.expand(1.5), 2.0, style.ground());
-    painter.galley(place.min, galley, style.base());
+}
+
+/// The row over the drawing, where nothing moves: when, what is seen, how hard it is pushed, and how the base moves.
+fn words_ui(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, words: &str, base_accel: f64) {
+    let style = context.style;
+    let mut at = rect.left_top() + vec2(10.0, 4.0);
+    let mut put = |text: String, color: Color32| {
+        at.x = painter.text(at, Align2::LEFT_TOP, text, style.small(), color).right() + 14.0;
+    };
+    if let Some(ago) = ago(context.session) {
+        put(ago, style.ink());
+    }
+    put(words.to_owned(), style.faint());
+    if context.session.shown().is_shaken() {
+        put(format!("push {:.2} g", (base_accel / STANDARD_GRAVITY).abs()), style.base());
+    }
+    inset(painter, context, Rect::from_min_max(pos2(at.x, rect.top()), rect.max), base_accel);
 }
 
 /// The base's own motion at its own scale, for a sine, whose displacement is -a/(2 pi f)^2.
 fn inset(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, base_accel: f64) {
-    let Excitation::Sine { frequency_hz, amplitude_g, .. } = context.session.scene().excitation else {
-        return;
-    };
-    let rate = std::f64::consts::TAU * frequency_hz;
-    let (swing, place) = (amplitude_g.abs() * STANDARD_GRAVITY / (rate * rate), -base_accel / (rate * rate));
-    if !(swing > 0.0 && swing.is_finite()) || rect.width() < 520.0 {
+    let Some((amplitude, rate)) = context.session.shown().single_sine() else { return };
+    let (swing, place) = (amplitude / (rate * rate), -base_accel / (rate * rate));
+    if !(swing > 0.0 && swing.is_finite()) || rect.width() < INSET {
         return;
     }
     let style = context.style;
@@ -199,7 +211,7 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
     let now = ui.input(|input| input.time);
     let (from, to) = (context.memory.seen_to, context.session.player.time());
     context.memory.seen_to = to;
-    let model = context.session.model();
+    let model = context.session.shown();
     let (left, right) = model.stop_positions();
     if to > from && !context.reduce_motion {
         let watch = context.session.player.watch();
@@ -208,8 +220,13 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
         for event in watch.events().range(first..).take_while(|event| event.t <= to) {
             let side = usize::from(event.side == Side::Right);
             let busy = context.memory.rings[side].is_some_and(|ring| now - ring.began < RING_SECONDS);
-            let taken = (event.v_in * event.v_in - event.v_out * event.v_out) / scale;
-            if event.kind == EventKind::Impact && !busy && taken > 1e-4 {
+            // A compliant stop takes its share over the contact that begins here.
+            let kept = match &model.compliant {
+                Some(stop) => stop.restitution(event.v_in.abs()) * event.v_in,
+                None => event.v_out,
+            };
+            let taken = (event.v_in * event.v_in - kept * kept) / scale;
+            if matches!(event.kind, EventKind::Impact | EventKind::Contact) && !busy && taken > 1e-4 {
                 context.memory.rings[side] = Some(Ring { began: now, size: taken.min(1.0) });
             }
         }

@@ -9,6 +9,8 @@ mod chart;
 pub mod energy;
 mod flexures;
 mod force;
+mod labels;
+mod legend;
 mod map;
 mod mechanism;
 mod phase;
@@ -18,7 +20,7 @@ mod stops;
 mod trace;
 mod well;
 
-use eframe::egui::Ui;
+use eframe::egui::{Ui, UiBuilder};
 
 use crate::mechanics::flexure::State;
 
@@ -77,6 +79,50 @@ impl View {
         matches!(self, Self::Mechanism | Self::Well | Self::PhasePortrait | Self::ForceCurve)
     }
 
+    /// What it shows and what a hand can do in it.
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Mechanism => {
+                "The mass between its flexures and stops, seen from the base that shakes. The arrow is the push that the mass \
+                 feels. Drag the mass or a stop."
+            }
+            Self::Well => {
+                "The mass rides on the potential like a ball on a tray that the push tips. Drag the ball or a stop."
+            }
+            Self::Displacement => {
+                "Where the mass is, seen from the base, over time. The wheel zooms in time, a double click is back."
+            }
+            Self::BeforeNow => "What your last change did: the state before it, and the one after it.",
+            Self::PhasePortrait => {
+                "Velocity over displacement: a moving mass runs clockwise. An impact is a jump of the velocity. The separatrix \
+                 needs just the energy to stand on the barrier. Click to let the motion go on from a state."
+            }
+            Self::ForceCurve => {
+                "The force that would hold the mass at a place. Where the push is above the curve it drives the mass to the \
+                 right, below it to the left; a mass on a stop is freed when the push passes the mark there. Filled: stable. \
+                 Hollow: unstable. Diamond: a kink, where the stiffness jumps."
+            }
+            Self::Energy => {
+                "Where the energy came from, where it went, and what is there against the barrier."
+            }
+            Self::Velocity => {
+                "Velocity of the mass, seen from the base, over time. An impact turns it round and leaves a part of it. The \
+                 wheel zooms in time, a double click is back."
+            }
+            Self::BaseAcceleration => {
+                "Acceleration of the base over time. The mass feels the opposite of it, as one does in a bus that brakes. The \
+                 wheel zooms in time, a double click is back."
+            }
+            Self::Power => {
+                "Work of the base on the mass in a second. Below zero the mass gives energy back to the base. The wheel zooms \
+                 in time, a double click is back."
+            }
+            Self::Map => {
+                "What every combination of two settings comes to, each in a run of its own. Click to take the scene there."
+            }
+        }
+    }
+
     /// What it is called.
     pub fn name(self) -> &'static str {
         match self {
@@ -92,6 +138,14 @@ impl View {
             Self::Power => "Power",
             Self::Map => "Map",
         }
+    }
+}
+
+impl Memory {
+    /// The x axis that views share, with room for what has been seen.
+    pub fn span(&mut self, session: &Session) -> Span {
+        let seen = self.ranges.follow(session).reach(session);
+        Span::of(session, seen)
     }
 }
 
@@ -136,9 +190,15 @@ pub struct Memory {
 
 /// Draws one view. Whether it changed something.
 pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
-    if ui.rect_contains_pointer(ui.max_rect()) {
+    // what is left of the panel: over a filled window stand a title and a button
+    let rect = ui.available_rect_before_wrap();
+    if ui.rect_contains_pointer(rect) {
         context.memory.hovered = Some(view);
     }
+    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| drawn_ui(ui, view, context)).inner
+}
+
+fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
     match view {
         View::Mechanism => mechanism::mechanism_ui(ui, context),
         View::Well => well::well_ui(ui, context),

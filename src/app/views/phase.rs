@@ -9,10 +9,13 @@ use eframe::egui::{self, Color32, Painter, Pos2, Sense, Shape, Stroke, Ui};
 
 use crate::app::status::Kind;
 use crate::app::widgets::kind_shapes;
-use crate::dynamics::{Phase, Sample};
+use crate::dynamics::{Model, Phase, Sample};
+use crate::study::between;
 
 use super::ViewContext;
-use super::chart::{Chart, Sign};
+use super::chart::Chart;
+use super::labels::rests;
+use super::legend::Sign;
 use super::stops::stops_beside_ui;
 
 /// Length of the trail in forcing periods; without a period, in swings of the scene's own time scale.
@@ -22,6 +25,11 @@ const TRAIL_SWINGS: f64 = 12.0;
 /// The most points of the trail, and the steps in which it fades.
 const MOST_POINTS: usize = 4000;
 const FADES: usize = 16;
+
+/// What is not seen of a bend in points, the most pieces between two samples, and the most of all.
+const ROUND: f32 = 0.4;
+const MOST_PIECES: f32 = 12.0;
+const MOST_BETWEEN: usize = 6000;
 
 /// What is left of its colour at the end of the trail.
 const FAINTEST: f32 = 0.12;
@@ -43,21 +51,21 @@ pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "states of the mass"));
     let speed = context.memory.ranges.follow(context.session).speed();
     let chart = Chart::new(area, context.span, -speed, speed);
-    chart.axes(ui, context, "velocity (mm/s)", 1e-3);
+    chart.axes(ui, context, 1e-3);
     let painter = ui.painter().with_clip_rect(chart.rect);
     let mut legend = Vec::new();
     if separatrix(&painter, context, &chart) {
         legend.push((Sign::Dashed(style.ghost_stroke()), "separatrix"));
     }
-    chart.equilibria(&painter, &style, &context.session.model().mechanism.landscape);
+    chart.equilibria(&painter, &style, &context.session.shown().mechanism.landscape);
     let edges = (chart.rect.top(), chart.rect.bottom());
     let changed = stops_beside_ui(ui, context, chart.rect, edges, 0.0);
     let painter = ui.painter().with_clip_rect(chart.rect.expand(STATE));
     trail(&painter, context, &chart);
-    if context.session.model().forcing_period.is_some() {
-        legend.push((Sign::Ring(style.base_stroke()), "once a forcing period"));
+    if context.session.shown().forcing_period.is_some() {
+        legend.push((Sign::Ring(style.base_stroke()), "once a period"));
     }
-    if context.session.model().stop_positions() != (None, None) {
+    if context.session.shown().stop_positions() != (None, None) {
         legend.push((Sign::Dashed(style.impact_stroke()), "impact"));
     }
     strobes(&painter, context, &chart);
@@ -69,12 +77,13 @@ pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         painter.extend(kind_shapes(Kind::Resting, at, STATE + 2.5, style.mass_edge()));
         painter.extend(kind_shapes(Kind::Resting, at, STATE, style.mass()));
     }
+    chart.numbers(ui, &style, "velocity (mm/s)", 1e-3);
     chart.legend(ui, &style, &legend);
-    changed | start_ui(&response, context, &chart)
+    changed | start_ui(ui, &response, context, &chart)
 }
 
 /// A click starts the motion at that state.
-fn start_ui(response: &egui::Response, context: &mut ViewContext<'_>, chart: &Chart) -> bool {
+fn start_ui(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, chart: &Chart) -> bool {
     let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return false };
     let (x, v) = chart.world_from_screen(pointer);
     let inside = within(context, x);
@@ -83,27 +92,23 @@ fn start_ui(response: &egui::Response, context: &mut ViewContext<'_>, chart: &Ch
         context.session.player.place(x, if inside { v } else { 0.0 });
         context.session.moved_by_hand();
     }
-    response.clone().on_hover_ui_at_pointer(|ui| {
-        ui.strong(format!("{:.2} mm, {:.0} mm/s", x * 1e3, v * 1e3));
-        ui.label("Click: the motion goes on from this state.");
-        ui.label(
-            "A moving mass runs clockwise: to the right above zero, to the left below. At an impact the velocity \
-             jumps and the place stays. The separatrix needs just the energy to stand on the barrier.",
-        );
-    });
+    chart.readout(ui, &context.style, &format!("{:.2} mm, {:.0} mm/s", x * 1e3, v * 1e3));
+    if rests(ui) {
+        response.clone().on_hover_text_at_pointer("Click: the motion goes on from here.");
+    }
     placed
 }
 
 /// Whether the mass can be at `x` in m.
 fn within(context: &ViewContext<'_>, x: f64) -> bool {
-    let model = context.session.model();
+    let model = context.session.shown();
     let ((left, right), domain) = (model.stop_positions(), model.mechanism.curve.domain());
     x >= left.unwrap_or(domain.0).max(domain.0) && x <= right.unwrap_or(domain.1).min(domain.1)
 }
 
 /// The states with the energy of the barrier's top. Whether there is one.
 fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bool {
-    let model = context.session.model();
+    let model = context.session.shown();
     let Some(barrier) = model.mechanism.landscape.barrier else { return false };
     let curve = &model.mechanism.curve;
     let top = curve.potential(barrier.x);
@@ -148,11 +153,12 @@ fn turning(height: &impl Fn(f64) -> f64, mut above: f64, mut below: f64) -> f64 
 /// The last of the path, fading; an impact is a jump, a mass put elsewhere a gap.
 fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let (session, style) = (&context.session, context.style);
-    let model = session.model();
-    let natural = std::f64::consts::TAU * model.scales.time;
-    let length = model.forcing_period.map_or(TRAIL_SWINGS * natural, |period| TRAIL_PERIODS * period);
+    let model = session.shown();
+    let length = model.forcing_period.map_or(TRAIL_SWINGS * model.swing(), |period| TRAIL_PERIODS * period);
     let state = session.player.state();
-    let path = recent(session.player.watch().samples(), state, length);
+    let watch = session.player.watch();
+    let path = recent(watch.samples(), state, length);
+    let mut spare = MOST_BETWEEN;
     let level = |t: f64| {
         let age = ((state.t - t) / length).clamp(0.0, 1.0);
         ((age * FADES as f64) as usize).min(FADES - 1)
@@ -190,9 +196,35 @@ fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
             line.push(from);
             drawn = now;
         }
+        let count = pieces(chart, watch.model_at(a.t), (&a, &b)).min(spare);
+        spare -= count;
+        let between = between(watch.model_at(a.t), &a, &b, count);
+        line.extend(between.iter().map(|(x, v)| chart.screen_from_world(*x, *v)));
         line.push(to);
     }
     finish(&mut line, drawn.min(FADES - 1));
+}
+
+/// In how many pieces the way between two samples looks round: from how far the ends of its cubic's tangents are off the
+/// straight line.
+fn pieces(chart: &Chart, model: &Model, (a, b): (&Sample, &Sample)) -> usize {
+    let third = (b.t - a.t) / 3.0;
+    let tangent = |own: &Sample, third: f64| {
+        let acceleration = model.acceleration(own.x, own.v, own.base_accel);
+        chart.screen_from_world(own.x + third * own.v, own.v + third * acceleration)
+    };
+    let (from, to) = (chart.screen_from_world(a.x, a.v), chart.screen_from_world(b.x, b.v));
+    let along = (to - from).normalized();
+    let off = |at: Pos2| {
+        let aside = at - from;
+        (aside - along * aside.dot(along)).length()
+    };
+    let most = off(tangent(a, third)).max(off(tangent(b, -third)));
+    if a.phase != Phase::Free || !(most > ROUND) {
+        1
+    } else {
+        (2.0 * most).sqrt().ceil().min(MOST_PIECES) as usize
+    }
 }
 
 /// The samples of the last `length` seconds before `state`, and that.
@@ -206,9 +238,11 @@ fn recent(samples: &VecDeque<Sample>, state: Sample, length: f64) -> Vec<Sample>
 /// The state once a forcing period, always at the same phase of it, since the last change.
 fn strobes(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let session = &context.session;
-    let Some(period) = session.model().forcing_period else { return };
+    let Some(period) = session.shown().forcing_period else { return };
     let (watch, now) = (session.player.watch(), session.player.time());
-    let begin = session.changed_at().max(watch.begin());
+    // since it goes as it does, and since the mass was last put elsewhere
+    let placed = if session.player.is_past() { 0.0 } else { session.changed_at() };
+    let begin = watch.model_since(now).max(placed).max(watch.begin());
     let last = (now / period).floor();
     let first = (begin / period).ceil().max(last - MOST_STROBES);
     let count = (last - first + 1.0).clamp(0.0, MOST_STROBES) as u32;

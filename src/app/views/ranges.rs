@@ -30,12 +30,15 @@ pub fn axis_end(value: f64) -> f64 {
     if end.is_finite() && end > 0.0 { end } else { 1.0 }
 }
 
-/// The largest speed in m/s, power in W and energy in J that have been seen since the last change.
+/// The largest speed in m/s, power in W and energy in J that have been seen since the last change, and the way out from the
+/// middle in m.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Extremes {
     speed: f64,
     power: f64,
     kinetic: f64,
+    low: f64,
+    high: f64,
 }
 
 impl Extremes {
@@ -44,6 +47,8 @@ impl Extremes {
             speed: self.speed.max(other.speed),
             power: self.power.max(other.power),
             kinetic: self.kinetic.max(other.kinetic),
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
         }
     }
 }
@@ -56,6 +61,8 @@ pub struct Ranges {
     /// What has been seen since the last change, and what the axes held before it.
     seen: Extremes,
     kept: Extremes,
+    /// What has been seen since the start.
+    ever: Extremes,
     /// Time in s of that change, and up to which the motion has been looked at.
     since: Option<f64>,
     looked_to: f64,
@@ -66,6 +73,9 @@ impl Ranges {
     pub fn follow(&mut self, session: &Session) -> &Self {
         let changed_at = session.changed_at();
         let watch = session.player.watch();
+        if watch.time() < self.looked_to {
+            self.ever = Extremes::default();
+        }
         if self.since != Some(changed_at) || watch.time() < self.looked_to {
             self.kept = self.kept.or(self.seen);
             self.seen = Extremes::default();
@@ -82,19 +92,30 @@ impl Ranges {
                 speed: sample.v.abs(),
                 power: sample.work_rate(model.mass).abs(),
                 kinetic: model.energies(sample.x, sample.v).0,
+                low: sample.x,
+                high: sample.x,
             });
         }
         self.looked_to = watch.time();
         let speed = model.mechanism.landscape.barrier.map_or(SHARE * model.scales.speed, |barrier| {
             (2.0 * barrier.from_left_j.max(barrier.from_right_j) / model.mass).sqrt()
         });
-        let power = SHARE * speed * model.mass * room_for_push(session.largest_push());
-        self.expected = Extremes { speed, power, kinetic: 0.5 * model.mass * speed * speed };
+        let power = SHARE * speed * model.mass * room_for_push(model.largest_push());
+        let kinetic = 0.5 * model.mass * speed * speed;
+        self.expected = Extremes { speed, power, kinetic, ..Extremes::default() };
+        self.ever = self.ever.or(self.seen);
         self
     }
 
     fn whole(&self) -> Extremes {
         self.expected.or(self.seen).or(self.kept)
+    }
+
+    /// The displacements in m that an axis has to show: those seen since the last change, or where the past is looked at
+    /// since the start.
+    pub fn reach(&self, session: &Session) -> (f64, f64) {
+        let own = if session.player.is_past() { self.ever } else { self.whole() };
+        (own.low, own.high)
     }
 
     /// The end of an axis of velocity in m/s.

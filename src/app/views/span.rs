@@ -4,8 +4,13 @@ use eframe::egui::{Rangef, Rect};
 
 use crate::app::session::Session;
 
+use super::ranges::axis_end;
+
 /// Room beside the outermost thing that is shown.
 const ROOM: f64 = 1.18;
+
+/// Room beside what has been seen, before the next step.
+const STEP_ROOM: f64 = 1.05;
 
 /// Displacements in m from left to right.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,39 +22,35 @@ pub struct Span {
 }
 
 impl Span {
-    /// What has to be seen of a scene: its wells; without a pair of them its stops, its start and its reach. It depends on
-    /// the shaking and on the stops as little as it can, so that it stands still while they are changed.
-    pub fn of(session: &Session) -> Self {
-        let model = session.model();
-        let wells = &model.mechanism.landscape.barrier;
+    /// What has to be seen of a scene: its wells; without a pair of them its stops and its start; and how far the mass
+    /// settles to go and has been `seen` to go, in m. It depends on the shaking and on the stops as little as it can, and
+    /// grows in coarse steps, so that it stands still while they are changed.
+    pub fn of(session: &Session, seen: (f64, f64)) -> Self {
+        let model = session.shown();
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        let mut show = |x: f64, room: f64| {
+        let mut show = |x: f64| {
             if x.is_finite() {
-                (low, high) = (low.min(x * room), high.max(x * room));
+                (low, high) = (low.min(x), high.max(x));
             }
         };
-        if let Some(barrier) = wells {
-            show(barrier.left_well, ROOM);
-            show(barrier.right_well, ROOM);
-            if let Some((least, most)) = session.settled().and_then(|settled| settled.range) {
-                // in coarse steps: a little more reach moves nothing
-                for x in [least, most] {
-                    let size = barrier.left_well.abs().max(barrier.right_well.abs());
-                    let steps = (x.abs() / size * 4.0 * 1.02).ceil();
-                    if x.abs() > ROOM * size {
-                        show(x.signum() * size * steps / 4.0, 1.0);
-                    }
-                }
+        let settled = session.settled().and_then(|settled| settled.range).unwrap_or((0.0, 0.0));
+        let reach = [settled.0.min(seen.0), settled.1.max(seen.1)];
+        if let Some(barrier) = &model.mechanism.landscape.barrier {
+            show(barrier.left_well * ROOM);
+            show(barrier.right_well * ROOM);
+            let size = barrier.left_well.abs().max(barrier.right_well.abs());
+            for x in reach.into_iter().filter(|x| x.abs() > ROOM * size) {
+                show(x.signum() * size * (x.abs() / size * 4.0 * 1.02).ceil() / 4.0);
             }
         } else {
-            // those of the motion: the scene may be one that cannot be run
             let (left, right) = model.stop_positions();
-            for x in [left, right].into_iter().flatten() {
-                show(x, ROOM);
-            }
-            let (least, most) = session.settled().and_then(|settled| settled.range).unwrap_or((0.0, 0.0));
-            for x in [least, most, session.player.watch().samples().front().map_or(0.0, |s| s.x), 0.0] {
-                show(x, ROOM);
+            let start = session.player.watch().samples().front().map_or(0.0, |sample| sample.x);
+            show(0.0);
+            show(start * ROOM);
+            for (stop, x) in [left, right].into_iter().zip(reach) {
+                // behind a stop there is nothing to be seen
+                let step = if x == 0.0 { 0.0 } else { x.signum() * axis_end(STEP_ROOM * x.abs()) };
+                show(stop.map_or(step, |stop| stop * ROOM));
             }
         }
         if !(high - low > 0.0) {
@@ -102,8 +103,39 @@ pub(super) fn ticks(low: f64, high: f64, count: f64) -> (Vec<f64>, usize) {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::sync::Arc;
+
     use eframe::egui::pos2;
+
+    use super::*;
+    use crate::app::document::Editor;
+    use crate::app::views::Memory;
+
+    /// Whether everything that happened in some seconds is within the axis, which then did not grow too often.
+    fn holds_what_happens(preset: &str, seconds: f64) {
+        let mut session = Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap();
+        let mut memory = Memory::default();
+        session.player.speed = 1.0;
+        let (mut spans, mut last) = (0, Span { low: 0.0, high: 0.0 });
+        while session.player.time() < seconds {
+            session.player.tick(0.02);
+            let span = memory.span(&session);
+            spans += usize::from(span != last);
+            last = span;
+            let x = session.player.state().x;
+            assert!(span.low < x && x < span.high, "{preset}: {x} {span:?}");
+        }
+        assert!(spans <= 12, "{preset}: {spans}");
+        let seen = session.player.watch().samples();
+        assert!(seen.iter().all(|sample| sample.x > last.low && sample.x < last.high), "{preset}");
+    }
+
+    #[test]
+    fn what_happens_is_seen() {
+        for (preset, seconds) in [("monostable", 2.0), ("bouncing-ball", 5.0), ("duffing", 40.0)] {
+            holds_what_happens(preset, seconds);
+        }
+    }
 
     #[test]
     fn screen_and_world_are_inverse() {

@@ -3,8 +3,8 @@
 use eframe::egui::{self, CursorIcon, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::controls::put_side;
-use crate::app::session::stop_distances;
-use crate::app::style::{BALL, GRAB};
+use crate::app::session::{Session, stop_distances};
+use crate::app::style::GRAB;
 use crate::scene::Scene;
 
 use super::ViewContext;
@@ -14,15 +14,32 @@ use super::well::arrows;
 const KEY_STEP: f64 = 0.05;
 
 /// Thickness of a wall in points.
-const WALL: f32 = 10.0;
+pub(super) const WALL: f32 = 10.0;
 
-/// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged, for a mass that is drawn
-/// as a ball. Whether they were.
+/// Draws the stops over `rect` between the heights `top` and `bottom`, each with its face at the travel limit, and lets them
+/// be dragged. Whether they were.
 pub fn stops_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, top: f32, bottom: f32) -> bool {
-    stops_beside_ui(ui, context, rect, (top, bottom), BALL)
+    stops_beside_ui(ui, context, rect, (top, bottom), 0.0)
 }
 
-/// The same for a mass that is drawn with another radius: 0 where a wall's face is the place of the stop.
+/// The stops of what is shown in mm, and whether a hand can move them: those of the past, where they were others, it cannot.
+fn shown_stops(session: &Session) -> ([Option<f64>; 2], bool) {
+    let (left, right) = stop_distances(session.scene());
+    let present = [left, right];
+    if !session.player.is_past() {
+        return (present, true);
+    }
+    let (left, right) = session.shown().stop_positions();
+    let then = [left, right].map(|stop| stop.map(|stop| stop * 1e3));
+    let alike = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() < 1e-9 * a.abs().max(b.abs()),
+        _ => a == b,
+    };
+    (then, alike(then[0], present[0]) && alike(then[1], present[1]))
+}
+
+/// The same for a mass whose sides are `radius` points from its place: a stop's face is as far outside its travel limit, so
+/// that the mass touches it when it should.
 pub fn stops_beside_ui(
     ui: &mut Ui,
     context: &mut ViewContext<'_>,
@@ -30,9 +47,9 @@ pub fn stops_beside_ui(
     (top, bottom): (f32, f32),
     radius: f32,
 ) -> bool {
-    let (left, right) = stop_distances(context.session.scene());
+    let (stops, movable) = shown_stops(context.session);
     let mut changed = false;
-    for (mm, way) in [(left, -1.0_f32), (right, 1.0)] {
+    for (mm, way) in stops.into_iter().zip([-1.0_f32, 1.0]) {
         let Some(mm) = mm else { continue };
         let x = context.span.screen_from_world(mm / 1e3, rect) + way * radius;
         let wall = Rect::from_two_pos(pos2(x, top), pos2(x + way * WALL, bottom));
@@ -42,14 +59,22 @@ pub fn stops_beside_ui(
         let grab = wall.expand2(vec2((GRAB - WALL).max(0.0) * 0.5 + 3.0, 0.0));
         let name = if way < 0.0 { "left stop" } else { "right stop" };
         let id = ui.scope_id().with(name);
+        let style = context.style;
+        let painter = ui.painter().with_clip_rect(rect);
+        painter.rect_filled(wall, 0.0, style.stop());
+        painter.extend(hatching(wall, way, Stroke::new(1.0, style.ground())));
+        if !movable {
+            let then = format!("Then the stop was at {mm:.2} mm. The controls change what is now.");
+            ui.interact(grab, id, Sense::hover()).on_hover_text(then);
+            continue;
+        }
         let response =
             ui.interact(grab, id, Sense::drag()).on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
         response.widget_info(|| egui::WidgetInfo::slider(true, mm, name));
-        let style = context.style;
-        let color = if response.hovered() || response.dragged() { style.mass() } else { style.stop() };
-        let painter = ui.painter().with_clip_rect(rect);
-        painter.rect_filled(wall, 0.0, color);
-        painter.extend(hatching(wall, way, Stroke::new(1.0, style.ground())));
+        if response.hovered() || response.dragged() {
+            let edge = Stroke::new(2.0, style.ink());
+            painter.rect_stroke(wall.expand(1.0), 1.0, edge, egui::StrokeKind::Outside);
+        }
         if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
             let place = context.span.world_from_screen(pointer.x - way * (radius + 0.5 * WALL), rect) * 1e3;
             // a hundredth of a millimetre is finer than a hand

@@ -4,18 +4,23 @@
 //! stretch of time and the same cursor, so that they can be read below each other. Their vertical ranges come from the
 //! scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
 
-use eframe::egui::{self, Ui, vec2};
+use eframe::egui::{self, Align2, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
 
-use crate::dynamics::{EventKind, Phase, STANDARD_GRAVITY, Sample};
+use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
+use crate::study::Watch;
 
 use super::ViewContext;
+use super::labels::haloed;
+use super::legend::{LEGEND, Sign, legend};
 use super::ranges::room_for_push;
 use super::span::ticks;
 
-/// Forcing periods that are shown; without a period swings of the scene's own time scale.
+/// Forcing periods that are shown; without a period multiples of the motion's pace. No more swings of the mechanism than
+/// are told apart.
 const PERIODS: f64 = 6.0;
-const SWINGS: f64 = 20.0;
+const SWINGS: f64 = 8.0;
+const MOST_SWINGS: f64 = 200.0;
 
 /// Where in the window the present is.
 const PRESENT: f64 = 0.94;
@@ -29,6 +34,9 @@ const MOST_POINTS: usize = 20_000;
 
 /// Width in points that every vertical axis takes, so that traces below each other line up.
 const AXIS_WIDTH: f32 = 58.0;
+
+/// Room in points between the edge and the name of the vertical axis.
+const MARGIN: f32 = 6.0;
 
 /// Height in points below which the names of the axes are left out.
 const LOW: f32 = 150.0;
@@ -57,6 +65,12 @@ impl Quantity {
         }
     }
 
+    /// Its value in a motion that was seen, with the mass of then.
+    fn seen(self, watch: &Watch, sample: &Sample) -> f64 {
+        let mass = if self == Self::Power { watch.model_at(sample.t).mass } else { 0.0 };
+        self.value(sample, mass)
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Displacement => "displacement",
@@ -75,22 +89,6 @@ impl Quantity {
         }
     }
 
-    fn hover(self) -> &'static str {
-        match self {
-            Self::Displacement => "Displacement of the mass from the middle, seen from the base.",
-            Self::Velocity => {
-                "Velocity of the mass, seen from the base. It jumps at an impact, which turns it round and \
-                 leaves a part of it."
-            }
-            Self::BaseAcceleration => {
-                "Acceleration of the base. The mass feels the opposite of it, as one does in a bus that brakes."
-            }
-            Self::Power => {
-                "Work of the base on the mass in a second. Below zero the mass gives energy back to the base."
-            }
-        }
-    }
-
     /// The ends of the vertical axis, in its unit.
     fn ends(self, context: &mut ViewContext<'_>) -> (f64, f64) {
         let both = |most: f64| (-most, most);
@@ -98,7 +96,7 @@ impl Quantity {
             Self::Displacement => (context.span.low * 1e3, context.span.high * 1e3),
             Self::Velocity => both(context.memory.ranges.follow(context.session).speed() * 1e3),
             Self::BaseAcceleration => {
-                both(1.12 * room_for_push(context.session.largest_push()) / STANDARD_GRAVITY)
+                both(1.12 * room_for_push(context.session.shown().largest_push()) / STANDARD_GRAVITY)
             }
             Self::Power => both(context.memory.ranges.follow(context.session).power() * 1e3),
         }
@@ -118,10 +116,8 @@ pub struct Timeline {
 pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) -> bool {
     let style = context.style;
     let (low, high) = quantity.ends(context);
-    let (now, model) = (context.session.player.time(), context.session.model());
-    let mass = model.mass;
-    let natural = std::f64::consts::TAU * model.scales.time;
-    let own = model.forcing_period.map_or(SWINGS * natural, |period| (PERIODS * period).min(200.0 * natural));
+    let (now, model) = (context.session.player.time(), context.session.shown());
+    let own = stretch(model);
     let window = context.memory.timeline.window.unwrap_or(own);
     let from = (now - PRESENT * window).max(-0.02 * window);
     let to = from + window;
@@ -134,17 +130,17 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
     let samples: Vec<Sample> =
         shown.range(first..last.max(first)).step_by(stride).copied().chain([state]).collect();
     let points: Vec<PlotPoint> =
-        samples.iter().map(|sample| PlotPoint::new(sample.t, quantity.value(sample, mass))).collect();
+        samples.iter().map(|sample| PlotPoint::new(sample.t, quantity.seen(watch, sample))).collect();
     let rests = rests(&samples);
     let impacts: Vec<f64> = watch
         .events()
         .iter()
         .skip(watch.events().partition_point(|event| event.t < from))
         .take_while(|event| event.t <= now)
-        .filter(|event| event.kind == EventKind::Impact)
+        .filter(|event| matches!(event.kind, EventKind::Impact | EventKind::Contact))
         .map(|event| event.t)
         .collect();
-    let stops = if quantity == Quantity::Displacement { model.stop_positions() } else { (None, None) };
+    let stops = if quantity == Quantity::Displacement { stop_lines(watch, from, to) } else { Vec::new() };
     let pass = ui.ctx().cumulative_pass_nr();
     let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass).map(|cursor| cursor.0);
     let tick = 0.035 * (high - low);
@@ -154,13 +150,29 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
     };
     let rows = f64::from((ui.available_height() / 40.0).clamp(2.0, 6.0));
     let columns = f64::from((ui.available_width() / 80.0).clamp(2.0, 8.0));
-    ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
+    let area = ui.max_rect();
+    ui.painter().rect_filled(area, 0.0, style.ground());
+    let mut entries = Vec::new();
+    if !rests.is_empty() {
+        entries.push((Sign::Shade(style.rest_shade()), "at rest on a stop"));
+    }
+    if !impacts.is_empty() {
+        entries.push((Sign::Ticks(style.impact_stroke()), "impacts"));
+    }
+    if !stops.is_empty() {
+        entries.push((Sign::Dashed(style.stop_stroke()), "stops"));
+    }
     let axis = format!("{} ({})", quantity.name(), quantity.unit());
     // the title of the view says what it is
     // a number at the very end of the axis would be cut off
     let edge = 0.02 * (high - low);
     let is_low = ui.available_height() < LOW;
     let (time_label, axis) = if is_low { ("", quantity.unit().to_owned()) } else { ("time (s)", axis) };
+    let plot = area.with_min_x(area.left() + MARGIN).with_min_y(area.top() + LEGEND);
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(plot));
+    // axes are written as those of the other views
+    ui.style_mut().text_styles.insert(TextStyle::Body, style.small());
+    ui.visuals_mut().override_text_color = Some(style.faint());
     let response = Plot::new(quantity.name())
         .allow_drag(false)
         .allow_scroll(false)
@@ -180,7 +192,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
         .y_axis_formatter(|mark, _| plain(mark))
         .label_formatter(|_| None)
         .show_crosshair(false)
-        .show(ui, |plot| {
+        .show(&mut ui, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
             for mark in marks(low, high, rows) {
                 plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
@@ -189,12 +201,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
                 let span = Span::new("", begin..=end).fill(style.rest_shade());
                 plot.span(span.border(egui::Stroke::NONE));
             }
-            for stop in [stops.0, stops.1].into_iter().flatten() {
-                plot.hline(
-                    HLine::new("stop", stop * 1e3)
-                        .stroke(style.stop_stroke())
-                        .style(LineStyle::dashed_loose()),
-                );
+            for ends in stops {
+                let line = Line::new("stop", ends.to_vec()).stroke(style.stop_stroke());
+                plot.line(line.style(LineStyle::dashed_loose()));
             }
             plot.vline(VLine::new("now", now).stroke(style.ghost_stroke()));
             // a tick stands at the edge, out of the way of the motion
@@ -209,20 +218,26 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
             }
         });
     let (transform, response) = (response.transform, response.response);
-    zoom(ui, &response, context, own);
+    zoom(&ui, &response, context, own);
+    let painter = ui.painter().with_clip_rect(area);
+    let mut right = area.right();
     if let Some(at) = response.hover_pos() {
         let t = transform.value_from_position(at).x.clamp(watch_begin(context).min(now), now);
         context.memory.timeline.cursor = Some((t, pass));
-        let value = quantity.value(&context.session.player.watch().state_at(t), mass);
-        response.on_hover_ui_at_pointer(|ui| {
-            ui.strong(format!("{value:.3} {} at {t:.3} s", quantity.unit()));
-            ui.label(quantity.hover());
-            ui.label(
-                "Grey: at rest on a stop. Ticks: impacts. The wheel zooms in time, a double click is back.",
-            );
-        });
+        let watch = context.session.player.watch();
+        let value = quantity.seen(watch, &watch.state_at(t));
+        let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
+        let text = format!("{value:.3} {} at {t:.3} s", quantity.unit());
+        right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }
+    legend(&painter, &style, area, right, &entries);
     false
+}
+
+/// How many seconds are shown of a motion by a model.
+fn stretch(model: &Model) -> f64 {
+    let most = MOST_SWINGS * model.swing();
+    model.forcing_period.map_or(SWINGS * model.pace(), |period| (PERIODS * period).min(most))
 }
 
 fn watch_begin(context: &ViewContext<'_>) -> f64 {
@@ -261,6 +276,21 @@ fn marks(low: f64, high: f64, count: f64) -> Vec<GridMark> {
 fn plain(mark: GridMark) -> String {
     let decimals = (-(mark.step_size * 1.001).log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{:.decimals$}", mark.value + 0.0)
+}
+
+/// Each stop from when to when it was where, in s and mm; a stop that stayed is one line.
+fn stop_lines(watch: &Watch, from: f64, to: f64) -> Vec<[[f64; 2]; 2]> {
+    let mut lines: Vec<[[f64; 2]; 2]> = Vec::new();
+    for (begin, end, model) in watch.models_between(from.max(0.0), to) {
+        let (left, right) = model.stop_positions();
+        for mm in [left, right].into_iter().flatten().map(|stop| stop * 1e3) {
+            match lines.iter_mut().find(|line| line[1] == [begin, mm]) {
+                Some(line) => line[1][0] = end,
+                None => lines.push([[begin, mm], [end, mm]]),
+            }
+        }
+    }
+    lines
 }
 
 /// From when to when the mass rests.

@@ -4,19 +4,18 @@
 //! it moves as a ball does on the sum of both. The sum is drawn thick; the mechanism's own curve is a thin ghost that stays.
 //! The vertical range follows the largest push in a few coarse steps, so that the tray tips and does not rescale.
 
-use eframe::egui::{self, Align2, CursorIcon, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, CursorIcon, Pos2, Rangef, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::style::{BALL, GRAB};
 
 use super::ViewContext;
+use super::labels::{ago, free_place, haloed};
+use super::legend::{LEGEND, Sign};
 use super::ranges::room_for_push;
-use super::stops::stops_ui;
+use super::stops::{WALL, stops_ui};
 
 /// Points between two points of a curve.
 const CURVE_STEP: f32 = 2.0;
-
-/// Height in points of the legend over the picture.
-pub(super) const LEGEND: f32 = 22.0;
 
 /// Draws it. Whether something changed.
 pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
@@ -32,7 +31,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     x_axis(&painter, context, rect);
 
     let state = context.session.player.state();
-    let model = context.session.model();
+    let model = context.session.shown();
     let (curve, mass) = (&model.mechanism.curve, model.mass);
     let tilt = mass * state.base_accel;
     let (left, right) = model.stop_positions();
@@ -58,19 +57,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     clipped.extend(Shape::dashed_line(&line(tilt), faint, 5.0, 5.0));
     clipped.add(Shape::line(reachable, style.tray_stroke()));
 
-    if let Some(barrier) = model.mechanism.landscape.barrier {
-        let top = height(barrier.x, 0.0);
-        clipped.text(top - vec2(0.0, 6.0), Align2::CENTER_BOTTOM, "barrier", style.small(), style.faint());
-        for (x, name) in [(barrier.left_well, "left-hand well"), (barrier.right_well, "right-hand well")] {
-            let galley = clipped.layout_no_wrap(name.to_owned(), style.small(), style.faint());
-            let mut place = Align2::CENTER_TOP.anchor_size(height(x, 0.0) + vec2(0.0, 6.0), galley.size());
-            // not cut off at the edge
-            let outside =
-                (rect.left() + 4.0 - place.left()).max(0.0) - (place.right() + 4.0 - rect.right()).max(0.0);
-            place = place.translate(vec2(outside, 0.0));
-            clipped.galley(place.min, galley, style.faint());
-        }
-    }
+    landmarks(&clipped, context, rect);
     let ball = height(state.x, tilt) - vec2(0.0, BALL);
     let (top, bottom) = (rect.top() + 4.0, rect.bottom());
     let mut changed = stops_ui(ui, context, rect, top, bottom);
@@ -79,6 +66,33 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     painter.circle(ball, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     legend(&ui.painter().with_clip_rect(area), context, area);
     changed
+}
+
+/// Names of the wells and the barrier in a row below the curve, each at its place along x; what has no room beside a stop is
+/// left out.
+fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
+    let (style, model) = (context.style, context.session.shown());
+    let Some(barrier) = model.mechanism.landscape.barrier else { return };
+    let (left, right) = model.stop_positions();
+    let screen = |x: f64| context.span.screen_from_world(x, rect);
+    let wall = |stop: f64, way: f32| {
+        let face = screen(stop);
+        Rangef::new(face.min(face + way * WALL), face.max(face + way * WALL))
+    };
+    let mut taken: Vec<Rangef> =
+        left.map(|x| wall(x, -1.0)).into_iter().chain(right.map(|x| wall(x, 1.0))).collect();
+    let names = [
+        (barrier.x, "barrier"),
+        (barrier.left_well, "left-hand well"),
+        (barrier.right_well, "right-hand well"),
+    ];
+    for (x, name) in names {
+        let width = painter.layout_no_wrap(name.to_owned(), style.small(), style.faint()).size().x;
+        let Some(place) = free_place(screen(x), width, rect.x_range(), &taken) else { continue };
+        let at = (pos2(place, rect.bottom() - 3.0), Align2::LEFT_BOTTOM);
+        haloed(painter, &style, at, name, (style.small(), style.faint()));
+        taken.push(Rangef::new(place, place + width));
+    }
 }
 
 /// Step in mm of a mass that the arrow keys move; with Shift ten of them.
@@ -152,8 +166,8 @@ struct Heights {
 impl Heights {
     /// From a little below the deepest to a little above the highest place that the mass gets to.
     fn of(ui: &Ui, context: &ViewContext<'_>, rect: Rect) -> Self {
-        let room = room_for_push(context.session.largest_push());
-        let model = context.session.model();
+        let room = room_for_push(context.session.shown().largest_push());
+        let model = context.session.shown();
         let curve = &model.mechanism.curve;
         let landscape = &model.mechanism.landscape;
         let tilt = model.mass * room;
@@ -215,17 +229,15 @@ pub(super) fn x_axis(painter: &egui::Painter, context: &ViewContext<'_>, rect: R
 
 fn legend(painter: &egui::Painter, context: &ViewContext<'_>, area: Rect) {
     let style = context.style;
-    let entries =
-        [(style.tray_stroke(), "potential with the push"), (style.ghost_stroke(), "the mechanism's own")];
-    let (mut x, y) = (area.left() + 10.0, area.top() + 0.5 * LEGEND);
-    for (stroke, text) in entries {
-        let galley = painter.layout_no_wrap(text.to_owned(), style.small(), style.faint());
-        if x + 28.0 + galley.size().x > area.right() {
-            break;
-        }
-        painter.line_segment([pos2(x, y), pos2(x + 22.0, y)], stroke);
-        let (at, width) = (pos2(x + 28.0, y - 0.5 * galley.size().y), galley.size().x);
-        painter.galley(at, galley, style.faint());
-        x = at.x + width + 20.0;
+    let entries = [
+        (Sign::Line(style.tray_stroke()), "potential with the push"),
+        (Sign::Line(style.ghost_stroke()), "the mechanism's own"),
+    ];
+    let y = area.top() + 0.5 * LEGEND;
+    let mut right = area.right();
+    if let Some(ago) = ago(context.session) {
+        let at = (pos2(area.right() - 8.0, y), Align2::RIGHT_CENTER);
+        right = haloed(painter, &style, at, &ago, (style.small(), style.ink())).left();
     }
+    super::legend::legend(painter, &style, area, right, &entries);
 }

@@ -13,6 +13,7 @@ use super::super::menu::Command;
 use super::super::session::CannotRun;
 use super::super::style::STATUS;
 use super::Window;
+use super::typed::{Ended, Typed};
 
 /// How many of the scenes opened last are kept.
 const MOST_RECENT: usize = 8;
@@ -25,8 +26,8 @@ pub(super) enum Chosen {
     Csv(PathBuf),
     Map(PathBuf),
     Picture(PathBuf),
-    /// The desktop has no dialog to offer.
-    NoDialog,
+    /// The desktop has no dialog to offer: the file that it would have begun with.
+    NoDialog(Wanted, PathBuf),
 }
 
 /// A dialog that is gone sooner than this in ms was never seen by anyone.
@@ -40,6 +41,35 @@ pub(super) enum Wanted {
     Csv,
     Map,
     Picture,
+}
+
+impl Wanted {
+    /// What is asked where a path is typed.
+    pub(super) fn question(self) -> &'static str {
+        match self {
+            Self::Open => "Open which scene?",
+            Self::Save => "Save the scene to which file?",
+            Self::Csv => "Save the motion to which file?",
+            Self::Map => "Save the map to which file?",
+            Self::Picture => "Save the picture to which file?",
+        }
+    }
+
+    /// What is then done.
+    pub(super) fn verb(self) -> &'static str {
+        if self == Self::Open { "Open" } else { "Save" }
+    }
+
+    /// The file that was chosen for it.
+    fn with(self, path: PathBuf) -> Chosen {
+        match self {
+            Self::Open => Chosen::Open(path),
+            Self::Save => Chosen::Save(path),
+            Self::Csv => Chosen::Csv(path),
+            Self::Map => Chosen::Map(path),
+            Self::Picture => Chosen::Picture(path),
+        }
+    }
 }
 
 impl Window {
@@ -108,22 +138,21 @@ impl Window {
             && let Some(chosen) = self.dialog.current().cloned()
         {
             self.dialog.clear();
-            match chosen {
-                Chosen::Open(path) => self.open_another(&path.to_string_lossy()),
-                Chosen::Save(path) => self.save_to(ctx, &path),
-                Chosen::Csv(path) => self.write_motion(&path),
-                Chosen::Map(path) => self.write_map(&path),
-                Chosen::Picture(path) => self.write_picture(ctx, path),
-                Chosen::NoDialog => self.say(
-                    "No file can be chosen here",
-                    "This desktop offers no file dialog (xdg-desktop-portal or zenity would). A scene can be \
-                     dropped on the window or opened as `interwell SCENE.ron`; Edit has Copy the scene as text."
-                        .to_owned(),
-                ),
-            }
-        } else if !self.dialog.is_running() && self.over_comments.is_none() {
+            self.take_file(ctx, chosen);
+        } else if !self.dialog.is_running() && self.over_comments.is_none() && self.typed.is_none() {
             // a dialog without a choice: nothing follows
             self.after_save = None;
+        }
+    }
+
+    fn take_file(&mut self, ctx: &egui::Context, chosen: Chosen) {
+        match chosen {
+            Chosen::Open(path) => self.open_another(&path.to_string_lossy()),
+            Chosen::Save(path) => self.save_to(ctx, &path),
+            Chosen::Csv(path) => self.write_motion(&path),
+            Chosen::Map(path) => self.write_map(&path),
+            Chosen::Picture(path) => self.write_picture(ctx, path),
+            Chosen::NoDialog(wanted, path) => self.typed = Some(Typed::new(wanted, &path)),
         }
     }
 
@@ -197,6 +226,15 @@ impl Window {
                 Answer::Cancel => self.after_save = None,
             }
         }
+        if let Some(typed) = &mut self.typed
+            && let Some(ended) = typed.ui(ui)
+        {
+            let wanted = typed.wanted;
+            self.typed = None;
+            if let Ended::Chosen(path) = ended {
+                self.take_file(ctx, wanted.with(path));
+            }
+        }
         if ui.input(|input| !input.raw.hovered_files.is_empty()) {
             let painter =
                 ctx.layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));
@@ -257,7 +295,7 @@ impl Window {
         });
     }
 
-    /// From now on no dialog of the desktop is opened, as where there is none: the window says so in its place.
+    /// From now on no file is asked for: a dialog is answered at once, by none.
     pub fn without_dialogs(&mut self) {
         self.dialogs = false;
     }
@@ -265,7 +303,6 @@ impl Window {
     /// Asks for a file, without the window waiting for the answer.
     pub(super) fn choose(&mut self, wanted: Wanted) {
         if !self.dialogs {
-            self.dialog.ask(&self.wake, |_| Some(Chosen::NoDialog));
             return;
         }
         let (kind, ending) = match wanted {
@@ -278,6 +315,10 @@ impl Window {
         let stem = path.as_ref().and_then(|path| path.file_stem());
         let stem = stem.map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.as_ref().and_then(|path| path.parent()).map(Path::to_path_buf);
+        // what a path would begin with where there is no dialog
+        let begin = folder.clone().or_else(|| std::env::current_dir().ok()).unwrap_or_default();
+        let begin =
+            if wanted == Wanted::Open { begin.join("") } else { begin.join(format!("{stem}.{ending}")) };
         self.dialog.ask(&self.wake, move |_| {
             let mut dialog = rfd::FileDialog::new().add_filter(kind, &[ending]);
             if let Some(folder) = folder.filter(|folder| folder.is_dir()) {
@@ -290,20 +331,12 @@ impl Window {
                 dialog.set_file_name(format!("{stem}.{ending}")).save_file()
             };
             let Some(mut path) = chosen else {
-                return (since.elapsed().as_millis() < UNSEEN).then_some(Chosen::NoDialog);
+                return (since.elapsed().as_millis() < UNSEEN).then_some(Chosen::NoDialog(wanted, begin));
             };
-            if wanted == Wanted::Open {
-                return Some(Chosen::Open(path));
-            }
-            if path.extension().is_none() {
+            if wanted != Wanted::Open && path.extension().is_none() {
                 path.set_extension(ending);
             }
-            Some(match wanted {
-                Wanted::Csv => Chosen::Csv(path),
-                Wanted::Map => Chosen::Map(path),
-                Wanted::Picture => Chosen::Picture(path),
-                _ => Chosen::Save(path),
-            })
+            Some(wanted.with(path))
         });
     }
 }

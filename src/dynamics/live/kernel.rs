@@ -5,11 +5,11 @@
 
 use super::super::clock::Clock;
 use super::super::drive::Drive;
-use super::super::equation::{End, Equation};
+use super::super::equation::Equation;
 use super::super::model::{Model, Request};
 use super::super::motion::{Carried, Contact, Motion};
 use super::super::prepare::{Form, base_at, clock, form};
-use super::super::result::{Event, Outcome, Phase, Sample};
+use super::super::result::{Event, Outcome, Sample};
 
 /// Steps of one call: some tens of milliseconds. More are only asked for where impacts crowd without end.
 const STEPS_PER_CALL: u64 = 50_000;
@@ -126,9 +126,7 @@ impl Kernel {
         let mut motion = self.motion::<D, false>(model, drive, &request, None);
         motion.at = self.clock.at(now);
         motion.segment = self.segment(drive, now);
-        if motion.contact == Contact::Free {
-            motion.place_at_start();
-        }
+        motion.place_at_start();
         (motion.carry(), motion.record.events.take().unwrap_or_default())
     }
 
@@ -196,9 +194,9 @@ impl Kernel {
         into: &mut Vec<Sample>,
         drive: &D,
     ) {
-        if tail.contact != Contact::Free {
+        if matches!(tail.contact, Contact::Resting(_) | Contact::Motionless) {
             // It stands still, and the search for its release need not be made again.
-            let (x, phase) = (tail.x, phase_of(tail.contact));
+            let (x, phase) = (tail.x, tail.phase());
             into.extend(times.iter().map(|&t| {
                 let base_accel = base_at(drive, &self.clock, tail.segment, &self.clock.at(t), self.unit());
                 Sample { t, x, v: 0.0, base_accel, phase }
@@ -258,13 +256,5 @@ fn sums<D: Drive<f64>>(motion: &Motion<'_, f64, D, true>) -> Sums {
         work: whole.work.value(),
         squared_velocity: whole.squared_velocity.value(),
         impact: whole.impact.value(),
-    }
-}
-
-pub(super) fn phase_of(contact: Contact) -> Phase {
-    match contact {
-        Contact::Resting(End::Low) => Phase::LeftStop,
-        Contact::Resting(End::High) => Phase::RightStop,
-        _ => Phase::Free,
     }
 }

@@ -12,7 +12,7 @@
 mod kernel;
 mod phase;
 
-use kernel::{Kernel, Sums, phase_of};
+use kernel::{Kernel, Sums};
 
 use super::model::Model;
 use super::motion::{Carried, Contact};
@@ -180,7 +180,7 @@ impl Live {
             x: carried.x,
             v: carried.v / self.kernel.unit(),
             base_accel: self.kernel.base(carried),
-            phase: phase_of(carried.contact),
+            phase: carried.phase(),
         }
     }
 
@@ -220,7 +220,7 @@ impl Live {
             return;
         }
         let next = self.model.clone();
-        if !energy(&next, held_within(&next, (x, v))).is_finite() {
+        if !energy(&next, held_within(&next, (x, v), 0.0)).is_finite() {
             return;
         }
         self.go_on(next, (x, v), Phase::Free, into);
@@ -230,20 +230,26 @@ impl Live {
         let (carried, sums) = self.present();
         let before = energy(&self.model, (carried.x, carried.v / self.kernel.unit()));
         self.past.add(&sums, &self.model);
-        next.start = held_within(&next, wanted);
+        // Where a stop was pressed in, it stays so: only what a stop is moved over is carried along.
+        let depth = self.model.pressed_depth(wanted.0).filter(|_| was != Phase::Free);
+        let depth = depth.filter(|_| next.compliant.is_some()).map_or(0.0, |own| own.0);
+        next.start = held_within(&next, wanted, depth);
         next.motionless = false;
         self.past.by_hand_j += energy(&next, next.start) - before;
+        let (gave, gives) = (self.model.compliant.is_some(), next.compliant.is_some());
         self.model = next;
         self.kernel = Kernel::new(&self.model);
         let (start, mut happened) = self.kernel.start(&self.model, self.now);
         // Resting on is no event, and letting go is one.
-        let rests = phase_of(start.contact);
+        let rests = start.phase();
         match was {
             Phase::Free => {}
-            _ if was == rests => happened.retain(|event| event.kind != EventKind::Rest),
+            _ if was == rests && gave == gives => {
+                happened.retain(|event| !matches!(event.kind, EventKind::Rest | EventKind::Contact));
+            }
             _ => {
                 let side = if was == Phase::LeftStop { Side::Left } else { Side::Right };
-                let kind = EventKind::Release;
+                let kind = if gave { EventKind::Separate } else { EventKind::Release };
                 happened.insert(0, Event { t: self.now, kind, side, v_in: 0.0, v_out: 0.0 });
             }
         }
@@ -321,13 +327,13 @@ fn energy(model: &Model, (x, v): (f64, f64)) -> f64 {
     kinetic + potential
 }
 
-/// A state with the mass between the stops and within the known curve; where it had to be carried there, it has no
-/// speed.
-fn held_within(model: &Model, (x, v): (f64, f64)) -> (f64, f64) {
+/// A state with the mass between the stops, or pressed in by up to `depth`, and within the known curve; where it had to
+/// be carried there, it has no speed.
+fn held_within(model: &Model, (x, v): (f64, f64), depth: f64) -> (f64, f64) {
     let domain = model.mechanism.curve.domain();
     let stops = model.stops;
-    let low = stops.and_then(|s| s.left).map_or(domain.0, |stop| stop.x.max(domain.0));
-    let high = stops.and_then(|s| s.right).map_or(domain.1, |stop| stop.x.min(domain.1));
+    let low = stops.and_then(|s| s.left).map_or(domain.0, |stop| (stop.x - depth).max(domain.0));
+    let high = stops.and_then(|s| s.right).map_or(domain.1, |stop| (stop.x + depth).min(domain.1));
     if !(x <= high) {
         (high, 0.0)
     } else if x < low {

@@ -60,6 +60,20 @@ impl Axis {
         Self { low, high, ticks, label }
     }
 
+    /// An axis of decimal logarithms that covers `values` (which are the numbers themselves, above 0) in whole decades,
+    /// with some `count` ticks at powers of ten.
+    pub fn decades(values: impl IntoIterator<Item = f64>, count: usize, label: &str) -> Self {
+        let logs = values.into_iter().filter(|value| value.is_finite() && *value > 0.0).map(f64::log10);
+        let (low, high) =
+            logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), log| (low.min(log), high.max(log)));
+        let (low, high) =
+            if low > high { (0.0, 1.0) } else { (low.floor(), high.ceil().max(low.floor() + 1.0)) };
+        let every = ((high - low) / count.max(1) as f64).ceil() as i32;
+        let powers = (low as i32..=high as i32).filter(|power| power.rem_euclid(every) == 0);
+        let ticks = powers.map(|power| (f64::from(power), format!("10{}", raised(power)))).collect();
+        Self { low, high, ticks, label: label.to_owned() }
+    }
+
     /// Where `value` stands between the ends: 0 at the lower, 1 at the upper.
     pub fn share(&self, value: f64) -> f64 {
         (value.clamp(-LARGEST, LARGEST) - self.low) / (self.high - self.low)
@@ -112,6 +126,17 @@ mod tests {
 
     fn numbers(axis: &Axis) -> String {
         axis.ticks.iter().map(|tick| tick.1.as_str()).collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn decades_cover_what_they_show() {
+        let axis = Axis::decades([3e-5, f64::NAN, 0.0, 2.0], 3, "error");
+        assert_eq!((axis.low, axis.high), (-5.0, 1.0));
+        assert_eq!(numbers(&axis), "10\u{207b}\u{2074} 10\u{207b}\u{b2} 10\u{2070}");
+        let one = Axis::decades([1e-3], 5, "");
+        assert_eq!((one.low, one.high), (-3.0, -2.0));
+        let none = Axis::decades([], 5, "");
+        assert_eq!((none.low, none.high), (0.0, 1.0));
     }
 
     #[test]

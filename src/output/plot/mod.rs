@@ -3,7 +3,9 @@
 //! A plot writes a [`Figure`], a list of plain shapes; [`Format::bytes`] paints it. Light or dark, the data and
 //! their places are the same, and the same data give the same bytes.
 
+mod accuracy;
 mod axis;
+mod contact;
 mod curve;
 mod figure;
 mod font;
@@ -17,7 +19,9 @@ mod sweep;
 
 use std::path::Path;
 
+pub use accuracy::accuracy_figure;
 pub use axis::Axis;
+pub use contact::contact_figure;
 pub use curve::curve_figure;
 pub use figure::Figure;
 pub use map::Overlay;

@@ -46,7 +46,9 @@ pub fn run_figure(
         entries.push((Sample::Ticks(theme.ink), "impact"));
     }
     if trace.rests.rows() > 0 {
-        entries.push((Sample::Patch(theme.rest, None), "at rest on a stop"));
+        // On a compliant stop it never rests: it trembles.
+        let words = if summary.peak_contact_force.is_some() { "on a stop" } else { "at rest on a stop" };
+        entries.push((Sample::Patch(theme.rest, None), words));
     }
     if trace.stops.0.is_finite() || trace.stops.1.is_finite() {
         entries.push((Sample::Patch(theme.wall_fill(), None), "stop"));
@@ -276,7 +278,11 @@ fn account(figure: &mut Figure, summary: &Summary, trace: &Trace, (scale, unit):
             "" => format!("{} impacts", summary.impacts),
             _ => format!("{} crossings, {} impacts", summary.crossings, summary.impacts),
         });
-        lines.extend(share.map(|share| format!("at rest {:.0} % of the time", 100.0 * share)));
+        let words = if summary.peak_contact_force.is_some() { "in contact" } else { "at rest" };
+        lines.extend(share.map(|share| format!("{words} {:.0} % of the time", 100.0 * share)));
+        if let Some(force) = summary.peak_contact_force.filter(|force| *force > 0.0) {
+            lines.push(format!("contact force up to {} N", short(force)));
+        }
     }
     if trace.path.rows() > 0 && lines.is_empty() {
         lines.push("ended before its settled window".to_owned());

@@ -41,6 +41,7 @@ fn a_sample_at_an_events_instant_is_the_state_after_it() {
             EventKind::Release => {
                 assert!(p.x == sign * 4e-3 && p.v.abs() < 1e-25 && p.phase == Phase::Free, "{e:?} {p:?}");
             }
+            EventKind::Contact | EventKind::Separate => panic!("these stops are rigid: {e:?}"),
             EventKind::Crossing => {
                 let late = 4.0 * f64::EPSILON * e.t;
                 assert!(p.x.abs() <= e.v_out.abs() * late + 1e-17, "{e:?} {p:?}");

@@ -5,37 +5,23 @@ use std::f64::consts::PI;
 use interwell::dynamics::{EventKind, Outcome, Phase};
 use interwell::mechanics::{ForceCurve, Piece};
 use interwell::scene::Scene;
+use interwell::study::accuracy::exact::Corner;
 
 use super::scenes::*;
 
-/// Slope 1 N/m left of the break at `b`, `outer` right of it; force 0 at x = 0. The origins of the two
-/// pieces are off the break, so that the two sides of it differ in rounding.
 fn corner(b: f64, outer: f64) -> ForceCurve {
-    let inner = Piece { origin: -0.1, coefficients: vec![-0.1, 1.0], potential_at_origin: 0.0 };
-    let far = b + 0.7;
-    let right =
-        Piece { origin: far, coefficients: vec![b + outer * (far - b), outer], potential_at_origin: 0.0 };
-    ForceCurve::from_pieces(vec![inner, right], vec![b], (-5.0, 5.0), false, None)
+    Corner { at: b, outer }.curve()
 }
 
 fn free(x_mm: f64, v: f64, duration: f64) -> Scene {
     scene(polynomial(&[0.0]), at(x_mm, v), duration)
 }
 
-/// Half a turn beyond the corner: from x = b with speed v back to b.
-fn time_beyond(b: f64, outer: f64, v: f64) -> f64 {
-    // y'' = -b - outer y, y(0) = 0, y'(0) = v
-    let w = outer.sqrt();
-    let shift = b / outer;
-    2.0 * (PI / 2.0 - (shift * w / v).atan()) / w
-}
-
 #[test]
 fn a_corner_crossed_thousands_of_times_keeps_the_energy_and_the_period() {
     let (b, outer) = (0.3_f64, 25.0);
     let v: f64 = 1.0; // at x = 0
-    let at_break = (v * v - b * b).sqrt();
-    let period = PI + 2.0 * (b / v).asin() + time_beyond(b, outer, at_break);
+    let period = Corner { at: b, outer }.period(v);
     let n = 1500.0;
     let mut s = free(0.0, v, n * period);
     s.run.tolerance = 1e-14;
@@ -55,7 +41,7 @@ fn a_corner_crossed_thousands_of_times_keeps_the_energy_and_the_period() {
 fn a_start_on_a_break_with_speed_either_way() {
     let (b, outer) = (0.3_f64, 25.0);
     // outward: in the outer piece at once, back at the break after the closed form, with -v
-    let t = time_beyond(b, outer, 0.5);
+    let t = Corner { at: b, outer }.time_beyond(0.5);
     let m = model_on(&free(300.0, 0.5, t), corner(b, outer));
     let r = m.run(&full(&[]));
     assert!(

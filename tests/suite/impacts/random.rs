@@ -19,6 +19,7 @@ fn stop_distances(stops: &Stops) -> [(f64, f64); 2] {
     match *stops {
         Stops::None => [(f64::INFINITY, 1.0); 2],
         Stops::Rigid { travel_limit_mm, restitution } => [(travel_limit_mm / 1e3, restitution); 2],
+        Stops::Hertz { .. } => panic!("these tests are of rigid stops"),
         Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => {
             let left = restitution_left.or(restitution_right).unwrap_or(1.0);
             let right = restitution_right.or(restitution_left).unwrap_or(1.0);
@@ -59,6 +60,7 @@ pub fn assert_sound(scene: &Scene, model: &Model, run: &Run, ledger_factor: f64)
                 assert!(resting == Some(e.side), "released from {resting:?}: {e:?}");
                 resting = None;
             }
+            EventKind::Contact | EventKind::Separate => panic!("these stops are rigid: {e:?}"),
             EventKind::Crossing => {
                 assert!(resting.is_none(), "crosses while at rest: {e:?}");
                 assert!(crossed != Some(e.side), "enters the same well twice: {e:?}");
@@ -222,6 +224,7 @@ fn place(stops: &Stops, mechanism: &Mechanism, share: f64, speed: f64) -> Start 
     let (left, right) = match *stops {
         Stops::None => (None, None),
         Stops::Rigid { travel_limit_mm, .. } => (Some(travel_limit_mm), Some(travel_limit_mm)),
+        Stops::Hertz { .. } => panic!("these tests are of rigid stops"),
         Stops::Uneven { left_mm, right_mm, .. } => (left_mm, right_mm),
     };
     let (low, high) = (-left.unwrap_or(1500.0), right.unwrap_or(1500.0));

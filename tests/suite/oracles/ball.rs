@@ -2,12 +2,10 @@
 
 use interwell::dynamics::{EventKind, Phase, STANDARD_GRAVITY, Side};
 
-use crate::support::*;
+use interwell::numeric::Scalar;
+use interwell::study::accuracy::exact::{first_hit, impact_time, rest_time};
 
-/// First hit t1 after a drop; the n-th impact after t1 (1 + 2 e (1 - e^(n-1))/(1 - e)), n from 1.
-fn impact_time(first: f64, restitution: f64, n: i32) -> f64 {
-    first * (1.0 + 2.0 * (1..n).map(|i| restitution.powi(i)).sum::<f64>())
-}
+use crate::support::*;
 
 #[test]
 fn a_dropped_ball_bounces_by_a_geometric_series_and_rests_at_its_sum() {
@@ -94,11 +92,11 @@ fn a_ball_on_a_base_that_accelerates_is_the_same_ball() {
          start: At(x_mm: 0, v_m_per_s: 0), run: (duration_s: 5, tolerance: 1e-12)",
     );
     let run = run(&model);
-    let first = (2.0 / STANDARD_GRAVITY).sqrt();
+    let first = first_hit(1.0, STANDARD_GRAVITY);
     for (n, impact) in of_kind(&run, EventKind::Impact).iter().enumerate() {
-        near_relative(impact.t, impact_time(first, 0.8, n as i32 + 1), 1e-13);
+        near_relative(impact.t, impact_time(first, 0.8, n as u32 + 1).to_f64(), 1e-13);
     }
-    near_relative(of_kind(&run, EventKind::Rest)[0].t, 9.0 * first, 1e-13);
+    near_relative(of_kind(&run, EventKind::Rest)[0].t, rest_time(first, 0.8).to_f64(), 1e-13);
     // here the base does the work, m g h, and the impacts take it
     let ledger = run.summary.ledger.unwrap();
     near_relative(ledger.work_j, 0.25 * STANDARD_GRAVITY, 1e-13);

@@ -60,6 +60,7 @@ fn check_events(run: &Run, limits: &Limits, start: f64, duration: f64) {
                 resting = None;
                 rested += event.t - since;
             }
+            EventKind::Contact | EventKind::Separate => panic!("these stops are rigid: {event:?}"),
             EventKind::Crossing => {
                 assert_eq!(resting, None, "{event:?}");
                 assert_ne!(well, event.side, "{event:?}");

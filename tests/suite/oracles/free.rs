@@ -3,21 +3,18 @@
 use std::f64::consts::SQRT_2;
 
 use interwell::dynamics::{EventKind, Phase, Side};
+use interwell::numeric::Scalar;
+use interwell::study::accuracy::exact::UnitWell;
 
 use crate::support::*;
 
 fn potential(x: f64) -> f64 {
-    0.25 * x.powi(4) - 0.5 * x * x
+    UnitWell::potential(x)
 }
 
-/// Period of the orbit released at x0 within a well, 1 < x0 < sqrt 2, by elliptic integral.
-fn inner_period(x0: f64) -> f64 {
-    2.0 * elliptic_k(1.0 - (2.0 - x0 * x0) / (x0 * x0)) * SQRT_2 / x0
-}
-
-/// Period of the orbit released at x0 > sqrt 2 around both wells.
-fn outer_period(x0: f64) -> f64 {
-    4.0 * elliptic_k(x0 * x0 / (2.0 * (x0 * x0 - 1.0))) / (x0 * x0 - 1.0).sqrt()
+/// Period of the orbit released at rest at x0.
+fn period_of(x0: f64) -> f64 {
+    UnitWell { x0 }.period().to_f64()
 }
 
 fn released_at(x0: f64, duration: f64) -> interwell::dynamics::Model {
@@ -30,10 +27,10 @@ fn released_at(x0: f64, duration: f64) -> interwell::dynamics::Model {
 #[test]
 fn elliptic_periods_have_their_published_digits() {
     // T = 2 K(k) sqrt 2 / x0 within a well and 4 K(k)/sqrt(x0^2 - 1) around both: the digits of the list.
-    near(inner_period(1.2), 4.6239052218, 5.1e-11);
-    near(inner_period(1.41), 7.9234358059, 5.1e-11);
-    near(outer_period(1.42), 15.0844204, 5.1e-8);
-    near(outer_period(1.5), 9.2236627483, 5.1e-11);
+    near(period_of(1.2), 4.6239052218, 5.1e-11);
+    near(period_of(1.41), 7.9234358059, 5.1e-11);
+    near(period_of(1.42), 15.0844204, 5.1e-8);
+    near(period_of(1.5), 9.2236627483, 5.1e-11);
 }
 
 #[test]
@@ -41,7 +38,7 @@ fn an_orbit_within_a_well_returns_after_its_period() {
     // Released at rest at x0: after every period T the mass is back, at rest, and half a period later it
     // turns at sqrt(2 - x0^2). A time error dt shows as v = -F(x0) dt.
     for (x0, bound) in [(1.2, 1e-12), (1.41, 1e-11)] {
-        let period = inner_period(x0);
+        let period = period_of(x0);
         let periods = 10;
         let run = run_at(&released_at(x0, period * 10.5), &every(0.5 * period, 2 * periods));
         let force = x0 * x0 * x0 - x0;
@@ -66,7 +63,7 @@ fn an_orbit_around_both_wells_crosses_twice_a_period() {
     // Crossings at T/4 + n T/2 into alternate wells, each at the speed sqrt(2 E) to 1e-10 (at
     // x0 = 1.42 a twelfth of the largest). There dT/dx0 is some 300, too.
     for (x0, bound) in [(1.42, 2e-11), (1.5, 5e-12)] {
-        let period = outer_period(x0);
+        let period = period_of(x0);
         let run = run(&released_at(x0, 10.0 * period));
         let crossings = of_kind(&run, EventKind::Crossing);
         assert_eq!(crossings.len(), 20);

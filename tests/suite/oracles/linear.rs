@@ -3,79 +3,14 @@
 use std::f64::consts::{PI, TAU};
 
 use interwell::dynamics::{EventKind, Model, STANDARD_GRAVITY, Sample, Side};
+use interwell::numeric::{DoubleDouble, Number};
+use interwell::study::accuracy::exact::{Forcing, Oscillator};
 
 use crate::support::*;
 
-/// x'' + g x' + k x = 0.
-#[derive(Clone, Copy)]
-struct Oscillator {
-    g: f64,
-    k: f64,
-}
-
-impl Oscillator {
-    /// State at time t after (x, v), no drive: underdamped, critical or overdamped.
-    fn free(self, (x, v): (f64, f64), t: f64) -> (f64, f64) {
-        let (half, rest) = (0.5 * self.g, self.k - 0.25 * self.g * self.g);
-        // c and s solve the equation for c(0) = 1, c'(0) = 0 and s(0) = 0, s'(0) = 1, times exp(half t)
-        let decay = (-half * t).exp();
-        let (c, s) = if rest > 0.0 {
-            let w = rest.sqrt();
-            (decay * (w * t).cos(), decay * (w * t).sin() / w)
-        } else if rest < 0.0 {
-            let w = (-rest).sqrt();
-            let (slow, fast) = ((-(self.k / (half + w)) * t).exp(), (-(half + w) * t).exp());
-            (0.5 * (slow + fast), 0.5 * (slow - fast) / w)
-        } else {
-            (decay, decay * t)
-        };
-        (x * c + (v + half * x) * s, v * c - (self.k * x + half * v) * s)
-    }
-
-    /// The solution of x'' + g x' + k x = -(a + r t) sin(w t + phase) that has no free part, at time t: the
-    /// imaginary part of (P + Q t) exp(i (w t + phase)), with Q L = -r, P L + Q L' = -a, L = k - w^2 + i g w,
-    /// L' = g + 2 i w.
-    fn driven(self, (a, r): (f64, f64), w: f64, phase: f64, t: f64) -> (f64, f64) {
-        let l = (self.k - w * w, self.g * w);
-        let q = divide((-r, 0.0), l);
-        let ql = multiply(q, (self.g, 2.0 * w));
-        let p = divide((-a - ql.0, -ql.1), l);
-        let z = (p.0 + q.0 * t, p.1 + q.1 * t);
-        let (sin, cos) = (w * t + phase).sin_cos();
-        let value = z.0 * sin + z.1 * cos;
-        let slope = q.0 * sin + q.1 * cos + w * (z.0 * cos - z.1 * sin);
-        (value, slope)
-    }
-
-    /// The full state at t of a motion that is at `start` at t0 under the sum of such drives.
-    fn state(self, start: (f64, f64), t0: f64, t: f64, drives: &[Drive]) -> (f64, f64) {
-        let sum = |at: f64| {
-            drives.iter().fold((0.0, 0.0), |sum, d| {
-                let own = self.driven(d.amplitude, d.w, d.phase, at);
-                (sum.0 + own.0, sum.1 + own.1)
-            })
-        };
-        let (at_start, now) = (sum(t0), sum(t));
-        let own = self.free((start.0 - at_start.0, start.1 - at_start.1), t - t0);
-        (own.0 + now.0, own.1 + now.1)
-    }
-}
-
-/// Base acceleration (a + r t) sin(w t + phase).
-struct Drive {
-    amplitude: (f64, f64),
-    w: f64,
-    phase: f64,
-}
-
-fn multiply(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
-    (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
-}
-
-fn divide(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
-    let size = b.0 * b.0 + b.1 * b.1;
-    let z = multiply(a, (b.0, -b.1));
-    (z.0 / size, z.1 / size)
+/// A tone with the amplitude `a` + `growth` t in m/s^2, of a frequency in Hz and a phase in degrees.
+fn tone((a, growth): (f64, f64), frequency: f64, degrees: f64) -> Forcing {
+    Forcing::Tone { amplitude: a, growth: DoubleDouble::of(growth), frequency, phase: degrees / 360.0 }
 }
 
 #[track_caller]
@@ -90,7 +25,7 @@ fn sprung(c: f64, rest: &str) -> (Oscillator, Model) {
         "mass_g: 20, mechanism: Polynomial(coefficients_si: [0, 50]),
          damping: Coefficient(c_n_s_per_m: {c:?}), start: At(x_mm: 2, v_m_per_s: -0.1), {rest}"
     ));
-    (Oscillator { g: c / 0.02, k: 50.0 / 0.02 }, model)
+    (Oscillator::new(0.02, c, 50.0), model)
 }
 
 #[test]
@@ -100,7 +35,7 @@ fn free_oscillations_in_closed_form() {
         let (oscillator, model) = sprung(c, "run: (duration_s: 3, tolerance: 1e-12)");
         let run = run_at(&model, &every(0.037, 80));
         for s in &run.samples {
-            compare(&model, s, oscillator.free((0.002, -0.1), s.t), 2e-12);
+            compare(&model, s, oscillator.nearest((0.002, -0.1), 0.0, s.t, &[]), 2e-12);
         }
         assert_eq!(run.samples.len(), 80);
     }
@@ -117,16 +52,14 @@ fn a_sine_on_a_damped_oscillator_in_closed_form() {
                  run: (duration_s: 12, tolerance: 1e-12)"
             ),
         );
-        let drive = Drive {
-            amplitude: (0.7 * STANDARD_GRAVITY, 0.0),
-            w: TAU * frequency,
-            phase: f64::to_radians(phase_deg),
-        };
+        let amplitude = 0.7 * STANDARD_GRAVITY;
+        let drive = tone((amplitude, 0.0), frequency, phase_deg);
         let run = run_at(&model, &every(0.0911, 131));
         for s in &run.samples {
-            let w = drive.w;
-            near(s.base_accel, drive.amplitude.0 * (w * s.t + drive.phase).sin(), 1e-13 * w * s.t.max(1.0));
-            let exact = oscillator.state((0.002, -0.1), 0.0, s.t, std::slice::from_ref(&drive));
+            let w = TAU * frequency;
+            let angle = w * s.t + f64::to_radians(phase_deg);
+            near(s.base_accel, amplitude * angle.sin(), 1e-13 * w * s.t.max(1.0));
+            let exact = oscillator.nearest((0.002, -0.1), 0.0, s.t, &[drive]);
             compare(&model, s, exact, 3e-12);
         }
         assert_eq!(run.samples.len(), 131);
@@ -137,12 +70,12 @@ fn a_sine_on_a_damped_oscillator_in_closed_form() {
 fn a_steady_orbit_has_the_textbook_rms() {
     // Long settled, RMS velocity = w X/sqrt 2 and peak to peak 2 X, X = A/sqrt((k - w^2)^2 + (g w)^2); a
     // run's period is one forcing period; the base's work is damping's.
-    let (oscillator, model) = sprung(
+    let (_, model) = sprung(
         0.6,
         "excitation: Sine(frequency_hz: 5, amplitude_g: 0.7), run: (duration_s: 6, settle_s: 3, tolerance: 1e-12)",
     );
     let w = TAU * 5.0;
-    let l = (oscillator.k - w * w).hypot(oscillator.g * w);
+    let l = (50.0 / 0.02 - w * w).hypot(0.6 / 0.02 * w);
     let amplitude = 0.7 * STANDARD_GRAVITY / l;
     let summary = run(&model).summary;
     near_relative(summary.rms_velocity.unwrap(), w * amplitude * 0.5f64.sqrt(), 1e-13);
@@ -166,16 +99,16 @@ fn a_ramped_amplitude_in_closed_form_through_its_end() {
         );
         let g = STANDARD_GRAVITY;
         let w = TAU * 6.5;
-        let ramp = [Drive { amplitude: (from * g, (to - from) * g / over), w, phase: 0.0 }];
-        let flat = [Drive { amplitude: (to * g, 0.0), w, phase: 0.0 }];
+        let ramp = [tone((from * g, (to - from) * g / over), 6.5, 0.0)];
+        let flat = [tone((to * g, 0.0), 6.5, 0.0)];
         let start = (0.002, -0.1);
-        let at_end = oscillator.state(start, 0.0, over, &ramp);
+        let at_end = oscillator.nearest(start, 0.0, over, &ramp);
         let run = run_at(&model, &every(0.0311, 192));
         for s in &run.samples {
             let exact = if s.t < over {
-                oscillator.state(start, 0.0, s.t, &ramp)
+                oscillator.nearest(start, 0.0, s.t, &ramp)
             } else {
-                oscillator.state(at_end, over, s.t, &flat)
+                oscillator.nearest(at_end, over, s.t, &flat)
             };
             compare(&model, s, exact, 3e-12);
             let amplitude = if s.t < over { from + (to - from) * s.t / over } else { to };
@@ -206,14 +139,11 @@ fn sums_of_sines_superpose() {
             (a, b) => assert_eq!(a, b),
         }
         let g = STANDARD_GRAVITY;
-        let drives = [
-            Drive { amplitude: (0.5 * g, 0.0), w: TAU * 3.0, phase: 0.0 },
-            Drive { amplitude: (-0.3 * g, 0.0), w: TAU * second, phase: 200f64.to_radians() },
-        ];
-        let shift = -0.2 * g / oscillator.k;
+        let drives = [tone((0.5 * g, 0.0), 3.0, 0.0), tone((-0.3 * g, 0.0), second, 200.0)];
+        let shift = -0.2 * g / (50.0 / 0.02);
         let run = run_at(&model, &every(0.0777, 115));
         for s in &run.samples {
-            let (x, v) = oscillator.state((0.002 - shift, -0.1), 0.0, s.t, &drives);
+            let (x, v) = oscillator.nearest((0.002 - shift, -0.1), 0.0, s.t, &drives);
             compare(&model, s, (x + shift, v), 3e-12);
         }
         assert_eq!(run.samples.len(), 115);
@@ -230,13 +160,10 @@ fn a_ripple_on_a_slow_drive_superposes() {
          run: (duration_s: 5, tolerance: 1e-12)",
     );
     let g = STANDARD_GRAVITY;
-    let drives = [
-        Drive { amplitude: (g, 0.0), w: TAU * 0.5, phase: 0.0 },
-        Drive { amplitude: (0.001 * g, 0.0), w: TAU * 500.0, phase: 0.0 },
-    ];
+    let drives = [tone((g, 0.0), 0.5, 0.0), tone((0.001 * g, 0.0), 500.0, 0.0)];
     let run = run_at(&model, &every(0.0777, 64));
     for s in &run.samples {
-        compare(&model, s, oscillator.state((0.002, -0.1), 0.0, s.t, &drives), 3e-12);
+        compare(&model, s, oscillator.nearest((0.002, -0.1), 0.0, s.t, &drives), 3e-12);
     }
     assert_eq!(run.samples.len(), 64);
 }

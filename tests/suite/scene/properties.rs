@@ -15,6 +15,27 @@ fn stops() -> impl Strategy<Value = Stops> {
         Just(Stops::None),
         (number(), number())
             .prop_map(|(travel_limit_mm, restitution)| Stops::Rigid { travel_limit_mm, restitution }),
+        (number(), side(), number(), side(), side(), side(), side()).prop_map(
+            |(
+                travel_limit_mm,
+                stiffness_n_per_m1_5,
+                loss_s_per_m,
+                radius_mm,
+                young_gpa,
+                poisson,
+                yield_gpa,
+            )| {
+                Stops::Hertz {
+                    travel_limit_mm,
+                    stiffness_n_per_m1_5,
+                    loss_s_per_m,
+                    radius_mm,
+                    young_gpa,
+                    poisson,
+                    yield_gpa,
+                }
+            }
+        ),
         (side(), side(), side(), side()).prop_map(
             |(left_mm, right_mm, restitution_left, restitution_right)| {
                 Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right }

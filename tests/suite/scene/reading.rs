@@ -168,9 +168,10 @@ fn structural_errors_have_a_place_and_the_known_names() {
             "unknown field `length` in FlexureGroup; known: count, length_mm, width_mm",
         ),
         (
-            ("stops", "Hertz(travel_limit_mm: 1)"),
-            "s.ron:6:12: stops: unknown choice `Hertz` in Stops; known: None, Rigid, Uneven",
+            ("stops", "Soft(travel_limit_mm: 1)"),
+            "s.ron:6:12: stops: unknown choice `Soft` in Stops; known: None, Rigid, Uneven, Hertz",
         ),
+        (("stops", "Hertz(travel_limit_mm: 1)"), "`loss_s_per_m` is missing in Hertz"),
         (
             ("excitation", "Sum([\n  Shock(peak_g: 1)])"),
             "s.ron:7:3: excitation.0: unknown choice `Shock` in Excitation; known: None, Constant, Sine, AmplitudeRamp, Chirp, Noise, Recorded, Sum",

@@ -7,7 +7,7 @@ mod tools;
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::map::{Map, label};
+use crate::app::map::{Map, name_and_unit};
 use crate::app::status::speed;
 use crate::app::style::Style;
 use crate::dynamics::{Regime, Summary};
@@ -102,13 +102,12 @@ fn outline(frame: &Frame, map: &Map, column: usize, row: usize, style: &Style) -
 fn reading(map: &Map, column: usize, row: usize) -> String {
     let names = map.grid().columns();
     let place = [map.edges[0].values[column], map.edges[1].values[row]];
-    let mut lines: Vec<String> =
-        names.iter().zip(place).map(|(name, value)| named(&label(name), value)).collect();
+    let mut lines: Vec<String> = names.iter().zip(place).map(|(name, value)| named(name, value)).collect();
     match map.cell(column, row) {
         None => lines.push("not run yet".to_owned()),
         Some((cell, own)) => {
             if !own {
-                lines.push("so far that of a neighbour:".to_owned());
+                lines.push("not run yet; its neighbour:".to_owned());
             }
             if cell.outcome != "done" {
                 lines.push(format!("the run ended early: {}", cell.outcome.replace('_', " ")));
@@ -140,11 +139,12 @@ fn reading(map: &Map, column: usize, row: usize) -> String {
     lines.join("\n")
 }
 
-/// `travel limit 1.5 mm` of `travel limit, mm` and 1.5.
-fn named(label: &str, value: f64) -> String {
-    match label.split_once(", ") {
-        Some((name, unit)) => format!("{name} {} {unit}", crate::app::map::short(value)),
-        None => format!("{label} {}", crate::app::map::short(value)),
+/// `travel limit 1.5 mm` of a column's name and 1.5.
+fn named(column: &str, value: f64) -> String {
+    let number = crate::app::map::short(value);
+    match name_and_unit(column) {
+        (name, Some(unit)) => format!("{name} {number} {unit}"),
+        (name, None) => format!("{name} {number}"),
     }
 }
 

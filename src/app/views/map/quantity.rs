@@ -87,8 +87,8 @@ impl Scale {
         let window = map.window_s();
         let bar = match quantity {
             Quantity::Regime => None,
-            Quantity::Speed => Some(Axis::between(0.0, most, 5, &format!("RMS velocity, {unit}"))),
-            Quantity::Reach => Some(Axis::between(0.0, most, 5, "reach, mm")),
+            Quantity::Speed => Some(Axis::between(0.0, most, 5, &format!("RMS velocity ({unit})"))),
+            Quantity::Reach => Some(Axis::between(0.0, most, 5, "reach (mm)")),
             Quantity::Impacts => Some(counts(most, &format!("impacts in {window} s"))),
             Quantity::Period => Some(Axis {
                 low: 0.5,

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align2, ComboBox, Painter, Rect, RichText, Ui, pos2, vec2};
 
-use crate::app::map::{Map, label};
+use crate::app::map::{Map, name_and_unit};
 use crate::app::style::Style;
 use crate::app::widgets::kind_shapes;
 use crate::scene::column_names;
@@ -90,8 +90,7 @@ fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 /// The name of a field without its unit.
 fn field_name(path: &str) -> String {
     let column = column_names(&[path]).pop().unwrap_or_default();
-    let label = label(&column);
-    label.split_once(", ").map_or(label.clone(), |(name, _)| name.to_owned())
+    name_and_unit(&column).0
 }
 
 fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {

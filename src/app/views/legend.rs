@@ -1,0 +1,62 @@
+//! What lines and marks mean, in a row over a picture.
+
+use eframe::egui::{Color32, Painter, Rect, Shape, Stroke, pos2, vec2};
+
+use crate::app::style::Style;
+
+/// Height in points of the row.
+pub const LEGEND: f32 = 22.0;
+
+/// Width in points of a sign, room between it and its name, and between entries.
+const SIGN: f32 = 18.0;
+const GAP: f32 = 6.0;
+const APART: f32 = 14.0;
+
+/// An entry of the legend.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sign {
+    /// A line.
+    Line(Stroke),
+    /// A dashed line.
+    Dashed(Stroke),
+    /// A ring.
+    Ring(Stroke),
+    /// A shaded stretch.
+    Shade(Color32),
+    /// Ticks at the edge.
+    Ticks(Stroke),
+}
+
+impl Sign {
+    fn shapes(self, rect: Rect) -> Vec<Shape> {
+        let ends = [rect.left_center(), rect.right_center()];
+        match self {
+            Self::Line(stroke) => vec![Shape::line_segment(ends, stroke)],
+            Self::Dashed(stroke) => Shape::dashed_line(&ends, stroke, 4.0, 3.0),
+            Self::Ring(stroke) => vec![Shape::circle_stroke(rect.center(), 3.0, stroke)],
+            Self::Shade(color) => vec![Shape::rect_filled(rect, 0.0, color)],
+            Self::Ticks(stroke) => [-4.0, 0.0, 4.0]
+                .map(|x| {
+                    let at = rect.center() + vec2(x, 0.0);
+                    Shape::line_segment([at - vec2(0.0, 4.0), at + vec2(0.0, 4.0)], stroke)
+                })
+                .to_vec(),
+        }
+    }
+}
+
+/// The entries in the upper row of `area`; what has no room before `right` is left out.
+pub fn legend(painter: &Painter, style: &Style, area: Rect, right: f32, entries: &[(Sign, &str)]) {
+    let (mut x, y) = (area.left() + 8.0, area.top() + 0.5 * LEGEND);
+    for (sign, text) in entries {
+        let galley = painter.layout_no_wrap((*text).to_owned(), style.small(), style.faint());
+        let (width, height) = (galley.size().x, galley.size().y);
+        if x + SIGN + GAP + width > right - 4.0 {
+            break;
+        }
+        let rect = Rect::from_min_max(pos2(x, y - 5.0), pos2(x + SIGN, y + 5.0));
+        painter.extend(sign.shapes(rect));
+        painter.galley(pos2(x + SIGN + GAP, y - 0.5 * height), galley, style.faint());
+        x += SIGN + GAP + width + APART;
+    }
+}

@@ -1,0 +1,64 @@
+//! The line under the menu: what the mass does, as large as it fits.
+
+use eframe::egui::{self, RichText, Sense, Ui, Vec2};
+
+use crate::app::announce::Announcer;
+use crate::app::session::Session;
+use crate::app::style::{BODY, STATUS, STATUS_COMPACT, Style};
+use crate::app::widgets::kind_shapes;
+
+/// The line that says what the mass does.
+pub fn status_ui(
+    ui: &mut Ui,
+    session: &mut Session,
+    announcer: &mut Announcer,
+    style: &Style,
+    compact: bool,
+) {
+    let sentence = session.sentence();
+    if let Some(seconds) = announcer.take(&sentence, ui.input(|input| input.time)) {
+        ui.ctx().request_repaint_after_secs(seconds as f32);
+    }
+    announcer.ui(ui);
+    let size = if compact { STATUS_COMPACT } else { STATUS };
+    ui.horizontal_centered(|ui| {
+        let (rect, _) = ui.allocate_exact_size(Vec2::splat(size + 6.0), Sense::hover());
+        ui.painter().extend(kind_shapes(
+            sentence.kind,
+            rect.center(),
+            size * 0.42,
+            style.kind(sentence.kind),
+        ));
+        let settling = session.settling().map(|(gone, of)| format!("settling: {gone} of {of} periods"));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if let Some(settling) = settling {
+                let hover = "How far the motion has settled since your last change";
+                ui.label(RichText::new(settling).color(style.faint())).on_hover_text(hover);
+            }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let text = sentence.whole();
+                let size = fitted(ui, &text, size);
+                let label = ui.add(egui::Label::new(RichText::new(text).size(size)).wrap());
+                if label.hovered() {
+                    label.on_hover_text(session.ways());
+                }
+            });
+        });
+    });
+}
+
+/// In place of the sentence while the results are covered.
+pub fn covered_ui(ui: &mut Ui) {
+    ui.horizontal_centered(|ui| {
+        let text = "Covered: what do you expect? C shows it again.";
+        ui.label(RichText::new(text).size(STATUS_COMPACT));
+    });
+}
+
+/// The size at which a text stands in one line, or the smallest one, at which it takes two.
+fn fitted(ui: &Ui, text: &str, size: f32) -> f32 {
+    let font = egui::FontId::proportional(size);
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER);
+    let share = ui.available_width() / galley.size().x.max(1.0);
+    (size * share.min(1.0) - 0.05).clamp(BODY.min(size), size)
+}

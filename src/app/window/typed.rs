@@ -1,0 +1,87 @@
+//! Which file, where the desktop has no dialog to ask with? A path is typed.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, Key, RichText, TextEdit, Ui};
+
+use crate::app::widgets::dialog;
+
+use super::files::Wanted;
+
+/// A path that is being typed, and what for.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Typed {
+    /// What the file is wanted for.
+    pub wanted: Wanted,
+    /// The path so far.
+    pub path: String,
+    /// The field has had the keyboard.
+    begun: bool,
+}
+
+/// How it ended.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Ended {
+    /// With this file.
+    Chosen(PathBuf),
+    /// Without one.
+    Cancelled,
+}
+
+impl Typed {
+    /// Begins with a path that would do.
+    pub fn new(wanted: Wanted, path: &Path) -> Self {
+        Self { wanted, path: path.to_string_lossy().into_owned(), begun: false }
+    }
+
+    /// Why the path cannot be taken, or what taking it does.
+    fn remark(&self) -> (bool, Option<&'static str>) {
+        let path = Path::new(self.path.trim());
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if self.path.trim().is_empty() {
+            (false, Some("A path is needed."))
+        } else if path.is_dir() {
+            (false, Some("This is a folder: add the name of a file."))
+        } else if self.wanted == Wanted::Open {
+            if path.is_file() { (true, None) } else { (false, Some("There is no such file.")) }
+        } else if folder.is_some_and(|folder| !folder.is_dir()) {
+            (false, Some("There is no such folder."))
+        } else if path.exists() {
+            (true, Some("This file exists and will be replaced."))
+        } else {
+            (true, None)
+        }
+    }
+
+    /// Draws the question; the answer once there is one.
+    pub fn ui(&mut self, ui: &Ui) -> Option<Ended> {
+        let answer = dialog(ui.ctx(), "path").show(ui.ctx(), |ui| {
+            ui.set_width(520.0_f32.min(ui.ctx().content_rect().width() - 60.0));
+            ui.heading(self.wanted.question());
+            ui.label("This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one).");
+            ui.add_space(4.0);
+            let name = ui.label("path of the file");
+            let field = TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
+            let field = ui.add(field).labelled_by(name.id);
+            if !self.begun {
+                field.request_focus();
+                self.begun = true;
+            }
+            let (taken, remark) = self.remark();
+            ui.label(RichText::new(remark.unwrap_or(" ")).small());
+            let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+            ui.horizontal(|ui| {
+                let done = ui.add_enabled(taken, egui::Button::new(self.wanted.verb())).clicked();
+                let cancelled = ui.button("Cancel").clicked();
+                if taken && (done || entered) {
+                    Some(Ended::Chosen(PathBuf::from(self.path.trim())))
+                } else {
+                    cancelled.then_some(Ended::Cancelled)
+                }
+            })
+            .inner
+        });
+        let closed = answer.should_close().then_some(Ended::Cancelled);
+        answer.inner.or(closed)
+    }
+}

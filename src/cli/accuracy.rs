@@ -1,0 +1,148 @@
+//! `accuracy`: speed against error, and the hard cases.
+
+use std::io::IsTerminal;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use interwell::output::{Sink, accuracy_figure, aligned};
+use interwell::study::Task;
+use interwell::study::accuracy::{HARD_CASES, PROBLEMS, Report, Selection, Stopped, accuracy};
+
+use super::failure::Failure;
+use super::options::AccuracyOptions;
+use super::picture::Picture;
+use super::support::{Watch, finish, open, write_table, write_text};
+use super::{interrupt, say};
+
+/// Runs what was selected and shows it; an error where a case falls short, after everything was written.
+pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
+    let picture = Picture::asked(&options.plot)?;
+    let selection = if options.case.is_empty() { Selection::all() } else { Selection::of(&options.case)? };
+    if options.list {
+        let mut sinks = open(&[], [Some(("--list", std::path::Path::new("-")))])?;
+        write_text(&mut sinks[0], &list(&options.case))?;
+        return finish(sinks);
+    }
+    if picture.is_some() && !selection.has_problems() {
+        let names: Vec<&str> = PROBLEMS.iter().map(|problem| problem.name).collect();
+        return Err(Failure::argument(format!(
+            "--plot shows speed against error, and --case leaves none: add --case {}, or leave --plot out",
+            names.join(" or ")
+        )));
+    }
+    let out = options.out.as_deref().map(|path| ("--out", path));
+    let mut sinks = open(&[], [out, picture.map(|own| own.output())])?;
+
+    let bar = bar(selection.parts(), options.quiet);
+    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
+    let watch = Watch::start();
+    let result = accuracy(&selection, &task);
+    bar.finish_and_clear();
+    let report = result.map_err(|stopped| match stopped {
+        Stopped::Cancelled => Failure::interrupted(),
+        Stopped::Scene(_) => Failure::Failed(stopped.into()),
+    })?;
+    if interrupt::came() {
+        return Err(Failure::interrupted());
+    }
+    let [csv, plot] = &mut sinks;
+    if csv.is_some() {
+        write_table(csv, &report.table())?;
+    }
+    if let Some(picture) = picture {
+        let figure = accuracy_figure(&report.work_table(), env!("CARGO_PKG_VERSION"), picture.theme);
+        picture.write(plot, &figure)?;
+    }
+    let to_stdout = csv.as_ref().is_some_and(Sink::is_stdout);
+    finish(sinks)?;
+    let text = shown(&report);
+    if !to_stdout {
+        let mut sinks = open(&[], [Some(("the table", std::path::Path::new("-")))])?;
+        write_text(&mut sinks[0], &text)?;
+        finish(sinks)?;
+    } else if !options.quiet {
+        say(text.trim_end());
+    }
+    if !options.quiet {
+        say(&format!("{:.1} s", watch.wall_s()));
+    }
+    verdict(&report)
+}
+
+/// The tables of a report as text.
+fn shown(report: &Report) -> String {
+    let mut parts = Vec::new();
+    if !report.points.is_empty() {
+        parts.push(aligned(&report.cost_table()));
+    }
+    if !report.cases.is_empty() {
+        parts.push(aligned(&report.case_table()));
+    }
+    parts.join("\n")
+}
+
+/// An error that names what falls short.
+fn verdict(report: &Report) -> Result<(), Failure> {
+    let short = report.shortfalls();
+    let named: Vec<String> =
+        short.iter().map(|(case, variant, quantity)| format!("{case} ({variant}): {quantity}")).collect();
+    match named.len() {
+        0 => Ok(()),
+        1 => Err(Failure::Failed(anyhow::anyhow!("a hard case falls short: {}", named[0]))),
+        n => Err(Failure::Failed(anyhow::anyhow!(
+            "{n} of the hard cases' checks fall short: {}",
+            named.join("; ")
+        ))),
+    }
+}
+
+/// What the cases are, a paragraph each.
+fn list(wanted: &[String]) -> String {
+    let shown = |name: &str| wanted.is_empty() || wanted.iter().any(|own| own == name);
+    let mut text = String::new();
+    for problem in PROBLEMS.iter().filter(|own| shown(own.name)) {
+        text += &format!("{}\n  {}\n  Error: {}\n", problem.name, problem.problem, problem.error);
+    }
+    for case in HARD_CASES.iter().filter(|own| shown(own.name)) {
+        text += &format!(
+            "{}\n  {}\n  Answer: {}\n  Digits allowed: {}\n",
+            case.name, case.problem, case.answer, case.conditioning
+        );
+    }
+    text
+}
+
+/// A bar, where standard error is a terminal.
+fn bar(parts: u64, quiet: bool) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} parts  {eta} left");
+    ProgressBar::new(parts).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interwell::study::accuracy::{Check, Variant};
+
+    #[test]
+    fn a_case_that_falls_short_is_a_failure_that_names_it() {
+        let variant = |holds| Variant {
+            name: "1e-12 m before",
+            steps: 2,
+            evaluations: 2,
+            cpu_s: 0.0,
+            checks: vec![("one impact", Check::Fact(holds))],
+        };
+        let report = |holds: &[bool]| Report {
+            points: Vec::new(),
+            cases: vec![("grazing", holds.iter().copied().map(variant).collect())],
+        };
+        assert!(verdict(&report(&[true, true])).is_ok());
+        let failure = verdict(&report(&[true, false])).unwrap_err();
+        assert!(matches!(failure, Failure::Failed(_)));
+        assert_eq!(failure.to_string(), "a hard case falls short: grazing (1e-12 m before): one impact");
+        let failure = verdict(&report(&[false, false])).unwrap_err();
+        assert!(failure.to_string().starts_with("2 of the hard cases' checks fall short: "), "{failure}");
+    }
+}

@@ -1,0 +1,76 @@
+//! How does a recorder read a step, whatever the step is a polynomial of?
+//!
+//! A step of free flight is a polynomial in time; one of contact with a compliant stop is a polynomial in another
+//! parameter, of which time is itself a polynomial. What is asked of either is the same, and for a flight the parameter
+//! is the time since the step's start: there these methods are the series' own, and cost nothing.
+
+use super::result::Phase;
+use super::series::{ROOM, Series};
+use crate::numeric::{GaussLegendre, Scalar};
+
+/// The motion over one step, in a parameter that is 0 at the step's start and grows with time.
+pub(crate) trait Path<T: Scalar> {
+    /// Whether it runs in contact with a compliant stop.
+    const IN_CONTACT: bool;
+
+    /// What a sample on it is.
+    fn phase(&self) -> Phase;
+    /// Number of coefficients of the displacement.
+    fn known(&self) -> usize;
+    /// Displacement from the piece's origin at the step's start.
+    fn start(&self) -> T;
+    /// The coefficients of the displacement, each times its power of `h`.
+    fn scaled(&self, h: T) -> [T; ROOM];
+    /// Displacement from the piece's origin.
+    fn position(&self, parameter: T) -> T;
+    /// Velocity.
+    fn velocity(&self, parameter: T) -> T;
+    /// Time since the step's start.
+    fn time(&self, parameter: T) -> T;
+    /// The parameter, up to `length`, of a time since the step's start.
+    fn parameter(&self, time: T, length: T) -> T;
+    /// Integrals over time between two parameters: of the squared velocity and, where `WORK`, of base acceleration times
+    /// velocity.
+    fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T);
+}
+
+impl<T: Scalar> Path<T> for Series<T> {
+    const IN_CONTACT: bool = false;
+
+    #[inline]
+    fn phase(&self) -> Phase {
+        Phase::Free
+    }
+    #[inline]
+    fn known(&self) -> usize {
+        self.known
+    }
+    #[inline]
+    fn start(&self) -> T {
+        self.y[0]
+    }
+    #[inline]
+    fn scaled(&self, h: T) -> [T; ROOM] {
+        Series::scaled(self, h)
+    }
+    #[inline]
+    fn position(&self, parameter: T) -> T {
+        Series::position(self, parameter)
+    }
+    #[inline]
+    fn velocity(&self, parameter: T) -> T {
+        Series::velocity(self, parameter)
+    }
+    #[inline]
+    fn time(&self, parameter: T) -> T {
+        parameter
+    }
+    #[inline]
+    fn parameter(&self, time: T, _: T) -> T {
+        time
+    }
+    #[inline]
+    fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
+        Series::integrals::<WORK>(self, rule, from, to)
+    }
+}

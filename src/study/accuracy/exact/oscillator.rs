@@ -1,0 +1,129 @@
+//! A damped linear oscillator under anything that has a closed form.
+
+use super::dd;
+use super::elementary::{exp, sin_cos, turns};
+use crate::numeric::{DoubleDouble, Number, Scalar};
+
+/// x'' + g x' + k x = -a(t).
+#[derive(Debug, Clone, Copy)]
+pub struct Oscillator {
+    /// g = c/m in 1/s.
+    damping: DoubleDouble,
+    /// k = stiffness over mass in 1/s^2, above 0.
+    stiffness: DoubleDouble,
+}
+
+/// A base acceleration with a closed form. SI; time is that of the run.
+#[derive(Debug, Clone, Copy)]
+pub enum Forcing {
+    /// (amplitude + growth t) sin(2 pi (frequency t + phase)); growth in m/s^3, frequency in Hz, phase in turns.
+    Tone {
+        /// Amplitude at time 0 in m/s^2.
+        amplitude: f64,
+        /// Growth of the amplitude in m/s^3.
+        growth: DoubleDouble,
+        /// Frequency in Hz.
+        frequency: f64,
+        /// Phase in turns.
+        phase: f64,
+    },
+    /// value + slope t.
+    Line {
+        /// Value at time 0 in m/s^2.
+        value: DoubleDouble,
+        /// Slope in m/s^3.
+        slope: DoubleDouble,
+    },
+}
+
+type Complex = (DoubleDouble, DoubleDouble);
+
+/// Displacement and velocity in m and m/s.
+type State = (DoubleDouble, DoubleDouble);
+
+impl Oscillator {
+    /// `mass` in kg, `damping` c in N s/m, `stiffness` in N/m above 0.
+    pub fn new(mass: f64, damping: f64, stiffness: f64) -> Self {
+        Self { damping: dd(damping) / dd(mass), stiffness: dd(stiffness) / dd(mass) }
+    }
+
+    /// The state a time `t` after `start` without forcing: under-, critically or overdamped.
+    pub fn free(&self, start: State, t: DoubleDouble) -> State {
+        let zero = DoubleDouble::zero();
+        let (x, v) = start;
+        let half = self.damping * dd(0.5);
+        let rest = self.stiffness - half * half;
+        // c and s solve the equation for c(0) = 1, c'(0) = 0 and s(0) = 0, s'(0) = 1, times exp(half t)
+        let (c, s) = if rest > zero {
+            let w = rest.sqrt();
+            let decay = exp(-(half * t));
+            let (sin, cos) = sin_cos(w * t);
+            (decay * cos, decay * sin / w)
+        } else if rest < zero {
+            let w = (-rest).sqrt();
+            let slow = exp(-(self.stiffness / (half + w) * t));
+            let fast = exp(-((half + w) * t));
+            ((slow + fast) * dd(0.5), (slow - fast) * dd(0.5) / w)
+        } else {
+            let decay = exp(-(half * t));
+            (decay, decay * t)
+        };
+        (x * c + (v + half * x) * s, v * c - (self.stiffness * x + half * v) * s)
+    }
+
+    /// The solution under one forcing that has no free part, at time `t` of the run.
+    ///
+    /// Under (a + r t) sin(w t + phase) it is the imaginary part of (P + Q t) exp(i (w t + phase)), with Q L = -r,
+    /// P L + Q L' = -a, L = k - w^2 + i g w, L' = g + 2 i w.
+    pub fn driven(&self, forcing: &Forcing, t: DoubleDouble) -> State {
+        match *forcing {
+            Forcing::Line { value, slope } => {
+                let beta = -(slope / self.stiffness);
+                let alpha = (-value - self.damping * beta) / self.stiffness;
+                (alpha + beta * t, beta)
+            }
+            Forcing::Tone { amplitude, growth, frequency, phase } => {
+                let zero = DoubleDouble::zero();
+                let w = DoubleDouble::tau() * dd(frequency);
+                let l = (self.stiffness - w * w, self.damping * w);
+                let q = divide((-growth, zero), l);
+                let ql = multiply(q, (self.damping, w + w));
+                let p = divide((-dd(amplitude) - ql.0, -ql.1), l);
+                let z = (p.0 + q.0 * t, p.1 + q.1 * t);
+                let (sin, cos) = turns(dd(frequency) * t + dd(phase));
+                let value = z.0 * sin + z.1 * cos;
+                let slope = q.0 * sin + q.1 * cos + w * (z.0 * cos - z.1 * sin);
+                (value, slope)
+            }
+        }
+    }
+
+    /// The state at time `t` of a motion that is at `start` at `from`, under the sum of forcings.
+    pub fn state(&self, start: State, from: DoubleDouble, t: DoubleDouble, forcings: &[Forcing]) -> State {
+        let sum = |at: DoubleDouble| {
+            forcings.iter().fold((dd(0.0), dd(0.0)), |sum, forcing| {
+                let own = self.driven(forcing, at);
+                (sum.0 + own.0, sum.1 + own.1)
+            })
+        };
+        let (at_start, now) = (sum(from), sum(t));
+        let own = self.free((start.0 - at_start.0, start.1 - at_start.1), t - from);
+        (own.0 + now.0, own.1 + now.1)
+    }
+
+    /// The same as the nearest doubles, from doubles.
+    pub fn nearest(&self, start: (f64, f64), from: f64, t: f64, forcings: &[Forcing]) -> (f64, f64) {
+        let state = self.state((dd(start.0), dd(start.1)), dd(from), dd(t), forcings);
+        (state.0.to_f64(), state.1.to_f64())
+    }
+}
+
+fn multiply(a: Complex, b: Complex) -> Complex {
+    (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
+}
+
+fn divide(a: Complex, b: Complex) -> Complex {
+    let size = b.0 * b.0 + b.1 * b.1;
+    let z = multiply(a, (b.0, -b.1));
+    (z.0 / size, z.1 / size)
+}

@@ -1,0 +1,289 @@
+//! How many digits can an answer have, and how many has it?
+//!
+//! The digits allowed follow from the problem, not from the result: an error bound is the sum, over the steps of a run,
+//! of what one step may do wrong ([`STEP_ERROR`]) times how much the answer reacts to it. The second factor is the
+//! problem's conditioning; each case derives it from the closed form or, where there is none, takes it from the
+//! reference: the answer's change under small relative changes of the data ([`Bench::sensitivity`]).
+
+use std::sync::atomic::Ordering;
+
+use super::Stopped;
+use super::scenes::Setup;
+use crate::dynamics::{Model, Outcome, Request, Run};
+use crate::scene::{Damping, Excitation, Start, Stops};
+use crate::study::Task;
+
+/// What one step may do to the state, relative to the scene's length and speed: four spacings of the doubles at 1.
+/// At the tolerance 1e-14 one is the series cut off (a fiftieth of the tolerance, 2e-16), one the rounding of the
+/// sums of displacement and velocity, two those of the force and its coefficients, which are data rounded once to the
+/// units of a run.
+pub const STEP_ERROR: f64 = 4.0 * f64::EPSILON;
+
+/// Tolerance of runs in double-double arithmetic.
+pub const REFERENCE_TOLERANCE: f64 = 1e-27;
+
+/// Relative change of a datum from which a sensitivity is taken: small enough to be linear, large enough that the doubles
+/// in which a run reports tell the difference to seven digits.
+pub(super) const CHANGE: f64 = 1.0 / (1_u64 << 30) as f64;
+
+/// The same for chaos, which has lost the greater change after twenty periods: four spacings of the doubles, so that the
+/// datum is changed by that to an eighth.
+pub(super) const SMALL_CHANGE: f64 = 1.0 / (1_u64 << 50) as f64;
+
+/// What was found of one quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Check {
+    /// A number: its error and the error that the conditioning allows, both relative to what the case names.
+    Error {
+        /// Error reached.
+        error: f64,
+        /// Error allowed.
+        allowed: f64,
+    },
+    /// A fact that holds or not, such as a number of impacts.
+    Fact(bool),
+}
+
+impl Check {
+    /// Whether the case holds here.
+    pub fn passes(self) -> bool {
+        match self {
+            Self::Error { error, allowed } => error <= allowed,
+            Self::Fact(holds) => holds,
+        }
+    }
+
+    /// Decimal digits allowed, 0 to 16; none of a fact.
+    pub fn digits_allowed(self) -> Option<f64> {
+        match self {
+            Self::Error { allowed, .. } => Some(digits(allowed)),
+            Self::Fact(_) => None,
+        }
+    }
+
+    /// Decimal digits reached, 0 to 16; none of a fact.
+    pub fn digits_reached(self) -> Option<f64> {
+        match self {
+            Self::Error { error, .. } => Some(digits(error)),
+            Self::Fact(_) => None,
+        }
+    }
+}
+
+/// Decimal digits of a relative error: those of a double at most.
+fn digits(error: f64) -> f64 {
+    if error.is_nan() { 0.0 } else { (-error.log10()).clamp(0.0, 16.0) }
+}
+
+/// One run of a case and what was found of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variant {
+    /// Which of the case's runs.
+    pub name: &'static str,
+    /// Steps of the run.
+    pub steps: u64,
+    /// Taylor expansions.
+    pub evaluations: u64,
+    /// CPU time of the run in s.
+    pub cpu_s: f64,
+    /// What was found, by quantity.
+    pub checks: Vec<(&'static str, Check)>,
+}
+
+impl Variant {
+    /// Nothing found yet of `run`.
+    pub(super) fn of(name: &'static str, run: &Run) -> Self {
+        let summary = &run.summary;
+        Self {
+            name,
+            steps: summary.steps,
+            evaluations: summary.evaluations,
+            cpu_s: summary.cpu_s,
+            checks: Vec::new(),
+        }
+    }
+
+    /// A number's error and what is allowed; never less than two spacings of the doubles, in which the number is given.
+    pub(super) fn number(mut self, quantity: &'static str, error: f64, allowed: f64) -> Self {
+        let allowed = allowed.max(2.0 * f64::EPSILON);
+        self.checks.push((quantity, Check::Error { error, allowed }));
+        self
+    }
+
+    /// The worst, by the share of what is allowed, of pairs of error and allowed error; a failed fact where there are
+    /// none.
+    pub(super) fn worst(self, quantity: &'static str, pairs: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let floor = 2.0 * f64::EPSILON;
+        let shares = pairs.into_iter().map(|(error, allowed)| (error, allowed.max(floor)));
+        let share = |pair: &(f64, f64)| if pair.0.is_nan() { f64::INFINITY } else { pair.0 / pair.1 };
+        match shares.max_by(|a, b| share(a).total_cmp(&share(b))) {
+            Some((error, allowed)) => self.number(quantity, error, allowed),
+            None => self.fact(quantity, false),
+        }
+    }
+
+    /// A fact.
+    pub(super) fn fact(mut self, quantity: &'static str, holds: bool) -> Self {
+        self.checks.push((quantity, Check::Fact(holds)));
+        self
+    }
+
+    /// The check with the smallest margin: one that fails, else the number nearest to what is allowed, else a fact.
+    pub fn tightest(&self) -> Option<(&'static str, Check)> {
+        let share = |check: &Check| match *check {
+            Check::Fact(false) => f64::INFINITY,
+            Check::Fact(true) => -1.0,
+            Check::Error { error, .. } if error.is_nan() => f64::INFINITY,
+            Check::Error { error, allowed } => error / allowed,
+        };
+        self.checks.iter().copied().max_by(|a, b| share(&a.1).total_cmp(&share(&b.1)))
+    }
+}
+
+/// Where cases run: in doubles, and in double-doubles.
+pub(super) struct Bench<'a> {
+    task: &'a Task<'a>,
+}
+
+impl<'a> Bench<'a> {
+    pub fn new(task: &'a Task<'a>) -> Self {
+        Self { task }
+    }
+
+    fn request<'b>(&'b self, times: &'b [f64]) -> Request<'b> {
+        Request { sample_times: times, events: true, ledger: true, cancel: Some(self.task.cancel) }
+    }
+
+    /// A run with events, ledger and samples at `times`, ascending.
+    pub fn run(&self, model: &Model, times: &[f64]) -> Result<Run, Stopped> {
+        self.unless_cancelled(model.run(&self.request(times)))
+    }
+
+    /// A run that keeps statistics alone.
+    pub fn run_bare(&self, model: &Model) -> Result<Run, Stopped> {
+        self.unless_cancelled(model.run(&Request { events: false, ledger: false, ..self.request(&[]) }))
+    }
+
+    /// The same in double-double arithmetic.
+    pub fn reference(&self, model: &Model, times: &[f64]) -> Result<Run, Stopped> {
+        self.unless_cancelled(model.run_reference(&self.request(times), REFERENCE_TOLERANCE))
+    }
+
+    fn unless_cancelled(&self, run: Run) -> Result<Run, Stopped> {
+        let cancelled = matches!(run.summary.outcome, Outcome::Cancelled { .. });
+        if cancelled || self.task.cancel.load(Ordering::Relaxed) { Err(Stopped::Cancelled) } else { Ok(run) }
+    }
+
+    /// How much numbers of a run react to its data: for each number the sum, over the data, of |change of the number| per
+    /// relative change of the datum, by runs in double-double arithmetic with the datum changed by [`CHANGE`].
+    ///
+    /// The data are mass, start velocity, amplitude, damping and restitution, as far as the scene has them: a change of the
+    /// mass is one of every acceleration all along the run, one of the restitution of every rebound, so that errors made
+    /// on the way are covered and not only those of the start. `numbers` answers in a fixed order and number.
+    pub fn sensitivity(
+        &self,
+        setup: &Setup,
+        times: &[f64],
+        numbers: impl Fn(&Run) -> Vec<f64>,
+    ) -> Result<Vec<f64>, Stopped> {
+        self.sensitivity_by(CHANGE, setup, times, numbers)
+    }
+
+    /// The same by a relative change of `change`.
+    pub fn sensitivity_by(
+        &self,
+        change: f64,
+        setup: &Setup,
+        times: &[f64],
+        numbers: impl Fn(&Run) -> Vec<f64>,
+    ) -> Result<Vec<f64>, Stopped> {
+        let base = numbers(&self.reference(&setup.model()?, times)?);
+        let mut sums = vec![0.0; base.len()];
+        for changed in changed(setup, change) {
+            let own = numbers(&self.reference(&changed.model()?, times)?);
+            for (i, sum) in sums.iter_mut().enumerate() {
+                *sum += own.get(i).map_or(f64::INFINITY, |own| (own - base[i]).abs() / change);
+            }
+        }
+        Ok(sums)
+    }
+
+    /// Errors that a run of this scene may have in numbers with these sensitivities: a [`STEP_ERROR`] of all data in
+    /// every step, of which there are `steps` in the run; a change of a datum acts once a time scale, so that shorter
+    /// steps count for more.
+    pub fn allowed(model: &Model, steps: u64, sensitivities: &[f64]) -> Vec<f64> {
+        let per_scale = steps as f64 * model.scales.time / model.duration;
+        let error = STEP_ERROR * per_scale.max(1.0);
+        sensitivities.iter().map(|own| own * error).collect()
+    }
+}
+
+/// The scene with one datum after the other changed.
+fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
+    let more = 1.0 + change;
+    let mut all = Vec::new();
+    let mut with = |change: &dyn Fn(&mut Setup)| {
+        let mut own = setup.clone();
+        change(&mut own);
+        all.push(own);
+    };
+    with(&|own| own.scene.mass_g *= more);
+    if matches!(setup.scene.start, Start::At { v_m_per_s, .. } if v_m_per_s != 0.0) {
+        with(&|own| {
+            if let Start::At { v_m_per_s, .. } = &mut own.scene.start {
+                *v_m_per_s *= more;
+            }
+        });
+    }
+    if setup.scene.excitation != Excitation::None {
+        with(&|own| scale(&mut own.scene.excitation, more));
+    }
+    match setup.scene.damping {
+        Damping::None => {}
+        _ => with(&|own| match &mut own.scene.damping {
+            Damping::None => {}
+            Damping::Ratio(xi) => *xi *= more,
+            Damping::Coefficient { c_n_s_per_m } => *c_n_s_per_m *= more,
+        }),
+    }
+    let less = 1.0 - change;
+    match setup.scene.stops {
+        Stops::Rigid { restitution, .. } if restitution > 0.0 && restitution < 1.0 => with(&|own| {
+            if let Stops::Rigid { restitution, .. } = &mut own.scene.stops {
+                *restitution *= less;
+            }
+        }),
+        Stops::Uneven { restitution_left, restitution_right, .. }
+            if restitution_left.or(restitution_right).is_some_and(|e| e > 0.0 && e < 1.0) =>
+        {
+            with(&|own| {
+                if let Stops::Uneven { restitution_left, restitution_right, .. } = &mut own.scene.stops {
+                    for e in [restitution_left, restitution_right].into_iter().flatten() {
+                        *e *= less;
+                    }
+                }
+            });
+        }
+        _ => {}
+    }
+    all
+}
+
+fn scale(excitation: &mut Excitation, by: f64) {
+    match excitation {
+        Excitation::Constant { accel_g } => *accel_g *= by,
+        Excitation::Sine { amplitude_g, .. } | Excitation::Chirp { amplitude_g, .. } => *amplitude_g *= by,
+        Excitation::AmplitudeRamp { from_g, to_g, .. } => {
+            *from_g *= by;
+            *to_g *= by;
+        }
+        Excitation::Noise { rms_g, .. } => *rms_g *= by,
+        Excitation::Sum(terms) => terms.iter_mut().for_each(|term| scale(term, by)),
+        Excitation::None | Excitation::Recorded { .. } => {}
+    }
+}
+
+/// |value - exact| relative to `scale`.
+pub(super) fn off(value: f64, exact: f64, scale: f64) -> f64 {
+    (value - exact).abs() / scale
+}

@@ -1,0 +1,269 @@
+//! An adaptive Runge-Kutta method with located events, as general solvers offer it.
+//!
+//! Dormand and Prince 1980, "A family of embedded Runge-Kutta formulae", order 5(4), with the continuous extension
+//! of order 4 of Hairer, Norsett and Wanner 1993 (Solving ordinary differential equations I, II.6) and their step
+//! control. Contact is looked for as general solvers do, by the sign of the gap at the end of a step, and its root on the
+//! continuous extension is bisected to rounding: an excursion inside a step is not seen.
+
+use cpu_time::ThreadTime;
+
+use super::problem::Problem;
+use super::tally::{State, Tally};
+use super::{Keep, MethodRun};
+use crate::dynamics::{Model, Phase, Side};
+
+/// A pressed rebound slower than this share of the scene's speed is a rest: what a user of such a solver writes, who
+/// has no sum of a chatter.
+const REST_SPEED: f64 = 1e-6;
+
+/// Attempts of one run, refused ones too.
+const MOST_STEPS: u64 = 20_000_000;
+
+const CANCEL_STRIDE: u64 = 1 << 10;
+
+/// Steps in which a rest is searched for its release, in a forcing period.
+const SEARCHES: f64 = 200.0;
+
+const NODES: [f64; 6] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
+const STAGES: [&[f64]; 6] = [
+    &[0.2],
+    &[3.0 / 40.0, 9.0 / 40.0],
+    &[44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0],
+    &[19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0],
+    &[9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0],
+    &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
+];
+/// Fifth order less fourth.
+const ERROR: [f64; 7] =
+    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
+const DENSE: [f64; 7] = [
+    -12715105075.0 / 11282082432.0,
+    0.0,
+    87487479700.0 / 32700410799.0,
+    -10690763975.0 / 1880347072.0,
+    701980252875.0 / 199316789632.0,
+    -1453857185.0 / 822651844.0,
+    69997945.0 / 29380423.0,
+];
+
+type Pair = [f64; 2];
+
+/// One step and its continuous extension.
+struct Step {
+    h: f64,
+    end: Pair,
+    /// (x', v') at the end.
+    slope: Pair,
+    error: f64,
+    dense: [Pair; 5],
+}
+
+impl Step {
+    fn take(problem: &Problem, t: f64, y: Pair, slope: Pair, h: f64, tolerance: f64) -> Self {
+        let mut k = [slope; 7];
+        let mut end = y;
+        for (stage, (weights, node)) in STAGES.iter().zip(NODES).enumerate() {
+            end = y;
+            for (weight, k) in weights.iter().zip(&k) {
+                end[0] += h * weight * k[0];
+                end[1] += h * weight * k[1];
+            }
+            k[stage + 1] = [end[1], problem.acceleration(t + node * h, end[0], end[1])];
+        }
+        let scales = problem.model.scales;
+        let combine = |weights: &[f64; 7], i: usize| -> f64 {
+            weights.iter().zip(&k).map(|(weight, k)| weight * k[i]).sum::<f64>() * h
+        };
+        let error = (combine(&ERROR, 0) / scales.length).hypot(combine(&ERROR, 1) / scales.speed);
+        let mut dense = [[0.0; 2]; 5];
+        for i in 0..2 {
+            let rise = end[i] - y[i];
+            let bow = h * k[0][i] - rise;
+            dense[0][i] = y[i];
+            dense[1][i] = rise;
+            dense[2][i] = bow;
+            dense[3][i] = rise - h * k[6][i] - bow;
+            dense[4][i] = combine(&DENSE, i);
+        }
+        Self { h, end, slope: k[6], error: error * std::f64::consts::FRAC_1_SQRT_2 / tolerance, dense }
+    }
+
+    /// The state at a share of the step.
+    fn at(&self, s: f64) -> Pair {
+        let r = 1.0 - s;
+        let [a, b, c, d, e] = &self.dense;
+        [0, 1].map(|i| a[i] + s * (b[i] + r * (c[i] + s * (d[i] + r * e[i]))))
+    }
+
+    /// The integral of v^2 over the first `share` of the step: Gauss's rule of four points on the continuous extension.
+    fn squares(&self, share: f64) -> f64 {
+        const POINTS: [(f64, f64); 2] = [
+            (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+            (0.861_136_311_594_052_6, 0.347_854_845_137_453_9),
+        ];
+        let at = |point: f64| self.at(0.5 * share * (1.0 + point))[1].powi(2);
+        let sum: f64 = POINTS.iter().map(|(point, weight)| weight * (at(*point) + at(-point))).sum();
+        0.5 * share * self.h * sum
+    }
+
+    /// The share at which the gap to a stop closes, where it is closed at the end. `open` where the step began on that
+    /// very stop: the gap opens first.
+    fn contact(&self, stop: f64, sign: f64, begins_on: bool) -> Option<f64> {
+        let gap = |s: f64| sign * (stop - self.at(s)[0]);
+        if sign * (stop - self.end[0]) >= 0.0 {
+            return None;
+        }
+        let mut low = 0.0;
+        if begins_on {
+            low = 0.5;
+            while gap(low) <= 0.0 {
+                low *= 0.5;
+                if low < 1e-12 {
+                    return Some(0.0);
+                }
+            }
+        }
+        let mut high = 1.0;
+        // to 2^-60 of the step: a contact at its very begin has no relative digits to find
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if gap(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        Some(high)
+    }
+}
+
+/// Runs `model` with the local error `tolerance` allowed relative to the scene's length and speed.
+///
+/// Samples lie on straight lines between steps, as those of [`fixed_step`](super::fixed_step). A pressed rebound
+/// slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths of the forcing period (or of
+/// the duration) and bisection. Ends early where the force curve ends, and after 2e7 attempts.
+pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
+    let watch = ThreadTime::now();
+    let problem = Problem::new(model);
+    let mut tally = Tally::new(&problem, keep);
+    let scales = model.scales;
+    let end = model.duration;
+    let mut now = State { t: 0.0, x: problem.start.0, v: problem.start.1 };
+    let (mut steps, mut evaluations, mut attempts) = (0, 0, 0_u64);
+    let mut h = 1e-2 * scales.time;
+    let mut phase = Phase::Free;
+    let mut touching: Option<Side> = None;
+    let mut slope: Option<Pair> = None;
+    let sign = |side: Side| if side == Side::Left { -1.0 } else { 1.0 };
+    let stop = |side: Side| problem.stops[usize::from(side == Side::Right)];
+    for side in [Side::Left, Side::Right] {
+        if now.x == stop(side).0 {
+            touching = Some(side);
+        }
+    }
+    while now.t < end {
+        attempts += 1;
+        if attempts > MOST_STEPS || (attempts % CANCEL_STRIDE == 0 && keep.is_cancelled()) {
+            break;
+        }
+        // at a stop with hardly any speed: does it press?
+        if let Some(side) = touching
+            && now.v * sign(side) > -REST_SPEED * scales.speed
+        {
+            let press = |t: f64| sign(side) * problem.acceleration(t, now.x, 0.0);
+            evaluations += 1;
+            if press(now.t) > 0.0 {
+                now.v = 0.0;
+                let at_rest = if side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
+                let release = release(press, now.t, end, model.forcing_period.unwrap_or(end) / SEARCHES);
+                let next = State { t: release, ..now };
+                tally.step(&problem, now, next, at_rest, 0.0);
+                phase = if release < end { Phase::Free } else { at_rest };
+                now = next;
+                slope = None;
+                h = 1e-2 * scales.time;
+                steps += 1;
+                continue;
+            }
+        }
+        let start = *slope.get_or_insert_with(|| {
+            evaluations += 1;
+            [now.v, problem.acceleration(now.t, now.x, now.v)]
+        });
+        let last = now.t + h >= end;
+        let length = if last { end - now.t } else { h };
+        let step = Step::take(&problem, now.t, [now.x, now.v], start, length, tolerance);
+        evaluations += 6;
+        let factor = if step.error > 0.0 { 0.9 * step.error.powf(-0.2) } else { 5.0 };
+        if !(step.error <= 1.0) {
+            h = length * if factor.is_finite() { factor.clamp(0.2, 1.0) } else { 0.2 };
+            if !(now.t + h > now.t) {
+                break;
+            }
+            continue;
+        }
+        steps += 1;
+        let contact = [Side::Left, Side::Right]
+            .into_iter()
+            .filter(|side| stop(*side).0.is_finite())
+            .filter_map(|side| {
+                let share = step.contact(stop(side).0, sign(side), touching == Some(side))?;
+                Some((share, side))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let next = match contact {
+            Some((share, side)) => {
+                let (place, restitution) = stop(side);
+                let v_in = step.at(share)[1];
+                let next = State { t: now.t + share * step.h, x: place, v: -restitution * v_in };
+                tally.step(&problem, now, State { v: v_in, ..next }, Phase::Free, step.squares(share));
+                if v_in * sign(side) > 0.0 {
+                    tally.impact(next.t, side, v_in, next.v);
+                }
+                touching = Some(side);
+                slope = None;
+                // the next flight is e times as long as one that just ended, at a guess
+                let press = sign(side) * problem.acceleration(next.t, place, next.v);
+                evaluations += 1;
+                if press > 0.0 {
+                    h = h.min((2.0 * next.v.abs() / press).max(1e-9 * scales.time));
+                }
+                next
+            }
+            None => {
+                let t = if last { end } else { now.t + length };
+                let next = State { t, x: step.end[0], v: step.end[1] };
+                tally.step(&problem, now, next, Phase::Free, step.squares(1.0));
+                touching = None;
+                slope = Some(step.slope);
+                h = length * factor.clamp(0.2, 5.0);
+                next
+            }
+        };
+        if !problem.is_inside(next.x, next.v) {
+            break;
+        }
+        now = next;
+    }
+    let mut run = tally.finish(&problem, now, phase, (steps, evaluations));
+    run.statistics.cpu_s = watch.elapsed().as_secs_f64();
+    run
+}
+
+/// When the press, positive at `from`, is no longer: by a scan and bisection; `end` where it stays.
+fn release(press: impl Fn(f64) -> f64, from: f64, end: f64, stride: f64) -> f64 {
+    let mut low = from;
+    while low < end {
+        let mut high = (low + stride).min(end);
+        if press(high) <= 0.0 {
+            loop {
+                let middle = 0.5 * (low + high);
+                if middle <= low || middle >= high {
+                    return high;
+                }
+                if press(middle) > 0.0 { low = middle } else { high = middle }
+            }
+        }
+        low = high;
+    }
+    end
+}

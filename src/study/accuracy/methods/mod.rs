@@ -1,0 +1,98 @@
+//! What do people use instead? Four common methods, on any scene, for comparison with the program's own.
+//!
+//! Built for that alone: no run of the program takes them. Fixed steps *clamp and bounce*, as in games and small
+//! teaching applets: a step that ends beyond a stop is put onto it and its velocity reversed. Contact is then seen up
+//! to a step late, so that the times of impacts are first order in the step whatever the scheme.
+
+mod dormand_prince;
+mod fixed;
+mod problem;
+mod tally;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+pub use dormand_prince::dormand_prince;
+pub use fixed::fixed_step;
+
+use crate::dynamics::{Event, Sample};
+
+/// A scheme of fixed step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scheme {
+    /// Semi-implicit (symplectic) Euler: velocity first, then displacement by the new velocity. First order.
+    SemiImplicitEuler,
+    /// Velocity Verlet; where the force depends on the velocity, its new value is predicted by an Euler step.
+    /// Second order.
+    VelocityVerlet,
+    /// The classical method of Runge and Kutta (Kutta 1901). Fourth order between impacts.
+    RungeKutta4,
+}
+
+impl Scheme {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::SemiImplicitEuler, Self::VelocityVerlet, Self::RungeKutta4];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SemiImplicitEuler => "semi-implicit Euler",
+            Self::VelocityVerlet => "velocity Verlet",
+            Self::RungeKutta4 => "RK4",
+        }
+    }
+}
+
+/// What such a run should keep.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Keep<'a> {
+    /// Times in s at which to sample, ascending, within 0..=duration.
+    pub sample_times: &'a [f64],
+    /// Whether to keep the list of impacts.
+    pub impacts: bool,
+    /// Set from elsewhere to end the run early.
+    pub cancel: Option<&'a AtomicBool>,
+}
+
+impl Keep<'_> {
+    fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+}
+
+/// Statistics of a run by one of these methods. SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Statistics {
+    /// Displacement at the end in m.
+    pub final_x: f64,
+    /// Velocity at the end in m/s.
+    pub final_v: f64,
+    /// RMS velocity from the begin of the settled window to the end in m/s, by trapezoids over fixed steps and by Gauss's
+    /// rule over the continuous extension of adaptive ones; none where the run ended before it.
+    pub rms_velocity: Option<f64>,
+    /// Largest |x| in that window in m.
+    pub max_abs_x: f64,
+    /// Impacts over the whole run.
+    pub impacts: u64,
+    /// Passages of the barrier top over the whole run, as seen from step to step.
+    pub crossings: u64,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Evaluations of the force.
+    pub evaluations: u64,
+    /// CPU time in s.
+    pub cpu_s: f64,
+    /// Time in s at which the run ended early (it left the force curve, a number was not finite, it was told to stop);
+    /// none where it did not.
+    pub ended_at: Option<f64>,
+}
+
+/// What a run by one of these methods returns.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MethodRun {
+    /// The state at the requested times up to the end, on a straight line between steps.
+    pub samples: Vec<Sample>,
+    /// Impacts in order of time, where they were asked for.
+    pub impacts: Vec<Event>,
+    /// The numbers of the run.
+    pub statistics: Statistics,
+}

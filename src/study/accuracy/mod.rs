@@ -1,0 +1,117 @@
+//! How accurate are the runs, and what does accuracy cost?
+//!
+//! Two halves. [`PROBLEMS`]: work against precision on three problems, beside what people use instead
+//! ([`methods`]), error measured against the program's own integrator in double-double arithmetic. [`HARD_CASES`]:
+//! problems that break integrators of impacts, each with its answer ([`exact`] where there is a closed form) and the digits
+//! that its conditioning allows.
+
+mod cases;
+pub mod exact;
+mod measure;
+pub mod methods;
+mod precision;
+mod scenes;
+mod tables;
+
+pub use cases::{HARD_CASES, HardCase};
+pub use measure::{Check, REFERENCE_TOLERANCE, STEP_ERROR, Variant};
+pub use precision::{OWN, PROBLEMS, Point, Problem, Setting};
+
+use super::Task;
+
+/// Why the study has no result.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Stopped {
+    /// It was told to stop.
+    #[error("told to stop")]
+    Cancelled,
+    /// A scene of the study cannot be run: a fault of the program.
+    #[error("a scene of the study cannot be run: {0}")]
+    Scene(String),
+}
+
+/// A name that is none of those that can be selected.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("there is no case `{name}`; the cases are {}", names().collect::<Vec<_>>().join(", "))]
+pub struct UnknownCase {
+    name: String,
+}
+
+/// Names of all parts of the study: the problems, then the hard cases.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    PROBLEMS.iter().map(|problem| problem.name).chain(HARD_CASES.iter().map(|case| case.name))
+}
+
+/// What is to be done.
+#[derive(Debug, Clone, Default)]
+pub struct Selection {
+    problems: Vec<&'static Problem>,
+    cases: Vec<&'static HardCase>,
+}
+
+impl Selection {
+    /// Everything.
+    pub fn all() -> Self {
+        Self { problems: PROBLEMS.iter().collect(), cases: HARD_CASES.iter().collect() }
+    }
+
+    /// The parts with these names, in the study's own order.
+    pub fn of(wanted: &[String]) -> Result<Self, UnknownCase> {
+        let unknown = wanted.iter().find(|wanted| !names().any(|name| name == wanted.as_str()));
+        if let Some(name) = unknown {
+            return Err(UnknownCase { name: name.clone() });
+        }
+        let has = |name: &str| wanted.iter().any(|wanted| wanted == name);
+        Ok(Self {
+            problems: PROBLEMS.iter().filter(|problem| has(problem.name)).collect(),
+            cases: HARD_CASES.iter().filter(|case| has(case.name)).collect(),
+        })
+    }
+
+    /// How often progress is told.
+    pub fn parts(&self) -> u64 {
+        (self.problems.len() * precision::PARTS + self.cases.len()) as u64
+    }
+
+    /// Whether work against precision is part of it.
+    pub fn has_problems(&self) -> bool {
+        !self.problems.is_empty()
+    }
+}
+
+/// What the study found.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Report {
+    /// Work against precision, by problem and method, the coarsest setting first.
+    pub points: Vec<Point>,
+    /// The hard cases by name.
+    pub cases: Vec<(&'static str, Vec<Variant>)>,
+}
+
+impl Report {
+    /// Each variant of a case that falls short: case, variant, quantity.
+    pub fn shortfalls(&self) -> Vec<(&'static str, &'static str, &'static str)> {
+        let mut short = Vec::new();
+        for (case, variants) in &self.cases {
+            for variant in variants {
+                for (quantity, _) in variant.checks.iter().filter(|(_, check)| !check.passes()) {
+                    short.push((*case, variant.name, *quantity));
+                }
+            }
+        }
+        short
+    }
+}
+
+/// Does what was selected, one part after the other on this thread, since time is measured.
+pub fn accuracy(selection: &Selection, task: &Task) -> Result<Report, Stopped> {
+    let mut report = Report::default();
+    for problem in &selection.problems {
+        report.points.extend(problem.measure(task)?);
+    }
+    for case in &selection.cases {
+        report.cases.push((case.name, case.find(task)?));
+        (task.tick)();
+    }
+    Ok(report)
+}

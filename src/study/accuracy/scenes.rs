@@ -1,0 +1,152 @@
+//! Short ways to write the scenes of the cases.
+
+use std::sync::Arc;
+
+use super::Stopped;
+use crate::dynamics::{Model, STANDARD_GRAVITY};
+use crate::mechanics::{ForceCurve, Mechanism as Built};
+use crate::scene::{
+    Damping, Document, Excitation, Files, Mechanism, Run, Scene, Start, Stops, Transducer, check,
+};
+
+/// Every case runs at the tightest tolerance, so that what is left is rounding.
+pub(super) const TOLERANCE: f64 = 1e-14;
+
+/// A scene being written, and the force curve that takes the place of its mechanism's.
+#[derive(Debug, Clone)]
+pub(super) struct Setup {
+    pub scene: Scene,
+    curve: Option<ForceCurve>,
+}
+
+impl Setup {
+    /// 1 kg at `x` in m with `v` in m/s, undamped, unstopped, not shaken, settled from the start.
+    pub fn new(mechanism: Mechanism, (x, v): (f64, f64), duration_s: f64) -> Self {
+        Self {
+            scene: Scene {
+                title: "accuracy".to_owned(),
+                notes: String::new(),
+                mass_g: 1000.0,
+                mechanism,
+                damping: Damping::None,
+                stops: Stops::None,
+                excitation: Excitation::None,
+                start: Start::At { x_mm: x * 1e3, v_m_per_s: v },
+                run: Run { duration_s, settle_s: Some(0.0), tolerance: TOLERANCE, recurrence: false },
+                sweep: Vec::new(),
+                transducer: Transducer::None,
+                app: None,
+            },
+            curve: None,
+        }
+    }
+
+    /// The cubic of the prototype's size (wells at 7 mm, 15.2 g, damping ratio 0.023) between stops, from rest.
+    pub fn nominal(limit_mm: f64, restitution: f64, excitation: Excitation, duration_s: f64) -> Self {
+        let cubic = Mechanism::Cubic { linear_n_per_m: -40.0, cubic_n_per_m3: 40.0 / 49e-6 };
+        let mut own = Self::new(cubic, (0.0, 0.0), duration_s);
+        own.scene.mass_g = 15.2;
+        own.scene.damping = Damping::Ratio(0.023);
+        own.scene.start = Start::Rest;
+        own.stops(rigid(limit_mm, restitution)).drive(excitation)
+    }
+
+    /// A built-in scene at the tightest tolerance, with fields changed, each as `FIELD=VALUE`.
+    pub fn preset(name: &str, changes: &[&str]) -> Result<Self, Stopped> {
+        let invalid = |error: &dyn std::fmt::Display| Stopped::Scene(error.to_string());
+        let mut document = Document::load(name).map_err(|error| invalid(&error))?;
+        for change in changes {
+            document.set(change).map_err(|error| invalid(&error))?;
+        }
+        document.scene.run.tolerance = TOLERANCE;
+        document.scene.sweep.clear();
+        Ok(Self { scene: document.scene, curve: None })
+    }
+
+    pub fn stops(mut self, stops: Stops) -> Self {
+        self.scene.stops = stops;
+        self
+    }
+
+    pub fn drive(mut self, excitation: Excitation) -> Self {
+        self.scene.excitation = excitation;
+        self
+    }
+
+    pub fn damping(mut self, c_n_s_per_m: f64) -> Self {
+        self.scene.damping = Damping::Coefficient { c_n_s_per_m };
+        self
+    }
+
+    pub fn start(mut self, x: f64, v: f64) -> Self {
+        self.scene.start = Start::At { x_mm: x * 1e3, v_m_per_s: v };
+        self
+    }
+
+    /// The force is that of `curve`, whatever the scene's mechanism says.
+    pub fn on(mut self, curve: ForceCurve) -> Self {
+        self.curve = Some(curve);
+        self
+    }
+
+    /// The scene as run.
+    pub fn model(&self) -> Result<Model, Stopped> {
+        let faults = |faults: &[crate::scene::Fault]| {
+            let first = faults.first();
+            Stopped::Scene(
+                first.map_or_else(String::new, |f| format!("{} = {}: {}", f.field, f.value, f.problem)),
+            )
+        };
+        let checked = check(&self.scene);
+        if !checked.faults.is_empty() {
+            return Err(faults(&checked.faults));
+        }
+        let mechanism = match &self.curve {
+            Some(curve) => Built::new(curve.clone()),
+            None => Built::build(&self.scene.mechanism, &Files::default())
+                .map_err(|error| Stopped::Scene(error.to_string()))?,
+        };
+        Model::build(&self.scene, Arc::new(mechanism)).map_err(|found| faults(&found))
+    }
+}
+
+pub(super) fn polynomial(coefficients_si: &[f64]) -> Mechanism {
+    Mechanism::Polynomial { coefficients_si: coefficients_si.to_vec() }
+}
+
+/// m = 1 kg, F = x^3 - x.
+pub(super) fn unit_well() -> Mechanism {
+    Mechanism::Cubic { linear_n_per_m: -1.0, cubic_n_per_m3: 1.0 }
+}
+
+pub(super) fn rigid(travel_limit_mm: f64, restitution: f64) -> Stops {
+    Stops::Rigid { travel_limit_mm, restitution }
+}
+
+pub(super) fn right_stop(right_mm: f64, restitution: f64) -> Stops {
+    Stops::Uneven {
+        left_mm: None,
+        right_mm: Some(right_mm),
+        restitution_left: None,
+        restitution_right: Some(restitution),
+    }
+}
+
+pub(super) fn left_stop(left_mm: f64, restitution: f64) -> Stops {
+    Stops::Uneven {
+        left_mm: Some(left_mm),
+        right_mm: None,
+        restitution_left: Some(restitution),
+        restitution_right: None,
+    }
+}
+
+/// A sine of an amplitude in m/s^2.
+pub(super) fn sine(frequency_hz: f64, amplitude: f64, phase_deg: f64) -> Excitation {
+    Excitation::Sine { frequency_hz, amplitude_g: amplitude / STANDARD_GRAVITY, phase_deg }
+}
+
+/// A constant acceleration in m/s^2.
+pub(super) fn constant(acceleration: f64) -> Excitation {
+    Excitation::Constant { accel_g: acceleration / STANDARD_GRAVITY }
+}

@@ -1,0 +1,186 @@
+//! What the study found, as tables.
+
+use super::measure::Check;
+use super::precision::{Point, Setting};
+use super::{Report, Variant};
+use crate::study::{Table, Values};
+
+/// Errors that the summary of a method says the cost of.
+const LEVELS: [(&str, f64); 4] =
+    [("cpu_to_1e-3_s", 1e-3), ("cpu_to_1e-6_s", 1e-6), ("cpu_to_1e-9_s", 1e-9), ("cpu_to_1e-12_s", 1e-12)];
+
+impl Report {
+    /// Everything in one table, a row for each point and for each quantity of each variant of a case.
+    ///
+    /// `part` is `work_precision` or `hard_case`; `error` and `allowed` are relative to what the problem or case
+    /// names; cells that a row has no use for are empty.
+    pub fn table(&self) -> Table {
+        let rows: Vec<Row> =
+            self.points.iter().map(Row::of_point).chain(self.rows(|own| own.checks.clone())).collect();
+        Table::new()
+            .with("part", words(&rows, |row| row.part))
+            .with("case", words(&rows, |row| row.case))
+            .with("method", words(&rows, |row| row.method))
+            .with("variant", words(&rows, |row| row.variant))
+            .with("quantity", words(&rows, |row| row.quantity))
+            .with("tolerance", numbers(&rows, |row| row.tolerance))
+            .with("step_s", numbers(&rows, |row| row.step))
+            .with("error", numbers(&rows, |row| row.error))
+            .with("allowed", numbers(&rows, |row| row.allowed))
+            .with("digits_allowed", numbers(&rows, |row| row.digits_allowed))
+            .with("digits_reached", numbers(&rows, |row| row.digits_reached))
+            .with("steps", counts(&rows, |row| row.steps))
+            .with("evaluations", counts(&rows, |row| row.evaluations))
+            .with("cpu_s", numbers(&rows, |row| row.cpu))
+            .with("verdict", words(&rows, |row| row.verdict))
+    }
+
+    /// The points alone, as a plot reads them: `problem`, `method`, `tolerance`, `step_s`, `error`, `steps`,
+    /// `cpu_s`.
+    pub fn work_table(&self) -> Table {
+        let rows: Vec<Row> = self.points.iter().map(Row::of_point).collect();
+        Table::new()
+            .with("problem", words(&rows, |row| row.case))
+            .with("method", words(&rows, |row| row.method))
+            .with("tolerance", numbers(&rows, |row| row.tolerance))
+            .with("step_s", numbers(&rows, |row| row.step))
+            .with("error", numbers(&rows, |row| row.error))
+            .with("steps", counts(&rows, |row| row.steps))
+            .with("cpu_s", numbers(&rows, |row| row.cpu))
+    }
+
+    /// What each method pays at least for an error of 1e-3, 1e-6, 1e-9 and 1e-12, and the least error that it reached:
+    /// a row for each problem and method.
+    pub fn cost_table(&self) -> Table {
+        let mut groups: Vec<Group> = Vec::new();
+        for point in &self.points {
+            let group = (point.problem, point.method);
+            if !groups.contains(&group) {
+                groups.push(group);
+            }
+        }
+        let least = |group: &Group, of: &dyn Fn(&Point) -> f64| {
+            let own = self.points.iter().filter(|point| (point.problem, point.method) == *group);
+            own.map(of).fold(f64::NAN, f64::min)
+        };
+        let mut table = Table::new()
+            .with("problem", Values::Words(groups.iter().map(|group| group.0).collect()))
+            .with("method", Values::Words(groups.iter().map(|group| group.1).collect()));
+        for (name, level) in LEVELS {
+            let cost = |point: &Point| if point.error <= level { point.cpu_s } else { f64::NAN };
+            let cheapest = |group: &Group| least(group, &cost);
+            table = table.with(name, Values::Numbers(groups.iter().map(cheapest).collect()));
+        }
+        let error = |group: &Group| least(group, &|point| point.error);
+        table.with("least_error", Values::Numbers(groups.iter().map(error).collect()))
+    }
+
+    /// The hard cases, a row for each variant with the quantity that has the smallest margin.
+    pub fn case_table(&self) -> Table {
+        let rows = self.rows(|variant| variant.tightest().into_iter().collect());
+        Table::new()
+            .with("case", words(&rows, |row| row.case))
+            .with("variant", words(&rows, |row| row.variant))
+            .with("quantity", words(&rows, |row| row.quantity))
+            .with("digits_allowed", numbers(&rows, |row| row.digits_allowed))
+            .with("digits_reached", numbers(&rows, |row| row.digits_reached))
+            .with("steps", counts(&rows, |row| row.steps))
+            .with("cpu_s", numbers(&rows, |row| row.cpu))
+            .with("verdict", words(&rows, |row| row.verdict))
+    }
+
+    fn rows(&self, choose: impl Fn(&Variant) -> Vec<(&'static str, Check)>) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for (case, variants) in &self.cases {
+            for variant in variants {
+                rows.extend(choose(variant).into_iter().map(|check| Row::of_check(case, variant, check)));
+            }
+        }
+        rows
+    }
+}
+
+/// Problem and method.
+type Group = (&'static str, &'static str);
+
+/// One row, of either half; what it has no use for is NaN or empty.
+#[derive(Clone, Copy)]
+struct Row {
+    part: &'static str,
+    case: &'static str,
+    method: &'static str,
+    variant: &'static str,
+    quantity: &'static str,
+    tolerance: f64,
+    step: f64,
+    error: f64,
+    allowed: f64,
+    digits_allowed: f64,
+    digits_reached: f64,
+    steps: u64,
+    evaluations: u64,
+    cpu: f64,
+    verdict: &'static str,
+}
+
+impl Row {
+    fn of_point(point: &Point) -> Self {
+        let (tolerance, step) = match point.setting {
+            Setting::Tolerance(tolerance) => (tolerance, f64::NAN),
+            Setting::Step(step) => (f64::NAN, step),
+        };
+        Self {
+            part: "work_precision",
+            case: point.problem,
+            method: point.method,
+            variant: "",
+            quantity: "",
+            tolerance,
+            step,
+            error: point.error,
+            allowed: f64::NAN,
+            digits_allowed: f64::NAN,
+            digits_reached: f64::NAN,
+            steps: point.steps,
+            evaluations: point.evaluations,
+            cpu: point.cpu_s,
+            verdict: "",
+        }
+    }
+
+    fn of_check(case: &'static str, variant: &Variant, (quantity, check): (&'static str, Check)) -> Self {
+        let (error, allowed) = match check {
+            Check::Error { error, allowed } => (error, allowed),
+            Check::Fact(_) => (f64::NAN, f64::NAN),
+        };
+        Self {
+            part: "hard_case",
+            case,
+            method: super::OWN,
+            variant: variant.name,
+            quantity,
+            tolerance: super::scenes::TOLERANCE,
+            step: f64::NAN,
+            error,
+            allowed,
+            digits_allowed: check.digits_allowed().unwrap_or(f64::NAN),
+            digits_reached: check.digits_reached().unwrap_or(f64::NAN),
+            steps: variant.steps,
+            evaluations: variant.evaluations,
+            cpu: variant.cpu_s,
+            verdict: if check.passes() { "pass" } else { "fail" },
+        }
+    }
+}
+
+fn words(rows: &[Row], of: impl Fn(&Row) -> &'static str) -> Values {
+    Values::Words(rows.iter().map(of).collect())
+}
+
+fn numbers(rows: &[Row], of: impl Fn(&Row) -> f64) -> Values {
+    Values::Numbers(rows.iter().map(of).collect())
+}
+
+fn counts(rows: &[Row], of: impl Fn(&Row) -> u64) -> Values {
+    Values::Counts(rows.iter().map(|row| Some(of(row))).collect())
+}

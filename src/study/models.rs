@@ -1,0 +1,144 @@
+//! Which model held when? The models by which a motion went, so that its past is looked at as it was.
+//!
+//! While a slider is dragged there is another model with every frame. One that held too briefly to be seen gives way
+//! to the next, and of too many the one that held the shortest time is forgotten, so that memory stays bounded.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use crate::dynamics::Model;
+
+/// How many models of the past are remembered.
+pub(super) const MOST_MODELS: usize = 200;
+
+/// A stretch of time in s in which one model held, and that model.
+pub type Held<'a> = (f64, f64, &'a Arc<Model>);
+
+/// The models of a motion, in order of time.
+#[derive(Debug, Clone)]
+pub(super) struct Models {
+    /// The present one, and the time in s from which it holds.
+    now: (f64, Arc<Model>),
+    /// Those before it, each with its first time.
+    before: VecDeque<(f64, Arc<Model>)>,
+}
+
+impl Models {
+    pub fn new(model: Arc<Model>) -> Self {
+        Self { now: (0.0, model), before: VecDeque::new() }
+    }
+
+    /// From the time `t` in s on `model` holds; what held for less than `brief` seconds is not remembered.
+    pub fn change(&mut self, t: f64, model: Arc<Model>, brief: f64) {
+        if t - self.now.0 < brief {
+            self.now.1 = model;
+            return;
+        }
+        self.before.push_back(std::mem::replace(&mut self.now, (t, model)));
+        if self.before.len() > MOST_MODELS {
+            let ends = self.before.iter().skip(1).chain([&self.now]);
+            let lengths = self.before.iter().zip(ends).map(|(own, next)| next.0 - own.0);
+            let shortest = lengths.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |found| found.0);
+            self.before.remove(shortest);
+        }
+    }
+
+    /// The model that held at a time in s; before all of them the first.
+    pub fn at(&self, t: f64) -> &Arc<Model> {
+        if t >= self.now.0 {
+            return &self.now.1;
+        }
+        let after = self.before.partition_point(|own| own.0 <= t);
+        self.before.get(after.saturating_sub(1)).map_or(&self.now.1, |own| &own.1)
+    }
+
+    /// From when on in s the model held that held at a time in s.
+    pub fn since(&self, t: f64) -> f64 {
+        if t >= self.now.0 {
+            return self.now.0;
+        }
+        let after = self.before.partition_point(|own| own.0 <= t);
+        self.before.get(after.saturating_sub(1)).map_or(self.now.0, |own| own.0)
+    }
+
+    /// Forgets what held only before a time in s.
+    pub fn forget(&mut self, t: f64) {
+        while self.before.get(1).map_or(self.now.0, |next| next.0) <= t && self.before.pop_front().is_some() {
+        }
+    }
+
+    /// Who held from `from` to `to` in s, in order of time; the first and the last are cut there.
+    pub fn between(&self, from: f64, to: f64) -> impl Iterator<Item = Held<'_>> {
+        let first = self.before.partition_point(|own| own.0 <= from).saturating_sub(1);
+        let all = self.before.iter().skip(first).chain([&self.now]);
+        let ends =
+            self.before.iter().chain([&self.now]).skip(first + 1).map(|next| next.0).chain([f64::INFINITY]);
+        all.zip(ends)
+            .map(move |(own, end)| (own.0.max(from), end.min(to), &own.1))
+            .filter(|held| held.1 > held.0)
+    }
+
+    /// How many there are.
+    #[cfg(test)]
+    pub fn len(&self) -> usize {
+        self.before.len() + 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::Mechanism;
+    use crate::scene::Document;
+
+    /// A model that is told by its mass.
+    fn of(grams: f64) -> Arc<Model> {
+        let mut document = Document::load("nominal-cubic").unwrap();
+        document.scene.mass_g = grams;
+        let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+        Arc::new(Model::build(&document.scene, Arc::new(mechanism)).unwrap())
+    }
+
+    fn mass(own: &Models, t: f64) -> f64 {
+        (own.at(t).mass * 1e3).round()
+    }
+
+    #[test]
+    fn each_time_has_its_model() {
+        let mut own = Models::new(of(1.0));
+        own.change(2.0, of(2.0), 0.1);
+        own.change(5.0, of(3.0), 0.1);
+        assert_eq!(
+            [-1.0, 0.0, 1.999, 2.0, 4.0, 5.0, 9.0].map(|t| mass(&own, t)),
+            [1.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0]
+        );
+        assert_eq!([1.0, 3.0, 7.0].map(|t| own.since(t)), [0.0, 2.0, 5.0]);
+        let held: Vec<(f64, f64)> = own.between(1.0, 6.0).map(|held| (held.0, held.1)).collect();
+        assert_eq!(held, [(1.0, 2.0), (2.0, 5.0), (5.0, 6.0)]);
+        assert_eq!(own.between(2.5, 3.0).count(), 1);
+        // one that held for no time, and one for too little of it, are gone
+        own.change(5.0, of(4.0), 0.1);
+        own.change(5.05, of(5.0), 0.1);
+        assert_eq!((own.len(), mass(&own, 5.0)), (3, 5.0));
+        own.forget(1.0);
+        assert_eq!(own.len(), 3);
+        own.forget(2.0);
+        assert_eq!((own.len(), mass(&own, 0.0)), (2, 2.0));
+        own.forget(100.0);
+        assert_eq!((own.len(), mass(&own, 0.0)), (1, 5.0));
+    }
+
+    #[test]
+    fn memory_is_bounded_and_the_briefest_go_first() {
+        let (long, brief, last) = (of(1.0), of(2.0), of(3.0));
+        let mut own = Models::new(Arc::clone(&long));
+        let mut t = 10.0;
+        for _ in 0..3 * MOST_MODELS {
+            t += 0.2;
+            own.change(t, Arc::clone(&brief), 0.1);
+        }
+        own.change(t + 5.0, last, 0.1);
+        assert_eq!(own.len(), MOST_MODELS + 1);
+        assert_eq!((mass(&own, 4.0), mass(&own, t + 4.0), mass(&own, t + 5.0)), (1.0, 2.0, 3.0));
+    }
+}

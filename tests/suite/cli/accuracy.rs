@@ -1,0 +1,81 @@
+//! `accuracy`: its options, tables and errors.
+
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::{contains, starts_with};
+
+use super::{column, headless, refused, stdout};
+
+#[test]
+fn one_case_is_shown_as_a_table() {
+    let text = stdout("accuracy --quiet --case grazing --case plastic-sine");
+    let mut lines = text.lines();
+    let heading: Vec<&str> =
+        lines.next().unwrap().split("  ").map(str::trim).filter(|w| !w.is_empty()).collect();
+    let names =
+        ["case", "variant", "quantity", "digits allowed", "digits reached", "steps", "cpu, s", "verdict"];
+    assert_eq!(heading, names);
+    let cases: Vec<&str> = lines.filter_map(|line| line.split_whitespace().next()).collect();
+    // in the study's own order
+    assert_eq!(cases, ["plastic-sine", "grazing", "grazing", "grazing"]);
+}
+
+#[test]
+fn every_quantity_is_a_row_of_the_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("accuracy.csv");
+    let line = format!("accuracy --case grazing --out {}", file.display());
+    headless(&line).assert().success().stdout(starts_with("case"));
+    let csv = std::fs::read_to_string(&file).unwrap();
+    assert_eq!(
+        csv.lines().next().unwrap(),
+        "part,case,method,variant,quantity,tolerance,step_s,error,allowed,digits_allowed,digits_reached,steps,\
+         evaluations,cpu_s,verdict"
+    );
+    assert!(column(&csv, "case").iter().all(|case| case == "grazing"));
+    assert!(column(&csv, "verdict").iter().all(|verdict| verdict == "pass"));
+    assert_eq!(column(&csv, "quantity").iter().filter(|own| *own == "displacement at 3 s").count(), 3);
+    for (error, allowed) in column(&csv, "error").iter().zip(column(&csv, "allowed")) {
+        let numbers = error.parse::<f64>().ok().zip(allowed.parse::<f64>().ok());
+        assert!(numbers.is_none_or(|(error, allowed)| error <= allowed), "{error} {allowed}");
+    }
+    // with the data on standard output the table goes to standard error
+    let output =
+        headless("accuracy --case grazing --out -").assert().success().stdout(starts_with("part,case"));
+    output.stderr(contains("digits allowed"));
+}
+
+#[test]
+fn speed_against_error_comes_with_a_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let (picture, data) = (folder.path().join("a.svg"), folder.path().join("a.csv"));
+    let line = format!("accuracy --case p1 --plot {} --out {}", picture.display(), data.display());
+    headless(&line).assert().success().stdout(contains("Dormand-Prince 5(4)").and(contains("least error")));
+    let picture = std::fs::read_to_string(picture).unwrap();
+    for word in ["p1", "Taylor series", "RK4", "velocity Verlet", "CPU time, s"] {
+        assert!(picture.contains(word), "{word}");
+    }
+    let csv = std::fs::read_to_string(data).unwrap();
+    let methods = column(&csv, "method");
+    let rows = |name: &str| methods.iter().filter(|own| *own == name).count();
+    assert_eq!((rows("Taylor series"), rows("Dormand-Prince 5(4)"), rows("RK4")), (12, 12, 8));
+    assert_eq!(column(&csv, "tolerance")[0], "1e-3");
+}
+
+#[test]
+fn the_cases_are_listed_with_their_reasons() {
+    let all = stdout("accuracy --list");
+    for word in ["p1", "flexures", "separatrix", "chatter-at-release", "Digits allowed:", "Answer:"] {
+        assert!(all.contains(word), "{word}");
+    }
+    let one = stdout("accuracy --list --case kink");
+    assert!(one.starts_with("kink\n") && !one.contains("separatrix"), "{one}");
+}
+
+#[test]
+fn a_wrong_argument_names_the_remedy() {
+    refused(headless("accuracy --case grasing"), &["`grasing`", "grazing", "p1, p2, flexures, separatrix"]);
+    refused(headless("accuracy --case grazing --plot a.png"), &["--plot", "--case p1 or p2 or flexures"]);
+    refused(headless("accuracy --case p1 --plot a.txt"), &["--plot", ".png or .svg"]);
+    refused(headless("accuracy --case p1 --dark"), &["--plot"]);
+    refused(headless("accuracy --case grazing --out no/such/a.csv"), &["no folder"]);
+}

@@ -1,0 +1,148 @@
+//! Scene fields, their checks, and what the commands say of compliant stops.
+
+use crate::cli::{headless, refused, stdout};
+
+const ALUMINIUM: &str = "stops=Hertz(travel_limit_mm:1.5,radius_mm:5,young_gpa:69,loss_s_per_m:4.854)";
+
+#[test]
+fn what_is_wrong_names_its_field_and_the_remedy() {
+    for (stops, words) in [
+        (
+            "Hertz(travel_limit_mm:1.5,loss_s_per_m:1)",
+            &["stops = Hertz(..)", "radius_mm and young_gpa", "stiffness_n_per_m1_5"][..],
+        ),
+        ("Hertz(travel_limit_mm:1.5,loss_s_per_m:1,radius_mm:5)", &["stops", "needs young_gpa"]),
+        (
+            "Hertz(travel_limit_mm:1.5,loss_s_per_m:1,stiffness_n_per_m1_5:1e9,poisson:0.3)",
+            &["stops.poisson = 0.3", "stiffness_n_per_m1_5 is given"],
+        ),
+        (
+            "Hertz(travel_limit_mm:1.5,loss_s_per_m:-1,stiffness_n_per_m1_5:1e9)",
+            &["stops.loss_s_per_m = -1", "0 to 1e30"],
+        ),
+        (
+            "Hertz(travel_limit_mm:1.5,loss_s_per_m:1,stiffness_n_per_m1_5:0)",
+            &["stops.stiffness_n_per_m1_5 = 0", "1e-60"],
+        ),
+        ("Hertz(travel_limit_mm:0,loss_s_per_m:1,stiffness_n_per_m1_5:1)", &["stops.travel_limit_mm = 0"]),
+    ] {
+        refused(headless(&format!("check paper --set stops={stops}")), words);
+    }
+    refused(
+        headless(
+            "check paper --set stops=Hertz(travel_limit_mm:2,stiffness_n_per_m1_5:1e9,loss_s_per_m:1) --set start=At(x_mm:3,v_m_per_s:0)",
+        ),
+        &["start.x_mm", "stops.travel_limit_mm"],
+    );
+}
+
+#[test]
+fn check_says_what_an_impact_does_and_what_resting_costs() {
+    let text = stdout(&format!("check paper --set {ALUMINIUM}"));
+    for words in [
+        "k = 3.678e9 N/m^1.5",
+        "at 0.1 m/s",
+        "at 0.5 m/s",
+        "restitution 0.36",
+        "1.469 GPa",
+        "0.44",
+        "resting on one",
+        "Hz",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let bare = stdout(
+        "check paper --set stops=Hertz(travel_limit_mm:1.5,stiffness_n_per_m1_5:3.68e9,loss_s_per_m:0)",
+    );
+    assert!(bare.contains("restitution 1,") && !bare.contains("the contact yields"), "{bare}");
+}
+
+#[test]
+fn a_run_warns_where_aluminium_would_yield() {
+    let run = |extra: &str| {
+        let out = headless(&format!(
+            "simulate paper --set {ALUMINIUM} --set run.duration_s=1 --set run.settle_s=0.5 --out /dev/null --summary - {extra}"
+        ))
+        .assert()
+        .success();
+        let out = out.get_output().clone();
+        (String::from_utf8(out.stdout).unwrap(), String::from_utf8(out.stderr).unwrap())
+    };
+    let (summary, warned) = run("");
+    assert!(
+        warned.contains("warning") && warned.contains("GPa") && warned.contains("stops.yield_gpa"),
+        "{warned}"
+    );
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert!(summary["peak_contact_force_n"].as_f64().unwrap() > 50.0);
+    assert!(summary["peak_contact_pressure_pa"].as_f64().unwrap() > 5e8);
+    assert_eq!(run("--set stops.yield_gpa=2").1, "");
+    assert_eq!(run("--quiet").1, "");
+    let rigid =
+        stdout("simulate paper --set run.duration_s=1 --set run.settle_s=0.5 --out /dev/null --summary -");
+    let rigid: serde_json::Value = serde_json::from_str(&rigid).unwrap();
+    assert!(rigid["peak_contact_force_n"].is_null());
+}
+
+#[test]
+fn its_fields_are_swept() {
+    let csv = stdout(&format!(
+        "sweep paper --set {ALUMINIUM} --set run.duration_s=1 --set run.settle_s=0.5 --quiet --over stops.loss_s_per_m=0,5 --over stops.radius_mm=5,10"
+    ));
+    let rows: Vec<&str> = csv.lines().collect();
+    assert!(rows[0].starts_with("loss_s_per_m,radius_mm,rms_velocity_m_per_s"), "{csv}");
+    assert_eq!(rows.len(), 5);
+    assert!(rows[1..].iter().all(|row| row.ends_with("done")), "{csv}");
+    let speed = |row: &str| row.split(',').nth(2).unwrap().parse::<f64>().unwrap();
+    assert!(speed(rows[1]) > speed(rows[3]), "without loss it moves faster: {csv}");
+}
+
+#[test]
+fn restitution_over_impact_speed_as_rows_and_as_a_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("contact.svg");
+    let csv = stdout(&format!(
+        "curve paper --set {ALUMINIUM} --out /dev/null --contact - --contact-plot {}",
+        picture.display()
+    ));
+    let rows: Vec<Vec<&str>> = csv.lines().map(|row| row.split(',').collect()).collect();
+    assert_eq!(
+        rows[0].join(","),
+        "speed_m_per_s,restitution,rigid_restitution,contact_time_s,depth_m,peak_force_n,peak_pressure_pa"
+    );
+    assert_eq!((rows[1][0], rows[1][1], rows[1][2], rows[1][3]), ("0", "1", "0.36", ""));
+    let at = rows.iter().find(|row| row[0] == "0.5").unwrap();
+    let number = |i: usize| at[i].parse::<f64>().unwrap();
+    assert!((number(1) - 0.36).abs() < 1e-4 && (number(6) / 1.469e9 - 1.0).abs() < 1e-3, "{at:?}");
+    assert!(
+        rows[2..]
+            .iter()
+            .zip(&rows[1..])
+            .all(|(next, own)| { next[1].parse::<f64>().unwrap() < own[1].parse::<f64>().unwrap() })
+    );
+    let drawn = std::fs::read_to_string(picture).unwrap();
+    for words in ["impact speed, m/s", "restitution", "rigid stop, 0.36", "yields from"] {
+        assert!(drawn.contains(words), "{words}");
+    }
+    refused(headless("curve paper --contact - --out /dev/null"), &["--contact", "not compliant", "Hertz("]);
+    refused(
+        headless(&format!("curve paper --set {ALUMINIUM} --contact - --out /dev/null --rigid 1.5")),
+        &["--rigid 1.5"],
+    );
+}
+
+#[test]
+fn a_run_on_compliant_stops_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("run.svg");
+    headless(&format!(
+        "simulate paper --set {ALUMINIUM} --quiet --out /dev/null --plot {}",
+        picture.display()
+    ))
+    .assert()
+    .success();
+    let drawn = std::fs::read_to_string(picture).unwrap();
+    for words in ["450 impacts", "in contact", "contact force up to"] {
+        assert!(drawn.contains(words), "{words}");
+    }
+}

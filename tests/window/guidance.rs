@@ -1,0 +1,128 @@
+//! What the window says beside its sentence: what to try, what it would take, and what a screen reader speaks.
+
+use eframe::egui::{Key, Role};
+use egui_kittest::kittest::{NodeT, Queryable};
+use interwell::app::settings::Settings;
+use interwell::dynamics::Regime;
+use interwell::scene::{Excitation, Stops};
+
+use crate::support::{LONG, session, window};
+
+const WIDE: [f32; 2] = [1280.0, 720.0];
+
+/// What is said of the ways to cross, once it is found.
+fn ways(preset: &str, changes: &[&str]) -> String {
+    let mut session = session(preset, changes);
+    assert!(session.ways().starts_with("Looking") || session.amplitude_g().is_none());
+    session.wait(LONG);
+    session.ways()
+}
+
+#[test]
+fn the_ways_to_cross_hold() {
+    let text = ways("first-look", &[]);
+    let limit = text.split('±').nth(1).and_then(|rest| rest.split(' ').next()).unwrap().to_owned();
+    assert!(text.starts_with("Crosses with about 0.3 g more, or with stops at ±"), "{text}");
+    // that is what it does there, and not a step further out
+    let regime = |mm: f64| {
+        let stops = format!("stops=Rigid(travel_limit_mm: {mm}, restitution: 0.36)");
+        session("first-look", &[&stops]).settled().unwrap().summary.regime
+    };
+    let limit: f64 = limit.parse().unwrap();
+    assert_eq!(regime(limit), Regime::Interwell);
+    assert_ne!(regime(limit + 0.1), Regime::Interwell);
+
+    let stops = "stops=Rigid(travel_limit_mm: 2.5, restitution: 0.36)";
+    let text = ways("first-look", &[stops]);
+    assert!(text.contains(&format!("or with stops at ±{limit:.1} mm.")), "{text}");
+    let text = ways("first-look", &["excitation.amplitude_g=0.1"]);
+    assert!(text.ends_with("no stops alone would do it.") || text.contains("with stops at ±0."), "{text}");
+    let text = ways("paper", &[]);
+    assert!(text.starts_with("It crosses already"), "{text}");
+    let text = ways("walking", &[]);
+    assert!(text.starts_with("What it would take is searched for where a sine"), "{text}");
+}
+
+#[test]
+fn the_hint_leads_on_and_ends() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.state_mut().session.player.speed = 1.0;
+    harness.get_by_label("Make it cross to the other side.");
+    harness.state_mut().session.edit_once(|scene| {
+        if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
+            *amplitude_g = 1.4;
+        }
+    });
+    harness.run_steps(200);
+    harness.get_by_label("It crosses.");
+    harness.get_by_label_contains("Now go back to 0.9 g and switch the stops on");
+    harness.state_mut().session.switch_stops(true);
+    harness.run_steps(120);
+    harness.get_by_label("It crosses between stops.");
+    harness
+        .state_mut()
+        .session
+        .edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 1.8, restitution: 0.36 });
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Dismiss").is_none());
+    // the start again, the hint with it
+    harness.key_press(Key::Home);
+    harness.run_steps(3);
+    harness.get_by_label("Make it cross to the other side.");
+    harness.get_by_label("Dismiss").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Dismiss").is_none());
+}
+
+#[test]
+fn what_it_would_take_is_there_on_request() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.key_press(Key::H);
+    harness.run_steps(2);
+    harness.state_mut().session.wait(LONG);
+    harness.run_steps(2);
+    harness.get_by_label_contains("or with stops at ±");
+    // it gives the answer away
+    harness.key_press(Key::C);
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("or with stops at ±").is_none());
+    assert!(harness.query_by_label_contains("Intrawell: stays").is_none());
+    harness.get_by_label("Covered: what do you expect? C shows it again.");
+    harness.key_press(Key::C);
+    harness.key_press(Key::H);
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("or with stops at ±").is_none());
+}
+
+#[test]
+fn a_screen_reader_is_told_by_a_new_node() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    let spoken = |harness: &egui_kittest::Harness<'static, interwell::app::window::Window>| {
+        let node = harness.get_by_role(Role::Status);
+        (node.accesskit_node().id(), node.accesskit_node().label().unwrap_or_default())
+    };
+    let (first, text) = spoken(&harness);
+    assert!(text.starts_with("Intrawell: stays"), "{text}");
+    harness.run_steps(3);
+    assert_eq!(spoken(&harness).0, first);
+    harness.state_mut().session.switch_stops(true);
+    harness.state_mut().session.wait(LONG);
+    harness.run_steps(40);
+    let (second, text) = spoken(&harness);
+    assert!(second != first && text.starts_with("Interwell: "), "{text}");
+}
+
+#[test]
+fn the_projector_can_be_left_again() {
+    let mut harness =
+        window("first-look", [853.0, 480.0], Settings { projector: true, ..Settings::default() });
+    harness.get_by_label("View").click();
+    harness.run_steps(3);
+    let row = harness.get_by_label("Projector").rect();
+    assert!(row.bottom() < 480.0, "{row:?}");
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    harness.key_press(Key::P);
+    harness.run_steps(2);
+    assert!(!harness.state().settings.projector);
+}
