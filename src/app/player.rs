@@ -38,12 +38,14 @@ pub struct Player {
     past: Option<f64>,
     /// Whether the mass is held by hand, which holds the clock.
     held: bool,
+    /// Whether a view of this frame shows where the energy went.
+    wants_ledgers: bool,
 }
 
 impl Player {
     /// Begins at the model's own start, playing.
     pub fn new(model: &Model, speed: f64) -> Self {
-        Self { watch: Watch::new(model), speed, playing: true, past: None, held: false }
+        Self { watch: Watch::new(model), speed, playing: true, past: None, held: false, wants_ledgers: false }
     }
 
     /// Whether time goes on.
@@ -81,8 +83,20 @@ impl Player {
 
     /// From the start again.
     pub fn restart(&mut self, model: &Model) {
+        let keeps_ledgers = self.watch.keeps_ledgers();
         self.watch = Watch::new(model);
+        self.watch.keep_ledgers(keeps_ledgers);
         (self.past, self.held) = (None, false);
+    }
+
+    /// Asks that ledgers be kept at the ends of forcing periods; to be asked anew in every frame.
+    pub fn want_ledgers(&mut self) {
+        self.wants_ledgers = true;
+    }
+
+    /// To be called once a frame: ledgers that no view has asked for are not kept.
+    pub fn end_frame(&mut self) {
+        self.watch.keep_ledgers(std::mem::take(&mut self.wants_ledgers));
     }
 
     /// From now on the mass moves as `model` says.

@@ -78,6 +78,8 @@ pub struct Window {
     /// The title that the window has.
     titled: String,
     dialog: Latest<Chosen>,
+    /// Whether files are asked for.
+    dialogs: bool,
     /// A path that is typed where there is no dialog.
     typed: Option<Typed>,
     /// Input that waits for the next frame.
@@ -121,6 +123,7 @@ impl Window {
             errors: channel(),
             titled: String::new(),
             dialog: Latest::default(),
+            dialogs: true,
             typed: None,
             later: Later::default(),
             wake,
@@ -216,6 +219,7 @@ impl Window {
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.memory.grab = false;
         self.session.map.end_frame();
+        self.session.player.end_frame();
         for command in asked {
             self.carry_out(&ctx, command);
         }

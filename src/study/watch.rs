@@ -1,8 +1,8 @@
 //! What has been seen of a motion that goes on? A live run with a memory.
 //!
 //! The path is sampled for the eye: some eighty times a swing, and at every event, so that rebounds are
-//! corners and rests are flat. The energy ledger is kept at the end of every forcing period. The oldest of it is
-//! forgotten. The models by which it went are kept with it ([`models`](super::models)).
+//! corners and rests are flat. The energy ledger is kept at the end of every forcing period while somebody looks at it.
+//! The oldest of it is forgotten. The models by which it went are kept with it ([`models`](super::models)).
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -34,6 +34,7 @@ pub struct Watch {
     events: VecDeque<Event>,
     /// Ledgers at the start and at multiples of the forcing period.
     ledgers: VecDeque<(f64, LiveLedger)>,
+    keeps_ledgers: bool,
     /// The state at the present time.
     now: Sample,
     /// Time between samples in s.
@@ -51,12 +52,29 @@ impl Watch {
             samples: VecDeque::new(),
             events: VecDeque::new(),
             ledgers: VecDeque::from([(0.0, LiveLedger::default())]),
+            keeps_ledgers: false,
             now,
             step: sampling_step(model),
         };
         own.take(Passage { samples: vec![now], events: Vec::new() });
         own.advance(0.0);
         own
+    }
+
+    /// Whether from now on a ledger is kept at the end of every forcing period: each takes the last step once more.
+    /// What has been kept stays, and the present one is there in any case.
+    pub fn keep_ledgers(&mut self, keep: bool) {
+        self.keeps_ledgers = keep;
+    }
+
+    /// Whether ledgers are kept at the ends of forcing periods.
+    pub fn keeps_ledgers(&self) -> bool {
+        self.keeps_ledgers
+    }
+
+    /// How many ledgers there are, that of the start included.
+    pub fn ledger_count(&self) -> usize {
+        self.ledgers.len()
     }
 
     /// Goes on to the time `to` in s. False where it did not get there: the run has ended, or impacts
@@ -87,7 +105,8 @@ impl Watch {
 
     /// The ends of forcing periods after `from` and up to `to` in s.
     fn marks(&self, from: f64, to: f64) -> Vec<f64> {
-        let Some(period) = self.live.model().forcing_period else { return Vec::new() };
+        let period = self.live.model().forcing_period.filter(|_| self.keeps_ledgers);
+        let Some(period) = period else { return Vec::new() };
         let last = (to / period).floor();
         let first = ((from / period).floor() + 1.0).max(last + 1.0 - LEDGERS_AT_ONCE);
         let count = (last - first + 1.0).max(0.0) as u32;
@@ -142,23 +161,27 @@ impl Watch {
         self.live.ledger()
     }
 
-    /// Where the energy went up to a time in s: at the present, and in the past up to the last period's end.
-    pub fn ledger_at(&self, t: f64) -> (f64, LiveLedger) {
+    /// Where the energy went up to a time in s: at the present, and in the past up to the last period's end. None in a
+    /// past that had no period or in which no ledger was kept.
+    pub fn ledger_at(&self, t: f64) -> Option<(f64, LiveLedger)> {
         if t >= self.now.t {
-            return (self.now.t, self.ledger());
+            return Some((self.now.t, self.ledger()));
         }
+        let period = self.models.at(t).forcing_period?;
         let after = self.ledgers.partition_point(|mark| mark.0 <= t);
-        after.checked_sub(1).and_then(|i| self.ledgers.get(i)).copied().unwrap_or_default()
+        let mark = self.ledgers.get(after.checked_sub(1)?)?;
+        (t - mark.0 < period * (1.0 + 1e-9)).then_some(*mark)
     }
 
     /// Where the energy went in the last whole forcing period that had ended at a time in s. None without a period, and
-    /// while the first one since the period was changed still lasts.
+    /// while the first one since the period was changed, or since ledgers are kept, still lasts.
     pub fn last_period(&self, t: f64) -> Option<LiveLedger> {
-        let period = self.live.model().forcing_period?;
+        let period = self.models.at(t).forcing_period?;
         let after = self.ledgers.partition_point(|mark| mark.0 <= t);
         let (begin, end) = (self.ledgers.get(after.checked_sub(2)?)?, self.ledgers.get(after - 1)?);
         let whole = ((end.0 - begin.0) / period - 1.0).abs() < 1e-6;
-        whole.then(|| end.1.since(&begin.1))
+        let last = t - end.0 < period * (1.0 + 1e-9);
+        (whole && last).then(|| end.1.since(&begin.1))
     }
 
     /// What will become of the motion: see [`Live::from_here`].

@@ -185,6 +185,19 @@ fn a_placed_mass_goes_on_from_there() {
 }
 
 #[test]
+fn a_state_without_a_finite_energy_is_no_place() {
+    let (mut live, mut passage) = at(&preset("monostable", &["stops=None"]), 0.4);
+    let before = live.state();
+    for (x, v) in [(1e296, 0.0), (0.0, -1e200), (-1e100, 1.0)] {
+        live.place(x, v, &mut passage);
+        assert_eq!(live.state(), before);
+    }
+    live.place(1e3, 0.0, &mut passage);
+    assert_eq!(live.state().x, 1e3);
+    assert!(live.ledger().by_hand_j.is_finite());
+}
+
+#[test]
 fn from_here_the_future_is_the_same() {
     for name in ["paper", "paper-unconstrained", "nominal-cubic"] {
         let model = preset(name, &[]);

@@ -6,11 +6,11 @@ use egui_kittest::kittest::Queryable as _;
 use interwell::app::layouts::Room;
 use interwell::app::menu::Command;
 use interwell::app::settings::Settings;
-use interwell::app::views::{View, energy};
+use interwell::app::views::{Span, View, energy};
 use interwell::app::window::Window;
 use interwell::scene::{Layout, PRESETS, Stops};
 
-use crate::support::window;
+use crate::support::{session, window};
 
 const WIDE: [f32; 2] = [1280.0, 720.0];
 const PROJECTED: [f32; 2] = [853.0, 480.0];
@@ -169,7 +169,7 @@ fn the_energy_view_says_what_the_ledger_says() {
     let (watch, now) = (session.player.watch(), session.player.time());
     let model = session.model();
     let (unit, _) = energy::unit_of(model.mass * model.scales.speed.powi(2));
-    let (at, whole) = watch.ledger_at(now);
+    let (at, whole) = watch.ledger_at(now).unwrap();
     assert_eq!((at, whole), (now, watch.ledger()));
     let period = watch.last_period(now).unwrap();
     for ledger in [whole, period] {
@@ -180,6 +180,15 @@ fn the_energy_view_says_what_the_ledger_says() {
         }
     }
     harness.get_by_label_contains("100 % of the energy accounted for");
+}
+
+#[test]
+fn a_stop_that_cannot_be_moves_no_axis() {
+    let mut session = session("monostable", &["stops=Rigid(travel_limit_mm: 2, restitution: 0.5)"]);
+    let before = Span::of(&session, (0.0, 0.0));
+    session.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 3.5e299, restitution: 0.5 });
+    assert!(session.fault().is_some());
+    assert_eq!(Span::of(&session, (0.0, 0.0)), before);
 }
 
 #[test]

@@ -76,9 +76,10 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     if area.width() < 160.0 || area.height() < 80.0 {
         return false;
     }
+    context.session.player.want_ledgers();
     let session = &context.session;
     let (model, watch, now) = (session.shown(), session.player.watch(), session.player.time());
-    let (upto, whole) = watch.ledger_at(now);
+    let whole = watch.ledger_at(now);
     let period = watch.last_period(now);
     let (unit, name) = unit_of(model.mass * model.scales.speed.powi(2));
     let row = (area.height() / COUNT).clamp(ROWS.0, ROWS.1);
@@ -86,7 +87,11 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let columns = if shaken { 2.0 } else { 1.0 };
     let column = (area.width() - NAMES) / columns;
     let heads: [(Option<LiveLedger>, &str, &str); 2] = [
-        (Some(whole), "since the start", "From the start of the motion up to the time that is shown."),
+        (
+            whole.map(|own| own.1),
+            "since the start",
+            "From the start of the motion up to the time that is shown.",
+        ),
         (period, "last period", "The last whole forcing period. Steady motion repeats it."),
     ];
     let heads = &heads[..if shaken { 2 } else { 1 }];
@@ -111,7 +116,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
                     numbers,
                     RichText::new("-").color(style.faint()),
                     Align::Max,
-                    "Not a whole period yet.",
+                    "Not kept: a whole period has to pass while this view is open.",
                 );
                 continue;
             };
@@ -129,14 +134,16 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         }
         y += row;
     }
-    let residual = whole.energy_residual();
-    let hover = format!(
-        "Up to {upto:.3} s: work + by hand - damping - impacts - stored = {:.1e} J, which is {residual:.0e} of what was \
-         moved. Every term is integrated on its own, so that this is a check of the run, though not its error.",
-        whole.residual_j()
-    );
-    let text = format!("{} % of the energy accounted for", accounted(residual));
-    put_ui(ui, cell(area.left(), y, area.width(), row), RichText::new(text), Align::Min, &hover);
+    if let Some((upto, whole)) = whole {
+        let residual = whole.energy_residual();
+        let hover = format!(
+            "Up to {upto:.3} s: work + by hand - damping - impacts - stored = {:.1e} J, which is {residual:.0e} of what \
+             was moved. Every term is integrated on its own, so that this is a check of the run, though not its error.",
+            whole.residual_j()
+        );
+        let text = format!("{} % of the energy accounted for", accounted(residual));
+        put_ui(ui, cell(area.left(), y, area.width(), row), RichText::new(text), Align::Min, &hover);
+    }
     y += 1.3 * row;
     let rest = Rect::from_min_max(pos2(area.left(), y), area.max);
     present_ui(ui, context, rest, (unit, name));

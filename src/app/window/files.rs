@@ -84,6 +84,7 @@ impl Window {
             Ok(window) => {
                 *self = Self {
                     dialog: std::mem::take(&mut self.dialog),
+                    dialogs: self.dialogs,
                     recent: std::mem::take(&mut self.recent),
                     own: self.own.take(),
                     titled: std::mem::take(&mut self.titled),
@@ -294,8 +295,16 @@ impl Window {
         });
     }
 
+    /// From now on no file is asked for: a dialog is answered at once, by none.
+    pub fn without_dialogs(&mut self) {
+        self.dialogs = false;
+    }
+
     /// Asks for a file, without the window waiting for the answer.
     pub(super) fn choose(&mut self, wanted: Wanted) {
+        if !self.dialogs {
+            return;
+        }
         let (kind, ending) = match wanted {
             Wanted::Open | Wanted::Save => ("scene", "ron"),
             Wanted::Csv => ("motion", "csv"),

@@ -213,12 +213,16 @@ impl Live {
         self.go_on(next, (state.x, state.v), state.phase, into);
     }
 
-    /// Puts the mass to `x` in m with velocity `v` in m/s, as far as the stops let it. What is no number changes nothing.
+    /// Puts the mass to `x` in m with velocity `v` in m/s, as far as the stops let it. What is no number changes nothing,
+    /// nor does a state whose energy is none.
     pub fn place(&mut self, x: f64, v: f64, into: &mut Passage) {
         if !(x.is_finite() && v.is_finite()) {
             return;
         }
         let next = self.model.clone();
+        if !energy(&next, held_within(&next, (x, v), 0.0)).is_finite() {
+            return;
+        }
         self.go_on(next, (x, v), Phase::Free, into);
     }
 
