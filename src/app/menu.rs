@@ -226,6 +226,8 @@ fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings
 /// What may be longer than the window is high.
 fn scroll_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     let room = (ui.ctx().content_rect().bottom() - ui.cursor().top() - 16.0).max(120.0);
+    // a menu takes no more than 400 points by itself
+    ui.set_max_height(room);
     egui::ScrollArea::vertical().max_height(room).show(ui, contents);
 }
 

@@ -55,6 +55,7 @@ pub fn shortcuts_ui(ui: &Ui) -> bool {
     let answer = dialog(ui.ctx(), "shortcuts").show(ui.ctx(), |ui| {
         ui.heading("Keys");
         let room = (ui.ctx().content_rect().height() - 120.0).max(120.0);
+        ui.set_max_height(room + 60.0);
         egui::ScrollArea::vertical().max_height(room).show(ui, |ui| {
             for (group, keys) in GROUPS {
                 ui.add_space(6.0);

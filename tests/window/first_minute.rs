@@ -1,6 +1,6 @@
 //! The first minute, and the hands on the scene.
 
-use eframe::egui::{Key, Modifiers, accesskit::Role};
+use eframe::egui::{Event, Key, Modifiers, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::settings::Settings;
 use interwell::dynamics::EventKind;
@@ -82,6 +82,27 @@ fn a_dragged_slider_is_one_step() {
     assert!(!session.editor.in_gesture());
     assert!(session.undo() && session.amplitude_g() == Some(0.9));
     assert!(!session.undo());
+}
+
+#[test]
+fn a_typed_number_is_one_step() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.get_all_by_role(Role::SpinButton).next().unwrap().click();
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.run_steps(1);
+    for text in ["1", ".", "3"] {
+        harness.event(Event::Text(text.to_owned()));
+        harness.run_steps(2);
+        // half of a number is not meant
+        assert_eq!(harness.state().session.amplitude_g(), Some(0.9));
+    }
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+    assert_eq!(harness.state().session.amplitude_g(), Some(1.3));
+    assert!(harness.state_mut().session.undo());
+    assert_eq!(harness.state().session.amplitude_g(), Some(0.9));
+    assert!(!harness.state_mut().session.undo());
 }
 
 #[test]

@@ -53,7 +53,8 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
                 row(ui, "crosses from", &crosses_from);
             },
         );
-        if before.is_none() {
+        // only where there is room for it
+        if before.is_none() && ui.available_height() > 28.0 {
             ui.add_space(6.0);
             ui.label(
                 RichText::new("Change something: the state before it stays here to compare.")
