@@ -136,10 +136,10 @@ minute() {
     rm -r "$kept"
 }
 
-[ -n "${ONLY:-}" ] && { minute $ONLY; exit 0; }
+# one of them alone: ONLY="1280 720 light"
 for size in "1280 720" "1920 1080"; do
     for style in light dark projector; do
-        minute $size $style
+        [ "${ONLY:-$size $style}" != "$size $style" ] || minute $size $style
     done
 done
 echo "pictures in $folder"
