@@ -6,10 +6,11 @@ use eframe::egui::ColorImage;
 
 use crate::output::{Sink, header, rows};
 use crate::scene::assignments;
-use crate::study::samples_table;
+use crate::study::{CURVE_POINTS, OutsideCurve, curve, default_positions, events_table, samples_table};
 
 use super::document::Editor;
 use super::player::Player;
+use super::session::Session;
 
 /// Writes text or bytes; a file is replaced only once all of it is there. The error is a sentence.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
@@ -24,6 +25,20 @@ pub fn motion_csv(player: &Player) -> String {
     let samples: Vec<_> = player.watch().samples().iter().copied().collect();
     let table = samples_table(&samples);
     header(&table) + &rows(&table, 0..table.rows())
+}
+
+/// The events that are remembered, in the columns of `simulate --events`.
+pub fn events_csv(player: &Player) -> String {
+    let events: Vec<_> = player.watch().events().iter().copied().collect();
+    let table = events_table(&events);
+    header(&table) + &rows(&table, 0..table.rows())
+}
+
+/// Force, potential and stiffness of the mechanism in the columns and at the positions of the command line's `curve`.
+pub fn curve_csv(session: &Session) -> Result<String, OutsideCurve> {
+    let mechanism = &session.model().mechanism;
+    let table = curve(mechanism, default_positions(session.scene(), mechanism, CURVE_POINTS as usize))?;
+    Ok(header(&table) + &rows(&table, 0..table.rows()))
 }
 
 /// A picture as PNG.

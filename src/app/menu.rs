@@ -27,6 +27,10 @@ pub enum Command {
     SaveAs,
     /// Write the motion as CSV.
     SaveMotion,
+    /// Write the events as CSV.
+    SaveEvents,
+    /// Write the force curve as CSV.
+    SaveCurve,
     /// Write the window as a picture.
     SavePicture,
     /// The scene as text to the clipboard.
@@ -136,6 +140,8 @@ pub fn menu_ui(
             item(ui, &mut asked, "Save as...", Some(SAVE_AS), true, Command::SaveAs);
             ui.separator();
             item(ui, &mut asked, "Save the motion as CSV...", None, true, Command::SaveMotion);
+            item(ui, &mut asked, "Save the events as CSV...", None, true, Command::SaveEvents);
+            item(ui, &mut asked, "Save the force curve as CSV...", None, true, Command::SaveCurve);
             item(ui, &mut asked, "Save a picture of the window...", None, true, Command::SavePicture);
             let map = session.map.map();
             let whole = map.is_some_and(Map::is_whole);

@@ -294,6 +294,8 @@ impl Window {
             },
             Command::SaveAs => self.choose(Wanted::Save),
             Command::SaveMotion => self.choose(Wanted::Csv),
+            Command::SaveEvents => self.choose(Wanted::Events),
+            Command::SaveCurve => self.choose(Wanted::Curve),
             Command::SavePicture => self.choose(Wanted::Picture),
             Command::CopyScene => ctx.copy_text(self.session.editor.text()),
             Command::PasteScene => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),

@@ -8,8 +8,8 @@ use interwell::mechanics::flexure::State;
 use interwell::output::{contact_figure, curve_figure, landscape};
 use interwell::scene::Document;
 use interwell::study::{
-    StatesError, Table, Task, contact, curve, default_positions, even_positions, flexures_at, full_curve,
-    metres, shapes, states, stop_positions, stress_warning,
+    CURVE_POINTS, StatesError, Table, Task, contact, curve, default_positions, even_positions, flexures_at,
+    full_curve, metres, shapes, states, stop_positions, stress_warning,
 };
 
 use super::failure::Failure;
@@ -17,8 +17,6 @@ use super::options::CurveOptions;
 use super::picture::{Picture, caption};
 use super::support::{finish, inputs, load_with_mechanism, numbers, open, write_table, write_text};
 use super::{interrupt, say};
-
-const POINTS: u32 = 401;
 
 /// Positions at which the flexures are drawn: each is some hundred rows.
 const SHAPES: u32 = 21;
@@ -44,7 +42,7 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
         Some(listed) => listed.clone(),
         None => even(options.points.unwrap_or(points) as usize),
     };
-    let table = curve(&mechanism, positions(POINTS))?;
+    let table = curve(&mechanism, positions(CURVE_POINTS))?;
     for (asked, option) in [(options.full, "--full"), (options.shapes.is_some(), "--shapes")] {
         if asked {
             flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
@@ -69,7 +67,7 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
         ],
     )?;
     let table = if options.full {
-        let rows = solved(&mechanism, &positions(POINTS), &document.name, "--full")?;
+        let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
         let warning = mechanism.flexures.as_ref().and_then(|own| stress_warning(own, &rows));
         if let Some(warning) = warning.filter(|_| !common.quiet) {
             say(&format!("warning: {}: {warning}", document.name));

@@ -13,8 +13,7 @@ use super::contact::side;
 use super::drive::Drive;
 use super::equation::{End, EndKind};
 use super::motion::{
-    BY_ACCELERATION, BY_SPEED, Contact, Depth, Flow, HELD, MOST_HALVINGS, Motion, RESIDUAL, ROUNDINGS, Touch,
-    UNDECIDED,
+    BY_SPEED, Contact, Depth, Flow, HELD, MOST_HALVINGS, Motion, RESIDUAL, ROUNDINGS, Touch,
 };
 use super::path::Path;
 use super::penetration::{Entry, FEWEST_LEVELS, Penetration};
@@ -83,8 +82,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.equation.arenas.iter().find(surface).map(|arena| arena.end(end).0)
     }
 
-    /// The mass is at the surface of the compliant stop of `end`, with this outward speed, 0 or of either sign. Without
-    /// speed the first derivative of the pressing acceleration that is not 0 (to the rounding of its terms) decides.
+    /// The mass is at the surface of the compliant stop of `end`, with this outward speed, 0 or of either sign.
     pub(super) fn meet(&mut self, end: End, outward: T) {
         if outward > T::zero() {
             return self.enter_stop(end, outward);
@@ -94,21 +92,10 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             self.touch = Some(Touch { end, order: BY_SPEED });
             return;
         }
-        let rates = self.press(end);
-        let stop_rounding = self.equation.stop(end).map_or(T::zero(), |s| s.press_rounding);
-        let rounding = stop_rounding + self.series.a[0].abs() * T::of(4.0 * T::EPSILON);
-        self.v = T::zero();
-        for (order, rate) in (BY_ACCELERATION..).zip(rates) {
-            let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
-            if rate > size {
-                return self.enter_stop(end, T::zero());
-            }
-            if rate < -size {
-                self.touch = Some(Touch { end, order });
-                return;
-            }
+        match self.leaves(end) {
+            None => self.enter_stop(end, T::zero()),
+            touch => self.touch = touch,
         }
-        self.touch = Some(Touch { end, order: UNDECIDED });
     }
 
     /// The mass passes the surface of the compliant stop of `end` inward of the stop, at `speed`.

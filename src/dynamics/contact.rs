@@ -62,10 +62,10 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         [stop - sign * a[0], -(sign * a[1]), -(sign * a[2] * T::of(2.0))]
     }
 
-    /// The mass stands at the stop of `end` with no speed: does it rest or leave? The first derivative of the
-    /// pressing acceleration that is not 0 (to the rounding of its terms) decides; if none is, nothing presses: it
-    /// stays there, free.
-    fn settle(&mut self, end: End) {
+    /// The mass stands at the stop of `end` with no speed: none where it is pressed on it, else the touch with which it
+    /// leaves. The first derivative of the pressing acceleration that is not 0 (to the rounding of its terms) decides; if
+    /// none is, nothing presses, and it stays there, free.
+    pub(super) fn leaves(&mut self, end: End) -> Option<Touch> {
         let rates = self.press(end);
         let stop_rounding = self.equation.stop(end).map_or(T::zero(), |s| s.press_rounding);
         let rounding = stop_rounding + self.series.a[0].abs() * T::of(4.0 * T::EPSILON);
@@ -73,19 +73,24 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         for (order, rate) in (BY_ACCELERATION..).zip(rates) {
             let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
             if rate > size {
-                self.contact = Contact::Resting(end);
-                self.touch = None;
-                self.record.rest(&self.at, side(end));
-                return;
+                return None;
             }
             if rate < -size {
-                self.touch = Some(Touch { end, order });
-                self.contact = Contact::Free;
-                return;
+                return Some(Touch { end, order });
             }
         }
-        self.touch = Some(Touch { end, order: UNDECIDED });
-        self.contact = Contact::Free;
+        Some(Touch { end, order: UNDECIDED })
+    }
+
+    /// The mass stands at the stop of `end` with no speed: it rests or leaves.
+    fn settle(&mut self, end: End) {
+        self.touch = self.leaves(end);
+        if self.touch.is_some() {
+            self.contact = Contact::Free;
+        } else {
+            self.contact = Contact::Resting(end);
+            self.record.rest(&self.at, side(end));
+        }
     }
 
     /// The mass stands still until `until`.

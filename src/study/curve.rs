@@ -4,6 +4,9 @@ use super::table::{Table, Values};
 use crate::mechanics::{Equilibrium, Mechanism};
 use crate::scene::{Scene, Stops};
 
+/// Positions of a force curve where nobody says how many.
+pub const CURVE_POINTS: u32 = 401;
+
 /// A position at which the curve is not known.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(

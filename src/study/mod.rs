@@ -28,7 +28,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use contact::{contact, yield_speed, yield_warning};
 pub use curve::{
-    OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency, stop_positions,
+    CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency,
+    stop_positions,
 };
 pub use edges::{Edges, first_interwell_edge};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
@@ -39,7 +40,7 @@ pub use map::{first_interwell, release_line};
 pub use models::Held;
 pub use passage::between;
 pub use settled::{Settled, Standing, settled, standing};
-pub use simulate::{Keep, Sampling, Simulation, sample_times, samples_table, simulate};
+pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};
 pub use sweep::{Cell, CellFaults, Sweep, SweepEnd, Tally};
 pub use table::{Column, Table, Values};
 pub use thresholds::{Thresholds, stops_that_cross, thresholds};

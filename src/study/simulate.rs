@@ -88,7 +88,8 @@ pub fn samples_table(samples: &[Sample]) -> Table {
         .with("phase", Values::Words(samples.iter().map(|s| s.phase.name()).collect()))
 }
 
-pub(super) fn events_table(events: &[Event]) -> Table {
+/// Events as a table: `t_s,kind,side,v_in_m_per_s,v_out_m_per_s`, a row an event, SI.
+pub fn events_table(events: &[Event]) -> Table {
     let numbers = |of: fn(&Event) -> f64| Values::Numbers(events.iter().map(of).collect());
     Table::new()
         .with("t_s", numbers(|e| e.t))

@@ -157,6 +157,25 @@ fn the_motion_is_written_with_the_columns_of_the_command_line() {
 }
 
 #[test]
+fn events_and_force_curve_are_those_of_the_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.csv");
+    let mut harness = opened();
+    harness.state_mut().session.switch_stops(true);
+    harness.run_steps(30);
+    harness.state_mut().write_events(&path);
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.starts_with("t_s,kind,side,v_in_m_per_s,v_out_m_per_s\n"), "{text}");
+    assert_eq!(text.lines().count(), 1 + harness.state().session.player.watch().events().len());
+    assert!(text.lines().count() > 1);
+    harness.state_mut().write_curve(&path);
+    let command =
+        ["--headless", "curve", "first-look", "--set", "stops=Rigid(travel_limit_mm:1.5,restitution:0.36)"];
+    let output = assert_cmd::Command::cargo_bin("interwell").unwrap().args(command).output().unwrap();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), String::from_utf8(output.stdout).unwrap());
+}
+
+#[test]
 fn a_wrong_scene_leaves_the_old_one() {
     let mut harness = opened();
     let ctx = harness.ctx.clone();

@@ -24,6 +24,8 @@ pub(super) enum Chosen {
     Open(PathBuf),
     Save(PathBuf),
     Csv(PathBuf),
+    Events(PathBuf),
+    Curve(PathBuf),
     Map(PathBuf),
     Picture(PathBuf),
     /// The desktop has no dialog to offer: the file that it would have begun with.
@@ -39,6 +41,8 @@ pub(super) enum Wanted {
     Open,
     Save,
     Csv,
+    Events,
+    Curve,
     Map,
     Picture,
 }
@@ -50,6 +54,8 @@ impl Wanted {
             Self::Open => "Open which scene?",
             Self::Save => "Save the scene to which file?",
             Self::Csv => "Save the motion to which file?",
+            Self::Events => "Save the events to which file?",
+            Self::Curve => "Save the force curve to which file?",
             Self::Map => "Save the map to which file?",
             Self::Picture => "Save the picture to which file?",
         }
@@ -66,6 +72,8 @@ impl Wanted {
             Self::Open => Chosen::Open(path),
             Self::Save => Chosen::Save(path),
             Self::Csv => Chosen::Csv(path),
+            Self::Events => Chosen::Events(path),
+            Self::Curve => Chosen::Curve(path),
             Self::Map => Chosen::Map(path),
             Self::Picture => Chosen::Picture(path),
         }
@@ -150,6 +158,8 @@ impl Window {
             Chosen::Open(path) => self.open_another(&path.to_string_lossy()),
             Chosen::Save(path) => self.save_to(ctx, &path),
             Chosen::Csv(path) => self.write_motion(&path),
+            Chosen::Events(path) => self.write_events(&path),
+            Chosen::Curve(path) => self.write_curve(&path),
             Chosen::Map(path) => self.write_map(&path),
             Chosen::Picture(path) => self.write_picture(ctx, path),
             Chosen::NoDialog(wanted, path) => self.typed = Some(Typed::new(wanted, &path)),
@@ -276,6 +286,21 @@ impl Window {
         }
     }
 
+    /// Writes the events that are remembered as CSV.
+    pub fn write_events(&mut self, path: &Path) {
+        if let Err(error) = export::write(path, export::events_csv(&self.session.player).as_bytes()) {
+            self.say("The events were not written", error);
+        }
+    }
+
+    /// Writes the force curve as CSV.
+    pub fn write_curve(&mut self, path: &Path) {
+        let text = export::curve_csv(&self.session).map_err(|error| error.to_string());
+        if let Err(error) = text.and_then(|text| export::write(path, text.as_bytes())) {
+            self.say("The force curve was not written", error);
+        }
+    }
+
     /// Writes the map as the rows of a sweep.
     fn write_map(&mut self, path: &Path) {
         let Some(text) = self.session.map.map().and_then(Map::csv) else { return };
@@ -308,6 +333,8 @@ impl Window {
         let (kind, ending) = match wanted {
             Wanted::Open | Wanted::Save => ("scene", "ron"),
             Wanted::Csv => ("motion", "csv"),
+            Wanted::Events => ("events", "csv"),
+            Wanted::Curve => ("curve", "csv"),
             Wanted::Map => ("map", "csv"),
             Wanted::Picture => ("picture", "png"),
         };
