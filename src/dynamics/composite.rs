@@ -15,6 +15,9 @@ const SEARCH_ORDER: usize = 26;
 /// tones of everyday frequencies.
 pub(crate) const SEARCH_STRIDES: u64 = 4096;
 
+/// Two searches that differ by no more than this share of a quarter cycle have found the same root.
+const SAME_ROOT: f64 = 1e-12;
+
 /// Up to so many tones the check of a step evaluates each anew; more of them cannot cancel in the series by
 /// chance.
 const FEW_TONES: usize = 8;
@@ -118,7 +121,76 @@ impl<T> Default for Rolling<T> {
     }
 }
 
+/// The search order's coefficients of a press, and where they are about.
+struct Look<T> {
+    g: [T; SEARCH_ORDER + 1],
+    order: usize,
+}
+
+/// What a search carries along.
+struct Search<T> {
+    a: [T; ROOM],
+    inverse: [T; ROOM],
+    segment: usize,
+    press: Press<T>,
+}
+
 impl<T: Scalar> Composite<T> {
+    /// The press over a stride of length `h` from `at`, as a polynomial in the share of it.
+    fn look(
+        &self,
+        clock: &Clock<T>,
+        at: &Instant<T>,
+        h: T,
+        search: &mut Search<T>,
+        roll: &mut Rolling<T>,
+    ) -> Look<T> {
+        let Search { a, inverse, segment, press: Press { threshold, sign } } = search;
+        self.seed(clock, at, *segment, a, roll);
+        let order = if self.fastest > T::zero() { SEARCH_ORDER } else { 1 };
+        for k in SEEDED..=order {
+            self.extend(k, a, inverse, roll);
+        }
+        let mut g = [T::zero(); SEARCH_ORDER + 1];
+        let mut power = T::of(1.0);
+        for (k, slot) in g[..=order].iter_mut().enumerate() {
+            *slot = -(*sign * a[k]) * power;
+            power = power * h;
+        }
+        g[0] += *threshold;
+        Look { g, order }
+    }
+
+    /// The root near `fall`, computed from the drive alone, and the clock's cycle within the common period: whenever the
+    /// search that found it began, it is the same number. None where the drive does not repeat, or by more than rounding.
+    fn own_root(
+        &self,
+        clock: &Clock<T>,
+        fall: &Instant<T>,
+        search: &mut Search<T>,
+        roll: &mut Rolling<T>,
+    ) -> Option<(Instant<T>, i64)> {
+        let cycles = self.common_cycles.filter(|_| search.segment >= self.segment_ends.len())?;
+        if !(self.fastest > T::zero()) {
+            return None;
+        }
+        // Strides that do not depend on the search: quarters of the cycle, in each cycle alike.
+        let stride = clock.period() * T::of(0.25);
+        let quarter = (fall.phase / stride).floor().smaller(T::of(3.0));
+        let start = Instant { cycle: fall.cycle, phase: quarter * stride };
+        let look = self.look(clock, &start, stride, search, roll);
+        let near = clock.between(&start, fall) / stride;
+        let mut found = None;
+        PolynomialRoots::new(&look.g[..=look.order]).each_sign_change(|s| {
+            if (s - near).abs() <= T::of(SAME_ROOT) {
+                found = Some(s);
+            }
+            found.is_none()
+        });
+        let own = clock.advance(&start, found? * stride);
+        Some((own, own.cycle.rem_euclid(cycles)))
+    }
+
     /// The sum of the records and its slope.
     fn record(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> (T, T) {
         let mut sum = (T::zero(), T::zero());
@@ -229,9 +301,9 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         let stride = T::of(SEARCH_RADIANS) / self.fastest;
         let last_segment = segment >= self.segment_ends.len();
         let mut at = from;
-        let mut a = [T::zero(); ROOM];
-        let mut inverse = [T::zero(); ROOM];
-        for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
+        let zeros = [T::zero(); ROOM];
+        let mut search = Search { a: zeros, inverse: zeros, segment, press: Press { threshold, sign } };
+        for (k, slot) in search.inverse.iter_mut().enumerate().skip(2) {
             *slot = T::of(1.0) / T::of((k * (k - 1)) as f64);
         }
         for _ in 0..SEARCH_STRIDES {
@@ -240,18 +312,7 @@ impl<T: Scalar> Drive<T> for Composite<T> {
                 return Fall::Never;
             }
             let h = if turning { stride.smaller(left) } else { left };
-            self.seed(clock, &at, segment, &mut a, roll);
-            let order = if turning { SEARCH_ORDER } else { 1 };
-            for k in SEEDED..=order {
-                self.extend(k, &mut a, &inverse, roll);
-            }
-            let mut g = [T::zero(); SEARCH_ORDER + 1];
-            let mut power = T::of(1.0);
-            for (k, slot) in g[..=order].iter_mut().enumerate() {
-                *slot = -(sign * a[k]) * power;
-                power = power * h;
-            }
-            g[0] += threshold;
+            let Look { g, order } = self.look(clock, &at, h, &mut search, roll);
             // Below 0 by no more than rounding it only touches: the way to the bottom of a parabola.
             let rounding = (threshold.abs() + self.reach) * T::of(8.0 * T::EPSILON);
             let touches = |slope: T, curvature: T| {
@@ -280,7 +341,11 @@ impl<T: Scalar> Drive<T> for Composite<T> {
                 // rounding: it rises, the fall comes later
                 at = clock.advance(&at, T::of(2.0) * rounding / slope * h);
             } else {
-                return Fall::within(clock, clock.advance(&at, s * h), &until);
+                let fall = clock.advance(&at, s * h);
+                let own = self.own_root(clock, &fall, &mut search, roll);
+                let own = own.filter(|(own, _)| clock.between(&from, own) > T::zero());
+                let (fall, turn) = own.map_or((fall, None), |(own, turn)| (own, Some(turn)));
+                return Fall::within(clock, fall, turn, &until);
             }
         }
         Fall::NotBefore(at)

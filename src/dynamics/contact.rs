@@ -6,6 +6,7 @@ use super::drive::{Drive, Fall, Press, Span};
 use super::equation::{End, EndKind, FAR};
 use super::motion::{BY_ACCELERATION, BY_JERK, BY_SPEED, Contact, Flow, HELD, Motion, Touch, UNDECIDED};
 use super::prepare::base_at;
+use super::recurrence::Label;
 use super::result::{Outcome, Phase, Side};
 use crate::numeric::Scalar;
 
@@ -118,9 +119,10 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let press = Press { threshold, sign: end.sign::<T>() };
         let span = Span { from, until, segment: self.segment };
         match self.drive.next_fall(&self.clock, &span, press, &mut self.roll) {
-            Fall::At(fall) => {
+            Fall::At(fall, turn) => {
                 self.stand(fall, phase);
                 self.release(end, BY_JERK);
+                self.label = turn.filter(|_| self.recurs).map(|turn| Label { end, turn, phase: fall.phase });
             }
             Fall::NotBefore(later) => {
                 self.steps += SEARCH_STRIDES;

@@ -17,6 +17,9 @@ pub(crate) trait Drive<T: Scalar> {
     /// From here on all coefficients are 0, and are not added: an addition of nothing takes its time too.
     const ZERO_FROM: usize = usize::MAX;
 
+    /// Whether half a cycle of the clock later it is always the opposite.
+    const ODD: bool = false;
+
     /// Fills the first `SEEDED` coefficients of `a`, at `at`.
     fn seed(
         &self,
@@ -58,8 +61,9 @@ pub(crate) trait Drive<T: Scalar> {
 /// When the press on a stop ends.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Fall<T> {
-    /// It changes sign here.
-    At(Instant<T>),
+    /// It changes sign here. Where the drive repeats and this root was computed from the drive alone, with the cycle of
+    /// the clock within the common period: a root of equal cycle and phase is the same.
+    At(Instant<T>, Option<i64>),
     /// It does not within the span.
     Never,
     /// Not up to here; ask again (a search is broken off now and then, so that its work is counted).
@@ -68,8 +72,8 @@ pub(crate) enum Fall<T> {
 
 impl<T: Scalar> Fall<T> {
     /// At `fall` where that lies before the end of the span.
-    pub fn within(clock: &Clock<T>, fall: Instant<T>, until: &Instant<T>) -> Self {
-        if clock.between(&fall, until) > T::zero() { Self::At(fall) } else { Self::Never }
+    pub fn within(clock: &Clock<T>, fall: Instant<T>, turn: Option<i64>, until: &Instant<T>) -> Self {
+        if clock.between(&fall, until) > T::zero() { Self::At(fall, turn) } else { Self::Never }
     }
 }
 

@@ -16,12 +16,15 @@ mod path;
 mod penetration;
 mod prepare;
 mod record;
+mod recurrence;
 mod regime;
 mod result;
 mod scales;
 mod series;
 mod summary;
+mod taylor;
 mod tone;
+mod totals;
 
 pub(crate) use base::BaseTone;
 pub use base::STANDARD_GRAVITY;

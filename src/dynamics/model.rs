@@ -30,6 +30,8 @@ pub struct Model {
     pub scales: Scales,
     /// Local error allowed, relative to the scales.
     pub tolerance: f64,
+    /// Whether a run may be completed from a cycle that comes back exactly.
+    pub recurrence: bool,
     pub(crate) settle: f64,
     pub(crate) stops: Option<StopPair>,
     /// What the stops are made of, where they are compliant.
@@ -141,6 +143,7 @@ impl Model {
             forcing_period,
             scales,
             tolerance: scene.run.tolerance,
+            recurrence: scene.run.recurrence,
             settle: scene.run.settle_s.unwrap_or(scene.run.duration_s * 0.5),
             stops,
             compliant,
@@ -159,13 +162,14 @@ impl Model {
     /// Returns samples, events and statistics in SI. Never fails: a run that cannot go on says so in its
     /// outcome. The result does not depend on what is asked for or on threads.
     pub fn run(&self, request: &Request) -> Run {
-        super::prepare::run::<f64>(self, request, self.tolerance)
+        super::prepare::run::<f64>(self, request, self.tolerance, self.recurrence)
     }
 
     /// Runs the model once in double-double arithmetic, some 31 digits, with its own `tolerance` (1e-28 is
-    /// sensible): the reference that a run in doubles is measured against. About a hundred times slower.
+    /// sensible): the reference that a run in doubles is measured against. About a hundred times slower; nothing of it is
+    /// completed from a cycle.
     pub fn run_reference(&self, request: &Request, tolerance: f64) -> Run {
-        super::prepare::run::<DoubleDouble>(self, request, tolerance)
+        super::prepare::run::<DoubleDouble>(self, request, tolerance, false)
     }
 
     /// Positions of the left and the right stop in m, where there are any.
@@ -187,6 +191,17 @@ impl Model {
         let (left, right) = self.stop_positions();
         let right = right.map(|stop| (x - stop, true));
         left.map(|stop| (stop - x, false)).into_iter().chain(right).find(|(depth, _)| *depth > 0.0)
+    }
+
+    /// Whether the mirror image of a free motion is one: an odd curve, stops alike on both sides.
+    pub(crate) fn is_symmetric(&self) -> bool {
+        let (left, right) = self.stops.map_or((None, None), |pair| (pair.left, pair.right));
+        let alike = match (left, right) {
+            (Some(left), Some(right)) => left.x == -right.x && left.restitution == right.restitution,
+            (None, None) => true,
+            _ => false,
+        };
+        alike && self.mechanism.curve.is_odd()
     }
 
     /// Whether the base moves at all.

@@ -18,13 +18,17 @@
 //!   the full order makes a run with 780 impacts cost half as much again.
 //! - What remains of a chatter once it is short is summed in closed form (Nordmark and Piiroinen 2009).
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::clock::{Clock, Instant};
 use super::drive::Drive;
 use super::equation::{End, EndKind, Equation};
 use super::model::{Model, Request};
+use super::path::Path;
 use super::penetration::Penetration;
 use super::prepare::base_at;
 use super::record::{Recorder, StepView};
+use super::recurrence::Label;
 use super::result::{Outcome, Phase, Run};
 use super::series::{MAX_ORDER, ROOM, Series, State, fast_log2};
 use super::summary::Ending;
@@ -33,7 +37,7 @@ use crate::numeric::{PolynomialRoots, Scalar};
 /// Budgets of one run: generous for any sensible scene, and an end within about 20 s of one core for the
 /// others (an elastic rebound pressed on a stop with damping dies so slowly that it never ends by itself).
 const STEP_BUDGET: u64 = 20_000_000;
-const IMPACT_BUDGET: u64 = 2_000_000;
+pub(super) const IMPACT_BUDGET: u64 = 2_000_000;
 
 /// What a step in contact with a compliant stop takes beyond one of free flight, in steps of the budget: six products of
 /// series in place of two or three, measured.
@@ -149,6 +153,12 @@ pub(super) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     /// Those of the steps that were in contact with a compliant stop.
     pub contact_steps: u64,
     pub evaluations: u64,
+    /// Whether the run may be completed from a cycle that comes back, and whether its mirror image would be a motion too.
+    pub recurs: bool,
+    pub symmetric: bool,
+    /// The mass has just been let go, and how.
+    pub label: Option<Label<T>>,
+    cancel: Option<&'a AtomicBool>,
 }
 
 /// What a motion carries from one step to the next. The drive's rolling state is no part of it: it only keeps
@@ -234,25 +244,42 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             steps: 0,
             contact_steps: 0,
             evaluations: 0,
+            recurs: false,
+            symmetric: false,
+            label: None,
+            cancel: request.cancel,
         }
     }
 
-    pub fn run(mut self, model: &Model, request: &Request) -> Run {
+    /// Where `recurs`, lets the run be completed from a cycle that comes back.
+    pub fn with_recurrence(mut self, recurs: bool, model: &Model) -> Self {
+        self.recurs = recurs;
+        self.symmetric = recurs && model.is_symmetric();
+        self
+    }
+
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed))
+    }
+
+    pub fn run(mut self, model: &Model) -> Run {
         let start_v = self.v;
         self.place_at_start();
         let start_potential = self.potential(model);
         let outcome = loop {
+            if let Some(label) = self.label.take() {
+                self.let_go(label);
+            }
             let left = self.clock.between(&self.at, &self.end);
             if !(left > T::zero()) {
                 break Outcome::Done;
             }
+            self.mark();
             let ended = self.proceed(left);
             if let Some(outcome) = ended {
                 break outcome;
             }
-            if self.steps.is_multiple_of(CANCEL_STRIDE)
-                && request.cancel.is_some_and(|c| c.load(std::sync::atomic::Ordering::Relaxed))
-            {
+            if self.steps.is_multiple_of(CANCEL_STRIDE) && self.is_cancelled() {
                 break Outcome::Cancelled { at: self.clock.seconds(&self.at) };
             }
             if self.record.total_impacts() >= IMPACT_BUDGET {
@@ -372,7 +399,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             }
         }
 
-        self.series.start(self.x - arena.origin, self.v);
+        self.series.begin(self.x - arena.origin, self.v);
         let Some(Step { length: h, arrival, end }) = self.choose_step(flight, left) else {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
         };

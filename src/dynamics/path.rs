@@ -6,6 +6,7 @@
 
 use super::result::Phase;
 use super::series::{ROOM, Series};
+use super::taylor;
 use crate::numeric::{GaussLegendre, Scalar};
 
 /// The motion over one step, in a parameter that is 0 at the step's start and grows with time.
@@ -15,6 +16,10 @@ pub(crate) trait Path<T: Scalar> {
 
     /// What a sample on it is.
     fn phase(&self) -> Phase;
+    /// The coefficients of displacement and base, where they are of powers of time.
+    fn in_time(&self) -> Option<(&[T], &[T])> {
+        None
+    }
     /// Number of coefficients of the displacement.
     fn known(&self) -> usize;
     /// Displacement from the piece's origin at the step's start.
@@ -34,7 +39,42 @@ pub(crate) trait Path<T: Scalar> {
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T);
 }
 
-impl<T: Scalar> Path<T> for Series<T> {
+/// A step whose parameter is the time since its start.
+pub(crate) trait InTime {
+    /// The number that it is made of.
+    type Number: Scalar;
+
+    /// Coefficients of the displacement from the piece's origin.
+    fn coefficients(&self) -> &[Self::Number];
+    /// Coefficients of the base's acceleration.
+    fn base_coefficients(&self) -> &[Self::Number];
+
+    /// As [`Path::integrals`].
+    #[inline]
+    fn integrals_in_time<const WORK: bool>(
+        &self,
+        rule: &GaussLegendre<Self::Number>,
+        from: Self::Number,
+        to: Self::Number,
+    ) -> (Self::Number, Self::Number) {
+        taylor::integrals::<_, WORK>(self.coefficients(), self.base_coefficients(), rule, from, to)
+    }
+}
+
+impl<T: Scalar> InTime for Series<T> {
+    type Number = T;
+
+    #[inline]
+    fn coefficients(&self) -> &[T] {
+        &self.y[..self.known]
+    }
+    #[inline]
+    fn base_coefficients(&self) -> &[T] {
+        Series::base_coefficients(self)
+    }
+}
+
+impl<T: Scalar, P: InTime<Number = T>> Path<T> for P {
     const IN_CONTACT: bool = false;
 
     #[inline]
@@ -42,24 +82,28 @@ impl<T: Scalar> Path<T> for Series<T> {
         Phase::Free
     }
     #[inline]
+    fn in_time(&self) -> Option<(&[T], &[T])> {
+        Some((self.coefficients(), self.base_coefficients()))
+    }
+    #[inline]
     fn known(&self) -> usize {
-        self.known
+        self.coefficients().len()
     }
     #[inline]
     fn start(&self) -> T {
-        self.y[0]
+        self.coefficients()[0]
     }
     #[inline]
     fn scaled(&self, h: T) -> [T; ROOM] {
-        Series::scaled(self, h)
+        taylor::scaled(self.coefficients(), h)
     }
     #[inline]
     fn position(&self, parameter: T) -> T {
-        Series::position(self, parameter)
+        taylor::value(self.coefficients(), parameter)
     }
     #[inline]
     fn velocity(&self, parameter: T) -> T {
-        Series::velocity(self, parameter)
+        taylor::slope(self.coefficients(), parameter)
     }
     #[inline]
     fn time(&self, parameter: T) -> T {
@@ -71,6 +115,6 @@ impl<T: Scalar> Path<T> for Series<T> {
     }
     #[inline]
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
-        Series::integrals::<WORK>(self, rule, from, to)
+        self.integrals_in_time::<WORK>(rule, from, to)
     }
 }

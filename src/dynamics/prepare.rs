@@ -16,16 +16,16 @@ use crate::scene::Record;
 /// Cycle of the clock without a drive, in kernel time units.
 const SHORTEST_CYCLE: f64 = 1.0 / 65536.0;
 
-/// Runs the model in numbers of type `T`.
-pub(crate) fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64) -> Run {
+/// Runs the model in numbers of type `T`; where `recurs`, a cycle that comes back may complete the run.
+pub(crate) fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64, recurs: bool) -> Run {
     let watch = cpu_time::ThreadTime::now();
     let unit = model.scales.unit();
     let equation = Equation::<T>::new(model, unit);
     let clock = clock(model, unit);
     let mut run = match form(model, &clock) {
-        Form::Still(drive) => with_drive(model, request, tolerance, &equation, clock, &drive),
-        Form::Sine(drive) => with_drive(model, request, tolerance, &equation, clock, &drive),
-        Form::Composite(drive) => with_drive(model, request, tolerance, &equation, clock, &drive),
+        Form::Still(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
+        Form::Sine(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
+        Form::Composite(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
     };
     run.summary.cpu_s = watch.elapsed().as_secs_f64();
     run
@@ -195,14 +195,18 @@ fn lines<T: Scalar>(
 fn with_drive<T: Scalar, D: Drive<T>>(
     model: &Model,
     request: &Request,
-    tolerance: f64,
+    (tolerance, recurs): (f64, bool),
     equation: &Equation<T>,
     clock: Clock<T>,
     drive: &D,
 ) -> Run {
     if request.ledger {
-        Motion::<T, D, true>::new(model, request, tolerance, equation, clock, drive).run(model, request)
+        Motion::<T, D, true>::new(model, request, tolerance, equation, clock, drive)
+            .with_recurrence(recurs, model)
+            .run(model)
     } else {
-        Motion::<T, D, false>::new(model, request, tolerance, equation, clock, drive).run(model, request)
+        Motion::<T, D, false>::new(model, request, tolerance, equation, clock, drive)
+            .with_recurrence(recurs, model)
+            .run(model)
     }
 }

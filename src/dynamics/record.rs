@@ -4,14 +4,11 @@ use super::clock::{Clock, Instant};
 use super::model::{Model, Request};
 use super::path::Path;
 use super::penetration::Penetration;
+use super::recurrence::{Entry, Log};
 use super::regime::{CrossingLog, Strobe};
 use super::result::{Event, EventKind, Phase, Sample, Side};
 use super::series::Series;
 use crate::numeric::{CompensatedSum, GaussLegendre, PolynomialRoots, Scalar};
-
-/// Most crossings and stroboscopic states that are kept to tell the regime; a window of more is judged by
-/// its first ones.
-const KEPT: usize = 1 << 16;
 
 /// One accepted step, as the recorder sees it.
 pub(crate) struct StepView<'a, T, P = Series<T>> {
@@ -44,7 +41,7 @@ impl<T: Scalar, P: Path<T>> StepView<'_, T, P> {
 }
 
 /// Sums over an interval of time.
-#[derive(Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Sums<T> {
     /// Integral of v^2, kernel units.
     pub squared_velocity: CompensatedSum<T>,
@@ -63,7 +60,7 @@ impl<T: Scalar> Sums<T> {
     }
 }
 
-pub(crate) struct Recorder<'a, T, const LEDGER: bool> {
+pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) model: &'a Model,
     pub(super) clock: Clock<T>,
     pub(super) unit: f64,
@@ -84,7 +81,7 @@ pub(crate) struct Recorder<'a, T, const LEDGER: bool> {
     pub(super) barrier: Option<T>,
     /// -1, 0 (on it since the start) or 1.
     pub(super) barrier_side: i8,
-    pub(super) log: CrossingLog,
+    pub(super) log_of_crossings: CrossingLog,
     pub(super) next_strobe: Option<Instant<T>>,
     pub(super) strobe_cycles: i64,
     pub(super) counts: Counts,
@@ -93,9 +90,11 @@ pub(crate) struct Recorder<'a, T, const LEDGER: bool> {
     /// What integrals over a step are taken with, made for the first of them, and the order of the series.
     pub(super) rule: Option<GaussLegendre<T>>,
     pub(super) order: usize,
+    /// All that is told, where a cycle is waited for.
+    pub(super) log: Option<Box<Log<T>>>,
 }
 
-#[derive(Default, Clone, Copy)]
+#[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Counts {
     pub crossings: u64,
     pub impacts: u64,
@@ -145,13 +144,14 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             peak_kinetic: 0.5 * (start.1 * start.1).to_f64(),
             barrier,
             barrier_side: side,
-            log: CrossingLog::new(periods),
+            log_of_crossings: CrossingLog::new(periods),
             next_strobe: (periods > 0).then_some(from),
             strobe_cycles: cycles,
             counts: Counts::default(),
             peak_contact: T::zero(),
             rule: None,
             order,
+            log: None,
         }
     }
 
@@ -171,6 +171,9 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     /// Takes in a step of free flight, or of contact with a compliant stop.
     #[inline]
     pub fn step<P: Path<T>>(&mut self, step: &StepView<T, P>, mut base: impl FnMut(&Instant<T>) -> f64) {
+        if let Some(log) = &mut self.log {
+            log.add_step(step);
+        }
         let overlap = self.overlap(&step.at, step.duration);
         if self.rule.is_none() && (LEDGER || overlap.is_some()) {
             self.rule = Some(GaussLegendre::new(self.order / 2 + 1));
@@ -348,9 +351,9 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         self.counts.total_crossings += 1;
         if self.in_window(&at) {
             self.counts.crossings += 1;
-            if self.log.crossings.len() < KEPT && self.period > T::zero() {
+            if self.period > T::zero() {
                 let time = (self.clock.between(&self.window.0, &at) / self.period).to_f64();
-                self.log.crossings.push((time, side));
+                self.log_of_crossings.keep_crossing(time, side);
             }
         }
         self.event(&at, EventKind::Crossing, side, v, v);
@@ -372,8 +375,8 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     pub(super) fn strobe(&mut self, x: T, v: T) {
         let Some(strobe) = &mut self.next_strobe else { return };
         strobe.cycle += self.strobe_cycles;
-        self.log.strobes.push(Strobe { x: x.to_f64(), v: v.to_f64() / self.unit });
-        if self.log.strobes.len() >= KEPT || self.clock.between(strobe, &self.window.1) < T::zero() {
+        let more = self.log_of_crossings.keep_strobe(Strobe { x: x.to_f64(), v: v.to_f64() / self.unit });
+        if !more || self.clock.between(strobe, &self.window.1) < T::zero() {
             self.next_strobe = None;
         }
     }
@@ -388,6 +391,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         phase: Phase,
         mut base: impl FnMut(&Instant<T>) -> f64,
     ) {
+        self.keep(|| Entry::Stand { at: *at, until: *until, state: (x, v), phase });
         let length = self.clock.between(at, until);
         if let Some((from, to)) = self.overlap(at, length) {
             self.covered.add(to - from);
@@ -414,6 +418,13 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         }
     }
 
+    #[inline]
+    fn keep(&mut self, entry: impl FnOnce() -> Entry<T>) {
+        if let Some(log) = &mut self.log {
+            log.add(entry());
+        }
+    }
+
     fn event(&mut self, at: &Instant<T>, kind: EventKind, side: Side, v_in: f64, v_out: f64) {
         if let Some(events) = &mut self.events {
             events.push(Event { t: self.clock.seconds(at), kind, side, v_in, v_out });
@@ -422,6 +433,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
 
     /// An impact with signed velocities in kernel units.
     pub fn impact(&mut self, at: &Instant<T>, side: Side, v_in: T, v_out: T) {
+        self.keep(|| Entry::Impact { at: *at, side, v_in, v_out });
         let taken = (v_in * v_in - v_out * v_out) * T::of(0.5);
         self.whole.impact.add(taken);
         self.counts.total_impacts += 1;
@@ -479,6 +491,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
 
     /// A chatter summed in closed form from speed `v`: what is left of the kinetic energy goes.
     pub fn chatter_sum(&mut self, at: &Instant<T>, v: T) {
+        self.keep(|| Entry::Chatter { at: *at, v });
         let taken = v * v * T::of(0.5);
         self.counts.sums += 1;
         self.whole.impact.add(taken);
@@ -488,11 +501,13 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     }
 
     pub fn rest(&mut self, at: &Instant<T>, side: Side) {
+        self.keep(|| Entry::Rest { at: *at, side });
         self.counts.rests += 1;
         self.event(at, EventKind::Rest, side, 0.0, 0.0);
     }
 
     pub fn release(&mut self, at: &Instant<T>, side: Side) {
+        self.keep(|| Entry::Release { at: *at, side });
         if self.in_window(at) {
             self.counts.releases += 1;
         }

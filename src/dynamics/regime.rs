@@ -13,6 +13,10 @@ const CROSSING_MATCH: f64 = 1e-2;
 /// a period doubling soon after its onset, coarse enough for a transient that has died to a thousandth.
 const STATE_MATCH: f64 = 1e-3;
 
+/// Most crossings and stroboscopic states that are kept to tell the regime; a window of more is judged by
+/// its first ones.
+const KEPT: usize = 1 << 16;
+
 /// The state at a whole number of forcing periods after the window's start. SI.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Strobe {
@@ -33,6 +37,19 @@ pub(crate) struct CrossingLog {
 impl CrossingLog {
     pub fn new(periods: u64) -> Self {
         Self { periods, ..Self::default() }
+    }
+
+    /// Keeps a crossing, while there is room.
+    pub fn keep_crossing(&mut self, time: f64, side: Side) {
+        if self.crossings.len() < KEPT {
+            self.crossings.push((time, side));
+        }
+    }
+
+    /// Keeps a stroboscopic state; whether there is room for more.
+    pub fn keep_strobe(&mut self, strobe: Strobe) -> bool {
+        self.strobes.push(strobe);
+        self.strobes.len() < KEPT
     }
 
     /// Whether the crossings repeat with a period of at most 12 forcing periods. A period is only

@@ -54,6 +54,14 @@ pub enum Side {
 }
 
 impl Side {
+    /// The side opposite.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+
     /// The word in the CSV.
     pub fn name(self) -> &'static str {
         match self {

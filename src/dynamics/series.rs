@@ -9,7 +9,7 @@
 
 use super::drive::Drive;
 use super::equation::PieceForce;
-use crate::numeric::{GaussLegendre, MOST_POINTS, Number, Scalar};
+use crate::numeric::{Number, Scalar};
 
 /// The highest order of a step.
 pub(crate) const MAX_ORDER: usize = 32;
@@ -58,7 +58,7 @@ impl<T: Scalar> Series<T> {
     /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first
     /// [`SEEDED`] coefficients of the drive are already in `a`.
     #[inline]
-    pub fn start(&mut self, y: T, v: T) {
+    pub fn begin(&mut self, y: T, v: T) {
         self.y[0] = y;
         self.y[1] = v;
         self.known = 2;
@@ -171,39 +171,6 @@ impl<T: Scalar> Series<T> {
         if log2 < 1000.0 { fast_exp2(log2).min(cap) } else { cap }
     }
 
-    /// The step's own coefficients y\[k\] h^k.
-    #[inline]
-    pub fn scaled(&self, h: T) -> [T; ROOM] {
-        let mut scaled = [T::zero(); ROOM];
-        scaled[0] = self.y[0];
-        let mut power = T::of(1.0);
-        for (slot, c) in scaled[1..self.known].iter_mut().zip(&self.y[1..self.known]) {
-            power = power * h;
-            *slot = *c * power;
-        }
-        scaled
-    }
-
-    /// Displacement from the piece's origin at time `t` into the step.
-    #[inline]
-    pub fn position(&self, t: T) -> T {
-        let mut sum = T::zero();
-        for c in self.y[..self.known].iter().rev() {
-            sum = sum * t + *c;
-        }
-        sum
-    }
-
-    /// Velocity at time `t` into the step.
-    #[inline]
-    pub fn velocity(&self, t: T) -> T {
-        let mut sum = T::zero();
-        for k in (1..self.known).rev() {
-            sum = sum * t + self.y[k] * T::of(k as f64);
-        }
-        sum
-    }
-
     /// The state at time `t` into the step, and a bound of the way up to there.
     #[inline]
     pub fn state(&self, t: T) -> State<T> {
@@ -223,44 +190,13 @@ impl<T: Scalar> Series<T> {
 
     /// Acceleration of the base at time `t` into the step, by its series.
     pub fn base(&self, t: T) -> T {
-        self.a[..(self.known - 2).max(SEEDED)].iter().rev().fold(T::zero(), |sum, c| sum * t + *c)
+        self.base_coefficients().iter().rev().fold(T::zero(), |sum, c| sum * t + *c)
     }
 
-    /// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base
-    /// acceleration times velocity; of the step's own polynomials by Gauss' rule. (Products truncated at their order
-    /// miss, on a long step under a fast drive, a thousand times the tolerance.)
-    pub fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
-        let length = to - from;
-        let count = rule.nodes().len();
-        let mut times = [T::zero(); MOST_POINTS];
-        for (time, node) in times.iter_mut().zip(rule.nodes()) {
-            *time = from + length * *node;
-        }
-        let times = &times[..count];
-        let mut v = [T::zero(); MOST_POINTS];
-        for k in (1..self.known).rev() {
-            let c = self.y[k] * T::of(k as f64);
-            for (sum, t) in v[..count].iter_mut().zip(times) {
-                *sum = *sum * *t + c;
-            }
-        }
-        let mut squared = T::zero();
-        for (v, weight) in v.iter().zip(rule.weights()) {
-            squared += *v * *v * *weight;
-        }
-        let mut power = T::zero();
-        if WORK {
-            let mut a = [T::zero(); MOST_POINTS];
-            for c in self.a[..(self.known - 2).max(SEEDED)].iter().rev() {
-                for (sum, t) in a[..count].iter_mut().zip(times) {
-                    *sum = *sum * *t + *c;
-                }
-            }
-            for ((a, v), weight) in a.iter().zip(&v).zip(rule.weights()) {
-                power += *a * *v * *weight;
-            }
-        }
-        (squared * length, power * length)
+    /// The coefficients of the base's acceleration that go with those of the motion.
+    #[inline]
+    pub fn base_coefficients(&self) -> &[T] {
+        &self.a[..(self.known - 2).max(SEEDED)]
     }
 }
 

@@ -91,13 +91,14 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             Regime::Rest
         } else if self.counts.crossings == 0 {
             Regime::Intrawell
-        } else if self.log.crossings_repeat() {
+        } else if self.log_of_crossings.crossings_repeat() {
             Regime::Interwell
         } else {
             Regime::Irregular
         };
         let done = outcome == Outcome::Done;
-        let period = if done && moved { self.log.period(scales.length, scales.speed) } else { None };
+        let period =
+            if done && moved { self.log_of_crossings.period(scales.length, scales.speed) } else { None };
         Run {
             samples: self.samples,
             events: self.events.unwrap_or_default(),

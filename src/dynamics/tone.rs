@@ -108,6 +108,7 @@ impl<T: Scalar> Sine<T> {
 impl<T: Scalar> Drive<T> for Sine<T> {
     /// Where the tone was last evaluated, and what it was: a step begins where the check of the last one looked.
     type Rolling = Option<(Instant<T>, (T, T))>;
+    const ODD: bool = true;
 
     #[inline]
     fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Rolling) {
@@ -180,13 +181,14 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         let behind = from.phase - phase;
         // A fall behind by no more than rounding is now.
         let slack = clock.period() * T::of(8.0 * T::EPSILON);
-        let fall = if behind <= T::zero() {
-            Instant { cycle: from.cycle, phase }
+        // The one root of each cycle; "now" is a guess at it.
+        let (fall, turn) = if behind <= T::zero() {
+            (Instant { cycle: from.cycle, phase }, Some(0))
         } else if behind <= slack {
-            from
+            (from, None)
         } else {
-            Instant { cycle: from.cycle + 1, phase }
+            (Instant { cycle: from.cycle + 1, phase }, Some(0))
         };
-        Fall::within(clock, fall, &until)
+        Fall::within(clock, fall, turn, &until)
     }
 }

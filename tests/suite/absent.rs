@@ -56,7 +56,8 @@ fn no_step_allocates() {
         for ledger in [false, true] {
             let request = Request { ledger, ..Request::default() };
             let run = |window: &[&str]| {
-                allocations(&preset("nominal-cubic", &[changes, window].concat()), &request)
+                let changes = [changes, window, &["run.recurrence=false"]].concat();
+                allocations(&preset("nominal-cubic", &changes), &request)
             };
             let (short, few) = run(&["run.duration_s=20", "run.settle_s=18"]);
             let (long, many) = run(&["run.duration_s=40", "run.settle_s=38"]);
@@ -70,8 +71,24 @@ fn no_step_allocates() {
 }
 
 #[test]
+fn a_cycle_is_kept_once() {
+    // What a run that comes back keeps of its motion is a cycle, however long it lasts.
+    let kept = |duration: &str, settle: &str| {
+        allocations(&preset("nominal-cubic", &[duration, settle]), &Request::default())
+    };
+    let (short, steps) = kept("run.duration_s=20", "run.settle_s=18");
+    let (long, same) = kept("run.duration_s=4000", "run.settle_s=3998");
+    assert!(same < steps + 60, "{steps} steps, then {same}");
+    assert!(
+        long.count_total <= short.count_total && long.bytes_total <= short.bytes_total,
+        "{short:?} {long:?}"
+    );
+    assert!(short.bytes_total < 100_000, "{short:?}");
+}
+
+#[test]
 fn what_is_not_kept_takes_no_room() {
-    let model = preset("nominal-cubic", &["run.settle_s=9.9"]);
+    let model = preset("nominal-cubic", &["run.settle_s=9.9", "run.recurrence=false"]);
     let (bare, steps) = allocations(&model, &Request::default());
     assert!(steps > 1000 && bare.count_total < 10 && bare.bytes_total < 1000, "{bare:?} in {steps} steps");
     // Samples take their own room, at once.

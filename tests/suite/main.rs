@@ -15,6 +15,7 @@ mod mechanics;
 mod oracles;
 mod plots;
 mod presets;
+mod recurrence;
 mod scene;
 mod studies;
 mod support;

@@ -59,6 +59,8 @@ impl Setup {
             document.set(change).map_err(|error| invalid(&error))?;
         }
         document.scene.run.tolerance = TOLERANCE;
+        // What is measured is the integrator.
+        document.scene.run.recurrence = false;
         document.scene.sweep.clear();
         Ok(Self { scene: document.scene, curve: None })
     }

@@ -156,12 +156,13 @@ fn threads_change_no_bit() {
 
 #[test]
 fn the_recurrence_flag_changes_no_bit_of_the_path() {
-    // With `recurrence` on or off: the same samples, events and figures.
+    // With `recurrence` on or off: the same samples, events and figures, where no half of a cycle is mirrored.
     let times = every(0.0173, 570);
-    let with = |flag: bool| run_at(&preset("nominal-cubic", &[&format!("run.recurrence={flag}")]), &times);
+    let with = |flag: bool| run_at(&preset("uneven-stops", &[&format!("run.recurrence={flag}")]), &times);
     let (on, off) = (with(true), with(false));
-    assert_eq!(on.samples, off.samples);
-    assert_eq!(on.events, off.events);
+    assert!(on.summary.steps < off.summary.steps / 4);
+    assert!(on.samples == off.samples && on.events == off.events);
     assert_eq!((on.summary.final_x, on.summary.final_v), (off.summary.final_x, off.summary.final_v));
-    assert_eq!(on.summary.rms_velocity, off.summary.rms_velocity);
+    // A sum of laps and a sum of steps round differently.
+    near_relative(on.summary.rms_velocity.unwrap(), off.summary.rms_velocity.unwrap(), 1e-15);
 }

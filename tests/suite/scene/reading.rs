@@ -213,8 +213,7 @@ fn structural_errors_have_a_place_and_the_known_names() {
 }
 
 #[test]
-fn hostile_text_is_refused_quickly_and_without_overflow() {
-    let start = std::time::Instant::now();
+fn hostile_text_is_refused_without_overflow() {
     for empty in ["", " \n\t ", "\u{feff}"] {
         assert!(refused(empty).contains("is empty"));
     }
@@ -228,5 +227,4 @@ fn hostile_text_is_refused_quickly_and_without_overflow() {
     let sums = |n: usize| text(&[("excitation", &format!("{}{}", "Sum([".repeat(n), "])".repeat(n)))]);
     assert!(refused(&sums(1000)).contains("nested deeper"));
     reads_back(&Document::from_text("s", &sums(20), Files::default()).unwrap().scene);
-    assert!(start.elapsed().as_secs() < 20, "took {:?}", start.elapsed());
 }

@@ -1,0 +1,204 @@
+//! Has this motion been here before? Then the rest of the run is known.
+//!
+//! A mass that is let go from rest, by the press changing its sign under a drive that repeats, starts from a state
+//! that is known without comparing a measured number: it stands on the stop, has no speed, and the drive is where it
+//! is at that root of the press. So a release has a *label*: the stop, and the root within the drive's common period.
+//! Two releases with equal labels are followed by the same motion, bit for bit, one some cycles of the clock later:
+//! the integrator would do the same arithmetic again. (Where curve, stops and drive are symmetric, a release from
+//! the other stop half a period later is followed by the mirror image, to rounding.)
+//!
+//! From the first labelled release on, everything that the recorder is told is kept. Once a label comes back, the
+//! recorder is told the kept cycle again, lap by lap, which gives samples, events, windows that open or close within
+//! a lap, strobes and sums by the very same code. What laps that lie wholly inside or wholly outside the settled window
+//! add to sums and counts is multiplied, and they are told only where something of them is listed. The last, incomplete
+//! lap is told up to its last step, which is integrated.
+//!
+//! No labels: a release at once after an incomplete chatter or a plastic impact, one at the start or at a jump of the
+//! drive, one under a ramp, chirp, noise or record (no common period, or not yet), and compliant stops, on which
+//! nothing rests.
+
+mod log;
+
+pub(super) use log::{Entry, Log};
+
+use super::clock::Instant;
+use super::drive::Drive;
+use super::equation::End;
+use super::motion::{IMPACT_BUDGET, Motion};
+use super::prepare::base_at;
+use super::totals::Totals;
+use crate::numeric::Scalar;
+use log::Later;
+
+/// Share of the clock's cycle by which a lap must keep clear of what would set it apart: more than rounding can hide.
+const CLEAR: f64 = 1e-9;
+
+/// Which release this is. All of it is computed from the drive alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Label<T> {
+    pub end: End,
+    /// Cycle of the clock within the drive's common period.
+    pub turn: i64,
+    pub phase: T,
+}
+
+/// A run of laps that are alike for the recorder, and what one of them adds.
+#[derive(Debug, Clone, Copy)]
+struct Like<T> {
+    inside: bool,
+    before: Totals<T>,
+    after: Totals<T>,
+}
+
+/// One cycle of the motion.
+#[derive(Debug, Clone, Copy)]
+struct Lap<T> {
+    /// The mark in the log at which it begins.
+    first: usize,
+    /// Cycles of the clock that it takes.
+    cycles: i64,
+    like: Option<Like<T>>,
+}
+
+impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+    /// The mass has just been let go with this label: completes the run where it has been let go so before.
+    pub(super) fn let_go(&mut self, label: Label<T>) {
+        let Some(log) = self.record.log.take().filter(|log| log.has_room()) else {
+            self.keep_from(Box::new(Log::new()), label);
+            return;
+        };
+        if let Some((first, before)) = log.find(|known| *known == label) {
+            let cycles = self.at.cycle - log.carried(first).at.cycle;
+            let like = self.like(first, &log, before);
+            self.complete(&log, Lap { first, cycles, like });
+        } else if let Some((first, before)) = log.find(|known| known.end == label.end.other())
+            && D::ODD
+            && self.symmetric
+            && let Some(cycles) = self.half_cycles_since(&log.carried(first).at)
+        {
+            self.complete_mirrored(log, first, cycles, before);
+        } else {
+            self.keep_from(log, label);
+        }
+    }
+
+    fn keep_from(&mut self, mut log: Box<Log<T>>, label: Label<T>) {
+        log.label(label, self.record.totals());
+        self.record.log = Some(log);
+    }
+
+    /// Keeps where the motion stands, where a log is kept.
+    #[inline]
+    pub(super) fn mark(&mut self) {
+        if self.record.log.is_some() {
+            let carried = self.carry();
+            if let Some(log) = &mut self.record.log {
+                log.mark(carried);
+            }
+        }
+    }
+
+    /// The odd number of half cycles of the clock since `at`, where it is one.
+    fn half_cycles_since(&self, at: &Instant<T>) -> Option<i64> {
+        let halves = self.clock.between(at, &self.at) / (self.clock.period() * T::of(0.5));
+        let whole = (halves + T::of(0.5)).floor();
+        let close = (halves - whole).abs() <= T::of(CLEAR);
+        let count = whole.to_f64() as i64;
+        (close && count % 2 == 1).then_some(count)
+    }
+
+    /// What has been told since mark `first`, where it lay wholly inside or outside the settled window.
+    fn like(&self, first: usize, log: &Log<T>, before: Totals<T>) -> Option<Like<T>> {
+        let inside = self.record.lies_inside(&log.carried(first).at, &self.at)?;
+        Some(Like { inside, before, after: self.record.totals() })
+    }
+
+    /// The half lap since mark `first` and its mirror image make a lap.
+    fn complete_mirrored(&mut self, mut log: Box<Log<T>>, first: usize, cycles: i64, before: Totals<T>) {
+        let start = *log.carried(first);
+        let (at, middle) = (start.at, log.marks());
+        let back = Instant { cycle: at.cycle + cycles, phase: at.phase };
+        self.recurs = false;
+        let added = self.record.totals().impacts() - before.impacts();
+        if !(self.clock.between(&back, &self.end) > T::zero())
+            || self.record.total_impacts() + added >= IMPACT_BUDGET
+        {
+            return;
+        }
+        log.append_mirrored(first, cycles / 2, self.equation.arenas.len(), &self.clock);
+        self.tell(&log, (middle, None), Later(0));
+        self.resume(&log.carried_later(first, Later(cycles)));
+        let like = self.like(first, &log, before);
+        self.complete(&log, Lap { first, cycles, like });
+    }
+
+    /// Completes the run from here, where a lap has just ended.
+    fn complete(&mut self, log: &Log<T>, mut lap: Lap<T>) {
+        self.recurs = false;
+        let mut later = 0;
+        let mut impacts = lap.like.map_or(0, |like| like.after.impacts() - like.before.impacts());
+        loop {
+            let next = Instant { cycle: self.at.cycle + lap.cycles, phase: self.at.phase };
+            if !(self.clock.between(&next, &self.end) > T::zero()) {
+                break;
+            }
+            if self.is_cancelled() || self.record.total_impacts() + 2 * impacts >= IMPACT_BUDGET {
+                return; // as it stands it goes on
+            }
+            if let Some(like) = lap.like {
+                let room = (IMPACT_BUDGET - self.record.total_impacts()) / impacts.max(1);
+                let laps = self.laps_alike(&lap, like.inside).min(room as i64 - 1);
+                if laps > 0 {
+                    self.list(log, &lap, later, laps);
+                    self.record.repeat(&like.before, &like.after, laps, lap.cycles, like.inside);
+                    later += laps * lap.cycles;
+                    self.at.cycle += laps * lap.cycles;
+                    continue;
+                }
+            }
+            let before = self.record.totals();
+            later += lap.cycles;
+            self.tell(log, (lap.first, None), Later(later));
+            let inside = self.record.lies_inside(&self.at, &next);
+            let after = self.record.totals();
+            impacts = after.impacts() - before.impacts();
+            lap.like = inside.map(|inside| Like { inside, before, after });
+            self.at = next;
+        }
+        let rest = Later(later + lap.cycles);
+        let last = log.last_before(lap.first, rest, &self.end, &self.clock);
+        self.tell(log, (lap.first, Some(last)), rest);
+        self.resume(&log.carried_later(last, rest));
+    }
+
+    /// Tells the recorder the next `laps` as far as something of them is listed; its sums stay, so that what they come to
+    /// does not depend on what is listed.
+    fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) {
+        let sums = self.record.totals();
+        let mut start = self.at;
+        for number in 1..=laps {
+            let end = Instant { cycle: start.cycle + lap.cycles, phase: start.phase };
+            if self.record.lists_between(&start, &end) {
+                self.tell(log, (lap.first, None), Later(later + number * lap.cycles));
+            } else if !self.record.lists_more() {
+                break;
+            }
+            start = end;
+        }
+        self.record.take_back(&sums);
+    }
+
+    fn tell(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: Later) {
+        let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
+        log.play(&mut self.record, marks, later, |at| base_at(drive, &clock, segment, at, unit));
+    }
+
+    /// Laps from here on that are wholly inside (or outside) the settled window, as the last one was.
+    fn laps_alike(&self, lap: &Lap<T>, inside: bool) -> i64 {
+        let clear = self.clock.period() * T::of(CLEAR);
+        let length = self.clock.period() * T::of(lap.cycles as f64);
+        let until = self.record.alike_until(&self.at, &self.end, inside);
+        let laps = ((self.clock.between(&self.at, &until) - clear) / length).floor();
+        laps.larger(T::zero()).to_f64() as i64
+    }
+}

@@ -1,0 +1,158 @@
+//! What has a record added up so far, and what is it after some more of the same?
+
+use super::clock::Instant;
+use super::record::{Counts, Recorder, Sums};
+use super::regime::Strobe;
+use crate::numeric::{CompensatedSum, Scalar};
+
+/// Share of the clock's cycle that keeps a stretch of time clear of a border.
+const CLEAR: f64 = 1e-9;
+
+/// The sums and counts of a recorder at an instant.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Totals<T> {
+    whole: Sums<T>,
+    settled: Sums<T>,
+    covered: CompensatedSum<T>,
+    work_moved: f64,
+    counts: Counts,
+    /// Crossings and stroboscopic states that are kept.
+    crossings: usize,
+    strobes: usize,
+    next_strobe: Option<Instant<T>>,
+}
+
+impl<T> Totals<T> {
+    /// Impacts since the run's start.
+    pub fn impacts(&self) -> u64 {
+        self.counts.total_impacts
+    }
+}
+
+impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+    pub fn totals(&self) -> Totals<T> {
+        Totals {
+            whole: self.whole,
+            settled: self.settled,
+            covered: self.covered,
+            work_moved: self.work_moved,
+            counts: self.counts,
+            crossings: self.log_of_crossings.crossings.len(),
+            strobes: self.log_of_crossings.strobes.len(),
+            next_strobe: self.next_strobe,
+        }
+    }
+
+    /// Whether the time from `start` to `end` lies wholly inside the settled window, or wholly outside; none where it
+    /// does neither, or ends within rounding of a border.
+    pub fn lies_inside(&self, start: &Instant<T>, end: &Instant<T>) -> Option<bool> {
+        let clear = self.clock.period() * T::of(CLEAR);
+        let (from, to) = &self.window;
+        let between = |a: &Instant<T>, b: &Instant<T>| self.clock.between(a, b);
+        if between(from, start) >= T::zero() && between(end, to) > clear {
+            Some(true)
+        } else if between(end, from) > clear || between(to, start) > clear {
+            Some(false)
+        } else {
+            None
+        }
+    }
+
+    /// Up to when the time after `at` is on the same side of the window's borders, `end` at the latest.
+    pub fn alike_until(&self, at: &Instant<T>, end: &Instant<T>, inside: bool) -> Instant<T> {
+        let (from, to) = self.window;
+        let border =
+            if inside { Some(to) } else { Some(from).filter(|w| self.clock.between(at, w) > T::zero()) };
+        border.filter(|border| self.clock.between(border, end) > T::zero()).unwrap_or(*end)
+    }
+
+    /// Whether anything is still listed.
+    pub fn lists_more(&self) -> bool {
+        self.events.is_some() || self.next_time < self.times.len()
+    }
+
+    /// Whether anything between two instants is listed.
+    pub fn lists_between(&self, start: &Instant<T>, end: &Instant<T>) -> bool {
+        let due = |t: &f64| {
+            let at = self.clock.at(*t);
+            self.clock.between(start, &at) >= T::zero() && self.clock.between(&at, end) >= T::zero()
+        };
+        self.events.is_some() || self.times.get(self.next_time).is_some_and(due)
+    }
+
+    /// Takes sums and counts back to what they were; what has been listed since stays.
+    pub fn take_back(&mut self, totals: &Totals<T>) {
+        self.whole = totals.whole;
+        self.settled = totals.settled;
+        self.covered = totals.covered;
+        self.work_moved = totals.work_moved;
+        self.counts = totals.counts;
+        self.next_strobe = totals.next_strobe;
+        self.log_of_crossings.crossings.truncate(totals.crossings);
+        self.log_of_crossings.strobes.truncate(totals.strobes);
+    }
+
+    /// Takes in `laps` more laps of `cycles` cycles of the clock, each like the one that led from `before` to `after`, the
+    /// present; all of them inside or all of them outside the window.
+    pub fn repeat(&mut self, before: &Totals<T>, after: &Totals<T>, laps: i64, cycles: i64, inside: bool) {
+        let times = T::of(laps as f64);
+        let more = |sum: &mut CompensatedSum<T>, before: &CompensatedSum<T>, after: &CompensatedSum<T>| {
+            sum.add((after.value() - before.value()) * times);
+        };
+        self.whole.each(&before.whole, &after.whole, more);
+        self.settled.each(&before.settled, &after.settled, more);
+        more(&mut self.covered, &before.covered, &after.covered);
+        self.work_moved += (after.work_moved - before.work_moved) * laps as f64;
+        self.counts.repeat(&before.counts, &after.counts, laps as u64);
+        if !inside {
+            return;
+        }
+        let log = &mut self.log_of_crossings;
+        let periods = cycles as f64 / self.strobe_cycles.max(1) as f64;
+        for lap in 1..=laps {
+            for index in before.crossings..after.crossings {
+                let (time, side) = log.crossings[index];
+                log.keep_crossing(time + lap as f64 * periods, side);
+            }
+        }
+        if let Some(strobe) = &mut self.next_strobe {
+            strobe.cycle += laps * cycles;
+            for _ in 0..laps {
+                for index in before.strobes..after.strobes {
+                    let Strobe { x, v } = log.strobes[index];
+                    if !log.keep_strobe(Strobe { x, v }) {
+                        self.next_strobe = None;
+                        return;
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Counts {
+    fn repeat(&mut self, before: &Self, after: &Self, laps: u64) {
+        let Self { crossings, impacts, releases, total_crossings, total_impacts, sums, rests } = self;
+        *crossings += (after.crossings - before.crossings) * laps;
+        *impacts += (after.impacts - before.impacts) * laps;
+        *releases += (after.releases - before.releases) * laps;
+        *total_crossings += (after.total_crossings - before.total_crossings) * laps;
+        *total_impacts += (after.total_impacts - before.total_impacts) * laps;
+        *sums += (after.sums - before.sums) * laps;
+        *rests += (after.rests - before.rests) * laps;
+    }
+}
+
+impl<T: Scalar> Sums<T> {
+    fn each(
+        &mut self,
+        before: &Self,
+        after: &Self,
+        more: impl Fn(&mut CompensatedSum<T>, &CompensatedSum<T>, &CompensatedSum<T>),
+    ) {
+        more(&mut self.squared_velocity, &before.squared_velocity, &after.squared_velocity);
+        more(&mut self.work, &before.work, &after.work);
+        more(&mut self.impact, &before.impact, &after.impact);
+        more(&mut self.rested, &before.rested, &after.rested);
+    }
+}

@@ -1,0 +1,204 @@
+//! A run that is completed from a cycle that came back is the run that is integrated to its end.
+
+use interwell::dynamics::{Ledger, Model, Request, Run, Summary};
+
+use super::support::*;
+
+/// Differences that the order of a sum and the mirroring of half a cycle leave, relative to the scales.
+const ROUNDING: f64 = 1e-12;
+
+/// A run with everything listed, and one with nothing.
+fn both(model: &Model, times: &[f64]) -> [Run; 2] {
+    let all = Request { sample_times: times, events: true, ledger: true, cancel: None };
+    [model.run(&all), model.run(&Request::default())]
+}
+
+fn close(a: f64, b: f64, size: f64) -> bool {
+    a == b || (a - b).abs() <= ROUNDING * size.abs()
+}
+
+fn close_options(a: Option<f64>, b: Option<f64>, size: f64) -> bool {
+    a.zip(b).map_or(a == b, |(a, b)| close(a, b, size))
+}
+
+/// Counts, words and numbers of two runs of one model.
+fn same_summary(model: &Model, a: &Summary, b: &Summary) {
+    let (length, speed) = (model.scales.length, model.scales.speed);
+    let counts = |s: &Summary| {
+        (
+            [s.crossings, s.impacts, s.releases, s.total_crossings, s.total_impacts, s.chatter_sums, s.rests],
+            (s.regime, s.period, s.outcome),
+        )
+    };
+    assert_eq!(counts(a), counts(b));
+    assert!(close(a.final_x, b.final_x, length) && close(a.final_v, b.final_v, speed), "{a:?}\n{b:?}");
+    for (of, size) in [
+        ((|s| s.rms_velocity) as fn(&Summary) -> Option<f64>, speed),
+        (|s| s.max_abs_x, length),
+        (|s| s.travel, length),
+        (|s| s.impact_share, 1.0),
+        (|s| s.rested_share, 1.0),
+    ] {
+        assert!(close_options(of(a), of(b), size), "{a:?}\n{b:?}");
+    }
+    let energy =
+        |s: &Summary| s.ledger.map(|own: Ledger| [own.work_j, own.damping_j, own.impact_j, own.stored_j]);
+    if let (Some(a), Some(b)) = (energy(a), energy(b)) {
+        let moved: f64 = a.iter().map(|term| term.abs()).sum();
+        assert!(a.iter().zip(&b).all(|(a, b)| close(*a, *b, moved)), "{a:?} {b:?}");
+    }
+}
+
+fn same_motion(model: &Model, a: &Run, b: &Run) {
+    let (length, speed) = (model.scales.length, model.scales.speed);
+    assert_eq!((a.samples.len(), a.events.len()), (b.samples.len(), b.events.len()));
+    for (a, b) in a.samples.iter().zip(&b.samples) {
+        assert!(close(a.x, b.x, length) && close(a.v, b.v, speed), "{a:?} {b:?}");
+        assert_eq!((a.t, a.base_accel), (b.t, b.base_accel));
+        assert_eq!(a.phase, b.phase);
+    }
+    for (a, b) in a.events.iter().zip(&b.events) {
+        assert!(close(a.t, b.t, model.duration), "{a:?} {b:?}");
+        assert_eq!((a.kind, a.side), (b.kind, b.side));
+        assert!(close(a.v_in, b.v_in, speed) && close(a.v_out, b.v_out, speed), "{a:?} {b:?}");
+    }
+}
+
+/// Compares a scene with and without; whether its cycle came back.
+fn compare(scene: &str, changes: &[&str]) -> bool {
+    let with = |flag: bool| {
+        let flag = format!("run.recurrence={flag}");
+        let changes: Vec<&str> = changes.iter().copied().chain([flag.as_str()]).collect();
+        let model = preset(scene, &changes);
+        let times = every(model.duration / 311.7, 312);
+        let runs = both(&model, &times);
+        (model, runs)
+    };
+    let ((model, on), (_, off)) = (with(true), with(false));
+    for (on, off) in on.iter().zip(&off) {
+        same_summary(&model, &on.summary, &off.summary);
+        same_motion(&model, on, off);
+    }
+    on[1].summary.steps < off[1].summary.steps
+}
+
+/// Cells of a map of travel limits and amplitudes whose cycle came back, after comparing all.
+fn compare_map(scene: &str, changes: &[&str], limits: &[f64], amplitudes: &[f64]) -> usize {
+    let mut returned = 0;
+    for limit in limits {
+        for amplitude in amplitudes {
+            let limit = format!("stops.travel_limit_mm={limit}");
+            let amplitude = format!("excitation.amplitude_g={amplitude}");
+            let changes: Vec<&str> =
+                changes.iter().copied().chain([limit.as_str(), amplitude.as_str()]).collect();
+            returned += usize::from(compare(scene, &changes));
+        }
+    }
+    returned
+}
+
+fn steps(from: f64, step: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|i| ((from + step * i as f64) * 1e6).round() / 1e6).collect()
+}
+
+#[test]
+fn a_map_of_stops_and_amplitudes() {
+    let limits = steps(0.5, 0.75, 10);
+    let amplitudes = steps(0.1, 0.1, 20);
+    let returned = compare_map("nominal-cubic", &["run.duration_s=6"], &limits, &amplitudes);
+    assert!(returned > 100, "{returned}");
+}
+
+#[test]
+fn plastic_and_lively_stops_and_other_phases() {
+    for changes in [
+        ["stops.restitution=0", "run.settle_s=1.234"],
+        ["stops.restitution=0.8", "run.settle_s=0"],
+        ["run.tolerance=1e-4", "excitation.phase_deg=77.7"],
+        ["run.tolerance=1e-12", "excitation.frequency_hz=2.3"],
+    ] {
+        let changes = [&["run.duration_s=7.7"], &changes[..]].concat();
+        let returned =
+            compare_map("nominal-cubic", &changes, &[1.0, 2.5, 4.0, 5.5], &[0.8, 1.1, 1.4, 1.7, 2.0]);
+        assert!(returned >= 4, "{changes:?} {returned}");
+    }
+}
+
+#[test]
+fn flexures() {
+    let returned = compare_map("paper", &["run.duration_s=6"], &[1.0, 2.0, 4.0], &[0.9, 1.2, 1.5, 1.9]);
+    assert!(returned > 4, "{returned}");
+}
+
+#[test]
+fn uneven_stops_have_no_mirror_image() {
+    let mut returned = 0;
+    for amplitude in steps(0.4, 0.2, 8) {
+        let amplitude = format!("excitation.amplitude_g={amplitude}");
+        returned += usize::from(compare("uneven-stops", &["run.duration_s=8", &amplitude]));
+    }
+    assert!(returned > 3, "{returned}");
+}
+
+#[test]
+fn sums_that_repeat() {
+    let sine = |f: f64, a: f64| format!("Sine(frequency_hz: {f}, amplitude_g: {a})");
+    let mut returned = Vec::new();
+    for (sum, repeats) in [
+        (format!("[{}, {}]", sine(3.0, 1.4), sine(9.0, 0.2)), true),
+        (format!("[{}, {}]", sine(3.0, 1.4), sine(6.0, 0.2)), true),
+        (format!("[{}, Constant(accel_g: 0.1)]", sine(3.0, 1.4)), true),
+        (format!("[{}, {}]", sine(3.0, 1.4), sine(2.5, 0.3)), true),
+        // an end to the growth, and none within the run
+        ("[AmplitudeRamp(frequency_hz: 3, from_g: 0.2, to_g: 1.5, over_s: 1.3)]".to_owned(), true),
+        ("[AmplitudeRamp(frequency_hz: 3, from_g: 0.2, to_g: 1.5, over_s: 13)]".to_owned(), false),
+        // no common measure
+        (format!("[{}, {}]", sine(3.0, 1.4), sine(std::f64::consts::E, 0.2)), false),
+        (
+            format!("[{}, Noise(rms_g: 0.01, low_hz: 1, high_hz: 6, seed: 1, lines: 20)]", sine(3.0, 1.4)),
+            false,
+        ),
+    ] {
+        let excitation = format!("excitation=Sum({sum})");
+        let came_back = compare("nominal-cubic", &["run.duration_s=11.1", &excitation]);
+        returned.push((sum, came_back, repeats));
+    }
+    assert!(returned.iter().all(|(_, came_back, repeats)| came_back == repeats), "{returned:#?}");
+}
+
+#[test]
+fn the_labels_of_others_are_not_taken() {
+    // Compliant stops, and no drive: nothing comes back by a label.
+    let hertz = "stops=Hertz(travel_limit_mm: 4, stiffness_n_per_m1_5: 1e9, loss_s_per_m: 0.5)";
+    assert!(!compare("nominal-cubic", &["run.settle_s=0.5", "run.duration_s=1", hertz]));
+    assert!(!compare("bouncing-ball", &[]));
+    assert!(!compare("elastic-box", &[]));
+}
+
+#[test]
+fn budgets_end_both_alike() {
+    // 26 impacts a cycle for some 1e5 cycles: more than a run may have.
+    let long = ["run.duration_s=33000", "run.settle_s=1000"];
+    let on = preset("nominal-cubic", &long).run(&Request::default()).summary;
+    let off = preset("nominal-cubic", &[&long[..], &["run.recurrence=false"]].concat());
+    let off = off.run(&Request::default()).summary;
+    assert_eq!((on.outcome.name(), on.total_impacts), ("impact_budget", 2_000_000));
+    assert_eq!(on.outcome, off.outcome);
+    same_summary(&preset("nominal-cubic", &long), &on, &off);
+}
+
+#[test]
+fn a_day_costs_what_a_minute_does() {
+    let steps = |duration: f64| {
+        let changes = [format!("run.duration_s={duration}"), "stops.restitution=0".to_owned()];
+        preset("nominal-cubic", &[&changes[0], &changes[1]]).run(&Request::default()).summary.steps
+    };
+    assert!(steps(86_400.0) < steps(60.0) + 60, "{} {}", steps(86_400.0), steps(60.0));
+}
+
+#[test]
+fn a_run_without_stops_is_untouched() {
+    let with = |flag: &str| preset("nominal-cubic", &["stops=None", flag]);
+    let [on, off] = ["run.recurrence=true", "run.recurrence=false"].map(|flag| run(&with(flag)));
+    same_bits(&on, &off);
+}
