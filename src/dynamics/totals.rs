@@ -24,7 +24,7 @@ pub(super) struct Totals<T> {
 
 impl<T> Totals<T> {
     /// Impacts since the run's start.
-    pub fn impacts(&self) -> u64 {
+    pub fn total_impacts(&self) -> u64 {
         self.counts.total_impacts
     }
 }

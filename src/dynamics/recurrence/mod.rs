@@ -119,7 +119,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let (at, middle) = (start.at, log.marks());
         let back = Instant { cycle: at.cycle + cycles, phase: at.phase };
         self.recurs = false;
-        let added = self.record.totals().impacts() - before.impacts();
+        let added = self.record.totals().total_impacts() - before.total_impacts();
         if !(self.clock.between(&back, &self.end) > T::zero())
             || self.record.total_impacts() + added >= IMPACT_BUDGET
         {
@@ -136,7 +136,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     fn complete(&mut self, log: &Log<T>, mut lap: Lap<T>) {
         self.recurs = false;
         let mut later = 0;
-        let mut impacts = lap.like.map_or(0, |like| like.after.impacts() - like.before.impacts());
+        let mut impacts = lap.like.map_or(0, |like| like.after.total_impacts() - like.before.total_impacts());
         loop {
             let next = Instant { cycle: self.at.cycle + lap.cycles, phase: self.at.phase };
             if !(self.clock.between(&next, &self.end) > T::zero()) {
@@ -161,7 +161,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             self.tell(log, (lap.first, None), Later(later));
             let inside = self.record.lies_inside(&self.at, &next);
             let after = self.record.totals();
-            impacts = after.impacts() - before.impacts();
+            impacts = after.total_impacts() - before.total_impacts();
             lap.like = inside.map(|inside| Like { inside, before, after });
             self.at = next;
         }
