@@ -3,7 +3,7 @@
 use interwell::dynamics::Model;
 use interwell::output::{Sink, aligned};
 use interwell::study::accuracy::methods::Scheme;
-use interwell::study::accuracy::scene::{Unfit, scene_table, step_size, tolerances, trust};
+use interwell::study::accuracy::scene::{Unfit, scene_table, step_name, step_size, tolerances, trust};
 
 use super::accuracy::show;
 use super::failure::Failure;
@@ -40,7 +40,12 @@ pub fn run(spec: &str, options: &AccuracyOptions) -> Result<(), Failure> {
                 Unfit::Cancelled => Failure::interrupted(),
                 Unfit::Compliant => Failure::argument(format!("--step-s: {unfit}")),
             })?;
-            text += &format!("{} in steps of {step} s: {}\n", scheme.name(), run.sentences().join(" "));
+            text += &format!(
+                "{} in steps of {}: {}\n",
+                scheme.name(),
+                step_name(*step),
+                run.sentences().join(" ")
+            );
             stepped.push(run);
         }
     }

@@ -77,8 +77,7 @@ fn arrivals(impacts: &[Event], slowest: f64) -> Vec<Event> {
 fn nearest<'a>(own: &'a [Event], arrival: &Event, room: f64) -> Option<&'a Event> {
     let from = own.partition_point(|other| other.t < arrival.t - room);
     let near = own[from..].iter().take_while(|other| other.t <= arrival.t + room);
-    let alike = |other: &&Event| {
-        other.side == arrival.side && other.v_in.abs() >= LEAST_SPEED * arrival.v_in.abs()
-    };
+    let alike =
+        |other: &&Event| other.side == arrival.side && other.v_in.abs() >= LEAST_SPEED * arrival.v_in.abs();
     near.filter(alike).min_by(|a, b| (a.t - arrival.t).abs().total_cmp(&(b.t - arrival.t).abs()))
 }

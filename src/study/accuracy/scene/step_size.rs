@@ -3,8 +3,8 @@
 use std::sync::atomic::AtomicBool;
 
 use super::arrivals::{Lateness, lateness};
+use super::at_tolerance;
 use super::beside::{Beside, times};
-use super::{at_tolerance, shortened};
 use super::trust::finished;
 use crate::dynamics::{Event, EventKind, Model, Outcome, Request, Sample, Side};
 use crate::study::accuracy::methods::{Keep, Scheme, fixed_step};
@@ -18,6 +18,11 @@ const DRAWN_PERIODS: f64 = 3.0;
 
 /// Points of a drawn path: a longer path has as many, even ones in place of the steps.
 const MOST_POINTS: usize = 4_000;
+
+/// The most steps of a run, a few seconds of one core; and the number of sines in the drive that takes as long again as all
+/// else, as they are evaluated one by one.
+const MOST_STEPS: f64 = 2e7;
+const SINES: f64 = 16.0;
 
 /// Why a scene has no such run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -38,7 +43,7 @@ pub struct StepSize {
     pub scheme: Scheme,
     /// Its step in s.
     pub step: f64,
-    /// Time in s over which both were run: the scene's run, but no more than 60 periods.
+    /// Time in s over which both were run: the scene's run, or as much of it as 2e7 steps reach.
     pub span: f64,
     /// Time in s that the paths cover.
     pub drawn: f64,
@@ -86,7 +91,7 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     if model.compliant.is_some() {
         return Err(Unfit::Compliant);
     }
-    let model = &at_tolerance(&shortened(model), model.tolerance.min(TRUE_TOLERANCE));
+    let model = &at_tolerance(&within_reach(model, step), model.tolerance.min(TRUE_TOLERANCE));
     let drawn = model.duration.min(DRAWN_PERIODS * model.pace());
     let (even, fine, steps) = (times(model), spread(drawn, MOST_POINTS), step_times(drawn, step));
 
@@ -135,6 +140,18 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
         ended_at: statistics.ended_at,
         outcome: summary.outcome,
     })
+}
+
+/// The model with its run cut to what so small a step reaches in reasonable time, and its settled window to the second half
+/// of that where it would begin later.
+fn within_reach(model: &Model, step: f64) -> Model {
+    let mut model = model.clone();
+    let reach = step * MOST_STEPS / (1.0 + model.drive.tones.len() as f64 / SINES);
+    if model.duration > reach {
+        model.duration = reach;
+        model.settle = model.settle.min(0.5 * reach);
+    }
+    model
 }
 
 /// Even times in s from 0 to `end`.

@@ -95,13 +95,7 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
     let times = times(model);
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
     let own = finished(model.run(&request))?;
-    let finer = TIGHTER * model.tolerance;
-    let better = if finer < TIGHTEST {
-        model.run_reference(&request, finer)
-    } else {
-        at_tolerance(model, finer).run(&request)
-    };
-    let better = finished(better)?;
+    let (finer, better) = better(model, model.tolerance, &request)?;
     let beside = Beside::new(model, &own.samples, &better.samples);
     Some(Trust {
         tolerances: (model.tolerance, finer),
@@ -111,6 +105,24 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
         course: course(model, &beside, &better),
         outcome: own.summary.outcome,
     })
+}
+
+/// The model with a run of another length in s: what follows the run that a scene asks for is as near or far from the truth.
+pub fn lasting(model: &Model, duration: f64) -> Model {
+    let mut model = model.clone();
+    model.duration = duration;
+    model
+}
+
+/// A run of `model` that is more accurate than one at `tolerance`, and its own tolerance. None where it was cancelled.
+pub(super) fn better(model: &Model, tolerance: f64, request: &Request) -> Option<(f64, Run)> {
+    let finer = TIGHTER * tolerance;
+    let run = if finer < TIGHTEST {
+        model.run_reference(request, finer)
+    } else {
+        at_tolerance(model, finer).run(request)
+    };
+    finished(run).map(|run| (finer, run))
 }
 
 /// A run that was not cancelled.

@@ -11,11 +11,8 @@ fn two(value: f64) -> String {
     }
     let decimals = (1.0 - size.log10().floor()).clamp(0.0, 12.0) as usize;
     // what rounds up to another digit has one decimal less: 9.96 is 10
-    let decimals = if format!("{size:.decimals$}").parse().is_ok_and(|shown: f64| shown >= 10.0) {
-        0
-    } else {
-        decimals
-    };
+    let decimals =
+        if format!("{size:.decimals$}").parse().is_ok_and(|shown: f64| shown >= 10.0) { 0 } else { decimals };
     format!("{value:.decimals$}")
 }
 
@@ -24,11 +21,21 @@ pub fn duration(seconds: f64) -> String {
     let size = seconds.abs();
     let (unit, name) = match size {
         s if s >= 1.0 => (1.0, "s"),
-        s if s >= 1e-3 => (1e-3, "ms"),
+        s if s >= 1e-4 => (1e-3, "ms"),
         s if s >= 1e-6 || s == 0.0 => (1e-6, "µs"),
         _ => (1e-9, "ns"),
     };
     format!("{} {name}", two(size / unit))
+}
+
+/// A step as it is named: a fraction of a second where it is one of a whole number.
+pub fn step_name(step: f64) -> String {
+    let parts = (1.0 / step).round();
+    if step >= 1e-3 && step < 0.5 && (parts * step - 1.0).abs() < 1e-9 && parts % 10.0 != 0.0 || parts == 60.0
+    {
+        return format!("1/{parts:.0} s");
+    }
+    duration(step)
 }
 
 /// A point in time in s: one decimal, none from 100 s on.
@@ -83,7 +90,11 @@ impl Trust {
         let (own, finer) = self.tolerances;
         let share = TRUSTED_SHARE * 100.0;
         let span = stretch(self.span);
-        let after = if from > 0.0 { format!("the {span} after {}", moment(from)) } else { format!("{span} from the start") };
+        let after = if from > 0.0 {
+            format!("the {span} after {}", moment(from))
+        } else {
+            format!("{span} from the start")
+        };
         let leaves = |until: f64| {
             format!(
                 "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path is another one from {} \
@@ -92,6 +103,11 @@ impl Trust {
             )
         };
         match self.course {
+            Course::Kept if self.error == 0.0 => {
+                format!(
+                    "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path is the same over {after}."
+                )
+            }
             Course::Kept => format!(
                 "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path changes by no more than \
                  {} mm over {after}.",
@@ -163,7 +179,7 @@ impl StepSize {
         }
         if let Some(t) = self.trusted {
             all.push(format!("It leaves the true path (by 1 % of the travel) at {}.", duration(t)));
-        } else {
+        } else if self.error > 0.0 {
             all.push(format!("Displacement wrong by {} mm at most.", length_mm(self.error)));
         }
         let (exact, own) = self.cpu_s;
@@ -178,7 +194,10 @@ mod tests {
 
     #[test]
     fn numbers_are_short_and_have_their_unit() {
-        assert_eq!([0.014, 5.5e-4, 3.2, 0.137, 9.96e-3, 0.0].map(duration), ["14 ms", "550 µs", "3.2 s", "137 ms", "10 ms", "0 µs"]);
+        assert_eq!(
+            [0.014, 5.5e-4, 3.2, 0.137, 9.96e-3, 4e-6, 0.0].map(duration),
+            ["14 ms", "0.55 ms", "3.2 s", "137 ms", "10 ms", "4.0 µs", "0 µs"]
+        );
         assert_eq!([2e-12, 3.4e-5, 0.0042].map(length_mm), ["2e-9", "0.034", "4.2"]);
         assert_eq!(small_length(0.0, 2e-3), "below 1e-15 mm");
         assert_eq!([4.21, 171.0].map(moment), ["4.2 s", "171 s"]);
