@@ -92,14 +92,11 @@ impl Accuracy {
         Some((trust.short(*from)?, trust.long(*from)))
     }
 
-    /// Asks that the view be served: to be asked anew in every frame.
-    pub fn want(&mut self) {
+    /// Asks, for a view, what digits and steps cost in `model`; to be asked anew in every frame. Where a hand still changes
+    /// the scene, what is known of an earlier one has to do.
+    pub(super) fn want(&mut self, model: &Arc<Model>, still: bool, wake: &Wake) {
         self.wanted = true;
-    }
-
-    /// Has worked out what the view of the last frame wants of `model`.
-    pub(super) fn serve(&mut self, model: &Arc<Model>, wake: &Wake) {
-        if !self.wanted {
+        if !still {
             return;
         }
         if !self.tolerances_of.as_ref().is_some_and(|own| Arc::ptr_eq(own, model)) {

@@ -55,16 +55,22 @@ impl Session {
         }
     }
 
-    /// Has the error of the motion worked out once it stands still what moves, and what the view of it wants.
+    /// Has the error of the motion worked out once the scene stands still and it is known what it settles to.
     pub(super) fn follow_accuracy(&mut self) {
         self.accuracy.poll();
-        let still = !self.editor.in_gesture() && !self.player.is_held() && self.fault.is_none();
-        if still && self.settled.current().is_some() {
+        if self.stands_still() && self.settled.current().is_some() {
             self.accuracy.follow(self.player.watch().time(), &self.wake);
         }
-        if still {
-            self.accuracy.serve(&self.model, &self.wake);
-        }
+    }
+
+    /// Asks, for a view, what digits and steps cost in the scene; to be asked anew in every frame.
+    pub fn want_accuracy(&mut self) {
+        self.accuracy.want(&self.model, self.stands_still(), &self.wake);
+    }
+
+    /// Whether the scene can be run and no hand is about to change it or its motion.
+    fn stands_still(&self) -> bool {
+        !self.editor.in_gesture() && !self.player.is_held() && self.fault.is_none()
     }
 
     /// How accurate the motion is, in a few words and in full; none while nothing moves by itself, and where nothing is

@@ -143,7 +143,7 @@ fn picture_ui(
     let runs: Vec<(f64, f64)> = known.runs.iter().map(|run| point(run.cpu_s, run.error)).collect();
     let ghost = stepped.filter(|run| run.ended_at.is_none()).map(|run| point(run.cpu_s.1, run.error));
     let all: Vec<(f64, f64)> = runs.iter().copied().chain(ghost).collect();
-    let rect = Rect::from_min_max(area.min + vec2(AXES.0, 18.0), area.max - vec2(14.0, AXES.1));
+    let rect = Rect::from_min_max(area.min + vec2(AXES.0, 24.0), area.max - vec2(22.0, AXES.1));
     let axes = Axes::new(rect, &all);
     let response = ui.interact(area, ui.scope_id().with("error over time"), Sense::hover());
     response.widget_info(|| {
@@ -156,7 +156,11 @@ fn picture_ui(
         if power % every == 0 {
             painter.hline(rect.x_range(), y, style.grid_stroke());
             // in mm
-            let text = format!("1e{}", power + 3);
+            let text = match power + 3 {
+                0 => "1".to_owned(),
+                1 => "10".to_owned(),
+                power => format!("1e{power}"),
+            };
             painter.text(
                 pos2(rect.left() - 6.0, y),
                 Align2::RIGHT_CENTER,

@@ -44,7 +44,7 @@ pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         ui.label("  Covered: what do you expect? Press C to see.");
         return false;
     }
-    context.session.accuracy.want();
+    context.session.want_accuracy();
     let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
     if area.width() < 160.0 || area.height() < 100.0 {
         return false;

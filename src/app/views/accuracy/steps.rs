@@ -3,6 +3,7 @@
 use eframe::egui::{self, ComboBox, Rect, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Points};
 
+use crate::app::accuracy::Accuracy;
 use crate::app::style::Style;
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{StepSize, step_name};
@@ -21,8 +22,15 @@ const NAMED: [(f64, &str, &str); 4] = [
     (1e-4, "0.1 ms", "Ten thousand steps a second"),
 ];
 
+/// Width in points beyond which method and step stand in one row, and height below which steps have no names.
+const ONE_ROW: f32 = 400.0;
+const NAMES: f32 = 180.0;
+
 /// Height in points of the plot at least.
 const PLOT: f32 = 70.0;
+
+/// Height in points of a line below it.
+const LINES: f32 = 19.0;
 
 /// Width in points of the numbers of its vertical axis.
 const AXIS_WIDTH: f32 = 44.0;
@@ -52,7 +60,10 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         if !current {
             ui.set_opacity(0.5);
         }
-        let text = known.sentences().join(" ");
+        let sentences = known.sentences();
+        // a line each where they leave the plot its room
+        let is_high = ui.available_height() > LINES * sentences.len() as f32 + 2.0 * PLOT;
+        let text = sentences.join(if is_high { "\n" } else { " " });
         let galley = ui.painter().layout(
             text.clone(),
             TextStyle::Body.resolve(ui.style()),
@@ -87,29 +98,18 @@ fn about(known: &StepSize) -> String {
 
 fn choice_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let accuracy = &mut context.session.accuracy;
-    ui.horizontal_wrapped(|ui| {
-        let name = ui.label("method");
-        let combo = ComboBox::from_id_salt("method of fixed step").selected_text(accuracy.scheme.name());
-        let combo = combo.show_ui(ui, |ui| {
-            for scheme in Scheme::ALL {
-                ui.selectable_value(&mut accuracy.scheme, scheme, scheme.name()).on_hover_text(what(scheme));
-            }
+    if ui.available_width() > ONE_ROW {
+        ui.horizontal(|ui| {
+            method_ui(ui, accuracy);
+            step_ui(ui, accuracy);
         });
-        combo.response.labelled_by(name.id).on_hover_text(what(accuracy.scheme));
-        let hover = "Increase: fewer and longer steps, which cost less and see less.";
-        let name = ui.label("step").on_hover_text(hover);
-        let width = (ui.available_width() - 84.0).clamp(70.0, 260.0);
-        ui.spacing_mut().slider_width = width;
-        let slider = egui::Slider::new(&mut accuracy.step, RANGE.0..=RANGE.1)
-            .logarithmic(true)
-            .smart_aim(false)
-            .custom_formatter(|step, _| step_name(step))
-            .custom_parser(parsed);
-        let response = ui.add(slider).labelled_by(name.id).on_hover_text(hover);
-        if response.changed() {
-            accuracy.step = rounded(accuracy.step);
-        }
-    });
+    } else {
+        ui.horizontal(|ui| method_ui(ui, accuracy));
+        ui.horizontal(|ui| step_ui(ui, accuracy));
+    }
+    if ui.available_height() < NAMES {
+        return;
+    }
     ui.horizontal(|ui| {
         for (step, name, hover) in NAMED {
             let own = (accuracy.step / step - 1.0).abs() < 1e-6;
@@ -118,6 +118,32 @@ fn choice_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             }
         }
     });
+}
+
+fn method_ui(ui: &mut Ui, accuracy: &mut Accuracy) {
+    let name = ui.label("method");
+    let combo = ComboBox::from_id_salt("method of fixed step").selected_text(accuracy.scheme.name());
+    let combo = combo.show_ui(ui, |ui| {
+        for scheme in Scheme::ALL {
+            ui.selectable_value(&mut accuracy.scheme, scheme, scheme.name()).on_hover_text(what(scheme));
+        }
+    });
+    combo.response.labelled_by(name.id).on_hover_text(what(accuracy.scheme));
+}
+
+fn step_ui(ui: &mut Ui, accuracy: &mut Accuracy) {
+    let hover = "Increase: fewer and longer steps, which cost less and see less.";
+    let name = ui.label("step").on_hover_text(hover);
+    ui.spacing_mut().slider_width = (ui.available_width() - 84.0).clamp(70.0, 260.0);
+    let slider = egui::Slider::new(&mut accuracy.step, RANGE.0..=RANGE.1)
+        .logarithmic(true)
+        .smart_aim(false)
+        .custom_formatter(|step, _| step_name(step))
+        .custom_parser(parsed);
+    let response = ui.add(slider).labelled_by(name.id).on_hover_text(hover);
+    if response.changed() {
+        accuracy.step = rounded(accuracy.step);
+    }
 }
 
 fn what(scheme: Scheme) -> &'static str {

@@ -141,6 +141,7 @@ impl Lateness {
         };
         let worst = match (self.matched, way(worst) == way(median)) {
             (1, _) => String::new(),
+            (_, true) if duration(worst) == duration(median) => String::new(),
             (_, true) => format!(" (worst {})", duration(worst)),
             (_, false) => format!(" (worst {} {})", duration(worst), way(worst)),
         };
