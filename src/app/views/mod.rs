@@ -209,6 +209,16 @@ pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| drawn_ui(ui, view, context)).inner
 }
 
+/// The ground of a view of results and, where these are covered, what is said in their place. Whether they are.
+fn is_covered_ui(ui: &mut Ui, context: &ViewContext<'_>) -> bool {
+    ui.painter().rect_filled(ui.max_rect(), 0.0, context.style.ground());
+    if context.covered {
+        ui.add_space(10.0);
+        ui.label("  Covered: what do you expect? Press C to see.");
+    }
+    context.covered
+}
+
 fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
     match view {
         View::Mechanism => mechanism::mechanism_ui(ui, context),

@@ -102,7 +102,8 @@ fn a_scene_is_looked_at_in_words_and_numbers() {
     // all methods where none is named, and none where no step is
     let all = stdout("accuracy bouncing-ball --step-s 0.01 --quiet");
     assert!(["semi-implicit Euler", "velocity Verlet", "RK4"].iter().all(|name| all.contains(name)), "{all}");
-    let none = stdout("accuracy duffing-chaos --set run.duration_s=300 --tolerance 1e-6");
+    let none =
+        stdout("accuracy duffing-chaos --set run.duration_s=300 --set run.settle_s=100 --tolerance 1e-6");
     assert!(none.starts_with("Chaotic: trust it up to about") && !none.contains("RK4"), "{none}");
 }
 

@@ -5,7 +5,7 @@ use eframe::egui::{Align2, Grid, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
 use crate::app::style::Style;
 use crate::dynamics::Outcome;
 use crate::study::accuracy::scene::{
-    AtTolerance, StepSize, Tolerances, duration, length_mm, small_length, step_name,
+    AtTolerance, StepSize, Tolerances, duration, length_mm, moment, small_length, step_name,
 };
 
 use super::super::ViewContext;
@@ -33,9 +33,17 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             ui.set_opacity(0.5);
         }
         table_ui(ui, &style, &known, own);
-        if known.runs.iter().any(|run| run.trusted.is_some()) {
+        let parted = known.runs.iter().filter(|run| run.trusted.is_some()).count();
+        if parted > 0 {
             let text = "A path is trusted until it is off by 1 % of the travel.";
             ui.label(RichText::new(text).color(style.faint()));
+        }
+        // where no path is right to its end, its largest error says nothing
+        if parted == known.runs.len() {
+            let text = "A thousand times the accuracy buys only a little more time: in chaos every small difference grows \
+                        until it is all there is. Averages such as the RMS velocity stay.";
+            ui.label(text);
+            return;
         }
         let rest = ui.available_rect_before_wrap();
         if rest.height() > PICTURE && rest.width() > 200.0 {
@@ -81,7 +89,7 @@ fn table_ui(ui: &mut Ui, style: &Style, known: &Tolerances, own: f64) {
 /// The error in a cell: up to when the path is trusted, where that is not all of it.
 fn error(run: &AtTolerance, known: &Tolerances) -> String {
     match run.trusted {
-        Some(t) => format!("trust to {}", duration(t)),
+        Some(t) => format!("trust to {}", moment(t)),
         None if run.outcome != Outcome::Done => "ended early".to_owned(),
         None => small_length(run.error, known.travel).replace("about ", ""),
     }
@@ -90,11 +98,7 @@ fn error(run: &AtTolerance, known: &Tolerances) -> String {
 fn how_far(run: &AtTolerance, known: &Tolerances) -> String {
     match run.trusted {
         Some(t) => {
-            format!(
-                "Off by 1 % of the travel at {}, and by {} mm later on.",
-                duration(t),
-                length_mm(run.error)
-            )
+            format!("Off by 1 % of the travel at {}, and by {} mm later on.", moment(t), length_mm(run.error))
         }
         None => format!("Off by {} mm at most, in {}.", length_mm(run.error), duration(known.span)),
     }

@@ -8,10 +8,10 @@ mod steps;
 
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
-use super::ViewContext;
+use super::{ViewContext, is_covered_ui};
 
 /// Room in points from which both parts are shown.
-const BOTH: (f32, f32) = (760.0, 300.0);
+const BOTH: (f32, f32) = (760.0, 250.0);
 
 /// Share of the width that the digits have then.
 const DIGITS: f32 = 0.42;
@@ -37,11 +37,7 @@ impl Page {
 
 /// Draws it. Whether something changed.
 pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
-    let style = context.style;
-    ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
-    if context.covered {
-        ui.add_space(10.0);
-        ui.label("  Covered: what do you expect? Press C to see.");
+    if is_covered_ui(ui, context) {
         return false;
     }
     context.session.want_accuracy();

@@ -24,7 +24,7 @@ const NAMED: [(f64, &str, &str); 4] = [
 
 /// Width in points beyond which method and step stand in one row, and height below which steps have no names.
 const ONE_ROW: f32 = 400.0;
-const NAMES: f32 = 180.0;
+const NAMES: f32 = 225.0;
 
 /// Height in points of the plot at least.
 const PLOT: f32 = 70.0;
@@ -34,6 +34,10 @@ const LINES: f32 = 19.0;
 
 /// Width in points of the numbers of its vertical axis.
 const AXIS_WIDTH: f32 = 44.0;
+
+/// Height in points below which the names of the axes are left out, and room at the end for a number.
+const LOW: f32 = 170.0;
+const MARGIN: f32 = 14.0;
 
 /// A ghost of so many steps or fewer has a dot for each.
 const MOST_DOTS: usize = 150;
@@ -198,7 +202,10 @@ fn plot_ui(ui: &mut Ui, style: &Style, area: Rect, known: &StepSize, stops: [Opt
     legend(&ui.painter().with_clip_rect(area), style, area, area.right(), &entries);
     let rows = f64::from((area.height() / 40.0).clamp(2.0, 6.0));
     let columns = f64::from((area.width() / 80.0).clamp(2.0, 8.0));
-    let mut ui = ui.new_child(UiBuilder::new().max_rect(area.with_min_y(area.top() + LEGEND)));
+    let is_low = area.height() < LOW;
+    let (time_label, axis) = if is_low { ("", "mm") } else { ("time (s)", "displacement (mm)") };
+    let rect = Rect::from_min_max(area.min + vec2(0.0, LEGEND), area.max - vec2(MARGIN, 0.0));
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(rect));
     ui.style_mut().text_styles.insert(TextStyle::Body, style.small());
     ui.visuals_mut().override_text_color = Some(style.faint());
     let (end, edge) = (known.drawn, 0.02 * (high - low));
@@ -212,8 +219,8 @@ fn plot_ui(ui: &mut Ui, style: &Style, area: Rect, known: &StepSize, stops: [Opt
         .show_grid(false)
         .default_x_bounds(0.0, end)
         .default_y_bounds(low, high)
-        .x_axis_label("time (s)")
-        .y_axis_label("displacement (mm)")
+        .x_axis_label(time_label)
+        .y_axis_label(axis)
         .y_axis_min_width(AXIS_WIDTH)
         .set_margin_fraction(vec2(0.0, 0.0))
         .x_grid_spacer(|input| marks(input.bounds.0, input.bounds.1, columns))

@@ -18,7 +18,7 @@ pub use step_size::{StepSize, TRUE_TOLERANCE, Unfit, step_size};
 pub use tables::scene_table;
 pub use tolerances::{AtTolerance, TOLERANCES, Tolerances, tolerances};
 pub use trust::{Course, Trust, lasting, trust};
-pub use words::{duration, length_mm, small_length, step_name};
+pub use words::{duration, length_mm, moment, small_length, step_name};
 
 use crate::dynamics::Model;
 

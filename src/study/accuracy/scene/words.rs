@@ -31,15 +31,19 @@ pub fn duration(seconds: f64) -> String {
 /// A step as it is named: a fraction of a second where it is one of a whole number.
 pub fn step_name(step: f64) -> String {
     let parts = (1.0 / step).round();
-    if step >= 1e-3 && step < 0.5 && (parts * step - 1.0).abs() < 1e-9 && parts % 10.0 != 0.0 || parts == 60.0
-    {
+    let is_whole = (1e-3..0.5).contains(&step) && (parts * step - 1.0).abs() < 1e-9;
+    // a tenth or a thousandth is written as well in ms
+    if is_whole && (parts % 10.0 != 0.0 || parts % 30.0 == 0.0) {
         return format!("1/{parts:.0} s");
     }
     duration(step)
 }
 
-/// A point in time in s: one decimal, none from 100 s on.
-fn moment(seconds: f64) -> String {
+/// A point in time: in s with one decimal, none from 100 s on; below a second in the unit that suits it.
+pub fn moment(seconds: f64) -> String {
+    if seconds < 0.95 {
+        return duration(seconds);
+    }
     if seconds < 99.95 { format!("{seconds:.1} s") } else { format!("{seconds:.0} s") }
 }
 
@@ -201,8 +205,10 @@ mod tests {
         );
         assert_eq!([2e-12, 3.4e-5, 0.0042].map(length_mm), ["2e-9", "0.034", "4.2"]);
         assert_eq!(small_length(0.0, 2e-3), "below 1e-15 mm");
-        assert_eq!([4.21, 171.0].map(moment), ["4.2 s", "171 s"]);
+        assert_eq!([0.12, 0.97, 4.21, 171.0].map(moment), ["120 ms", "1.0 s", "4.2 s", "171 s"]);
         assert_eq!(stretch(20.0), "20 s");
+        let steps = [1.0 / 60.0, 1.0 / 600.0, 1.0 / 30.0, 1e-3, 0.01, 1e-5].map(step_name);
+        assert_eq!(steps, ["1/60 s", "1/600 s", "1/30 s", "1.0 ms", "10 ms", "10 µs"]);
     }
 
     #[test]
