@@ -99,6 +99,16 @@ fn chaos_is_called_chaos_and_nothing_else_is() {
     assert!(chaos.short(0.0).unwrap().starts_with("Chaotic: trust it up to about "));
     assert!(chaos.short(1000.0).unwrap().ends_with(&format!("{:.0} s", 1000.0 + until)));
     assert!(matches!(trusted(&preset("first-look", &[])).course, Course::Chaotic { .. }));
+    // whatever the tolerance, and a tolerance that is only too large is none
+    for tolerance in ["1e-3", "1e-5", "1e-7", "1e-12"] {
+        let own = trusted(&preset(
+            "duffing-chaos",
+            &["run.duration_s=1000", &format!("run.tolerance={tolerance}")],
+        ));
+        assert!(matches!(own.course, Course::Chaotic { .. }), "{tolerance}: {own:?}");
+    }
+    let coarse = trusted(&preset("paper-unconstrained", &["run.tolerance=1e-3"]));
+    assert!(!matches!(coarse.course, Course::Chaotic { .. }), "{coarse:?}");
     // the time for which a path is good grows by the digits, not with them
     let runs = at_tolerances(&preset("first-look", &[])).runs;
     let trust: Vec<f64> = runs.iter().map(|run| run.trusted.unwrap()).collect();

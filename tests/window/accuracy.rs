@@ -63,7 +63,10 @@ fn the_table_fills_and_the_step_changes_the_numbers() {
 
 #[test]
 fn a_projector_shows_one_part_at_a_time() {
-    let mut harness = filled("paper", PROJECTED);
+    let mut harness = window("paper", PROJECTED, Settings::default());
+    harness.key_press(Key::Space);
+    command(&mut harness, Command::Show(View::Accuracy, true));
+    come(&mut harness);
     assert!(is_there(&harness, "of processor time") && !is_there(&harness, "1e-12"));
     let within = |harness: &Harness<'_, Window>, words: &str| {
         let rect = harness.query_all_by_label_contains(words).next().unwrap().rect();

@@ -64,18 +64,24 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         if !current {
             ui.set_opacity(0.5);
         }
-        let sentences = known.sentences();
-        // a line each where they leave the plot its room
-        let is_high = ui.available_height() > LINES * sentences.len() as f32 + 2.0 * PLOT;
-        let text = sentences.join(if is_high { "\n" } else { " " });
-        let galley = ui.painter().layout(
-            text.clone(),
-            TextStyle::Body.resolve(ui.style()),
-            style.ink(),
-            ui.available_width(),
-        );
+        let mut sentences = known.sentences();
+        let whole = sentences.join(" ");
         let rest = ui.available_rect_before_wrap();
-        let below = galley.size().y + 6.0;
+        // a line each where they leave the plot its room
+        let is_high = rest.height() > LINES * sentences.len() as f32 + 2.0 * PLOT;
+        let font = TextStyle::Body.resolve(ui.style());
+        let lay = |sentences: &[String]| {
+            let text = sentences.join(if is_high { "\n" } else { " " });
+            let galley = ui.painter().layout(text.clone(), font.clone(), style.ink(), rest.width());
+            (text, galley.size().y)
+        };
+        let (mut text, mut height) = lay(&sentences);
+        // what has no room can be read under the pointer
+        while height > rest.height() && sentences.len() > 1 {
+            sentences.pop();
+            (text, height) = lay(&sentences);
+        }
+        let below = height + 6.0;
         let plot = rest.with_max_y((rest.bottom() - below).max(rest.top()));
         let mut top = rest.top();
         if plot.height() >= PLOT {
@@ -83,7 +89,7 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             top = plot.bottom() + 4.0;
         }
         ui.scope_builder(UiBuilder::new().max_rect(rest.with_min_y(top)), |ui| {
-            ui.label(text).on_hover_text(about(&known));
+            ui.label(text).on_hover_text(format!("{whole}\n\n{}", about(&known)));
         });
     });
 }

@@ -12,11 +12,11 @@ const TIGHTER: f64 = 1e-2;
 /// The tightest tolerance of a run in doubles: what asks for more is computed in double-double arithmetic.
 const TIGHTEST: f64 = 1e-14;
 
-/// Decades over which a difference has to be seen growing before it is called exponential.
-const LEAST_DECADES: usize = 3;
+/// Where errors add up, a hundredth of the tolerance is good for ten times the time and more; where a difference grows
+/// exponentially, for a few decades' time more. Between the two.
+const TIMES: f64 = 5.0;
 
-/// How often two runs have to differ by more than rounding before their growth is looked at, in units of what one step
-/// may be wrong by.
+/// A difference is first looked at where it is so many times what one step may be wrong by.
 const ABOVE_START: f64 = 10.0;
 
 /// What becomes of the difference between a run and a more accurate one.
@@ -84,25 +84,32 @@ pub struct Trust {
 
 /// Runs `model` twice, at its own tolerance and at a hundredth of it, and compares the displacements.
 ///
-/// The path is trusted until the two differ by [`TRUSTED_SHARE`](super::TRUSTED_SHARE) of the travel. Whether the way there
-/// was exponential is judged by the times at which the difference passed each decade: evenly spaced in time, or in its
-/// logarithm as where errors add up. Needs a difference that grew by three decades, so that at tolerances above some 1e-5
-/// nothing is called chaotic. A chaotic motion is also shaken, without a period and still apart at the end.
+/// The path is trusted until the two differ by [`TRUSTED_SHARE`](super::TRUSTED_SHARE) of the travel. Where they part, a third
+/// run with a hundredth of that tolerance says whether it would help: not so where differences grow exponentially, and the
+/// second run is good for little longer. A chaotic motion is also shaken, without a period and still apart at the end.
 ///
-/// An estimate and no bound: an error that both runs share is not seen. Below a tolerance of 1e-12 the second run is made
-/// in double-double arithmetic, a hundred times as slow. None where it was cancelled.
+/// An estimate and no bound: an error that both runs share is not seen. A run with a tolerance below
+/// 1e-14 is made in double-double arithmetic, a hundred times as slow. None where it was cancelled.
 pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
     let times = times(model);
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
     let own = finished(model.run(&request))?;
     let (finer, better) = better(model, model.tolerance, &request)?;
     let beside = Beside::new(model, &own.samples, &better.samples);
+    let course = match beside.parted() {
+        None => Course::Kept,
+        Some(until) => {
+            let (_, best) = self::better(model, finer, &request)?;
+            let next = Beside::new(model, &better.samples, &best.samples).parted();
+            parted(model, &beside, &better, (until, next))
+        }
+    };
     Some(Trust {
         tolerances: (model.tolerance, finer),
         span: beside.span(),
         error: beside.error(),
         travel: beside.travel,
-        course: course(model, &beside, &better),
+        course,
         outcome: own.summary.outcome,
     })
 }
@@ -130,60 +137,22 @@ pub(super) fn finished(run: Run) -> Option<Run> {
     (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
 }
 
-fn course(model: &Model, beside: &Beside, better: &Run) -> Course {
-    let Some(until) = beside.parted() else { return Course::Kept };
-    let Some(decade) = decade(beside, ABOVE_START * model.tolerance * model.scales.length) else {
-        return Course::Coarse { until };
-    };
+/// What becomes of two runs that part at the first of `times` in s, where with both tolerances tightened they would part at
+/// the second, if at all.
+fn parted(model: &Model, beside: &Beside, better: &Run, times: (f64, Option<f64>)) -> Course {
+    let until = times.0;
+    let Some(next) = times.1.filter(|next| *next < TIMES * until) else { return Course::Coarse { until } };
     let summary = &better.summary;
     let settles = summary.period.is_some() || summary.regime == Regime::Rest;
-    if model.is_shaken() && !settles && beside.stays_apart() {
-        Course::Chaotic { until, decade }
-    } else {
-        Course::Sensitive { until }
+    if !model.is_shaken() || settles || !beside.stays_apart() {
+        return Course::Sensitive { until };
     }
-}
-
-/// The time in s in which the difference grew tenfold, where it grew exponentially from `start` in m up to where it is no
-/// longer trusted.
-fn decade(beside: &Beside, start: f64) -> Option<f64> {
-    let levels = (0..).map(|k| beside.limit * 10_f64.powi(-k)).take_while(|level| *level >= start);
-    let passed: Vec<f64> = levels.map_while(|level| beside.reaches(level)).collect();
-    if passed.len() <= LEAST_DECADES {
-        return None;
-    }
-    let (rate, linear) = fit(&passed);
-    let logarithms: Vec<f64> = passed.iter().map(|t| t.max(f64::MIN_POSITIVE).ln()).collect();
-    let (_, logarithmic) = fit(&logarithms);
-    (linear <= logarithmic).then_some(-rate)
-}
-
-/// Slope of the line through values at 0, 1, 2, .. by least squares, and the share of their variance that it leaves.
-fn fit(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let middle = 0.5 * (n - 1.0);
-    let mean = values.iter().sum::<f64>() / n;
-    let (mut both, mut places, mut all) = (0.0, 0.0, 0.0);
-    for (i, value) in values.iter().enumerate() {
-        let (place, value) = (i as f64 - middle, value - mean);
-        both += place * value;
-        places += place * place;
-        all += value * value;
-    }
-    let slope = both / places;
-    (slope, if all > 0.0 { 1.0 - both * slope / all } else { 0.0 })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_line_leaves_nothing_and_a_bend_some() {
-        let (slope, left) = fit(&[5.0, 4.0, 3.0, 2.0]);
-        assert!((slope + 1.0).abs() < 1e-12 && left.abs() < 1e-12);
-        let (_, left) = fit(&[1000.0, 100.0, 10.0, 1.0]);
-        assert!(left > 0.1, "{left}");
-        assert_eq!(fit(&[1.0, 1.0, 1.0]), (0.0, 0.0));
-    }
+    // over the decades that were seen, or from one pair of runs to the next
+    let start = ABOVE_START * model.tolerance * model.scales.length;
+    let decades = (beside.limit / start).log10();
+    let decade = match beside.reaches(start) {
+        Some(t) if decades > 1.0 => (until - t) / decades,
+        _ => (next - until).max(0.0) / -TIGHTER.log10(),
+    };
+    Course::Chaotic { until, decade }
 }
