@@ -10,6 +10,7 @@
 //! | [`task`] | background tasks as values |
 //! | [`player`] | the clock and the live motion with its past |
 //! | [`session`] | those three together, and what is known of the scene |
+//! | [`accuracy`] | how accurate the motion is, as far as it was asked |
 //! | `controls`, `geometry`, `advanced` | the hands on the scene, on its flexures, and on what is changed seldom |
 //! | [`map`] | the map of the scene, made while it is looked at |
 //! | [`status`], `announce` | the sentence that says what the mass does, and when it is spoken |
@@ -18,6 +19,7 @@
 //! | [`layouts`] | where the views stand |
 //! | [`window`] | panels, menus, keys: the `eframe::App` |
 
+pub mod accuracy;
 mod advanced;
 mod announce;
 pub mod controls;

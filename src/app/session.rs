@@ -2,19 +2,25 @@
 //!
 //! Everything here works without a window; the views look at it and change it through its methods.
 
+mod ask;
+mod build;
+
 use std::sync::Arc;
-use std::time::Duration;
 
 use crate::dynamics::Model;
-use crate::mechanics::{BuildError, FLEXURE_TOLERANCE, FlexureError, Mechanism};
-use crate::scene::{self, Document, Excitation, Fault, Scene, SceneError, Stops};
-use crate::study::{self, Settled, Thresholds};
+use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
+use crate::scene::{self, Excitation, Scene, Stops};
+use crate::study::{Settled, Thresholds};
 
+use super::accuracy::Accuracy;
 use super::document::Editor;
 use super::map::Mapping;
 use super::player::{Player, fitting_speed};
 use super::status::{self, Sentence, Tense};
 use super::task::{Latest, Wake};
+
+pub use build::CannotRun;
+use build::{solved, unbuilt, why};
 
 /// Forcing periods after a change during which the motion settles, and those until which the future tense is used.
 const SETTLING_PERIODS: f64 = 5.0;
@@ -52,6 +58,8 @@ pub struct Session {
     thresholds: Latest<Thresholds>,
     /// The travel limit in mm with which it would cross; searched for only when somebody asks.
     stops_that_cross: Latest<Option<f64>>,
+    /// How accurate the motion is.
+    pub accuracy: Accuracy,
     /// The map of the scene.
     pub map: Mapping,
     before: Option<Card>,
@@ -69,49 +77,6 @@ pub struct Session {
     /// The stops that come back when they are switched on.
     remembered_stops: Stops,
     wake: Wake,
-}
-
-/// Why a scene cannot be run.
-#[derive(Debug, thiserror::Error)]
-pub enum CannotRun {
-    /// It is wrong.
-    #[error(transparent)]
-    Wrong(#[from] SceneError),
-    /// It is right, and its flexures were not solved.
-    #[error(transparent)]
-    Unsolved(#[from] FlexureError),
-}
-
-fn unbuilt(document: &Document, error: BuildError) -> CannotRun {
-    match error {
-        BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
-        BuildError::Unsolved(error) => error.into(),
-    }
-}
-
-/// The mechanism of a scene that can be run with it.
-fn solved(document: &Document, tolerance: f64) -> Result<Arc<Mechanism>, CannotRun> {
-    document.check()?;
-    let scene = &document.scene;
-    let mechanism = Mechanism::build_with(&scene.mechanism, &document.files, tolerance)
-        .map_err(|error| unbuilt(document, error))?;
-    let mechanism = Arc::new(mechanism);
-    Model::build(scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
-    Ok(mechanism)
-}
-
-/// The first thing that is wrong, without the place in a file, which a hand on a slider does not look at.
-fn why(error: &CannotRun) -> String {
-    match error {
-        CannotRun::Wrong(SceneError::Faults { faults, .. }) => faults.first().map_or_else(
-            || error.to_string(),
-            |placed| {
-                let Fault { field, value, problem } = &placed.fault;
-                format!("{field} = {value}: {problem}")
-            },
-        ),
-        _ => error.to_string(),
-    }
 }
 
 impl Session {
@@ -140,6 +105,7 @@ impl Session {
             settled: Latest::default(),
             thresholds: Latest::default(),
             stops_that_cross: Latest::default(),
+            accuracy: Accuracy::default(),
             map: Mapping::default(),
             before: None,
             mechanism_of: scene.mechanism.clone(),
@@ -188,6 +154,7 @@ impl Session {
         self.stops_that_cross.poll();
         self.map.take();
         self.apply();
+        self.follow_accuracy();
     }
 
     /// Changes the scene as part of a gesture; see [`Editor::edit`].
@@ -343,6 +310,7 @@ impl Session {
             Err(error) => {
                 self.fault = Some(error.to_string());
                 self.settled.clear();
+                self.accuracy.begin(None);
                 self.thresholds.clear();
                 self.stops_that_cross.clear();
             }
@@ -360,66 +328,6 @@ impl Session {
             self.mechanism_of = scene.mechanism.clone();
         }
         Ok(Model::build(scene, Arc::clone(&self.mechanism)).map_err(|faults| document.error_from(faults))?)
-    }
-
-    fn ask_settled(&mut self) {
-        let model = self.player.watch().from_here().unwrap_or_else(|| (*self.model).clone());
-        self.settled.ask(&self.wake, move |cancel| study::settled(&model, cancel));
-    }
-
-    fn ask_thresholds(&mut self) {
-        if self.thresholds.is_running() || !self.is_searched() {
-            return;
-        }
-        let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
-        self.thresholds.ask(&self.wake, move |cancel| {
-            study::thresholds(&scene, &mechanism, &study::Task { tick: &|| (), cancel })
-        });
-    }
-
-    /// What it would take to cross, in words: asked for, it is searched for.
-    pub fn ways(&mut self) -> String {
-        if !self.is_searched() {
-            return "What it would take is searched for where a sine shakes a mass with two wells."
-                .to_owned();
-        }
-        if self.stops_that_cross.current().is_none()
-            && !self.stops_that_cross.is_running()
-            && !self.editor.in_gesture()
-        {
-            let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
-            let restitution =
-                restitution(&scene.stops).or(restitution(&self.remembered_stops)).unwrap_or(1.0);
-            self.stops_that_cross.ask(&self.wake, move |cancel| {
-                let task = study::Task { tick: &|| (), cancel };
-                study::stops_that_cross(&scene, &mechanism, restitution, &task)
-            });
-        }
-        match (self.settled.current(), self.thresholds.current(), self.stops_that_cross.current()) {
-            (Some(settled), Some(thresholds), Some(stops)) => {
-                status::ways(self.scene(), settled, thresholds, *stops)
-            }
-            _ => "Looking for what it would take.".to_owned(),
-        }
-    }
-
-    /// Whether what it would take is searched for.
-    fn is_searched(&self) -> bool {
-        self.fault.is_none()
-            && matches!(self.built.excitation, Excitation::Sine { .. })
-            && self.mechanism.landscape.barrier.is_some()
-    }
-
-    /// Waits for what is being computed, at most so long.
-    pub fn wait(&mut self, most: Duration) {
-        self.apply();
-        self.settled.wait(most);
-        if self.thresholds.is_running() {
-            self.thresholds.wait(most);
-        }
-        if self.stops_that_cross.is_running() {
-            self.stops_that_cross.wait(most);
-        }
     }
 
     /// What the motion settles to; of an earlier scene while the answer is still to come.
@@ -495,15 +403,6 @@ impl Session {
             Excitation::Sine { amplitude_g, .. } => Some(amplitude_g),
             _ => None,
         }
-    }
-}
-
-/// The coefficient of restitution of stops that have one.
-fn restitution(stops: &Stops) -> Option<f64> {
-    match stops {
-        Stops::None | Stops::Hertz { .. } => None,
-        Stops::Rigid { restitution, .. } => Some(*restitution),
-        Stops::Uneven { restitution_left, restitution_right, .. } => restitution_right.or(*restitution_left),
     }
 }
 

@@ -148,6 +148,11 @@ impl<T: Send + 'static> Latest<T> {
         (self.task, self.answer) = (None, None);
     }
 
+    /// Drops the question under way; an answer that is there stays.
+    pub fn stop(&mut self) {
+        self.task = None;
+    }
+
     /// Takes in an answer that has come. Whether one has.
     pub fn poll(&mut self) -> bool {
         let Some(came) = self.task.as_ref().and_then(Task::poll) else { return false };

@@ -11,10 +11,13 @@ use super::failure::Failure;
 use super::options::AccuracyOptions;
 use super::picture::Picture;
 use super::support::{Watch, finish, open, write_table, write_text};
-use super::{interrupt, say};
+use super::{interrupt, say, scene_accuracy};
 
 /// Runs what was selected and shows it; an error where a case falls short, after everything was written.
 pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
+    if let Some(scene) = &options.scene {
+        return scene_accuracy::run(scene, options);
+    }
     let picture = Picture::asked(&options.plot)?;
     let selection = if options.case.is_empty() { Selection::all() } else { Selection::of(&options.case)? };
     if options.list {
@@ -54,18 +57,23 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     }
     let to_stdout = csv.as_ref().is_some_and(Sink::is_stdout);
     finish(sinks)?;
-    let text = shown(&report);
-    if !to_stdout {
-        let mut sinks = open(&[], [Some(("the table", std::path::Path::new("-")))])?;
-        write_text(&mut sinks[0], &text)?;
-        finish(sinks)?;
-    } else if !options.quiet {
-        say(text.trim_end());
-    }
+    show(&shown(&report), to_stdout, options.quiet)?;
     if !options.quiet {
         say(&format!("{:.1} s", watch.wall_s()));
     }
     verdict(&report)
+}
+
+/// Puts a text on standard output, or beside the data that is there on standard error.
+pub(super) fn show(text: &str, data_is_there: bool, quiet: bool) -> Result<(), Failure> {
+    if !data_is_there {
+        let mut sinks = open(&[], [Some(("the table", std::path::Path::new("-")))])?;
+        write_text(&mut sinks[0], text)?;
+        finish(sinks)?;
+    } else if !quiet {
+        say(text.trim_end());
+    }
+    Ok(())
 }
 
 /// The tables of a report as text.

@@ -8,6 +8,7 @@ mod interrupt;
 mod options;
 mod picture;
 mod presets;
+mod scene_accuracy;
 mod simulate;
 mod support;
 mod sweep;

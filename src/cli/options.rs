@@ -16,6 +16,7 @@ Examples:
   interwell --headless sweep --out map.csv --plot map.png
   interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
   interwell --headless accuracy --plot accuracy.png
+  interwell --headless accuracy nominal-cubic --method rk4 --step-s 1/60,1/600
 
 A scene is a .ron file or the name of a built-in one; `presets --write DIR` copies those out.
 Exit status: 0 done; 1 the run or the writing failed, or a case of `accuracy` falls short; 2 the arguments or the
@@ -56,8 +57,9 @@ pub enum Command {
     /// Run a grid of scenes: CSV with a row for each cell
     #[command(override_usage = "interwell --headless sweep [SCENE] [OPTIONS]")]
     Sweep(SweepOptions),
-    /// Speed against error beside other methods, and the hard cases with the digits that they allow and reach
-    #[command(override_usage = "interwell --headless accuracy [OPTIONS]")]
+    /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed against error
+    /// beside other methods, and the hard cases with the digits that they allow and reach
+    #[command(override_usage = "interwell --headless accuracy [SCENE] [OPTIONS]")]
     Accuracy(AccuracyOptions),
 }
 
@@ -253,6 +255,27 @@ pub struct SweepOptions {
 /// `accuracy`.
 #[derive(Debug, Args)]
 pub struct AccuracyOptions {
+    /// Scene file or built-in scene whose run is looked at; without one the program's own problems and cases
+    #[arg(value_name = "SCENE", conflicts_with_all = ["case", "list", "picture"])]
+    pub scene: Option<String>,
+
+    /// With a scene: change a field of it (repeatable)
+    #[arg(long, value_name = "FIELD=VALUE", allow_hyphen_values = true, requires = "scene")]
+    pub set: Vec<String>,
+
+    /// With a scene: its tolerance, 1e-14 to 1e-3
+    #[arg(long, value_name = "T", allow_hyphen_values = true, requires = "scene")]
+    pub tolerance: Option<String>,
+
+    /// With a scene: what fixed steps make of it, each in s or as a fraction such as 1/60; stops clamp and bounce
+    #[arg(long, value_name = "S1,S2,..", allow_hyphen_values = true, requires = "scene")]
+    pub step_s: Option<String>,
+
+    /// With --step-s: the method, euler (semi-implicit), verlet or rk4 (repeatable) [default: all]
+    #[arg(long, value_name = "NAME", requires = "step_s",
+          value_parser = ["euler", "verlet", "rk4"])]
+    pub method: Vec<String>,
+
     /// Run this case alone (repeatable): p1, p2 or flexures for speed against error, or a hard case
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     pub case: Vec<String>,

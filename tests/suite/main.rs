@@ -2,6 +2,7 @@
 
 mod absent;
 mod accuracy;
+mod accuracy_scene;
 #[path = "../../benches/by_hand/mod.rs"]
 mod by_hand;
 mod cli;

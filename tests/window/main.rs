@@ -1,5 +1,6 @@
 //! The window without a display: what is seen, pressed and dragged, and what that does to the scene and its motion.
 
+mod accuracy;
 mod advanced;
 mod documents;
 mod first_minute;

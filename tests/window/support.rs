@@ -7,6 +7,7 @@ use eframe::egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use interwell::app::document::Editor;
+use interwell::app::menu::Command;
 use interwell::app::session::Session;
 use interwell::app::settings::Settings;
 use interwell::app::window::{Window, prepare};
@@ -27,6 +28,13 @@ pub fn window(preset: &str, size: [f32; 2], settings: Settings) -> Harness<'stat
         Harness::builder().with_size(size).with_context_setup(prepare).build_ui_state(draw, window);
     harness.run_steps(3);
     harness
+}
+
+/// Has the window do what a menu or a key would ask for.
+pub fn command(harness: &mut Harness<'_, Window>, command: Command) {
+    let ctx = harness.ctx.clone();
+    harness.state_mut().carry_out(&ctx, command);
+    harness.run_steps(3);
 }
 
 /// A session on a built-in scene with fields changed, its answers there.

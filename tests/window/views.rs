@@ -10,16 +10,10 @@ use interwell::app::views::{Span, View, energy};
 use interwell::app::window::Window;
 use interwell::scene::{Layout, PRESETS, Stops};
 
-use crate::support::{session, window};
+use crate::support::{command, session, window};
 
 const WIDE: [f32; 2] = [1280.0, 720.0];
 const PROJECTED: [f32; 2] = [853.0, 480.0];
-
-fn command(harness: &mut Harness<'_, Window>, command: Command) {
-    let ctx = harness.ctx.clone();
-    harness.state_mut().carry_out(&ctx, command);
-    harness.run_steps(3);
-}
 
 fn study(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {
     let mut harness = window(preset, size, Settings::default());

@@ -4,6 +4,7 @@
 //! [`layouts`](super::layouts). Views share the x axis of [`Span`], so that mechanism and well stand above each other, and
 //! keep what they must remember between frames in [`Memory`].
 
+mod accuracy;
 mod before_now;
 mod chart;
 pub mod energy;
@@ -56,11 +57,13 @@ pub enum View {
     Power,
     /// What every combination of two fields comes to.
     Map,
+    /// What digits cost, and what a fixed step makes of the scene.
+    Accuracy,
 }
 
 impl View {
     /// All of them, in the order of the menu.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Mechanism,
         Self::Well,
         Self::Displacement,
@@ -72,6 +75,7 @@ impl View {
         Self::BaseAcceleration,
         Self::Power,
         Self::Map,
+        Self::Accuracy,
     ];
 
     /// Whether the displacement runs along it.
@@ -120,6 +124,10 @@ impl View {
             Self::Map => {
                 "What every combination of two settings comes to, each in a run of its own. Click to take the scene there."
             }
+            Self::Accuracy => {
+                "How far the computed motion is from the true one: what each digit costs, and what becomes of the scene in \
+                 fixed steps, as a game or a small applet takes them. From the scene's start."
+            }
         }
     }
 
@@ -137,6 +145,7 @@ impl View {
             Self::BaseAcceleration => "Base acceleration",
             Self::Power => "Power",
             Self::Map => "Map",
+            Self::Accuracy => "Accuracy",
         }
     }
 }
@@ -186,6 +195,8 @@ pub struct Memory {
     ranges: ranges::Ranges,
     /// What the map shows.
     pub map_quantity: MapQuantity,
+    /// What the view Accuracy shows where there is no room for all of it.
+    accuracy_page: accuracy::Page,
 }
 
 /// Draws one view. Whether it changed something.
@@ -196,6 +207,16 @@ pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
         context.memory.hovered = Some(view);
     }
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| drawn_ui(ui, view, context)).inner
+}
+
+/// The ground of a view of results and, where these are covered, what is said in their place. Whether they are.
+fn is_covered_ui(ui: &mut Ui, context: &ViewContext<'_>) -> bool {
+    ui.painter().rect_filled(ui.max_rect(), 0.0, context.style.ground());
+    if context.covered {
+        ui.add_space(10.0);
+        ui.label("  Covered: what do you expect? Press C to see.");
+    }
+    context.covered
 }
 
 fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
@@ -211,5 +232,6 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
         View::BaseAcceleration => trace::trace_ui(ui, Quantity::BaseAcceleration, context),
         View::Power => trace::trace_ui(ui, Quantity::Power, context),
         View::Map => map::map_ui(ui, context),
+        View::Accuracy => accuracy::accuracy_ui(ui, context),
     }
 }

@@ -265,7 +265,7 @@ fn zoom(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, own: 
 }
 
 /// Round numbers for an axis, some `count` of them.
-fn marks(low: f64, high: f64, count: f64) -> Vec<GridMark> {
+pub(super) fn marks(low: f64, high: f64, count: f64) -> Vec<GridMark> {
     let (mut values, _) = ticks(low, high, count);
     // two at least, or the axis has no scale
     if values.len() < 2 {
@@ -276,7 +276,7 @@ fn marks(low: f64, high: f64, count: f64) -> Vec<GridMark> {
 }
 
 /// A tick's number, with the decimals that tell it from the next one.
-fn plain(mark: GridMark) -> String {
+pub(super) fn plain(mark: GridMark) -> String {
     let decimals = (-(mark.step_size * 1.001).log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{:.decimals$}", mark.value + 0.0)
 }

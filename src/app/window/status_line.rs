@@ -7,6 +7,11 @@ use crate::app::session::Session;
 use crate::app::style::{BODY, STATUS, STATUS_COMPACT, Style};
 use crate::app::widgets::kind_shapes;
 
+/// Widest and highest in points of a line beside the sentence, and the size of its letters.
+const BESIDE: f32 = 236.0;
+const LINE: f32 = 17.0;
+const SMALL_LINE: f32 = 13.0;
+
 /// The line that says what the mass does.
 pub fn status_ui(
     ui: &mut Ui,
@@ -31,10 +36,7 @@ pub fn status_ui(
         ));
         let settling = session.settling().map(|(gone, of)| format!("settling: {gone} of {of} periods"));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if let Some(settling) = settling {
-                let hover = "How far the motion has settled since your last change";
-                ui.label(RichText::new(settling).color(style.faint())).on_hover_text(hover);
-            }
+            beside_ui(ui, session, style, settling);
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let text = sentence.whole();
                 let size = fitted(ui, &text, size);
@@ -44,6 +46,29 @@ pub fn status_ui(
                 }
             });
         });
+    });
+}
+
+/// Beside the sentence: how accurate the motion is and, below, how far it has settled.
+fn beside_ui(ui: &mut Ui, session: &Session, style: &Style, settling: Option<String>) {
+    let trust = session.trust();
+    if trust.is_none() && settling.is_none() {
+        return;
+    }
+    let lines = usize::from(trust.is_some()) + usize::from(settling.is_some());
+    let height = lines as f32 * LINE;
+    ui.allocate_ui_with_layout(Vec2::new(BESIDE, height), egui::Layout::top_down(egui::Align::Max), |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let mut line = |text: String, hover: &str| {
+            let text = RichText::new(text).size(SMALL_LINE).color(style.faint());
+            ui.add(egui::Label::new(text).extend()).on_hover_text(hover);
+        };
+        if let Some((short, long)) = trust {
+            line(short, &long);
+        }
+        if let Some(settling) = settling {
+            line(settling, "How far the motion has settled since your last change");
+        }
     });
 }
 

@@ -1,6 +1,7 @@
 //! How accurate are the runs, and what does accuracy cost?
 //!
-//! Two halves. [`PROBLEMS`]: work against precision on three problems, beside what people use instead
+//! Of any scene: the error of its run, up to when its path is to be trusted, and what a fixed step would make of it
+//! ([`scene`]). Of the program, in two halves: [`PROBLEMS`]: work against precision on three problems, beside what people use instead
 //! ([`methods`]), error measured against the program's own integrator in double-double arithmetic. [`HARD_CASES`]:
 //! problems that break integrators of impacts, each with its answer ([`exact`] where there is a closed form) and the digits
 //! that its conditioning allows.
@@ -10,6 +11,7 @@ pub mod exact;
 mod measure;
 pub mod methods;
 mod precision;
+pub mod scene;
 mod scenes;
 mod tables;
 

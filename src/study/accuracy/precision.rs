@@ -16,7 +16,7 @@ const DORMAND_PRINCE: &str = "Dormand-Prince 5(4)";
 const HARD: f64 = 1e-2;
 
 /// A run is repeated for so long in s to measure its time, but not more often than this.
-const MEASURED_FOR: f64 = 0.02;
+pub(super) const MEASURED_FOR: f64 = 0.02;
 const MOST_REPEATS: usize = 25;
 
 /// Times that progress is told in a problem: the reference, the own method, Dormand-Prince and each scheme.
@@ -219,7 +219,7 @@ fn tolerances() -> impl Iterator<Item = f64> {
 }
 
 /// The median of measured times.
-fn median(mut measure: impl FnMut() -> f64) -> f64 {
+pub(super) fn median(mut measure: impl FnMut() -> f64) -> f64 {
     let mut times = vec![measure()];
     while times.len() < MOST_REPEATS && times.iter().sum::<f64>() < MEASURED_FOR {
         times.push(measure());

@@ -79,3 +79,49 @@ fn a_wrong_argument_names_the_remedy() {
     refused(headless("accuracy --case p1 --dark"), &["--plot"]);
     refused(headless("accuracy --case grazing --out no/such/a.csv"), &["no folder"]);
 }
+
+#[test]
+fn a_scene_is_looked_at_in_words_and_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("scene.csv");
+    let line = format!("accuracy nominal-cubic --method rk4 --step-s 1/60,0.001 --out {}", file.display());
+    let output = headless(&line).assert().success();
+    let words = contains("Error about")
+        .and(contains("RK4 in steps of 1/60 s: Impacts arrive 14 ms late"))
+        .and(contains("RMS velocity 38 % too high"))
+        .and(contains("RK4 in steps of 1.0 ms"));
+    output.stdout(words);
+    let csv = std::fs::read_to_string(&file).unwrap();
+    assert_eq!(
+        csv.lines().next().unwrap(),
+        "method,tolerance,step_s,error_m,trusted_s,compared_s,steps,evaluations,cpu_s,rms_velocity_m_per_s,impacts,late_s,\
+         latest_s,arrivals,outcome"
+    );
+    assert_eq!(column(&csv, "tolerance"), ["1e-3", "1e-6", "1e-9", "1e-12", "", ""].map(spelt));
+    assert_eq!(column(&csv, "outcome"), ["done"; 6]);
+    // all methods where none is named, and none where no step is
+    let all = stdout("accuracy bouncing-ball --step-s 0.01 --quiet");
+    assert!(["semi-implicit Euler", "velocity Verlet", "RK4"].iter().all(|name| all.contains(name)), "{all}");
+    let none =
+        stdout("accuracy duffing-chaos --set run.duration_s=300 --set run.settle_s=100 --tolerance 1e-6");
+    assert!(none.starts_with("Chaotic: trust it up to about") && !none.contains("RK4"), "{none}");
+}
+
+/// A number as the CSV spells it.
+fn spelt(text: &str) -> String {
+    text.parse::<f64>().map_or_else(|_| text.to_owned(), |number| format!("{number:e}"))
+}
+
+#[test]
+fn what_is_wrong_about_a_scene_is_named() {
+    refused(headless("accuracy --step-s 0.01"), &["SCENE"]);
+    refused(headless("accuracy --set mass_g=2"), &["SCENE"]);
+    refused(headless("accuracy paper --method rk4"), &["--step-s"]);
+    refused(headless("accuracy paper --step-s 0.01 --method rk5"), &["rk5", "euler, verlet, rk4"]);
+    refused(headless("accuracy paper --step-s 0"), &["--step-s 0", "1/60"]);
+    refused(headless("accuracy paper --step-s 1/0"), &["`1/0`"]);
+    refused(headless("accuracy paper --case p1"), &["--case"]);
+    refused(headless("accuracy no-such-scene"), &["no-such-scene"]);
+    let soft = "stops=Hertz(travel_limit_mm:1.5,stiffness_n_per_m1_5:1e7,loss_s_per_m:0.5)";
+    refused(headless(&format!("accuracy paper --set {soft} --step-s 0.01")), &["--step-s", "rigid stops"]);
+}

@@ -13,7 +13,7 @@ use crate::app::style::Style;
 use crate::dynamics::{Regime, Summary};
 use crate::output::sweep_about;
 
-use super::ViewContext;
+use super::{ViewContext, is_covered_ui};
 use frame::Frame;
 use picture::{Picture, bar, lines};
 use quantity::{Scale, kind, kind_name};
@@ -23,10 +23,7 @@ pub use quantity::Quantity;
 /// Draws it. Whether something changed.
 pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let style = context.style;
-    ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
-    if context.covered {
-        ui.add_space(10.0);
-        ui.label("  Covered: what do you expect? Press C to see.");
+    if is_covered_ui(ui, context) {
         return false;
     }
     let time = ui.input(|input| input.time);

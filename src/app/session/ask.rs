@@ -1,0 +1,112 @@
+//! What is asked of the background about an open scene: what it settles to, what it would take, how accurate it is.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::scene::{Excitation, Stops};
+use crate::study;
+
+use super::Session;
+use crate::app::status;
+
+impl Session {
+    pub(super) fn ask_settled(&mut self) {
+        let (now, from_here) = (self.player.watch().time(), self.player.watch().from_here());
+        // a ramp that was changed on its way is no run of its own: nothing is known of its error
+        let is_known = now == 0.0 || from_here.is_some();
+        let model = Arc::new(from_here.unwrap_or_else(|| (*self.model).clone()));
+        self.accuracy.begin(is_known.then(|| (Arc::clone(&model), now)));
+        self.settled.ask(&self.wake, move |cancel| study::settled(&model, cancel));
+    }
+
+    pub(super) fn ask_thresholds(&mut self) {
+        if self.thresholds.is_running() || !self.is_searched() {
+            return;
+        }
+        let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
+        self.thresholds.ask(&self.wake, move |cancel| {
+            study::thresholds(&scene, &mechanism, &study::Task { tick: &|| (), cancel })
+        });
+    }
+
+    /// What it would take to cross, in words: asked for, it is searched for.
+    pub fn ways(&mut self) -> String {
+        if !self.is_searched() {
+            return "What it would take is searched for where a sine shakes a mass with two wells."
+                .to_owned();
+        }
+        if self.stops_that_cross.current().is_none()
+            && !self.stops_that_cross.is_running()
+            && !self.editor.in_gesture()
+        {
+            let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
+            let restitution =
+                restitution(&scene.stops).or(restitution(&self.remembered_stops)).unwrap_or(1.0);
+            self.stops_that_cross.ask(&self.wake, move |cancel| {
+                let task = study::Task { tick: &|| (), cancel };
+                study::stops_that_cross(&scene, &mechanism, restitution, &task)
+            });
+        }
+        match (self.settled.current(), self.thresholds.current(), self.stops_that_cross.current()) {
+            (Some(settled), Some(thresholds), Some(stops)) => {
+                status::ways(self.scene(), settled, thresholds, *stops)
+            }
+            _ => "Looking for what it would take.".to_owned(),
+        }
+    }
+
+    /// Has the error of the motion worked out once the scene stands still and it is known what it settles to.
+    pub(super) fn follow_accuracy(&mut self) {
+        self.accuracy.poll();
+        if self.stands_still() && self.settled.current().is_some() {
+            self.accuracy.follow(self.player.watch().time(), &self.wake);
+        }
+    }
+
+    /// Asks, for a view, what digits and steps cost in the scene; to be asked anew in every frame.
+    pub fn want_accuracy(&mut self) {
+        self.accuracy.want(&self.model, self.stands_still(), &self.wake);
+    }
+
+    /// Whether the scene can be run and no hand is about to change it or its motion.
+    fn stands_still(&self) -> bool {
+        !self.editor.in_gesture() && !self.player.is_held() && self.fault.is_none()
+    }
+
+    /// How accurate the motion is, in a few words and in full; none while nothing moves by itself, and where nothing is
+    /// known.
+    pub fn trust(&self) -> Option<(String, String)> {
+        let own = self.fault.is_none() && !self.player.is_held() && self.player.ended().is_none();
+        self.accuracy.words().filter(|_| own)
+    }
+
+    /// Whether what it would take is searched for.
+    fn is_searched(&self) -> bool {
+        self.fault.is_none()
+            && matches!(self.built.excitation, Excitation::Sine { .. })
+            && self.mechanism.landscape.barrier.is_some()
+    }
+
+    /// Waits for what is being computed, at most so long.
+    pub fn wait(&mut self, most: Duration) {
+        self.apply();
+        self.settled.wait(most);
+        if self.thresholds.is_running() {
+            self.thresholds.wait(most);
+        }
+        if self.stops_that_cross.is_running() {
+            self.stops_that_cross.wait(most);
+        }
+        self.follow_accuracy();
+        self.accuracy.wait(most);
+    }
+}
+
+/// The coefficient of restitution of stops that have one.
+fn restitution(stops: &Stops) -> Option<f64> {
+    match stops {
+        Stops::None | Stops::Hertz { .. } => None,
+        Stops::Rigid { restitution, .. } => Some(*restitution),
+        Stops::Uneven { restitution_left, restitution_right, .. } => restitution_right.or(*restitution_left),
+    }
+}

@@ -1,0 +1,50 @@
+//! Can a scene be run, and if not, why?
+
+use std::sync::Arc;
+
+use crate::dynamics::Model;
+use crate::mechanics::{BuildError, FlexureError, Mechanism};
+use crate::scene::{Document, Fault, SceneError};
+
+/// Why a scene cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum CannotRun {
+    /// It is wrong.
+    #[error(transparent)]
+    Wrong(#[from] SceneError),
+    /// It is right, and its flexures were not solved.
+    #[error(transparent)]
+    Unsolved(#[from] FlexureError),
+}
+
+pub(super) fn unbuilt(document: &Document, error: BuildError) -> CannotRun {
+    match error {
+        BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
+        BuildError::Unsolved(error) => error.into(),
+    }
+}
+
+/// The mechanism of a scene that can be run with it.
+pub(super) fn solved(document: &Document, tolerance: f64) -> Result<Arc<Mechanism>, CannotRun> {
+    document.check()?;
+    let scene = &document.scene;
+    let mechanism = Mechanism::build_with(&scene.mechanism, &document.files, tolerance)
+        .map_err(|error| unbuilt(document, error))?;
+    let mechanism = Arc::new(mechanism);
+    Model::build(scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
+    Ok(mechanism)
+}
+
+/// The first thing that is wrong, without the place in a file, which a hand on a slider does not look at.
+pub(super) fn why(error: &CannotRun) -> String {
+    match error {
+        CannotRun::Wrong(SceneError::Faults { faults, .. }) => faults.first().map_or_else(
+            || error.to_string(),
+            |placed| {
+                let Fault { field, value, problem } = &placed.fault;
+                format!("{field} = {value}: {problem}")
+            },
+        ),
+        _ => error.to_string(),
+    }
+}

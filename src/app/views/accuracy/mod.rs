@@ -1,0 +1,86 @@
+//! Accuracy: what each digit of the scene's run costs, and what becomes of it in fixed steps.
+//!
+//! Nothing of it is worked out while the view is closed. Where there is room both parts stand beside each other, else one
+//! of them is chosen.
+
+mod digits;
+mod steps;
+
+use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
+
+use super::{ViewContext, is_covered_ui};
+
+/// Room in points from which both parts are shown.
+const BOTH: (f32, f32) = (760.0, 250.0);
+
+/// Share of the width that the digits have then.
+const DIGITS: f32 = 0.42;
+
+/// What is shown where there is no room for all of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Page {
+    /// What each digit costs.
+    Digits,
+    /// What the step size does.
+    #[default]
+    Steps,
+}
+
+impl Page {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Digits => "What a digit costs",
+            Self::Steps => "What the step size does",
+        }
+    }
+}
+
+/// Draws it. Whether something changed.
+pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+    if is_covered_ui(ui, context) {
+        return false;
+    }
+    context.session.want_accuracy();
+    let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
+    if area.width() < 160.0 || area.height() < 100.0 {
+        return false;
+    }
+    let part = |ui: &mut Ui, rect: Rect, page: Page, context: &mut ViewContext<'_>| {
+        ui.scope_builder(UiBuilder::new().max_rect(rect).id_salt(page.name()), |ui| match page {
+            Page::Digits => digits::digits_ui(ui, context),
+            Page::Steps => steps::steps_ui(ui, context),
+        });
+    };
+    if area.width() >= BOTH.0 && area.height() >= BOTH.1 {
+        let middle = area.left() + DIGITS * area.width();
+        let [left, right] = [
+            Rect::from_min_max(area.min, pos2(middle - 10.0, area.bottom())),
+            Rect::from_min_max(pos2(middle + 10.0, area.top()), area.max),
+        ];
+        for (rect, page) in [(left, Page::Digits), (right, Page::Steps)] {
+            ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+                ui.label(RichText::new(page.name()).heading());
+            });
+            part(ui, rect.with_min_y(rect.top() + 26.0), page, context);
+        }
+        return false;
+    }
+    ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
+        ui.horizontal(|ui| {
+            for page in [Page::Steps, Page::Digits] {
+                ui.selectable_value(&mut context.memory.accuracy_page, page, page.name());
+            }
+        });
+    });
+    part(ui, area.with_min_y(area.top() + 30.0), context.memory.accuracy_page, context);
+    false
+}
+
+/// Said while something is worked out for the first time.
+fn waiting_ui(ui: &mut Ui, context: &ViewContext<'_>) {
+    let text = match context.session.fault() {
+        Some(_) => "This scene cannot run.",
+        None => "Working it out.",
+    };
+    ui.label(RichText::new(text).color(context.style.faint()));
+}

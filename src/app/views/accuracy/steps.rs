@@ -1,0 +1,271 @@
+//! What the step size does: the run in fixed steps as a ghost over the true one, and what is wrong with it in numbers.
+
+use eframe::egui::{self, ComboBox, Rect, TextStyle, Ui, UiBuilder, vec2};
+use egui_plot::{HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Points};
+
+use crate::app::accuracy::Accuracy;
+use crate::app::style::Style;
+use crate::study::accuracy::methods::Scheme;
+use crate::study::accuracy::scene::{StepSize, step_name};
+
+use super::super::ViewContext;
+use super::super::legend::{LEGEND, Sign, legend};
+use super::super::trace::{marks, plain};
+use super::waiting_ui;
+
+/// Ends of the slider in s, and steps with a name.
+const RANGE: (f64, f64) = (1e-5, 1.0 / 30.0);
+const NAMED: [(f64, &str, &str); 4] = [
+    (1.0 / 30.0, "1/30 s", "A film of thirty pictures a second"),
+    (1.0 / 60.0, "1/60 s", "One frame of a screen: a step as games and small applets take it"),
+    (1e-3, "1 ms", "A thousand steps a second"),
+    (1e-4, "0.1 ms", "Ten thousand steps a second"),
+];
+
+/// Width in points beyond which method and step stand in one row, and height below which steps have no names.
+const ONE_ROW: f32 = 400.0;
+const NAMES: f32 = 225.0;
+
+/// Height in points of the plot at least.
+const PLOT: f32 = 70.0;
+
+/// Height in points of a line below it.
+const LINES: f32 = 19.0;
+
+/// Width in points of the numbers of its vertical axis.
+const AXIS_WIDTH: f32 = 44.0;
+
+/// Height in points below which the names of the axes are left out, and room at the end for a number.
+const LOW: f32 = 170.0;
+const MARGIN: f32 = 14.0;
+
+/// A ghost of so many steps or fewer has a dot for each.
+const MOST_DOTS: usize = 150;
+
+/// Draws it.
+pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    choice_ui(ui, context);
+    let style = context.style;
+    let (model, accuracy) = (context.session.model(), &context.session.accuracy);
+    let Some((known, current)) = accuracy.stepped(model) else {
+        waiting_ui(ui, context);
+        return;
+    };
+    let known = match known {
+        Ok(known) => known.clone(),
+        Err(unfit) => {
+            ui.label(format!("Not for this scene: {unfit}."));
+            return;
+        }
+    };
+    let (left, right) = model.stop_positions();
+    let stops = [left, right].map(|stop| stop.map(|stop| stop * 1e3));
+    ui.scope(|ui| {
+        if !current {
+            ui.set_opacity(0.5);
+        }
+        let mut sentences = known.sentences();
+        let whole = sentences.join(" ");
+        let rest = ui.available_rect_before_wrap();
+        // a line each where they leave the plot its room
+        let is_high = rest.height() > LINES * sentences.len() as f32 + 2.0 * PLOT;
+        let font = TextStyle::Body.resolve(ui.style());
+        let lay = |sentences: &[String]| {
+            let text = sentences.join(if is_high { "\n" } else { " " });
+            let galley = ui.painter().layout(text.clone(), font.clone(), style.ink(), rest.width());
+            (text, galley.size().y)
+        };
+        let (mut text, mut height) = lay(&sentences);
+        // what has no room can be read under the pointer
+        while height > rest.height() && sentences.len() > 1 {
+            sentences.pop();
+            (text, height) = lay(&sentences);
+        }
+        let below = height + 6.0;
+        let plot = rest.with_max_y((rest.bottom() - below).max(rest.top()));
+        let mut top = rest.top();
+        if plot.height() >= PLOT {
+            plot_ui(ui, &style, plot, &known, stops);
+            top = plot.bottom() + 4.0;
+        }
+        ui.scope_builder(UiBuilder::new().max_rect(rest.with_min_y(top)), |ui| {
+            ui.label(text).on_hover_text(format!("{whole}\n\n{}", about(&known)));
+        });
+    });
+}
+
+/// Which run this is, and how it is compared.
+fn about(known: &StepSize) -> String {
+    format!(
+        "The first {} of the scene from its start, {} steps of {}. A step that ends beyond a stop is put onto it, and the \
+         mass bounces from there (clamp and bounce). The true run locates each impact; it counts those down to a millionth \
+         of the scene's speed, and the rest of a chatter in one sum.",
+        crate::study::accuracy::scene::duration(known.span),
+        known.steps.1,
+        step_name(known.step)
+    )
+}
+
+fn choice_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let accuracy = &mut context.session.accuracy;
+    if ui.available_width() > ONE_ROW {
+        ui.horizontal(|ui| {
+            method_ui(ui, accuracy);
+            step_ui(ui, accuracy);
+        });
+    } else {
+        ui.horizontal(|ui| method_ui(ui, accuracy));
+        ui.horizontal(|ui| step_ui(ui, accuracy));
+    }
+    if ui.available_height() < NAMES {
+        return;
+    }
+    ui.horizontal(|ui| {
+        for (step, name, hover) in NAMED {
+            let own = (accuracy.step / step - 1.0).abs() < 1e-6;
+            if ui.selectable_label(own, name).on_hover_text(hover).clicked() {
+                accuracy.step = step;
+            }
+        }
+    });
+}
+
+fn method_ui(ui: &mut Ui, accuracy: &mut Accuracy) {
+    let name = ui.label("method");
+    let combo = ComboBox::from_id_salt("method of fixed step").selected_text(accuracy.scheme.name());
+    let combo = combo.show_ui(ui, |ui| {
+        for scheme in Scheme::ALL {
+            ui.selectable_value(&mut accuracy.scheme, scheme, scheme.name()).on_hover_text(what(scheme));
+        }
+    });
+    combo.response.labelled_by(name.id).on_hover_text(what(accuracy.scheme));
+}
+
+fn step_ui(ui: &mut Ui, accuracy: &mut Accuracy) {
+    let hover = "Increase: fewer and longer steps, which cost less and see less.";
+    let name = ui.label("step").on_hover_text(hover);
+    ui.spacing_mut().slider_width = (ui.available_width() - 84.0).clamp(70.0, 260.0);
+    let slider = egui::Slider::new(&mut accuracy.step, RANGE.0..=RANGE.1)
+        .logarithmic(true)
+        .smart_aim(false)
+        .custom_formatter(|step, _| step_name(step))
+        .custom_parser(parsed);
+    let response = ui.add(slider).labelled_by(name.id).on_hover_text(hover);
+    if response.changed() {
+        accuracy.step = rounded(accuracy.step);
+    }
+}
+
+fn what(scheme: Scheme) -> &'static str {
+    match scheme {
+        Scheme::SemiImplicitEuler => {
+            "Velocity first, then displacement by the new velocity: the simplest that keeps a swing alive. Half the step, \
+             half the error."
+        }
+        Scheme::VelocityVerlet => "What molecules and games move by. Half the step, a quarter of the error.",
+        Scheme::RungeKutta4 => {
+            "The classical method of Runge and Kutta, four looks at the force a step. Half the step, a sixteenth of the \
+             error, except at impacts."
+        }
+    }
+}
+
+/// A step with three digits, or the fraction of a second that it nearly is.
+fn rounded(step: f64) -> f64 {
+    if let Some(named) = NAMED.iter().find(|named| (step / named.0 - 1.0).abs() < 0.02) {
+        return named.0;
+    }
+    format!("{step:.1e}").parse().unwrap_or(step).clamp(RANGE.0, RANGE.1)
+}
+
+/// A step as it is typed: a fraction of a second, or a number of ms, µs or s.
+fn parsed(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let units = [("ms", 1e-3), ("µs", 1e-6), ("us", 1e-6), ("s", 1.0), ("", 1.0)];
+    let (number, unit) = units.iter().find_map(|(name, unit)| Some((text.strip_suffix(name)?, *unit)))?;
+    let value = match number.split_once('/') {
+        Some((above, below)) => above.trim().parse::<f64>().ok()? / below.trim().parse::<f64>().ok()?,
+        None => number.trim().parse().ok()?,
+    };
+    Some(value * unit).filter(|step| step.is_finite())
+}
+
+fn plot_ui(ui: &mut Ui, style: &Style, area: Rect, known: &StepSize, stops: [Option<f64>; 2]) {
+    let path = |points: &[(f64, f64)]| -> Vec<PlotPoint> {
+        points.iter().map(|(t, x)| PlotPoint::new(*t, x * 1e3)).collect()
+    };
+    let (truth, ghost) = (path(&known.truth), path(&known.ghost));
+    // what flies apart leaves the picture
+    let (low, high) = truth
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |ends, point| (ends.0.min(point.y), ends.1.max(point.y)));
+    let room = (0.12 * (high - low)).max(1e-6);
+    let (low, high) = (low - room, high + room);
+    let entries = [
+        (Sign::Line(style.motion_stroke()), "true"),
+        (Sign::Dashed(style.impact_stroke()), known.scheme.name()),
+    ];
+    legend(&ui.painter().with_clip_rect(area), style, area, area.right(), &entries);
+    let rows = f64::from((area.height() / 40.0).clamp(2.0, 6.0));
+    let columns = f64::from((area.width() / 80.0).clamp(2.0, 8.0));
+    let is_low = area.height() < LOW;
+    let (time_label, axis) = if is_low { ("", "mm") } else { ("time (s)", "displacement (mm)") };
+    let rect = Rect::from_min_max(area.min + vec2(0.0, LEGEND), area.max - vec2(MARGIN, 0.0));
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(rect));
+    ui.style_mut().text_styles.insert(TextStyle::Body, style.small());
+    ui.visuals_mut().override_text_color = Some(style.faint());
+    let (end, edge) = (known.drawn, 0.02 * (high - low));
+    Plot::new(("step size", end.to_bits()))
+        .allow_drag([true, false])
+        .allow_scroll(false)
+        .allow_zoom([true, false])
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .show_background(false)
+        .show_grid(false)
+        .default_x_bounds(0.0, end)
+        .default_y_bounds(low, high)
+        .x_axis_label(time_label)
+        .y_axis_label(axis)
+        .y_axis_min_width(AXIS_WIDTH)
+        .set_margin_fraction(vec2(0.0, 0.0))
+        .x_grid_spacer(|input| marks(input.bounds.0, input.bounds.1, columns))
+        .y_grid_spacer(|_| marks(low + edge, high - edge, rows))
+        .x_axis_formatter(|mark, _| plain(mark))
+        .y_axis_formatter(|mark, _| plain(mark))
+        .label_formatter(|_| None)
+        .show_crosshair(false)
+        .show(&mut ui, |plot| {
+            let seen = plot.plot_bounds();
+            plot.set_plot_bounds(PlotBounds::from_min_max([seen.min()[0], low], [seen.max()[0], high]));
+            for mark in marks(low, high, rows) {
+                plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
+            }
+            for stop in stops.into_iter().flatten() {
+                plot.hline(HLine::new("", stop).stroke(style.stop_stroke()));
+            }
+            plot.line(Line::new("true", PlotPoints::Owned(truth)).stroke(style.motion_stroke()));
+            let dots = (ghost.len() <= MOST_DOTS).then(|| ghost.clone());
+            let line = Line::new("ghost", PlotPoints::Owned(ghost)).stroke(style.impact_stroke());
+            plot.line(line.style(LineStyle::dashed_dense()));
+            if let Some(dots) = dots {
+                plot.points(Points::new("steps", PlotPoints::Owned(dots)).radius(2.4).color(style.impact()));
+            }
+        });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_is_typed_in_any_unit() {
+        assert_eq!(parsed("1/60 s"), Some(1.0 / 60.0));
+        assert_eq!(parsed("1/60"), Some(1.0 / 60.0));
+        assert_eq!(parsed(" 2 ms"), Some(2e-3));
+        assert_eq!(parsed("0.004"), Some(4e-3));
+        assert_eq!(parsed("fast"), None);
+        assert_eq!(rounded(0.01668), 1.0 / 60.0);
+        assert_eq!(rounded(0.0012345), 1.2e-3);
+    }
+}

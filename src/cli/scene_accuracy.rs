@@ -1,0 +1,91 @@
+//! `accuracy SCENE`: the error of one scene's run, what digits cost, and what fixed steps make of it.
+
+use interwell::dynamics::Model;
+use interwell::output::{Sink, aligned};
+use interwell::study::accuracy::methods::Scheme;
+use interwell::study::accuracy::scene::{Unfit, scene_table, step_name, step_size, tolerances, trust};
+
+use super::accuracy::show;
+use super::failure::Failure;
+use super::interrupt;
+use super::options::{AccuracyOptions, Common};
+use super::support::{finish, inputs, load_with_mechanism, open, write_table};
+
+/// Looks at the run of the scene called `spec`.
+pub fn run(spec: &str, options: &AccuracyOptions) -> Result<(), Failure> {
+    let common = Common {
+        out: "-".into(),
+        set: options.set.clone(),
+        tolerance: options.tolerance.clone(),
+        jobs: None,
+        quiet: options.quiet,
+    };
+    let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
+    let (document, mechanism) = load_with_mechanism(spec, &common)?;
+    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
+    let out = options.out.as_deref().map(|path| ("--out", path));
+    let mut sinks = open(&inputs(spec, &document), [out])?;
+    let cancel = interrupt::listen();
+
+    let trusted = trust(&model, cancel).ok_or_else(Failure::interrupted)?;
+    let mut text = match trusted.short(0.0) {
+        Some(short) => format!("{short}. {}\n", trusted.long(0.0)),
+        None => format!("The run ends early ({}), after {} s.\n", trusted.outcome.name(), trusted.span),
+    };
+    let cost = tolerances(&model, cancel).ok_or_else(Failure::interrupted)?;
+    let mut stepped = Vec::new();
+    for scheme in Scheme::ALL.into_iter().filter(|scheme| is_wanted(*scheme, &options.method)) {
+        for step in &steps {
+            let run = step_size(&model, scheme, *step, cancel).map_err(|unfit| match unfit {
+                Unfit::Cancelled => Failure::interrupted(),
+                Unfit::Compliant => Failure::argument(format!("--step-s: {unfit}")),
+            })?;
+            text += &format!(
+                "{} in steps of {}: {}\n",
+                scheme.name(),
+                step_name(*step),
+                run.sentences().join(" ")
+            );
+            stepped.push(run);
+        }
+    }
+    let table = scene_table(&cost, &stepped);
+    text += &format!("\n{}", aligned(&table));
+    let [csv] = &mut sinks;
+    if csv.is_some() {
+        write_table(csv, &table)?;
+    }
+    let to_stdout = csv.as_ref().is_some_and(Sink::is_stdout);
+    finish(sinks)?;
+    show(&text, to_stdout, options.quiet)
+}
+
+fn is_wanted(scheme: Scheme, names: &[String]) -> bool {
+    let name = match scheme {
+        Scheme::SemiImplicitEuler => "euler",
+        Scheme::VelocityVerlet => "verlet",
+        Scheme::RungeKutta4 => "rk4",
+    };
+    names.is_empty() || names.iter().any(|own| own == name)
+}
+
+/// The shortest and the longest step in s that a run is made with.
+const STEPS: (f64, f64) = (1e-6, 1.0);
+
+/// Steps in s, each a number or a fraction.
+fn steps(text: &str) -> Result<Vec<f64>, Failure> {
+    let number = |text: &str| text.trim().parse::<f64>().ok();
+    let step = |part: &str| {
+        let value = match part.split_once('/') {
+            Some((above, below)) => number(above).zip(number(below)).map(|(above, below)| above / below),
+            None => number(part),
+        };
+        let (least, most) = STEPS;
+        value.filter(|step| (least..=most).contains(step)).ok_or_else(|| {
+            Failure::argument(format!(
+                "--step-s {text}: `{part}` is no step; give seconds from {least:e} to {most}, such as 0.001 or 1/60"
+            ))
+        })
+    };
+    text.split(',').map(step).collect()
+}

@@ -1,0 +1,83 @@
+//! How late does another run arrive at a stop?
+
+use crate::dynamics::{Event, Model};
+
+/// Impacts slower than this share of the scene's speed are no arrivals: what a chatter or a hop makes.
+const SLOWEST: f64 = 0.01;
+
+/// An impact on the same stop as the one before is an arrival where it is so much faster than that one's rebound: the drive
+/// or the mechanism has pushed, and it is not the fall back of a chatter.
+const FASTER: f64 = 1.2;
+
+/// An impact of the other run is the same arrival where it is at least so fast in comparison: hops of a mass that should
+/// rest are slower.
+const LEAST_SPEED: f64 = 0.5;
+
+/// How late arrivals are, in s; early ones are below 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lateness {
+    /// The median.
+    pub median: f64,
+    /// The earliest.
+    pub earliest: f64,
+    /// The latest.
+    pub latest: f64,
+    /// How many arrivals in a row were found in both runs.
+    pub matched: usize,
+    /// How many there are.
+    pub of: usize,
+}
+
+impl Lateness {
+    /// The one that is furthest off.
+    pub fn worst(&self) -> f64 {
+        if self.latest.abs() >= self.earliest.abs() { self.latest } else { self.earliest }
+    }
+}
+
+/// How late the arrivals among the impacts of `exact` are in the run whose impacts are `own`, both in order of time; none
+/// without an arrival that is in both.
+///
+/// An arrival is the first impact after a flight across or after a push, not the rebounds that follow it. It is looked for
+/// among the impacts of the other run on the same stop, within half the time to its neighbours. Where one is not
+/// found the other run has taken another course, and what follows is not compared.
+pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<Lateness> {
+    let arrivals = arrivals(exact, SLOWEST * model.scales.speed);
+    let mut late: Vec<f64> = Vec::new();
+    for (i, arrival) in arrivals.iter().enumerate() {
+        let same = |other: &&Event| other.side == arrival.side;
+        let gaps = [arrivals[..i].iter().rfind(same), arrivals[i + 1..].iter().find(same)];
+        let gap = gaps.into_iter().flatten().map(|other| (other.t - arrival.t).abs()).reduce(f64::min);
+        let room = 0.5 * gap.unwrap_or(model.pace());
+        let Some(found) = nearest(own, arrival, room) else { break };
+        late.push(found.t - arrival.t);
+    }
+    late.sort_by(f64::total_cmp);
+    let (earliest, latest) = (*late.first()?, *late.last()?);
+    let median = late[late.len() / 2];
+    Some(Lateness { median, earliest, latest, matched: late.len(), of: arrivals.len() })
+}
+
+fn arrivals(impacts: &[Event], slowest: f64) -> Vec<Event> {
+    let mut before: Option<&Event> = None;
+    let mut found = Vec::new();
+    for impact in impacts {
+        let new = before.is_none_or(|before| {
+            before.side != impact.side || impact.v_in.abs() > FASTER * before.v_out.abs()
+        });
+        if new && impact.v_in.abs() > slowest {
+            found.push(*impact);
+        }
+        before = Some(impact);
+    }
+    found
+}
+
+/// The impact on the same stop that is nearest in time, fast enough and not further than `room` in s.
+fn nearest<'a>(own: &'a [Event], arrival: &Event, room: f64) -> Option<&'a Event> {
+    let from = own.partition_point(|other| other.t < arrival.t - room);
+    let near = own[from..].iter().take_while(|other| other.t <= arrival.t + room);
+    let alike =
+        |other: &&Event| other.side == arrival.side && other.v_in.abs() >= LEAST_SPEED * arrival.v_in.abs();
+    near.filter(alike).min_by(|a, b| (a.t - arrival.t).abs().total_cmp(&(b.t - arrival.t).abs()))
+}

@@ -1,0 +1,33 @@
+//! How accurate is the run of one scene, and what does its accuracy cost?
+//!
+//! Three questions, each a function of a model: what the error of its run is and up to when its path can be trusted
+//! ([`trust`]); what every digit costs ([`tolerances`]); and what a fixed step makes of it, as a game or a small applet
+//! would take ([`step_size`]). Nothing here needs an exact answer: the error is the change against a run that is more
+//! accurate by far.
+
+mod arrivals;
+mod beside;
+mod step_size;
+mod tables;
+mod tolerances;
+mod trust;
+mod words;
+
+pub use arrivals::Lateness;
+pub use step_size::{StepSize, TRUE_TOLERANCE, Unfit, step_size};
+pub use tables::scene_table;
+pub use tolerances::{AtTolerance, TOLERANCES, Tolerances, tolerances};
+pub use trust::{Course, Trust, lasting, trust};
+pub use words::{duration, length_mm, moment, small_length, step_name};
+
+use crate::dynamics::Model;
+
+/// A path is trusted until it is off by this share of the motion's travel: less than is seen in a plot.
+pub const TRUSTED_SHARE: f64 = 0.01;
+
+/// The model run at another tolerance.
+fn at_tolerance(model: &Model, tolerance: f64) -> Model {
+    let mut model = model.clone();
+    model.tolerance = tolerance;
+    model
+}

@@ -1,0 +1,180 @@
+//! What does the size of a fixed step make of a scene?
+
+use std::sync::atomic::AtomicBool;
+
+use super::arrivals::{Lateness, lateness};
+use super::at_tolerance;
+use super::beside::{Beside, times};
+use super::trust::finished;
+use crate::dynamics::{Event, EventKind, Model, Outcome, Request, Sample, Side};
+use crate::study::accuracy::methods::{Keep, Scheme, fixed_step};
+use crate::study::accuracy::precision::{MEASURED_FOR, median};
+
+/// Tolerance of the run that counts as the true one, where the scene's own is not tighter still.
+pub const TRUE_TOLERANCE: f64 = 1e-9;
+
+/// Periods of the drive, or of the motion's own pace, that are drawn.
+const DRAWN_PERIODS: f64 = 3.0;
+
+/// Points of a drawn path: a longer path has as many, even ones in place of the steps.
+const MOST_POINTS: usize = 4_000;
+
+/// The most steps of a run, a few seconds of one core; and the number of sines in the drive that takes as long again as all
+/// else, as they are evaluated one by one.
+const MOST_STEPS: f64 = 2e7;
+const SINES: f64 = 16.0;
+
+/// Why a scene has no such run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Unfit {
+    /// Its stops give way, and clamp and bounce is for stops that do not.
+    #[error("clamp and bounce is for rigid stops, and these give way")]
+    Compliant,
+    /// It was told to stop.
+    #[error("told to stop")]
+    Cancelled,
+}
+
+/// A run in fixed steps with clamp and bounce beside the true one, from the scene's start. Pairs are the true run and the
+/// other one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepSize {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// Its step in s.
+    pub step: f64,
+    /// Time in s over which both were run: the scene's run, or as much of it as 2e7 steps reach.
+    pub span: f64,
+    /// Time in s that the paths cover.
+    pub drawn: f64,
+    /// The true path: time in s and displacement in m, impacts among its points.
+    pub truth: Vec<(f64, f64)>,
+    /// The other path, a point a step.
+    pub ghost: Vec<(f64, f64)>,
+    /// How late the mass arrives at its stops; none where it arrives at none, or in one run only.
+    pub late: Option<Lateness>,
+    /// Impacts counted.
+    pub impacts: (u64, u64),
+    /// Passages of the barrier top counted.
+    pub crossings: (u64, u64),
+    /// RMS velocity in m/s over the settled window; none where a run ended before it.
+    pub rms_velocity: (Option<f64>, Option<f64>),
+    /// Largest difference of the displacement in m.
+    pub error: f64,
+    /// Up to when in s it follows the true path within a hundredth of the travel; none where that is all of the time.
+    pub trusted: Option<f64>,
+    /// Steps.
+    pub steps: (u64, u64),
+    /// Evaluations of the force; of the true run Taylor expansions.
+    pub evaluations: (u64, u64),
+    /// CPU time in s.
+    pub cpu_s: (f64, f64),
+    /// Time in s at which the run in fixed steps ended early; none where it did not.
+    pub ended_at: Option<f64>,
+    /// How the true run ended.
+    pub outcome: Outcome,
+}
+
+impl StepSize {
+    /// By what share the RMS velocity is wrong; above 0 where it is too high.
+    pub fn rms_error(&self) -> Option<f64> {
+        let (exact, own) = (self.rms_velocity.0?, self.rms_velocity.1?);
+        (exact > 0.0).then(|| own / exact - 1.0)
+    }
+}
+
+/// Runs `model` by `scheme` in even steps of `step` in s, and truly.
+///
+/// The true run is the program's own at the scene's tolerance or [`TRUE_TOLERANCE`], whichever is tighter; in chaos it is
+/// one of many true ones, and beyond the time `trusted` the numbers tell two of them apart and no more.
+pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) -> Result<StepSize, Unfit> {
+    if model.compliant.is_some() {
+        return Err(Unfit::Compliant);
+    }
+    let model = &at_tolerance(&within_reach(model, step), model.tolerance.min(TRUE_TOLERANCE));
+    let drawn = model.duration.min(DRAWN_PERIODS * model.pace());
+    let (even, fine, steps) = (times(model), spread(drawn, MOST_POINTS), step_times(drawn, step));
+
+    let request =
+        |sample_times| Request { sample_times, events: true, cancel: Some(cancel), ..Request::default() };
+    let exact = finished(model.run(&request(&even))).ok_or(Unfit::Cancelled)?;
+    let path = finished(model.run(&request(&fine))).ok_or(Unfit::Cancelled)?.samples;
+    let summary = exact.summary;
+    let impacts: Vec<Event> =
+        exact.events.into_iter().filter(|event| event.kind == EventKind::Impact).collect();
+
+    let keep = |sample_times| Keep { sample_times, impacts: true, cancel: Some(cancel) };
+    let own = fixed_step(model, scheme, step, &keep(&even));
+    // the same run up to where it is drawn
+    let mut start = model.clone();
+    (start.duration, start.settle) = (drawn, 0.0);
+    let ghost = fixed_step(&start, scheme, step, &keep(&steps)).samples;
+    let statistics = own.statistics;
+    let bare = Keep { impacts: false, ..keep(&[]) };
+    let cpu_s = if statistics.cpu_s > MEASURED_FOR {
+        statistics.cpu_s
+    } else {
+        median(|| fixed_step(model, scheme, step, &bare).statistics.cpu_s)
+    };
+    let true_cpu_s = median(|| model.run(&Request { events: false, ..request(&[]) }).summary.cpu_s);
+    if cancel.load(std::sync::atomic::Ordering::Relaxed) {
+        return Err(Unfit::Cancelled);
+    }
+    let beside = Beside::new(model, &own.samples, &exact.samples);
+    Ok(StepSize {
+        scheme,
+        step,
+        span: model.duration,
+        drawn,
+        truth: with_impacts(model, &path, &impacts),
+        ghost: ghost.iter().map(|sample| (sample.t, sample.x)).collect(),
+        late: lateness(model, &own.impacts, &impacts),
+        impacts: (summary.total_impacts, statistics.impacts),
+        crossings: (summary.total_crossings, statistics.crossings),
+        rms_velocity: (summary.rms_velocity, statistics.rms_velocity),
+        error: beside.error(),
+        trusted: beside.parted(),
+        steps: (summary.steps, statistics.steps),
+        evaluations: (summary.evaluations, statistics.evaluations),
+        cpu_s: (true_cpu_s, cpu_s),
+        ended_at: statistics.ended_at,
+        outcome: summary.outcome,
+    })
+}
+
+/// The model with its run cut to what so small a step reaches in reasonable time, and its settled window to the second half
+/// of that where it would begin later.
+fn within_reach(model: &Model, step: f64) -> Model {
+    let mut model = model.clone();
+    let reach = step * MOST_STEPS / (1.0 + model.drive.tones.len() as f64 / SINES);
+    if model.duration > reach {
+        model.duration = reach;
+        model.settle = model.settle.min(0.5 * reach);
+    }
+    model
+}
+
+/// Even times in s from 0 to `end`.
+fn spread(end: f64, count: usize) -> Vec<f64> {
+    (0..=count).map(|i| (end * (i as f64 / count as f64)).min(end)).collect()
+}
+
+/// The ends of steps from 0 to `end` in s, or as many even times as are drawn where there are more steps.
+fn step_times(end: f64, step: f64) -> Vec<f64> {
+    let count = (end / step).ceil();
+    spread(end, if count >= 1.0 { count.min(MOST_POINTS as f64) as usize } else { 1 })
+}
+
+/// The path with its corners at impacts, of which a picture with few points would cut the tips.
+fn with_impacts(model: &Model, samples: &[Sample], impacts: &[Event]) -> Vec<(f64, f64)> {
+    let (left, right) = model.stop_positions();
+    let end = samples.last().map_or(0.0, |sample| sample.t);
+    let corner = |impact: &Event| {
+        let x = if impact.side == Side::Left { left } else { right };
+        x.filter(|_| impact.t <= end).map(|x| (impact.t, x))
+    };
+    let mut path: Vec<(f64, f64)> = samples.iter().map(|sample| (sample.t, sample.x)).collect();
+    path.extend(impacts.iter().filter_map(corner));
+    path.sort_by(|a, b| a.0.total_cmp(&b.0));
+    path
+}

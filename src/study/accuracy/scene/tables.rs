@@ -1,0 +1,89 @@
+//! What was found of a scene, as one table.
+
+use super::{StepSize, Tolerances};
+use crate::study::accuracy::OWN;
+use crate::study::{Table, Values};
+
+/// Runs at tolerances and in fixed steps, a row each, in this order. SI; a cell without a value is empty.
+///
+/// `error_m` is the largest error of the displacement, `trusted_s` up to when the path is off by less than a hundredth of
+/// the travel (empty where that is all of the time compared), `compared_s` that time. `late_s` is the median of how late
+/// arrivals at a stop are, `latest_s` the one furthest off, over `arrivals` of them in a row.
+pub fn scene_table(tolerances: &Tolerances, stepped: &[StepSize]) -> Table {
+    let rows: Vec<Row> = tolerances
+        .runs
+        .iter()
+        .map(|run| Row {
+            method: OWN,
+            numbers: [
+                run.tolerance,
+                f64::NAN,
+                run.error,
+                run.trusted.unwrap_or(f64::NAN),
+                tolerances.span,
+                run.cpu_s,
+                run.rms_velocity.unwrap_or(f64::NAN),
+                f64::NAN,
+                f64::NAN,
+            ],
+            counts: [Some(run.steps), Some(run.evaluations), Some(run.impacts), None],
+            outcome: run.outcome.name(),
+        })
+        .chain(stepped.iter().map(Row::of_steps))
+        .collect();
+    let number = |i: usize| Values::Numbers(rows.iter().map(|row| row.numbers[i]).collect());
+    let count = |i: usize| Values::Counts(rows.iter().map(|row| row.counts[i]).collect());
+    let words = |of: fn(&Row) -> &'static str| Values::Words(rows.iter().map(of).collect());
+    Table::new()
+        .with("method", words(|row| row.method))
+        .with("tolerance", number(0))
+        .with("step_s", number(1))
+        .with("error_m", number(2))
+        .with("trusted_s", number(3))
+        .with("compared_s", number(4))
+        .with("steps", count(0))
+        .with("evaluations", count(1))
+        .with("cpu_s", number(5))
+        .with("rms_velocity_m_per_s", number(6))
+        .with("impacts", count(2))
+        .with("late_s", number(7))
+        .with("latest_s", number(8))
+        .with("arrivals", count(3))
+        .with("outcome", words(|row| row.outcome))
+}
+
+struct Row {
+    method: &'static str,
+    /// Tolerance, step, error, trusted, compared, CPU, RMS velocity, late, latest.
+    numbers: [f64; 9],
+    /// Steps, evaluations, impacts, arrivals.
+    counts: [Option<u64>; 4],
+    outcome: &'static str,
+}
+
+impl Row {
+    fn of_steps(run: &StepSize) -> Self {
+        let late = |of: fn(&super::Lateness) -> f64| run.late.as_ref().map_or(f64::NAN, of);
+        Self {
+            method: run.scheme.name(),
+            numbers: [
+                f64::NAN,
+                run.step,
+                run.error,
+                run.trusted.unwrap_or(f64::NAN),
+                run.span,
+                run.cpu_s.1,
+                run.rms_velocity.1.unwrap_or(f64::NAN),
+                late(|own| own.median),
+                late(super::Lateness::worst),
+            ],
+            counts: [
+                Some(run.steps.1),
+                Some(run.evaluations.1),
+                Some(run.impacts.1),
+                run.late.map(|own| own.matched as u64),
+            ],
+            outcome: if run.ended_at.is_some() { "ended_early" } else { "done" },
+        }
+    }
+}

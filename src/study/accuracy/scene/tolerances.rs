@@ -1,0 +1,102 @@
+//! What does each digit of a scene's run cost?
+
+use std::sync::atomic::AtomicBool;
+
+use super::at_tolerance;
+use super::beside::{Beside, times};
+use super::trust::{better, finished};
+use crate::dynamics::{Model, Outcome, Request};
+use crate::study::accuracy::precision::median;
+
+/// Tolerances at which a scene is run, beside its own.
+pub const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
+
+/// A scene's run at one tolerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AtTolerance {
+    /// The tolerance.
+    pub tolerance: f64,
+    /// Largest error of the displacement in m.
+    pub error: f64,
+    /// Up to when in s its path can be trusted; none where that is all of the time compared.
+    pub trusted: Option<f64>,
+    /// Steps.
+    pub steps: u64,
+    /// Taylor expansions.
+    pub evaluations: u64,
+    /// CPU time in s: the median of a few that keep statistics alone.
+    pub cpu_s: f64,
+    /// RMS velocity in m/s over the scene's settled window; none where the run ended before it.
+    pub rms_velocity: Option<f64>,
+    /// Impacts.
+    pub impacts: u64,
+    /// How the run ended.
+    pub outcome: Outcome,
+}
+
+/// A scene's run at several tolerances.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tolerances {
+    /// The runs, the loosest tolerance first; the scene's own tolerance is among them.
+    pub runs: Vec<AtTolerance>,
+    /// Time in s from the start over which they were compared.
+    pub span: f64,
+    /// Travel in m, peak to peak.
+    pub travel: f64,
+}
+
+/// Runs `model` at [`TOLERANCES`] and at its own, and compares each with a run whose tolerance is a hundredth of the
+/// tightest of them (in double-double arithmetic where that is below 1e-14).
+///
+/// The error is the largest of the displacement; that of a chaotic motion is as large as its travel, and then the time up to
+/// which the path is trusted is what counts. None where it was cancelled.
+pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
+    let times = times(model);
+    let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
+    let bare = Request { sample_times: &[], ..request };
+    let all = with_own(model.tolerance);
+    let tightest = all.last().copied().unwrap_or(model.tolerance);
+    let (_, exact) = better(model, tightest, &request)?;
+    let mut found = Tolerances::default();
+    for tolerance in all {
+        let own = at_tolerance(model, tolerance);
+        let run = finished(own.run(&request))?;
+        let summary = run.summary;
+        let beside = Beside::new(model, &run.samples, &exact.samples);
+        (found.span, found.travel) = (beside.span(), beside.travel);
+        found.runs.push(AtTolerance {
+            tolerance,
+            error: beside.error(),
+            trusted: beside.parted(),
+            steps: summary.steps,
+            evaluations: summary.evaluations,
+            cpu_s: median(|| own.run(&bare).summary.cpu_s),
+            rms_velocity: summary.rms_velocity,
+            impacts: summary.total_impacts,
+            outcome: summary.outcome,
+        });
+    }
+    Some(found)
+}
+
+/// The tolerances from the loosest to the tightest, the scene's own among them.
+fn with_own(own: f64) -> Vec<f64> {
+    let mut all = TOLERANCES.to_vec();
+    if !all.contains(&own) {
+        all.push(own);
+    }
+    all.sort_by(|a, b| b.total_cmp(a));
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scenes_own_tolerance_is_among_them() {
+        assert_eq!(with_own(1e-9), TOLERANCES);
+        assert_eq!(with_own(1e-14), [1e-3, 1e-6, 1e-9, 1e-12, 1e-14]);
+        assert_eq!(with_own(3e-5), [1e-3, 3e-5, 1e-6, 1e-9, 1e-12]);
+    }
+}

@@ -1,0 +1,171 @@
+//! Accuracy of a scene: known figures of fixed steps, errors that are known otherwise, and chaos that is called so.
+
+use std::sync::atomic::AtomicBool;
+
+use interwell::dynamics::Model;
+use interwell::study::accuracy::methods::Scheme;
+use interwell::study::accuracy::scene::{
+    Course, StepSize, TRUSTED_SHARE, Tolerances, Trust, Unfit, scene_table, step_size, tolerances, trust,
+};
+
+use crate::support::*;
+
+fn stepped(model: &Model, scheme: Scheme, step: f64) -> StepSize {
+    step_size(model, scheme, step, &AtomicBool::new(false)).unwrap()
+}
+
+fn trusted(model: &Model) -> Trust {
+    trust(model, &AtomicBool::new(false)).unwrap()
+}
+
+fn at_tolerances(model: &Model) -> Tolerances {
+    tolerances(model, &AtomicBool::new(false)).unwrap()
+}
+
+#[test]
+fn fixed_steps_arrive_late_and_count_too_many_impacts() {
+    // The figures of a small applet on the nominal cubic between stops at 4 mm, measured elsewhere: at 1/60 s 14 ms late and
+    // an RMS velocity 38 % too high, at 1/600 s every arrival 0.55 ms late and 3120 impacts.
+    let model = preset("nominal-cubic", &[]);
+    let coarse = stepped(&model, Scheme::RungeKutta4, 1.0 / 60.0);
+    let late = coarse.late.unwrap();
+    assert_eq!((late.matched, late.of), (60, 60));
+    near(late.median, 14e-3, 0.5e-3);
+    near(coarse.rms_error().unwrap(), 0.38, 0.01);
+    let fine = stepped(&model, Scheme::RungeKutta4, 1.0 / 600.0);
+    let late = fine.late.unwrap();
+    assert_eq!((late.matched, late.of), (60, 60));
+    near(late.earliest, 0.55e-3, 0.01e-3);
+    near(late.latest, 0.55e-3, 0.01e-3);
+    assert_eq!(fine.impacts.1, 3120);
+    assert!((700..900).contains(&fine.impacts.0), "{:?}", fine.impacts);
+    // whatever the scheme, a step of 10 us is off by as much in time
+    for scheme in Scheme::ALL {
+        let late = stepped(&model, scheme, 1e-5).late.unwrap();
+        assert!(late.matched == 60 && late.worst().abs() < 1.1e-5 && late.median > 0.0, "{late:?}");
+    }
+    let words = coarse.sentences().join(" ");
+    for part in ["Impacts arrive 14 ms late", "impacts counted where there are", "RMS velocity 38 % too high"]
+    {
+        assert!(words.contains(part), "{words}");
+    }
+}
+
+#[test]
+fn the_drawn_paths_are_those_of_the_runs() {
+    let model = preset("nominal-cubic", &[]);
+    let run = stepped(&model, Scheme::RungeKutta4, 1.0 / 600.0);
+    assert_eq!((run.span, run.drawn), (10.0, 1.0));
+    assert_eq!((run.ghost.len(), run.steps.1), (601, 6000));
+    for path in [&run.truth, &run.ghost] {
+        assert!(path.is_sorted_by(|a, b| a.0 <= b.0));
+        assert_eq!((path[0].0, path[path.len() - 1].0), (0.0, 1.0));
+        assert!(path.iter().all(|point| point.1.abs() <= 4e-3 + 1e-12));
+    }
+    // a stop is touched by both
+    for path in [&run.truth, &run.ghost] {
+        assert!(path.iter().any(|point| point.1 == -4e-3));
+    }
+}
+
+#[test]
+fn an_error_is_estimated_that_is_known_otherwise() {
+    // Against double-double arithmetic: the estimate is the error, give or take.
+    for name in ["paper", "nominal-cubic", "monostable", "walking", "random-shaking"] {
+        let model = preset(name, &[]);
+        let own = trusted(&model);
+        assert_eq!(own.course, Course::Kept, "{name}");
+        assert_eq!((own.tolerances, own.span), ((1e-9, 1e-9 * 1e-2), model.duration), "{name}");
+        assert!(own.error > 0.0 && own.error < 1e-4 * own.travel, "{name} {own:?}");
+        let words = own.short(0.0).unwrap();
+        assert!(words.starts_with("Error about ") && words.ends_with(" mm"), "{words}");
+    }
+    let model = preset("paper", &[]);
+    let error = |model: &Model| trusted(model).error;
+    let exact = at_tolerances(&preset("paper", &["run.tolerance=1e-14"]));
+    let known = exact.runs.iter().find(|run| run.tolerance == 1e-9).unwrap().error;
+    assert!((0.5..2.0).contains(&(error(&model) / known)), "{} {known}", error(&model));
+    // at the end of the doubles, too
+    let least = error(&preset("paper", &["run.tolerance=1e-14"]));
+    assert!(least > 0.0 && least < 1e-16, "{least:e}");
+}
+
+#[test]
+fn chaos_is_called_chaos_and_nothing_else_is() {
+    let chaos = trusted(&preset("duffing-chaos", &["run.duration_s=1000"]));
+    let Course::Chaotic { until, decade } = chaos.course else { panic!("{chaos:?}") };
+    // the largest Lyapunov exponent is some 0.1 to 0.2 /s
+    assert!((50.0..200.0).contains(&until) && (5.0..30.0).contains(&decade), "{chaos:?}");
+    assert!(chaos.short(0.0).unwrap().starts_with("Chaotic: trust it up to about "));
+    assert!(chaos.short(1000.0).unwrap().ends_with(&format!("{:.0} s", 1000.0 + until)));
+    assert!(matches!(trusted(&preset("first-look", &[])).course, Course::Chaotic { .. }));
+    // whatever the tolerance, and a tolerance that is only too large is none
+    for tolerance in ["1e-3", "1e-5", "1e-7", "1e-12"] {
+        let own = trusted(&preset(
+            "duffing-chaos",
+            &["run.duration_s=1000", &format!("run.tolerance={tolerance}")],
+        ));
+        assert!(matches!(own.course, Course::Chaotic { .. }), "{tolerance}: {own:?}");
+    }
+    let coarse = trusted(&preset("paper-unconstrained", &["run.tolerance=1e-3"]));
+    assert!(!matches!(coarse.course, Course::Chaotic { .. }), "{coarse:?}");
+    // the time for which a path is good grows by the digits, not with them
+    let runs = at_tolerances(&preset("first-look", &[])).runs;
+    let trust: Vec<f64> = runs.iter().map(|run| run.trusted.unwrap()).collect();
+    assert!(trust.is_sorted() && trust[3] < 6.0 * trust[0], "{trust:?}");
+    let rms: Vec<f64> = runs.iter().map(|run| run.rms_velocity.unwrap()).collect();
+    assert!(rms.iter().all(|own| (own / rms[3] - 1.0).abs() < 0.1), "{rms:?}");
+    // a rhythm is none
+    assert_eq!(trusted(&preset("duffing", &[])).course, Course::Kept);
+}
+
+#[test]
+fn on_the_hill_it_is_sensitive_and_not_chaotic() {
+    // Released with the energy of the barrier: it stands on the top for as long as its digits last, then falls to a side.
+    let top = unit_well(
+        "start: At(x_mm: 1414.2135623730951, v_m_per_s: 0), run: (duration_s: 100, settle_s: 0, tolerance: 1e-9)",
+    );
+    let own = trusted(&top);
+    assert!(matches!(own.course, Course::Sensitive { until } if until > 5.0 && until < 40.0), "{own:?}");
+    // errors that add up are no chaos either: an undamped swing in a fine well, slowly out of step
+    let swing = unit_well(
+        "start: At(x_mm: 1300, v_m_per_s: 0), run: (duration_s: 4e6, settle_s: 0, tolerance: 1e-6)",
+    );
+    let own = trusted(&swing);
+    assert!(matches!(own.course, Course::Coarse { .. } | Course::Kept), "{own:?}");
+}
+
+#[test]
+fn digits_cost_time() {
+    let model = preset("paper", &["run.tolerance=1e-7"]);
+    let found = at_tolerances(&model);
+    let own: Vec<f64> = found.runs.iter().map(|run| run.tolerance).collect();
+    assert_eq!(own, [1e-3, 1e-6, 1e-7, 1e-9, 1e-12]);
+    assert!(found.runs.is_sorted_by(|a, b| a.error > b.error && a.steps <= b.steps));
+    assert!(found.runs.iter().all(|run| run.trusted.is_none() && run.cpu_s > 0.0));
+    assert!(found.runs[0].error < TRUSTED_SHARE * found.travel);
+    assert_eq!(found.span, 10.0);
+    let stepped = stepped(&model, Scheme::VelocityVerlet, 1e-3);
+    let table = scene_table(&found, &[stepped]);
+    assert_eq!(table.rows(), 6);
+    assert!(table.numbers("step_s").unwrap()[..5].iter().all(|step| step.is_nan()));
+    assert_eq!(table.numbers("step_s").unwrap()[5], 1e-3);
+}
+
+#[test]
+fn what_does_not_fit_is_said() {
+    let soft =
+        preset("paper", &["stops=Hertz(travel_limit_mm: 1.5, stiffness_n_per_m1_5: 1e7, loss_s_per_m: 0.5)"]);
+    let none = AtomicBool::new(false);
+    assert_eq!(step_size(&soft, Scheme::RungeKutta4, 1e-3, &none), Err(Unfit::Compliant));
+    let stopped = AtomicBool::new(true);
+    let model = preset("walking", &[]);
+    assert_eq!(step_size(&model, Scheme::RungeKutta4, 1e-5, &stopped), Err(Unfit::Cancelled));
+    // the whole of a long run is not gone through in the smallest steps
+    let long = preset("duffing-chaos", &[]);
+    let run = stepped(&long, Scheme::SemiImplicitEuler, 1e-4);
+    assert!(run.span < 2001.0 && run.span > 1000.0 && run.steps.1 <= 20_000_000, "{}", run.span);
+    // steps that are too long for a wall
+    let run = stepped(&preset("first-look", &[]), Scheme::RungeKutta4, 1.0 / 60.0);
+    assert!(run.ended_at.is_some() && run.sentences()[0].starts_with("It flew apart"), "{run:?}");
+}
