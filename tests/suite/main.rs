@@ -18,3 +18,4 @@ mod presets;
 mod scene;
 mod studies;
 mod support;
+mod untrusted;
