@@ -12,7 +12,8 @@ use std::time::Duration;
 use interwell::dynamics::{Model, Outcome, Request};
 use interwell::mechanics::{BuildError, Mechanism, Table, fit, force_scale};
 use interwell::scene::{
-    self, Document, Excitation, FieldPath, Files, LARGEST_AXIS, Record, Start, arguments, assignments, write,
+    self, Document, Excitation, FieldPath, Files, LARGEST_AXIS, MOST_ROWS, Record, Start, arguments,
+    assignments, read_columns, write,
 };
 use interwell::study::{Grid, MAX_CELLS};
 
@@ -64,6 +65,7 @@ pub fn table(bytes: &[u8]) {
     let written = format!("x_m,force_n\n{}", rows.collect::<String>());
     assert_eq!(Table::parse(&written).as_ref(), Ok(&table));
     table.warnings().iter().for_each(|warning| in_words(warning, ""));
+    rows_stand_on_lines(text, ["x_m", "force_n"]);
     for tolerance in [1e-2, 1e-8] {
         let curve = match fit(&table, tolerance) {
             Ok(curve) => curve,
@@ -100,6 +102,7 @@ pub fn recorded(bytes: &[u8]) {
     let rows = record.times.iter().zip(&record.accelerations).map(|(t, a)| format!("{t:?},{a:?}\n"));
     let written = format!("t_s,accel_m_per_s2\n{}", rows.collect::<String>());
     assert_eq!(Record::parse(&written).as_ref(), Ok(&record));
+    rows_stand_on_lines(text, ["t_s", "accel_m_per_s2"]);
     let mut document = small();
     let duration = document.scene.run.duration_s;
     record.warnings(duration).iter().for_each(|warning| in_words(warning, ""));
@@ -190,6 +193,22 @@ fn small() -> Document {
         damping: Coefficient(c_n_s_per_m: 0.01), stops: Rigid(travel_limit_mm: 1e6, restitution: 0.5), \
         start: At(x_mm: 0, v_m_per_s: 0), run: (duration_s: 2, tolerance: 1e-6))";
     Document::from_text(NAME, text, Files::default()).unwrap()
+}
+
+/// Each row of a CSV text that was read stands on its own line: none was swallowed, none counted wrongly.
+#[track_caller]
+fn rows_stand_on_lines(text: &str, names: [&'static str; 2]) {
+    let columns = read_columns(text, names, MOST_ROWS).unwrap();
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let lines: Vec<&str> =
+        text.split('\n').flat_map(|l| l.strip_suffix('\r').unwrap_or(l).split('\r')).collect();
+    let rows = lines.iter().filter(|line| !line.starts_with('#') && !line.trim().is_empty());
+    assert_eq!(columns.rows.len() + 1, rows.count());
+    for (row, line) in columns.rows.iter().zip(&columns.lines) {
+        let values: Vec<f64> =
+            lines[line - 1].split(',').filter_map(|v| v.replace('"', "").trim().parse().ok()).collect();
+        assert!(row.iter().all(|own| values.contains(own)), "{row:?} is not on line {line}");
+    }
 }
 
 /// A message says something, begins with what it is about, and neither floods nor moves about a terminal.
