@@ -532,6 +532,17 @@ fn numbers_at_the_ends_of_the_range_are_an_answer_or_an_error() {
     }
 }
 
+#[test]
+fn a_position_far_off_is_met_as_well() {
+    for far in [1e3, 1e9, 1e17, 1e61, 1e150] {
+        for force in [4.0, -0.5] {
+            let text = format!("x_m,force_n\n2,1\n4,2\n5,4\n{far},{force}\n");
+            let curve = fit(&Table::parse(&text).unwrap(), 1e-4).unwrap();
+            assert!(curve.fit().unwrap().worst_n <= 1e-4 * 4.0, "{:?} at {far}", curve.fit());
+        }
+    }
+}
+
 // --- Curves of several pieces --------------------------------------------------------------------
 
 /// Straight lines through the given points.
