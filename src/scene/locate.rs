@@ -38,11 +38,8 @@ enum Part {
 }
 
 impl Part {
-    fn is(&self, text: &str) -> bool {
-        match self {
-            Self::Name(name) => name == text,
-            Self::Index(index) => text.parse() == Ok(*index),
-        }
+    fn of(text: &str) -> Self {
+        text.parse().map_or_else(|_| Self::Name(text.to_owned()), Self::Index)
     }
 }
 
@@ -74,13 +71,10 @@ impl Places {
 
     /// The place of a field, or of the nearest one around it that the text names.
     pub fn find(&self, path: &str) -> Option<Place> {
-        let mut path = path;
-        loop {
-            if let Some(named) = self.0.iter().find(|named| self.is_at(named, path)) {
-                return Some(named.place);
-            }
-            path = &path[..path.rfind('.')?];
-        }
+        let parts: Vec<Part> = path.split('.').map(Part::of).collect();
+        let place =
+            |parts: &[Part]| self.0.iter().find(|named| self.is_at(named, parts)).map(|own| own.place);
+        (1..=parts.len()).rev().find_map(|length| place(&parts[..length]))
     }
 
     /// The path of the last field that begins at or before a place.
@@ -98,17 +92,13 @@ impl Places {
     }
 
     /// Whether a field has this path; compared from its end, where most differ.
-    fn is_at(&self, named: &Named, path: &str) -> bool {
-        let (mut named, mut parts) = (named, path.rsplit('.'));
-        loop {
-            if !parts.next().is_some_and(|part| named.part.is(part)) {
-                return false;
+    fn is_at(&self, named: &Named, path: &[Part]) -> bool {
+        let Some((last, around)) = path.split_last() else { return false };
+        named.part == *last
+            && match named.around {
+                Some(index) => self.is_at(&self.0[index], around),
+                None => around.is_empty(),
             }
-            match named.around {
-                Some(around) => named = &self.0[around],
-                None => return parts.next().is_none(),
-            }
-        }
     }
 }
 

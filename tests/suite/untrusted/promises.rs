@@ -17,10 +17,6 @@ use interwell::scene::{
 };
 use interwell::study::{Grid, MAX_CELLS};
 
-/// The functions by the name of their fuzz target and of their folder of the corpus.
-pub const PROMISES: [(&str, fn(&[u8])); 5] =
-    [("scene", scene), ("table", table), ("recorded", recorded), ("set", set), ("over", over)];
-
 /// What messages call the scene.
 const NAME: &str = "s.ron";
 
