@@ -324,9 +324,11 @@ impl Samples {
         lowest_degree(&points, &weights, &values, terms, |q| {
             let local = combine(&base, &shape, q, odd);
             let piece = self.in_metres(&local, origin, half, &span, left);
-            // The picked samples first: most trials end there. A single interval is always accepted, so that
-            // there is always a chain.
+            // The picked samples first: most trials end there. A single interval is accepted whatever the curve does
+            // between its ends, so that there is a chain; but over an interval a million times longer than the one
+            // before it, a slope that is kept drowns the ends themselves in rounding.
             let good = inner.clone().step_by(stride).all(|i| meets(&piece, i))
+                && [span.start, span.end].iter().all(|i| meets(&piece, *i))
                 && (stride == 1 || inner.clone().all(|i| meets(&piece, i)))
                 && (span.len() == 1 || span.clone().all(|i| follows(&piece, i)))
                 && piece.coefficients.iter().all(|c| c.is_finite());

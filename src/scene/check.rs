@@ -8,8 +8,12 @@ use super::axis::{Axis, MOST_AXES, repeated};
 use super::data::*;
 use super::error::Fault;
 use super::fields::{Field, FieldPath, for_each};
-use super::ranges::{MAX_COEFFICIENTS, number_text};
+use super::ranges::{HIGH_HZ, LOW_HZ, MAX_COEFFICIENTS, number_text};
 use super::shape;
+
+/// The most sines that an excitation may have, the lines of noises included: four noises of the most lines. Each takes
+/// part in every step of a run.
+const MOST_SINES: u64 = 16_384;
 
 /// What a check found.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -31,6 +35,7 @@ pub fn check(scene: &Scene) -> Checked {
     }
     relations(scene, &mut checked);
     bands(&scene.excitation, "excitation", &mut checked);
+    sines(&scene.excitation, &mut checked);
     hints(scene, &mut checked);
     sweep(scene, &mut checked);
     checked
@@ -190,8 +195,7 @@ fn relations(scene: &Scene, checked: &mut Checked) {
 fn bands(excitation: &Excitation, path: &str, checked: &mut Checked) {
     match excitation {
         Excitation::Noise { low_hz, high_hz, .. }
-            if low_hz >= high_hz
-                && !["low_hz", "high_hz"].iter().any(|end| known_bad(&format!("{path}.{end}"), checked)) =>
+            if low_hz >= high_hz && LOW_HZ.range.contains(*low_hz) && HIGH_HZ.range.contains(*high_hz) =>
         {
             checked.fault(
                 format!("{path}.high_hz"),
@@ -205,6 +209,25 @@ fn bands(excitation: &Excitation, path: &str, checked: &mut Checked) {
             }
         }
         _ => {}
+    }
+}
+
+/// A text of some megabytes holds enough noises of the most lines to fill any memory.
+fn sines(excitation: &Excitation, checked: &mut Checked) {
+    fn count(excitation: &Excitation) -> u64 {
+        match excitation {
+            Excitation::Sine { .. } | Excitation::AmplitudeRamp { .. } => 1,
+            Excitation::Noise { lines, .. } => *lines,
+            Excitation::Sum(terms) => terms.iter().map(count).fold(0, u64::saturating_add),
+            _ => 0,
+        }
+    }
+    let count = count(excitation);
+    if count > MOST_SINES && !checked.faults.iter().any(|fault| fault.field.starts_with("excitation")) {
+        let problem = format!(
+            "must have at most {MOST_SINES}, the lines of noises included; take fewer terms or lines"
+        );
+        checked.fault("excitation", format!("a sum of {count} sines"), problem);
     }
 }
 

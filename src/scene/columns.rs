@@ -3,6 +3,8 @@
 //! Comma separated, a header row with the wanted columns in any order among others, lines that begin with
 //! `#` are comments. Nothing is repaired silently: what cannot be meant is refused with its line and value.
 
+use super::text::clip;
+
 /// The most rows that are read.
 pub const MOST_ROWS: usize = 1_000_000;
 
@@ -38,6 +40,14 @@ pub enum ColumnsError {
     /// A row is not readable as CSV.
     #[error("is not a CSV table: {0}")]
     Unreadable(String),
+    /// A text in quotation marks that goes on beyond its line, with all the rows that it would swallow.
+    #[error(
+        "line {line}: a quotation mark opens a text that does not end on this line; close it or leave it out"
+    )]
+    OpenQuote {
+        /// Line of the row.
+        line: usize,
+    },
     /// A value that is no finite number.
     #[error("line {line}: {column} is `{value}`; it must be a finite number with a decimal point")]
     NoNumber {
@@ -71,7 +81,7 @@ pub fn read_columns(text: &str, names: [&'static str; 2], most: usize) -> Result
     // Comments and blank lines go first, so that row k is known to stand on line `numbers[k]`.
     let mut numbers = Vec::new();
     let mut body = String::with_capacity(text.len());
-    for (i, line) in text.lines().enumerate() {
+    for (i, line) in lines(text).enumerate() {
         if !line.starts_with('#') && !line.trim().is_empty() {
             if numbers.len() > most {
                 return Err(ColumnsError::TooMany(most));
@@ -82,19 +92,25 @@ pub fn read_columns(text: &str, names: [&'static str; 2], most: usize) -> Result
         }
     }
     let line_of = |record: usize| numbers.get(record).copied().unwrap_or(0);
+    // One line, one row: as long as no text in quotation marks holds a line's end.
+    let closed = |record: &csv::StringRecord, line: usize| match record.iter().any(|v| v.contains('\n')) {
+        false => Ok(()),
+        true => Err(ColumnsError::OpenQuote { line }),
+    };
     let unreadable = |e: csv::Error| ColumnsError::Unreadable(e.to_string());
-    let mut reader =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(body.as_bytes());
+    // Blanks are taken off below: here they would take the line's end with them.
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(body.as_bytes());
     let header = reader.headers().map_err(unreadable)?.clone();
     if numbers.is_empty() || header.is_empty() {
         return Err(ColumnsError::Empty { wanted: wanted() });
     }
+    closed(&header, line_of(0))?;
     let column = |name: &'static str| {
-        let mut at = header.iter().enumerate().filter(|(_, h)| *h == name).map(|(i, _)| i);
+        let mut at = header.iter().enumerate().filter(|(_, h)| h.trim() == name).map(|(i, _)| i);
         let first = at.next().ok_or_else(|| ColumnsError::MissingColumn {
             line: line_of(0),
             missing: name,
-            found: shortened(&header.iter().collect::<Vec<_>>().join(", ")),
+            found: clip(&header.iter().map(str::trim).collect::<Vec<_>>().join(", ")),
             wanted: wanted(),
         })?;
         match at.next() {
@@ -107,12 +123,13 @@ pub fn read_columns(text: &str, names: [&'static str; 2], most: usize) -> Result
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record).map_err(unreadable)? {
         let line = line_of(columns.rows.len() + 1);
+        closed(&record, line)?;
         let number = |i: usize| {
-            let value = record.get(at[i]).unwrap_or("");
+            let value = record.get(at[i]).unwrap_or("").trim();
             value.parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(|| ColumnsError::NoNumber {
                 line,
                 column: names[i],
-                value: shortened(value),
+                value: clip(value),
             })
         };
         columns.rows.push([number(0)?, number(1)?]);
@@ -121,12 +138,7 @@ pub fn read_columns(text: &str, names: [&'static str; 2], most: usize) -> Result
     Ok(columns)
 }
 
-/// A text for a message, not more than a line.
-fn shortened(text: &str) -> String {
-    const MOST: usize = 80;
-    if text.chars().count() <= MOST {
-        text.to_owned()
-    } else {
-        text.chars().take(MOST).chain("...".chars()).collect()
-    }
+/// The lines of a text, whichever system ended them: by a line feed, a carriage return or both.
+fn lines(text: &str) -> impl Iterator<Item = &str> {
+    text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'))
 }

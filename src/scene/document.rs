@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::axis::{Axis, MOST_AXES, repeated, unknown};
+use super::axis::{Axis, LARGEST_AXIS, MOST_AXES, repeated, unknown};
 use super::check::{check, corners};
 use super::data::{Mechanism, Scene};
 use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
@@ -15,6 +15,10 @@ use super::text::{self, LARGEST_SCENE, clip, explain};
 
 /// How many faults an error names; the rest it counts. A list may hold a million NaN.
 const MOST_FAULTS: usize = 50;
+
+/// The most values that the axes of a sweep may have together. Three axes that pass it, of which none alone is too long,
+/// make more cells than any sweep may have; they are refused before they are all written out.
+const MOST_VALUES: usize = 2 * LARGEST_AXIS;
 
 /// A scene, its text, and the arguments that changed it since.
 #[derive(Debug, Clone)]
@@ -140,32 +144,45 @@ impl Document {
     /// scene's own `sweep`; empty where that is empty too. Every value is within its field's range, no
     /// field is swept twice, and the relations between fields hold all over the grid.
     pub fn axes<S: AsRef<str>>(&self, over: &[S]) -> Result<Vec<Axis>, SceneError> {
-        let axes: Vec<Axis> = if over.is_empty() {
-            let own = self
-                .scene
-                .sweep
-                .iter()
-                .take(MOST_AXES + 1)
-                .map(|axis| Axis::from_scene(axis, &self.scene).ok());
-            match own.collect() {
-                Some(axes) => axes,
-                // The check says more about what is wrong.
-                None => return Err(self.error_from(check(&self.scene).faults)),
+        // Before anything is written out: a hundred long axes would fill the memory.
+        if over.len() > MOST_AXES {
+            let problem = format!("{} axes are more than a sweep may have ({MOST_AXES})", over.len());
+            return Err(ArgumentError { argument: "--over".to_owned(), problem }.into());
+        }
+        let mut values = 0;
+        let mut room = |axis: &Axis| {
+            values += axis.values.len();
+            if values <= MOST_VALUES {
+                Ok(())
+            } else {
+                Err(format!(
+                    "{values} values, with the axes before it, are more than a sweep may have ({MOST_VALUES}); give larger steps"
+                ))
             }
+        };
+        let axes: Vec<Axis> = if over.is_empty() {
+            // The check says more about what is wrong.
+            let refused = || self.error_from(check(&self.scene).faults);
+            if self.scene.sweep.len() > MOST_AXES {
+                return Err(refused());
+            }
+            let own = self.scene.sweep.iter().map(|axis| {
+                let axis = Axis::from_scene(axis, &self.scene).map_err(|_| refused())?;
+                room(&axis).map_err(|problem| ArgumentError { argument: "sweep".to_owned(), problem })?;
+                Ok(axis)
+            });
+            own.collect::<Result<_, SceneError>>()?
         } else {
             let parse = |over: &S| {
                 let argument = over.as_ref();
-                Axis::parse(argument, &self.scene).map_err(|problem| ArgumentError {
+                let parsed = Axis::parse(argument, &self.scene).and_then(|axis| room(&axis).map(|()| axis));
+                parsed.map_err(|problem| ArgumentError {
                     argument: clip(&format!("--over {argument}")),
                     problem,
                 })
             };
             over.iter().map(parse).collect::<Result<_, _>>()?
         };
-        if axes.len() > MOST_AXES {
-            let problem = format!("{} axes are more than a sweep may have ({MOST_AXES})", axes.len());
-            return Err(ArgumentError { argument: "--over".to_owned(), problem }.into());
-        }
         if let Some(field) = repeated(axes.iter().map(|axis| axis.field.as_str())) {
             let argument = if over.is_empty() { "sweep" } else { "--over" };
             let problem = format!("{field} is swept twice; give each field one axis");

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::presets;
+use super::text::clip;
 
 /// The largest table that is read, 64 MB: some two million rows.
 pub const LARGEST_TABLE: usize = 64 << 20;
@@ -76,10 +77,10 @@ impl Files {
         let embedded = || presets::TABLES.iter().find(|table| table.name == path);
         let names = || presets::TABLES.iter().map(|table| table.name).collect::<Vec<_>>().join(", ");
         let Some(tried) = self.place(path) else {
-            let missing = || FileError::NoFolder { path: path.to_owned(), embedded: names() };
+            let missing = || FileError::NoFolder { path: clip(path), embedded: names() };
             return embedded().map(|table| table.text.to_owned()).ok_or_else(missing);
         };
-        let shown = tried.display().to_string();
+        let shown = clip(&tried.display().to_string());
         match read_text(&tried, LARGEST_TABLE) {
             Ok(text) => Ok(text),
             Err(ReadError::Missing) => {

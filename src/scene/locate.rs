@@ -15,8 +15,33 @@ pub struct Place {
 }
 
 /// The fields of a text with their places, in the order of the text.
+///
+/// Each knows the one around it and its own part of the path alone: whole paths would make of a hostile text of a few
+/// megabytes, long names around a million fields, more than fits into memory.
 #[derive(Debug, Clone, Default)]
-pub struct Places(Vec<(String, Place)>);
+pub struct Places(Vec<Named>);
+
+/// A field, as a text names it.
+#[derive(Debug, Clone)]
+struct Named {
+    /// The field around it, by its number.
+    around: Option<usize>,
+    part: Part,
+    place: Place,
+}
+
+/// The last part of a path.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Part {
+    Name(String),
+    Index(usize),
+}
+
+impl Part {
+    fn of(text: &str) -> Self {
+        text.parse().map_or_else(|_| Self::Name(text.to_owned()), Self::Index)
+    }
+}
 
 /// RON gives up at 128 levels; what lies deeper is skipped.
 const DEEPEST: usize = 200;
@@ -26,10 +51,10 @@ impl Places {
     pub fn of(text: &str) -> Self {
         let mut scanner = Scanner { text: text.as_bytes(), at: 0, found: Vec::new() };
         scanner.header();
-        scanner.value(&mut String::new(), 0);
+        scanner.value(None, 0);
         let mut places = Vec::with_capacity(scanner.found.len());
         let (mut place, mut passed) = (Place { line: 1, column: 1 }, 0);
-        for (path, at) in scanner.found {
+        for Found { around, part, at } in scanner.found {
             for byte in &text.as_bytes()[passed..at] {
                 match byte {
                     b'\n' => place = Place { line: place.line + 1, column: 1 },
@@ -39,33 +64,56 @@ impl Places {
                 }
             }
             passed = at;
-            places.push((path, place));
+            places.push(Named { around, part, place });
         }
         Self(places)
     }
 
     /// The place of a field, or of the nearest one around it that the text names.
     pub fn find(&self, path: &str) -> Option<Place> {
-        let mut path = path;
-        loop {
-            if let Some((_, place)) = self.0.iter().find(|(own, _)| own == path) {
-                return Some(*place);
-            }
-            path = &path[..path.rfind('.')?];
-        }
+        let parts: Vec<Part> = path.split('.').map(Part::of).collect();
+        let place =
+            |parts: &[Part]| self.0.iter().find(|named| self.is_at(named, parts)).map(|own| own.place);
+        (1..=parts.len()).rev().find_map(|length| place(&parts[..length]))
     }
 
-    /// The last field that begins at or before a place.
-    pub fn last_before(&self, place: Place) -> Option<&str> {
-        self.0.iter().rev().find(|(_, own)| *own <= place).map(|(path, _)| path.as_str())
+    /// The path of the last field that begins at or before a place.
+    pub fn last_before(&self, place: Place) -> Option<String> {
+        let last = self.0.iter().rev().find(|named| named.place <= place)?;
+        let outwards = std::iter::successors(Some(last), |named| named.around.map(|i| &self.0[i]));
+        let mut parts: Vec<String> = outwards
+            .map(|named| match &named.part {
+                Part::Name(name) => name.clone(),
+                Part::Index(index) => index.to_string(),
+            })
+            .collect();
+        parts.reverse();
+        Some(parts.join("."))
     }
+
+    /// Whether a field has this path; compared from its end, where most differ.
+    fn is_at(&self, named: &Named, path: &[Part]) -> bool {
+        let Some((last, around)) = path.split_last() else { return false };
+        named.part == *last
+            && match named.around {
+                Some(index) => self.is_at(&self.0[index], around),
+                None => around.is_empty(),
+            }
+    }
+}
+
+/// A field of the scanner, with the byte at which it begins.
+struct Found {
+    around: Option<usize>,
+    part: Part,
+    at: usize,
 }
 
 struct Scanner<'t> {
     text: &'t [u8],
     at: usize,
-    /// Paths with the byte at which they begin, ascending.
-    found: Vec<(String, usize)>,
+    /// In the order of the text.
+    found: Vec<Found>,
 }
 
 impl Scanner<'_> {
@@ -156,20 +204,20 @@ impl Scanner<'_> {
         (!name.is_empty()).then_some(name)
     }
 
-    fn value(&mut self, path: &mut String, depth: usize) {
+    fn value(&mut self, around: Option<usize>, depth: usize) {
         self.blank();
         match self.peek() {
             None => {}
             Some(b'"') => self.string(),
             Some(b'r') if self.raw_string() => {}
-            Some(b'(') => self.inside(b')', "", path, depth),
-            Some(b'[') => self.inside(b']', "", path, depth),
-            Some(b'{') => self.inside(b'}', "", path, depth),
+            Some(b'(') => self.inside(b')', "", around, depth),
+            Some(b'[') => self.inside(b']', "", around, depth),
+            Some(b'{') => self.inside(b'}', "", around, depth),
             Some(_) => {
                 if let Some(variant) = self.identifier() {
                     self.blank();
                     if self.peek() == Some(b'(') {
-                        self.inside(b')', &variant, path, depth);
+                        self.inside(b')', &variant, around, depth);
                     }
                 } else {
                     while self.peek().is_some_and(|byte| !b",()[]{}\" \t\r\n".contains(&byte)) {
@@ -180,9 +228,8 @@ impl Scanner<'_> {
         }
     }
 
-    fn inside(&mut self, close: u8, variant: &str, path: &mut String, depth: usize) {
+    fn inside(&mut self, close: u8, variant: &str, around: Option<usize>, depth: usize) {
         self.at += 1;
-        let length = path.len();
         let mut index = 0;
         loop {
             self.blank();
@@ -204,22 +251,19 @@ impl Scanner<'_> {
                 continue;
             }
             let part = if close == b']' {
-                Some(index.to_string())
+                Some(Part::Index(index))
             } else if let Some(name) = self.key() {
-                Some(name)
+                Some(Part::Name(name))
             } else {
                 // The only positional number; in `Sum([..])` and `Some(..)` the bracket adds nothing.
-                (variant == "Ratio").then(|| "xi".to_owned())
+                (variant == "Ratio").then(|| Part::Name("xi".to_owned()))
             };
+            let mut own = around;
             if let Some(part) = part {
-                if !path.is_empty() {
-                    path.push('.');
-                }
-                path.push_str(&part);
-                self.found.push((path.clone(), begin));
+                own = Some(self.found.len());
+                self.found.push(Found { around, part, at: begin });
             }
-            self.value(path, depth + 1);
-            path.truncate(length);
+            self.value(own, depth + 1);
             index += 1;
             if self.at == begin {
                 self.at += 1;
@@ -297,7 +341,7 @@ mod tests {
     #[test]
     fn the_last_field_before_a_place() {
         let places = Places::of("(a: 1,\n b: (c: 2))");
-        assert_eq!(places.last_before(Place { line: 2, column: 9 }), Some("b.c"));
+        assert_eq!(places.last_before(Place { line: 2, column: 9 }), Some("b.c".to_owned()));
         assert_eq!(places.last_before(Place { line: 1, column: 1 }), None);
     }
 

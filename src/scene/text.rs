@@ -48,13 +48,16 @@ pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
         );
         let places = Places::of(text);
         let field = if named || trailing { None } else { places.last_before(place) };
-        let problem = match (&error.code, field.and_then(choices)) {
+        let problem = match (&error.code, field.as_deref().and_then(choices)) {
             (Ron::ExpectedIdentifier | Ron::SuggestRawIdentifier(_), Some(known)) => {
                 format!("expected one of {}", names(known))
             }
             _ => explain(&error),
         };
-        Refusal { place, problem: field.map_or(problem.clone(), |field| format!("{field}: {problem}")) }
+        Refusal {
+            place,
+            problem: field.map_or(problem.clone(), |field| format!("{}: {problem}", clip(&field))),
+        }
     })
 }
 

@@ -20,3 +20,4 @@ mod recurrence;
 mod scene;
 mod studies;
 mod support;
+mod untrusted;

@@ -460,6 +460,7 @@ fn the_layout_of_the_text_does_not_matter() {
         "# a comment, with commas\n\n force_n , note, x_m \n2,a,-1\n# another\n0,,0\n-2,\"b, c\",1\n\n1,d,2\n",
         "x_m,force_n\n2,1\n1,-2\n0,0\n-1,2\n",
         "x_m,force_n\n-1.0e0, +2.000\n  0 ,0\n1,-2,9,9\n2,1\n",
+        "x_m,force_n\r-1,2\r\r# a comment\r0,0\r1,-2\r2,1\r",
     ] {
         assert_eq!(Table::parse(text).as_ref(), Ok(&expected), "{text}");
     }
@@ -491,6 +492,16 @@ fn what_is_wrong_with_a_table_is_said_with_its_line() {
         error("x_m,force_n\n0,0\n1,1\n2,2\n1.5,2\n"),
         TableError::TurnsBack { line: 5, x: 1.5, before: 2.0 }
     );
+    assert_eq!(
+        error("x_m,force_n\r0,0\r1,one\r"),
+        ColumnsError::NoNumber { line: 3, column: "force_n", value: "one".into() }.into()
+    );
+    for rest in ["c\n2,2,d\n3,3,e", "\n2,2\n3,3", "\n\",2,2\n3,3", ""] {
+        let found = error(&format!("x_m,force_n,note\n-2,0,\"a, b\"\n-1,0\n0,0\n# c\n1,1,\"{rest}\n"));
+        assert_eq!(found, ColumnsError::OpenQuote { line: 6 }.into());
+    }
+    let moves_a_cursor = error("x_m,force_n\n0,\u{1b}[2J\n").to_string();
+    assert!(!moves_a_cursor.contains('\u{1b}'), "{moves_a_cursor}");
     let many = "0,0\n".repeat(100_002);
     assert_eq!(error(&format!("x_m,force_n\n{many}")), TableError::Columns(ColumnsError::TooMany(100_000)));
 }
@@ -513,6 +524,17 @@ fn numbers_at_the_ends_of_the_range_are_an_answer_or_an_error() {
                 assert!(curve.pieces().iter().all(|p| p.coefficients.iter().all(|c| c.is_finite())));
                 Landscape::of(&curve);
             }
+        }
+    }
+}
+
+#[test]
+fn a_position_far_off_is_met_as_well() {
+    for far in [1e3, 1e9, 1e17, 1e61, 1e150] {
+        for force in [4.0, -0.5] {
+            let text = format!("x_m,force_n\n2,1\n4,2\n5,4\n{far},{force}\n");
+            let curve = fit(&Table::parse(&text).unwrap(), 1e-4).unwrap();
+            assert!(curve.fit().unwrap().worst_n <= 1e-4 * 4.0, "{:?} at {far}", curve.fit());
         }
     }
 }

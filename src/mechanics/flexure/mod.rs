@@ -105,6 +105,15 @@ pub enum FlexureError {
         /// Size of the last step, relative to the unknowns.
         residual: f64,
     },
+    /// It takes too long.
+    #[error(
+        "the flexures take more work than can be meant, at x = {} mm: try a smaller preload or other proportions",
+        crate::numeric::short(x * 1e3)
+    )]
+    Endless {
+        /// Position in m.
+        x: f64,
+    },
     /// No stable equilibrium could be followed.
     #[error(
         "the flexures have no stable shape of this kind at x = {} mm: try a smaller preload or other proportions",
@@ -194,6 +203,7 @@ impl Flexures {
                 FlexureError::NotConverged { x: x * units.length, residual }
             }
             Lost::Unstable { x } => FlexureError::Unstable { x: x * units.length },
+            Lost::Endless { x } => FlexureError::Endless { x: x * units.length },
         };
         let mut segments = branch::trace(&mut solver).map_err(lost)?;
         // Potentials are differences from this state, and wells may be shallow beside the energy of the preload.

@@ -14,6 +14,11 @@ use super::equilibrium::{Point, Prescribed, System};
 const FEWEST_MODES: usize = 8;
 const MOST_MODES: usize = 256;
 
+/// The work that a mechanism may take, as the sum over its states of the squares of their functions: some hundred times
+/// that of the most demanding shapes that are likely, and an end within some ten seconds of one core for the others.
+/// It is lengths that differ ten-thousandfold that need it, such as one that was written in another unit.
+const MOST_WORK: usize = 10_000_000;
+
 /// Leaning is less than this many times the coefficient of the bow.
 const MOST_LEAN: f64 = 3.0;
 
@@ -22,6 +27,7 @@ const MOST_LEAN: f64 = 3.0;
 pub(super) enum Lost {
     NotConverged { x: f64, residual: f64 },
     Unstable { x: f64 },
+    Endless { x: f64 },
 }
 
 /// The flexures, and the equations for each number of functions that was needed so far.
@@ -39,16 +45,20 @@ pub(super) struct Solver {
     pub solves: usize,
     /// The most functions that a state needed.
     pub most_modes: usize,
+    /// See [`MOST_WORK`].
+    work: usize,
 }
 
 impl Solver {
     pub fn new(beams: [Beam; 2], preload: f64, bow: [f64; 2], tail: f64) -> Self {
-        Self { beams, preload, bow, tail, systems: BTreeMap::new(), solves: 0, most_modes: 0 }
+        Self { beams, preload, bow, tail, systems: BTreeMap::new(), solves: 0, most_modes: 0, work: 0 }
     }
 
-    /// Gives up the tables, which are made again where they are needed; they are larger than all states together.
+    /// Gives up the tables, which are made again where they are needed; they are larger than all states together. Work
+    /// begins anew.
     pub fn forget(&mut self) {
         self.systems.clear();
+        self.work = 0;
     }
 
     /// Another bow of the stress-free flexures.
@@ -81,6 +91,10 @@ impl Solver {
         loop {
             let modes = guess.even[0].len();
             self.solves += 1;
+            self.work += modes * modes;
+            if self.work > MOST_WORK {
+                return Err(Lost::Endless { x: guess.x });
+            }
             self.most_modes = self.most_modes.max(modes);
             let point = self
                 .system(modes)

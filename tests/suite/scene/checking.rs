@@ -145,3 +145,12 @@ fn a_million_faults_are_counted() {
             .contains("sweep = a list of 100000: must have at most 10 axes")
     );
 }
+
+#[test]
+fn more_sines_than_fit_into_memory_are_refused() {
+    let noises = |noise: &str| faults(&[("excitation", &format!("Sum([{}])", noise.repeat(60_000)))]);
+    assert!(noises("Noise(rms_g:1,low_hz:9,high_hz:inf,seed:1),").ends_with("and 59950 more"));
+    assert!(noises("Noise(rms_g:1,low_hz:1,high_hz:9,seed:1,lines:4096),").contains(
+        "excitation = a sum of 245760000 sines: must have at most 16384, the lines of noises included"
+    ));
+}

@@ -223,6 +223,8 @@ fn hostile_text_is_refused_without_overflow() {
             assert!(refused(&text).len() < 700);
         }
     }
+    let (name, many) = ("n".repeat(1 << 20), "b:1,".repeat(1 << 19));
+    assert!(refused(&format!("({name}:({name}:({many})")).len() < 700);
     assert!(refused(&"[".repeat(10_000_000)).contains("10000000 bytes are more than"));
     let sums = |n: usize| text(&[("excitation", &format!("{}{}", "Sum([".repeat(n), "])".repeat(n)))]);
     assert!(refused(&sums(1000)).contains("nested deeper"));

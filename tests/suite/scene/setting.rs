@@ -199,3 +199,16 @@ fn setting_a_cell_allocates_nothing() {
     });
     assert_eq!(allocated.count_total, 0, "{allocated:?}");
 }
+
+#[test]
+fn long_axes_are_refused_before_they_fill_the_memory() {
+    let document = document(&[]);
+    let long = "mechanism.linear_n_per_m=1:1e7:1".to_owned();
+    let error = document.axes(&vec![long.clone(); 100]).unwrap_err().to_string();
+    assert_eq!(error, "--over: 100 axes are more than a sweep may have (10)");
+    let error = document.axes(&vec![long; 10]).unwrap_err().to_string();
+    assert!(
+        error.contains("30000000 values, with the axes before it, are more than a sweep may have"),
+        "{error}"
+    );
+}

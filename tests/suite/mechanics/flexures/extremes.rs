@@ -13,7 +13,9 @@ fn holds_or_says(own: &Geometry) -> Option<FlexureError> {
             None
         }
         Err(e) => {
-            let (FlexureError::NotConverged { x, .. } | FlexureError::Unstable { x }) = e;
+            let (FlexureError::NotConverged { x, .. }
+            | FlexureError::Unstable { x }
+            | FlexureError::Endless { x }) = e;
             assert!(x.is_finite() && x >= 0.0, "{e:?}");
             assert!(e.to_string().contains("try a smaller preload"));
             Some(e)
