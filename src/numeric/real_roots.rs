@@ -186,13 +186,9 @@ fn bracketed(coefficients: &[f64], slope: &[f64], mut low: f64, mut high: f64, s
         }
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
-            return if (value_and_magnitude(coefficients, low).0).abs()
-                <= (value_and_magnitude(coefficients, high).0).abs()
-            {
-                low
-            } else {
-                high
-            };
+            // The better of the two; of equals the one nearer to 0, so that a mirrored polynomial has mirrored roots.
+            let miss = |x: f64| (value_and_magnitude(coefficients, x).0.abs(), x.abs());
+            return if miss(low) <= miss(high) { low } else { high };
         }
         // Five Newton steps that do not halve the bracket are converging or lost; one bisection tells.
         x = if newton > low && newton < high && since < 5 {
@@ -239,6 +235,15 @@ mod tests {
         assert_eq!(real_roots(&p, -1.0, 2.5).len(), 2);
         assert_eq!(real_roots(&p, 0.0, 1.0), Vec::<f64>::new());
         assert_eq!(real_roots(&[-1.0, 0.0, 1.0], -1.0, 1.0), vec![-1.0, 1.0]);
+    }
+
+    #[test]
+    fn a_mirrored_polynomial_has_mirrored_roots() {
+        // the polynomial is as small on one side of the root as on the other
+        let mut own = [1.1902863311193113, 0.9015141295019665, -0.6060376420249709, 0.0, 0.0, 1.0];
+        let roots = real_roots(&own, LINE.0, LINE.1);
+        own.iter_mut().step_by(2).for_each(|c| *c = -*c);
+        assert_eq!(real_roots(&own, LINE.0, LINE.1), roots.iter().map(|root| -root).collect::<Vec<_>>());
     }
 
     #[test]

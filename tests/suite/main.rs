@@ -16,6 +16,7 @@ mod mechanics;
 mod oracles;
 mod plots;
 mod presets;
+mod properties;
 mod recurrence;
 mod scene;
 mod studies;

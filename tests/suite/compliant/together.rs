@@ -124,6 +124,19 @@ fn the_mirrored_drive_gives_the_mirrored_run() {
 }
 
 #[test]
+fn a_ledger_changes_no_bit_of_the_figures() {
+    // steps of contact that lie wholly in the settled window, many of them
+    let model = prototype(&[]);
+    let (bare, full) = (model.run(&Request::default()).summary, run(&model).summary);
+    assert!(full.impacts > 100 && full.rested_share.unwrap() > 0.0);
+    assert_eq!(bare.rms_velocity, full.rms_velocity);
+    assert_eq!(
+        (bare.max_abs_x, bare.travel, bare.rested_share),
+        (full.max_abs_x, full.travel, full.rested_share)
+    );
+}
+
+#[test]
 fn live_it_is_the_same_run_in_any_pieces() {
     let model = prototype(&[]);
     // samples in flight and within contacts
