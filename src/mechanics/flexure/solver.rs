@@ -14,10 +14,10 @@ use super::equilibrium::{Point, Prescribed, System};
 const FEWEST_MODES: usize = 8;
 const MOST_MODES: usize = 256;
 
-/// The work that a mechanism may take, as the sum over its states of the squares of their functions: some hundred times
-/// that of the most demanding shapes that are likely, and an end within some ten seconds of one core for the others.
-/// It is lengths that differ ten-thousandfold that need it, such as one that was written in another unit.
-const MOST_WORK: usize = 10_000_000;
+/// The work that a mechanism may take, as the sum over its states of the cubes of their functions: a thousand times that
+/// of the prototype, and an end within some twenty seconds of one core for the others (10 to 45 ns each, measured). It is lengths
+/// that differ a thousandfold that need it, such as one that was written in another unit.
+const MOST_WORK: usize = 500_000_000;
 
 /// Leaning is less than this many times the coefficient of the bow.
 const MOST_LEAN: f64 = 3.0;
@@ -91,7 +91,7 @@ impl Solver {
         loop {
             let modes = guess.even[0].len();
             self.solves += 1;
-            self.work += modes * modes;
+            self.work += modes.pow(3);
             if self.work > MOST_WORK {
                 return Err(Lost::Endless { x: guess.x });
             }
