@@ -188,7 +188,11 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             }
         }
         if let Some((begin, end)) = overlap {
-            let (from, to) = (step.path.parameter(begin, step.length), step.path.parameter(end, step.length));
+            // (a time of contact is inverted to half its digits, which the ends of a whole step need not suffer)
+            let (from, to) = match full {
+                true => (T::zero(), step.length),
+                false => (step.path.parameter(begin, step.length), step.path.parameter(end, step.length)),
+            };
             if (!LEDGER || !full)
                 && let Some(rule) = &self.rule
             {
