@@ -20,7 +20,7 @@
 
 use super::clock::{Clock, Instant};
 use super::drive::Drive;
-use super::equation::{End, EndKind, Equation};
+use super::equation::{Compliant, End, EndKind, Equation};
 use super::model::{Model, Request};
 use super::penetration::Penetration;
 use super::prepare::base_at;
@@ -240,7 +240,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
     pub fn run(mut self, model: &Model, request: &Request) -> Run {
         let start_v = self.v;
         self.place_at_start();
-        let start_potential = self.potential(model);
+        let start = (self.arena, self.x.to_f64(), self.pressed_in_j(model));
         let outcome = loop {
             let left = self.clock.between(&self.at, &self.end);
             if !(left > T::zero()) {
@@ -264,10 +264,10 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             }
         };
         let phase = self.carry().phase();
-        let potentials = (start_potential, self.potential(model));
+        let potential = self.potential_since(model, start);
         let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
         let mut run = self.record.finish(
-            &Ending { at: self.at, state: (self.x, self.v), start_v, phase, potentials, outcome },
+            &Ending { at: self.at, state: (self.x, self.v), start_v, phase, potential, outcome },
             |at| base_at(drive, &clock, segment, at, unit),
         );
         run.summary.steps = self.steps;
@@ -275,17 +275,22 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         run
     }
 
-    /// Potential in J at the present place, with what a compliant stop stores.
-    fn potential(&self, model: &Model) -> f64 {
-        let piece = self.equation.arenas[self.arena].piece;
-        let potential = model.mechanism.curve.pieces()[piece].potential(self.x.to_f64());
-        match &self.equation.compliant {
-            Some(stop) => {
-                let unit = self.equation.unit;
-                potential + stop.stored(self.depth.root).to_f64() * model.mass / (unit * unit)
-            }
-            None => potential,
-        }
+    /// Change in J, since a start in an arena at a place, of the potential and of what a compliant stop stores.
+    fn potential_since(&self, model: &Model, (arena, from, stored): (usize, f64, f64)) -> f64 {
+        let piece = |arena: usize| &model.mechanism.curve.pieces()[self.equation.arenas[arena].piece];
+        let (first, last, x) = (piece(arena), piece(self.arena), self.x.to_f64());
+        let change = match std::ptr::eq(first, last) {
+            true => first.potential_change(from, x),
+            false => last.potential(x) - first.potential(from),
+        };
+        change + (self.pressed_in_j(model) - stored)
+    }
+
+    /// Energy in J that the pressed compliant stop stores.
+    fn pressed_in_j(&self, model: &Model) -> f64 {
+        let unit = self.equation.unit;
+        let stored = |stop: &Compliant<T>| stop.stored(self.depth.root).to_f64() * model.mass / (unit * unit);
+        self.equation.compliant.as_ref().map_or(0.0, stored)
     }
 
     /// Goes on by one step of flight or one rest; `left` is the time to the end of the run.

@@ -16,15 +16,15 @@ pub(crate) struct Ending<T> {
     /// Velocity at time 0, kernel units.
     pub start_v: T,
     pub phase: Phase,
-    /// Potential at the start and the end in J.
-    pub potentials: (f64, f64),
+    /// Change of the potential over the run in J.
+    pub potential: f64,
     pub outcome: Outcome,
 }
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     /// Closes the record.
     pub fn finish(mut self, ending: &Ending<T>, base: impl Fn(&Instant<T>) -> f64) -> Run {
-        let &Ending { at: end, state: (x, v), start_v, phase, potentials, outcome } = ending;
+        let &Ending { at: end, state: (x, v), start_v, phase, potential, outcome } = ending;
         let final_x = x.to_f64();
         let final_v = v.to_f64() / self.unit;
         // What was asked for at the very end (to rounding) is the final state.
@@ -58,7 +58,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             let work_j = value(&self.whole.work) * energy;
             let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
             let impact_j = value(&self.whole.impact) * energy;
-            let stored_j = (kinetic(v) - kinetic(start_v)) * energy + (potentials.1 - potentials.0);
+            let stored_j = (kinetic(v) - kinetic(start_v)) * energy + potential;
             let residual_j = ((work_j - damping_j) - impact_j) - stored_j;
             let moved =
                 (self.work_moved + self.peak_kinetic) * energy + damping_j + impact_j.abs() + stored_j.abs();

@@ -39,6 +39,20 @@ impl Piece {
         self.potential_at_origin + self.potential_from_origin(y)
     }
 
+    /// Potential at `b` less that at `a`, in J: as the divided difference times the way, so that a mass that hardly moves
+    /// far from the origin has its change to as many digits as the force has there, and one that stays has none.
+    pub fn potential_change(&self, a: f64, b: f64) -> f64 {
+        let (from, to) = (a - self.origin, b - self.origin);
+        let (mut value, mut slope) = (0.0, 0.0);
+        for (i, c) in self.coefficients.iter().enumerate().rev() {
+            slope = slope * to + value;
+            value = value * from + c / (i + 1) as f64;
+        }
+        // the potential is `value` times the local coordinate
+        slope = slope * to + value;
+        if a == b { 0.0 } else { slope * (b - a) }
+    }
+
     /// The piece of -F(-x): what this one looks like on the other side of an odd curve, bit for bit.
     pub fn mirrored(&self) -> Self {
         let sign = |i: usize| if i.is_multiple_of(2) { -1.0 } else { 1.0 };

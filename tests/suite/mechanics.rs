@@ -272,6 +272,8 @@ fn potential_and_stiffness_belong_to_the_force() {
         let rise = curve.potential(right) - curve.potential(left);
         let expected = integral(|x| piece.force(x), left, right);
         assert!((rise - expected).abs() < 1e-12 * expected.abs().max(1e-3), "{rise:e} {expected:e}");
+        let change = piece.potential_change(left, right);
+        assert!((change - expected).abs() < 1e-12 * expected.abs().max(1e-3), "{change:e} {expected:e}");
         let x = 0.3 * left + 0.7 * right;
         let h = 1e-3 * (right - left);
         let slope = (piece.force(x - 2.0 * h) - 8.0 * piece.force(x - h) + 8.0 * piece.force(x + h)

@@ -106,6 +106,21 @@ fn an_undamped_orbit_keeps_its_energy() {
 }
 
 #[test]
+fn a_ledger_closes_on_a_motion_that_hardly_leaves_a_well_far_from_the_origin() {
+    // A shaking of 7e-8 g about a well at some 0.9 of a length from x = 0: what is moved, 2e-20 J, is far below the
+    // rounding of the potential there, and above that of its change.
+    let model = model(
+        "mass_g: 15.2, mechanism: Polynomial(coefficients_si: [-0.9096988182377469, -83.27071848141118,
+         -5878.520094976837, -1224028.5575540755, 0, 28136424637.88236]),
+         excitation: Sine(frequency_hz: 3.3333333333333335, amplitude_g: -7.330228290532675e-8),
+         run: (duration_s: 0.045, tolerance: 1e-3)",
+    );
+    let ledger = run(&model).summary.ledger.unwrap();
+    assert!(ledger.work_j > 0.0 && ledger.work_j < 1e-19, "{ledger:?}");
+    near(ledger.energy_residual, 0.0, 1e-3);
+}
+
+#[test]
 fn the_reference_numbers_of_a_chattering_run() {
     // P2: cubic well, D = 4 mm, e = 0.36, 1.5 g at 3 Hz, 10 s: RMS velocity 0.114697633346 m/s over 5..10 s,
     // 60 rests and releases after the rest of the start, 780 impacts down to 1e-6 m/s, period 1.
