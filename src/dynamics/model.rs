@@ -87,7 +87,17 @@ impl Model {
             Damping::None => 0.0,
             Damping::Coefficient { c_n_s_per_m } => c_n_s_per_m,
             Damping::Ratio(xi) => match mechanism.damping_stiffness() {
-                Some(k) => 2.0 * xi * (k * mass).sqrt(),
+                Some(k) => {
+                    let c = 2.0 * xi * (k * mass).sqrt();
+                    if !c.is_finite() {
+                        let problem = format!(
+                            "makes no finite damping coefficient with the stiffness {k:e} N/m of the equilibrium; use \
+                             Coefficient(c_n_s_per_m: ..) instead"
+                        );
+                        faults.push(fault("damping.xi", xi, problem));
+                    }
+                    c
+                }
                 None => {
                     faults.push(fault(
                         "damping.xi",
