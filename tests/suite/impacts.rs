@@ -6,7 +6,6 @@ mod budgets;
 mod chatter;
 mod figures;
 mod misleading;
-mod random;
 mod release;
 mod scenes;
 mod stops;

@@ -15,6 +15,7 @@ mod mechanics;
 mod oracles;
 mod plots;
 mod presets;
+mod properties;
 mod scene;
 mod studies;
 mod support;

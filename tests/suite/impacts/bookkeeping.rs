@@ -2,8 +2,8 @@
 
 use interwell::dynamics::{EventKind, Phase, Request, Run};
 
-use super::random::{assert_mirrored, mirrored};
 use super::scenes::*;
+use crate::properties::mirror::{assert_mirrored, mirrored};
 
 fn p2() -> interwell::scene::Scene {
     nominal_scene(4.0, 0.36, sine(3.0, 1.5 * 9.80665, 0.0), 10.0)

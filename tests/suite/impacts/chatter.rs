@@ -3,8 +3,8 @@
 use interwell::dynamics::{EventKind, Outcome, Run};
 use interwell::scene::{Damping, Excitation};
 
-use super::random::assert_sound;
 use super::scenes::*;
+use crate::properties::sound::assert_sound;
 
 fn times(run: &Run, kind: EventKind) -> Vec<f64> {
     run.events.iter().filter(|e| e.kind == kind).map(|e| e.t).collect()

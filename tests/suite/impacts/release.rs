@@ -6,8 +6,8 @@ use interwell::dynamics::{EventKind, Model, Outcome, Run};
 use interwell::scene::{Excitation, Scene};
 use proptest::prelude::*;
 
-use super::random::{assert_mirrored, mirrored};
 use super::scenes::*;
+use crate::properties::mirror::{assert_mirrored, mirrored};
 
 fn releases(run: &Run) -> Vec<f64> {
     run.events.iter().filter(|e| e.kind == EventKind::Release).map(|e| e.t).collect()

@@ -3,8 +3,8 @@
 use interwell::dynamics::{EventKind, Outcome, Phase, Regime, Run, Side};
 use interwell::scene::Excitation;
 
-use super::random::assert_sound;
 use super::scenes::*;
+use crate::properties::sound::assert_sound;
 
 fn kinds(run: &Run) -> Vec<(EventKind, Side)> {
     run.events.iter().map(|e| (e.kind, e.side)).collect()
