@@ -125,15 +125,20 @@ fn the_mirrored_drive_gives_the_mirrored_run() {
 
 #[test]
 fn a_ledger_changes_no_bit_of_the_figures() {
-    // steps of contact that lie wholly in the settled window, many of them
-    let model = prototype(&[]);
-    let (bare, full) = (model.run(&Request::default()).summary, run(&model).summary);
-    assert!(full.impacts > 100 && full.rested_share.unwrap() > 0.0);
-    assert_eq!(bare.rms_velocity, full.rms_velocity);
-    assert_eq!(
-        (bare.max_abs_x, bare.travel, bare.rested_share),
-        (full.max_abs_x, full.travel, full.rested_share)
+    // A stop so soft that a contact of few steps is a third of the settled window: were the ends of such a step found from
+    // its time, the RMS velocity would lose digits.
+    let model = model(
+        "mass_g: 0.06641919462496394,
+         mechanism: DoubleWell(equilibrium_mm: 1381.5120503848032, barrier_mj: 2.729717496550561e-12),
+         stops: Hertz(travel_limit_mm: 201.71433695973425, stiffness_n_per_m1_5: 1.9284030356417082e-11,
+                      loss_s_per_m: 0),
+         start: At(x_mm: -153.8636633087083, v_m_per_s: 2.00680017323481e-5),
+         run: (duration_s: 293098.37332753465, tolerance: 1e-4)",
     );
+    let (bare, full) = (model.run(&Request::default()).summary, run(&model).summary);
+    assert!(full.rested_share.unwrap() > 0.3);
+    assert_eq!(bare.rms_velocity, full.rms_velocity);
+    assert_eq!((bare.max_abs_x, bare.travel), (full.max_abs_x, full.travel));
 }
 
 #[test]
