@@ -1,5 +1,7 @@
 //! Error against cost, as the README's table: `cargo bench --bench work_precision`.
 //!
+//! "In company": a run among 64, as in a map, in which they share their steps.
+//!
 //! Three problems of the preset `nominal-cubic`, ten seconds each:
 //!
 //! - P1: no stops, 1.1 g. Error: final displacement over the well's distance, against the same run in some 31 digits.
@@ -28,12 +30,15 @@ const MAP_REFERENCE: f64 = 1e-13;
 const RUNS: usize = 301;
 const MAPS: usize = 3;
 
+/// Runs that a map hands to one thread at a time.
+const TOGETHER: usize = 64;
+
 /// Distance of the wells from the top between them, m.
 const WELL: f64 = 7e-3;
 
 fn main() {
-    println!("| problem | tolerance | error | 99 % of cells | steps | CPU |");
-    println!("| --- | --- | --- | --- | --- | --- |");
+    println!("| problem | tolerance | error | 99 % of cells | steps | CPU | in company |");
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
     runs();
     map();
 }
@@ -57,16 +62,20 @@ fn runs() {
                 _ => late(&model, &run, &exact).max(relative(&run.summary, &exact.summary)),
             };
             let row = format!("| {name} | {tolerance:.0e} | {error:.1e} | | {} |", run.summary.steps);
-            rows.push((row, model, Vec::new()));
+            rows.push((row, model, Vec::new(), Vec::new()));
         }
     }
-    for _ in 0..shared::rounds(RUNS) {
-        for (_, model, times) in &mut rows {
-            times.push(model.run(&Request::default()).summary.cpu_s);
+    for round in 0..shared::rounds(RUNS) {
+        for (_, model, alone, together) in &mut rows {
+            alone.push(model.run(&Request::default()).summary.cpu_s);
+            if round % TOGETHER == 0 {
+                let many = vec![model.clone(); TOGETHER];
+                together.push(Model::run_all(&many, None)[0].summary.cpu_s);
+            }
         }
     }
-    for (row, _, times) in &mut rows {
-        println!("{row} {:.0} us |", shared::median(times) * 1e6);
+    for (row, _, alone, together) in &mut rows {
+        println!("{row} {:.0} us | {:.0} us |", shared::median(alone) * 1e6, shared::median(together) * 1e6);
     }
 }
 
@@ -94,11 +103,8 @@ fn map() {
         models = models.into_iter().step_by(97).collect();
     }
     let mut at = |tolerance: f64| -> Vec<Summary> {
-        let run = |model: &mut Model| {
-            model.tolerance = tolerance;
-            model.run(&Request::default()).summary
-        };
-        models.iter_mut().map(run).collect()
+        models.iter_mut().for_each(|model| model.tolerance = tolerance);
+        models.chunks(TOGETHER).flat_map(|many| Model::run_all(many, None)).map(|run| run.summary).collect()
     };
     let exact = at(MAP_REFERENCE);
     let mut maps: Vec<Vec<Vec<Summary>>> = TOLERANCES.map(|_| Vec::new()).into();
@@ -120,7 +126,7 @@ fn map() {
         let cpu: f64 = (0..exact.len())
             .map(|i| shared::median(&mut maps.iter().map(|map| map[i].cpu_s).collect::<Vec<f64>>()))
             .sum();
-        println!("| P3, map | {tolerance:.0e} | {middle:.1e} | {most:.1e} | {steps} | {cpu:.2} s |");
+        println!("| P3, map | {tolerance:.0e} | {middle:.1e} | {most:.1e} | {steps} | | {cpu:.2} s |");
     }
 }
 

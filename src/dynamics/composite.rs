@@ -1,7 +1,7 @@
 //! What do several tones, chirps and records do together?
 
 use super::clock::{Clock, Instant};
-use super::drive::{Drive, Fall, Press, Span};
+use super::drive::{Drive, Fall, Press, Span, Tail};
 use super::series::{ROOM, SEEDED};
 use super::tone::Tone;
 use crate::numeric::{DoubleDouble, Number, PolynomialRoots, Scalar};
@@ -205,9 +205,28 @@ impl<T: Scalar> Composite<T> {
     }
 }
 
-impl<T: Scalar> Drive<T> for Composite<T> {
+impl<T: Scalar> Tail<T> for Composite<T> {
     type Rolling = Rolling<T>;
 
+    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling) {
+        let mut sum = T::zero();
+        for (tone, [before, last, amplitude, growth]) in self.tones.iter().zip(&mut roll.tones) {
+            let next = tone.curvature() * *before * inverse[k];
+            sum += *amplitude * next + *growth * *last;
+            (*before, *last) = (*last, next);
+        }
+        if !roll.chirps.is_empty() {
+            let share = inverse[k] * T::of((k - 1) as f64); // 1/k
+            for state in &mut roll.chirps {
+                next_chirp(state, share);
+                sum += state.amplitude * state.sine[1];
+            }
+        }
+        a[k] = sum;
+    }
+}
+
+impl<T: Scalar> Drive<T> for Composite<T> {
     fn seed(
         &self,
         clock: &Clock<T>,
@@ -249,23 +268,6 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         sums[0] += value;
         sums[1] += slope;
         a[..SEEDED].copy_from_slice(&sums);
-    }
-
-    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling) {
-        let mut sum = T::zero();
-        for (tone, [before, last, amplitude, growth]) in self.tones.iter().zip(&mut roll.tones) {
-            let next = tone.curvature() * *before * inverse[k];
-            sum += *amplitude * next + *growth * *last;
-            (*before, *last) = (*last, next);
-        }
-        if !roll.chirps.is_empty() {
-            let share = inverse[k] * T::of((k - 1) as f64); // 1/k
-            for state in &mut roll.chirps {
-                next_chirp(state, share);
-                sum += state.amplitude * state.sine[1];
-            }
-        }
-        a[k] = sum;
     }
 
     fn value(

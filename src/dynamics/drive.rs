@@ -7,16 +7,22 @@
 
 use super::clock::{Clock, Instant};
 use super::series::ROOM;
-use crate::numeric::Scalar;
+use crate::numeric::{Number, Scalar};
 
-/// Acceleration of the base, in kernel units.
-pub(crate) trait Drive<T: Scalar> {
+/// How the series of a drive goes on.
+pub(crate) trait Tail<T: Number> {
     /// State carried along a series.
     type Rolling: Default;
 
     /// From here on all coefficients are 0, and are not added: an addition of nothing takes its time too.
     const ZERO_FROM: usize = usize::MAX;
 
+    /// Fills a\[k\], k >= `SEEDED`, once each and in ascending order; `inverse[n]` is 1/(n(n-1)).
+    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling);
+}
+
+/// Acceleration of the base, in kernel units.
+pub(crate) trait Drive<T: Scalar>: Tail<T> {
     /// Whether half a cycle of the clock later it is always the opposite.
     const ODD: bool = false;
 
@@ -29,9 +35,6 @@ pub(crate) trait Drive<T: Scalar> {
         a: &mut [T; ROOM],
         roll: &mut Self::Rolling,
     );
-
-    /// Fills a\[k\], k >= `SEEDED`, once each and in ascending order; `inverse[n]` is 1/(n(n-1)).
-    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling);
 
     /// a(t) at `at` by itself, not by the series: what a step is checked against. A drive of many tones may
     /// answer with `by_series`, the value of its series.
@@ -100,16 +103,19 @@ pub(crate) struct Still<T> {
     pub acceleration: T,
 }
 
-impl<T: Scalar> Drive<T> for Still<T> {
+impl<T: Scalar> Tail<T> for Still<T> {
     type Rolling = ();
     const ZERO_FROM: usize = 1;
 
     #[inline]
+    fn extend(&self, _: usize, _: &mut [T; ROOM], _: &[T; ROOM], (): &mut ()) {}
+}
+
+impl<T: Scalar> Drive<T> for Still<T> {
+    #[inline]
     fn seed(&self, _: &Clock<T>, _: &Instant<T>, _: usize, a: &mut [T; ROOM], (): &mut ()) {
         a[0] = self.acceleration; // the others stay 0
     }
-    #[inline]
-    fn extend(&self, _: usize, _: &mut [T; ROOM], _: &[T; ROOM], (): &mut ()) {}
     #[inline]
     fn value(&self, _: &Clock<T>, _: &Instant<T>, _: usize, _: impl Fn() -> T, (): &mut ()) -> T {
         self.acceleration

@@ -5,7 +5,7 @@
 //! of the known curve). The arena is the mode of the motion.
 
 use super::model::{Model, StopAt};
-use crate::numeric::Scalar;
+use crate::numeric::{Number, Scalar};
 
 /// Stands in for an end that does not exist; far, yet safe to compute with.
 pub(super) const FAR: f64 = 1e200;
@@ -17,25 +17,42 @@ pub(crate) struct PieceForce<T> {
     odd: bool,
 }
 
-impl<T: Scalar> PieceForce<T> {
-    /// Coefficients from the constant up; never empty.
+impl<T: Number> PieceForce<T> {
+    /// Coefficients from the constant up, at least one; `odd` where all even ones are 0.
+    pub fn new(coefficients: Vec<T>, odd: bool) -> Self {
+        Self { coefficients, odd }
+    }
+
+    /// One of the coefficients.
     #[inline]
+    pub fn coefficient_mut(&mut self, degree: usize) -> &mut T {
+        &mut self.coefficients[degree]
+    }
+
+    /// Coefficients from the constant up; never empty.
+    #[inline(always)]
     pub fn coefficients(&self) -> &[T] {
         &self.coefficients
     }
 
     /// Whether all even coefficients are 0.
-    #[inline]
+    #[inline(always)]
     pub fn is_odd(&self) -> bool {
         self.odd
     }
 
     /// Force over mass at displacement `y` from the origin.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, y: T) -> T {
-        self.coefficients.iter().rev().fold(T::zero(), |sum, c| sum * y + *c)
+        let mut sum = T::zero();
+        for c in self.coefficients.iter().rev() {
+            sum = sum * y + *c;
+        }
+        sum
     }
+}
 
+impl<T: Scalar> PieceForce<T> {
     /// Force over mass and its slope at displacement `y` from the origin, and a bound of the rounding.
     pub fn value(&self, y: T) -> (T, T, T) {
         let (mut f, mut slope, mut size) = (T::zero(), T::zero(), T::zero());
@@ -204,7 +221,7 @@ impl<T: Scalar> Equation<T> {
                 end(right, last, rigid(right_stop), right_stop.is_some_and(|s| s.x <= right));
             arenas.push(Arena {
                 piece: index,
-                force: PieceForce { coefficients, odd },
+                force: PieceForce::new(coefficients, odd),
                 origin: T::of(piece.origin),
                 low,
                 high,

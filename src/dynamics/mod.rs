@@ -9,6 +9,7 @@ mod describe;
 mod drive;
 mod equation;
 mod extent;
+mod lanes;
 mod live;
 mod model;
 mod motion;

@@ -175,6 +175,12 @@ impl Model {
         super::prepare::run::<f64>(self, request, self.tolerance, self.recurrence)
     }
 
+    /// Runs several models with nothing listed, many at once where the processor can: what [`run`](Self::run) gives for
+    /// each, bit for bit, in their order. The CPU time of all is shared evenly between them.
+    pub fn run_all(models: &[Self], cancel: Option<&AtomicBool>) -> Vec<Run> {
+        super::lanes::run_all(models, &Request { cancel, ..Request::default() })
+    }
+
     /// Runs the model once in double-double arithmetic, some 31 digits, with its own `tolerance` (1e-28 is
     /// sensible): the reference that a run in doubles is measured against. About a hundred times slower; nothing of it is
     /// completed from a cycle.

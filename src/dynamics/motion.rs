@@ -105,11 +105,16 @@ pub(super) struct Settings<T> {
     pub tolerance: f64,
     pub tolerance_log2: f64,
     pub speed: T,
-    speed_log2: f64,
+    pub speed_log2: f64,
     pub longest: f64,
 }
 
 impl<T: Scalar> Settings<T> {
+    /// The residual that a step of the full order may leave, by the tolerance.
+    pub fn residual_of_a_full_step(&self) -> T {
+        T::of(RESIDUAL * self.order as f64 * self.tolerance) * self.speed
+    }
+
     /// The order is the cheapest one by measurement on the nominal cubic: about 5/4 coefficients a digit.
     fn new(model: &Model, unit: f64, tolerance: f64) -> Self {
         let local = tolerance * LOCAL_SHARE;
@@ -197,12 +202,19 @@ impl<T: Scalar> Carried<T> {
 }
 
 /// A step that has been chosen.
-struct Step<T> {
-    length: T,
+pub(super) struct Step<T> {
+    pub length: T,
     /// The instant at which it ends, where that is the end of the run or of the drive's segment.
-    arrival: Option<Instant<T>>,
+    pub arrival: Option<Instant<T>>,
     /// What the polynomial says of its end.
-    end: State<T>,
+    pub end: State<T>,
+}
+
+/// What is kept of a run's first instant: the velocity, the arena and the place in it, and in J what a compliant stop
+/// stores.
+pub(super) struct Begun<T> {
+    v: T,
+    place: (usize, f64, f64),
 }
 
 /// Whether a step went on or the run ended.
@@ -263,35 +275,60 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
     }
 
     pub fn run(mut self, model: &Model) -> Run {
-        let start_v = self.v;
-        self.place_at_start();
-        let start = (self.arena, self.x.to_f64(), self.pressed_in_j(model));
+        let begun = self.begin(model);
         let outcome = loop {
-            if let Some(label) = self.label.take() {
-                self.let_go(label);
-            }
-            let left = self.clock.between(&self.at, &self.end);
-            if !(left > T::zero()) {
-                break Outcome::Done;
-            }
-            self.mark();
-            let ended = self.proceed(left);
-            if let Some(outcome) = ended {
+            let left = match self.left() {
+                Ok(left) => left,
+                Err(outcome) => break outcome,
+            };
+            if let Some(outcome) = self.proceed(left).or_else(|| self.spent()) {
                 break outcome;
             }
-            if self.steps.is_multiple_of(CANCEL_STRIDE) && self.is_cancelled() {
-                break Outcome::Cancelled { at: self.clock.seconds(&self.at) };
-            }
-            if self.record.total_impacts() >= IMPACT_BUDGET {
-                let count = self.record.total_impacts();
-                break Outcome::ImpactBudget { at: self.clock.seconds(&self.at), count };
-            }
-            if self.steps + CONTACT_WEIGHT * self.contact_steps >= STEP_BUDGET {
-                break Outcome::StepBudget { at: self.clock.seconds(&self.at), count: self.steps };
-            }
         };
+        self.finish(model, &begun, outcome)
+    }
+
+    /// Puts the mass to its start.
+    pub fn begin(&mut self, model: &Model) -> Begun<T> {
+        let v = self.v;
+        self.place_at_start();
+        Begun { v, place: (self.arena, self.x.to_f64(), self.pressed_in_j(model)) }
+    }
+
+    /// The time to the end of the run, or how it has ended. A motion that has come back is completed first.
+    #[inline]
+    pub fn left(&mut self) -> Result<T, Outcome> {
+        if let Some(label) = self.label.take() {
+            self.let_go(label);
+        }
+        let left = self.clock.between(&self.at, &self.end);
+        if !(left > T::zero()) {
+            return Err(Outcome::Done);
+        }
+        self.mark();
+        Ok(left)
+    }
+
+    /// How the run ends where its budget is spent, or it is told to.
+    #[inline]
+    pub fn spent(&self) -> Flow {
+        if self.steps.is_multiple_of(CANCEL_STRIDE) && self.is_cancelled() {
+            return Some(Outcome::Cancelled { at: self.clock.seconds(&self.at) });
+        }
+        if self.record.total_impacts() >= IMPACT_BUDGET {
+            let count = self.record.total_impacts();
+            return Some(Outcome::ImpactBudget { at: self.clock.seconds(&self.at), count });
+        }
+        if self.steps + CONTACT_WEIGHT * self.contact_steps >= STEP_BUDGET {
+            return Some(Outcome::StepBudget { at: self.clock.seconds(&self.at), count: self.steps });
+        }
+        None
+    }
+
+    /// Closes the record.
+    pub fn finish(self, model: &Model, begun: &Begun<T>, outcome: Outcome) -> Run {
         let phase = self.carry().phase();
-        let potential = self.potential_since(model, start);
+        let (start_v, potential) = (begun.v, self.potential_since(model, begun.place));
         let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
         let mut run = self.record.finish(
             &Ending { at: self.at, state: (self.x, self.v), start_v, phase, potential, outcome },
@@ -378,7 +415,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
     }
 
     /// One step of free flight; `left` is the time to the end of the run.
-    fn fly(&mut self, left: T) -> Flow {
+    pub fn fly(&mut self, left: T) -> Flow {
         let zero = T::zero();
         if self.pass_segment_end() {
             return None;
@@ -405,10 +442,15 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         }
 
         self.series.begin(self.x - arena.origin, self.v);
-        let Some(Step { length: h, arrival, end }) = self.choose_step(flight, left) else {
+        let Some(step) = self.choose_step(flight, left) else {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
         };
+        self.take(&step)
+    }
 
+    /// Goes along a step of flight up to its end or the first surface.
+    pub fn take(&mut self, &Step { length: h, arrival, end }: &Step<T>) -> Flow {
+        let (arena, zero) = (&self.equation.arenas[self.arena], T::zero());
         let exit = self.find_exit(h, end.bound);
         let (length, touched) = match exit {
             Some((s, end)) => (s * h, Some(end)),

@@ -7,7 +7,7 @@
 //! and Zou 2005, "A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods".)
 
-use super::drive::Drive;
+use super::drive::Tail;
 use super::equation::PieceForce;
 use crate::numeric::{Number, Scalar};
 
@@ -45,11 +45,11 @@ pub(crate) struct State<T> {
     pub bound: T,
 }
 
-impl<T: Scalar> Series<T> {
+impl<T: Number> Series<T> {
     pub fn new() -> Self {
         let mut inverse = [T::zero(); ROOM];
         for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
-            *slot = T::of(1.0) / T::of((k * (k - 1)) as f64);
+            *slot = T::ratio(1.0, (k * (k - 1)) as f64);
         }
         let zeros = [T::zero(); ROOM];
         Self { y: zeros, a: zeros, known: 0, square: zeros, nested: [zeros; ROWS], inverse }
@@ -57,7 +57,7 @@ impl<T: Scalar> Series<T> {
 
     /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first
     /// [`SEEDED`] coefficients of the drive are already in `a`.
-    #[inline]
+    #[inline(always)]
     pub fn begin(&mut self, y: T, v: T) {
         self.y[0] = y;
         self.y[1] = v;
@@ -65,8 +65,8 @@ impl<T: Scalar> Series<T> {
     }
 
     /// Adds the next coefficient.
-    #[inline]
-    pub fn push<D: Drive<T>>(&mut self, force: &PieceForce<T>, damping: T, drive: &D, roll: &mut D::Rolling) {
+    #[inline(always)]
+    pub fn push<D: Tail<T>>(&mut self, force: &PieceForce<T>, damping: T, drive: &D, roll: &mut D::Rolling) {
         let k = self.known - 2;
         if k >= SEEDED {
             drive.extend(k, &mut self.a, &self.inverse, roll);
@@ -78,7 +78,8 @@ impl<T: Scalar> Series<T> {
     }
 
     /// Adds coefficients up to `order`: what [`Self::push`] does, with the shape of the force decided once.
-    pub fn extend_to<D: Drive<T>>(
+    #[inline(always)]
+    pub fn extend_to<D: Tail<T>>(
         &mut self,
         order: usize,
         force: &PieceForce<T>,
@@ -90,16 +91,46 @@ impl<T: Scalar> Series<T> {
         let Self { y, a, nested, inverse, .. } = self;
         let known = self.known - 2..order.min(MAX_ORDER) - 1; // the bound spares a look at each index
         match c {
-            [c0] => recur(known, y, a, inverse, damping, drive, roll, |k, _| at_zero(k, *c0, T::zero())),
+            [c0] => recur(
+                known,
+                y,
+                a,
+                inverse,
+                damping,
+                drive,
+                roll,
+                #[inline(always)]
+                |k, _| at_zero(k, *c0, T::zero()),
+            ),
             [c0, c1] => {
-                recur(known, y, a, inverse, damping, drive, roll, |k, y| at_zero(k, *c0, *c1 * y[k]));
+                recur(
+                    known,
+                    y,
+                    a,
+                    inverse,
+                    damping,
+                    drive,
+                    roll,
+                    #[inline(always)]
+                    |k, y| at_zero(k, *c0, *c1 * y[k]),
+                );
             }
             [_, c1, _, c3] if force.is_odd() => {
                 let row = &mut nested[0];
-                recur(known, y, a, inverse, damping, drive, roll, |k, y| {
-                    row[k] = at_zero(k, *c1, *c3 * square(y, k));
-                    convolve(row, y, k)
-                });
+                recur(
+                    known,
+                    y,
+                    a,
+                    inverse,
+                    damping,
+                    drive,
+                    roll,
+                    #[inline(always)]
+                    |k, y| {
+                        row[k] = at_zero(k, *c1, *c3 * square(y, k));
+                        convolve(row, y, k)
+                    },
+                );
             }
             _ => {
                 while self.known <= order {
@@ -112,7 +143,7 @@ impl<T: Scalar> Series<T> {
     }
 
     /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones have been asked for before.
-    #[inline]
+    #[inline(always)]
     pub(super) fn force_coefficient(&mut self, force: &PieceForce<T>, k: usize) -> T {
         let c = force.coefficients();
         let constant = if k == 0 { c[0] } else { T::zero() };
@@ -146,33 +177,12 @@ impl<T: Scalar> Series<T> {
     }
 
     /// Adds coefficient `k` of the drive, at or above [`SEEDED`]; once each and in ascending order.
-    pub(super) fn extend_drive<D: Drive<T>>(&mut self, k: usize, drive: &D, roll: &mut D::Rolling) {
+    pub(super) fn extend_drive<D: Tail<T>>(&mut self, k: usize, drive: &D, roll: &mut D::Rolling) {
         drive.extend(k, &mut self.a, &self.inverse, roll);
     }
 
-    /// The longest step whose first neglected term in the velocity stays below `tolerance` times `speed`,
-    /// at most `cap`; from several of the last coefficients, since single ones vanish at symmetry points.
-    #[inline]
-    pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
-        let order = self.known - 1;
-        let mut radius = f64::INFINITY;
-        let first = order.saturating_sub(3).max(2);
-        let mut power = first as f64;
-        for c in &self.y[first..=order] {
-            let size = c.to_f64().abs() * power;
-            power += 1.0;
-            if size > 1e-300 {
-                radius = radius.min((speed_log2 - fast_log2(size)) / (power - 2.0));
-            } else if !size.is_finite() {
-                return f64::NAN;
-            }
-        }
-        let log2 = radius + tolerance_log2 / order as f64;
-        if log2 < 1000.0 { fast_exp2(log2).min(cap) } else { cap }
-    }
-
     /// The state at time `t` into the step, and a bound of the way up to there.
-    #[inline]
+    #[inline(always)]
     pub fn state(&self, t: T) -> State<T> {
         let zero = T::zero();
         let (mut y, mut v, mut half, mut bound) = (zero, zero, zero, zero);
@@ -188,16 +198,56 @@ impl<T: Scalar> Series<T> {
         State { y, v, acceleration: half + half, bound: bound * t }
     }
 
-    /// Acceleration of the base at time `t` into the step, by its series.
-    pub fn base(&self, t: T) -> T {
-        self.base_coefficients().iter().rev().fold(T::zero(), |sum, c| sum * t + *c)
-    }
-
     /// The coefficients of the base's acceleration that go with those of the motion.
     #[inline]
     pub fn base_coefficients(&self) -> &[T] {
         &self.a[..(self.known - 2).max(SEEDED)]
     }
+}
+
+impl<T: Scalar> Series<T> {
+    /// The longest step whose first neglected term in the velocity stays below `tolerance` times `speed`, at most `cap`.
+    #[inline]
+    pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
+        let [step] =
+            natural_steps(self.known - 1, |k| [self.y[k].to_f64()], &[speed_log2], tolerance_log2, &[cap]);
+        step
+    }
+
+    /// Acceleration of the base at time `t` into the step, by its series.
+    pub fn base(&self, t: T) -> T {
+        self.base_coefficients().iter().rev().fold(T::zero(), |sum, c| sum * t + *c)
+    }
+}
+
+/// As [`Series::natural_step`], of coefficients up to `order`, for several series at once; from several of the last ones,
+/// since single ones vanish at symmetry points. NaN where one is.
+#[inline(always)]
+pub(super) fn natural_steps<const W: usize>(
+    order: usize,
+    coefficients: impl Fn(usize) -> [f64; W],
+    speed_log2: &[f64; W],
+    tolerance_log2: f64,
+    cap: &[f64; W],
+) -> [f64; W] {
+    let (mut radius, mut sum) = ([f64::INFINITY; W], [0.0; W]);
+    for k in order.saturating_sub(3).max(2)..=order {
+        let coefficients = coefficients(k);
+        for lane in 0..W {
+            let size = coefficients[lane].abs() * k as f64;
+            let own = (speed_log2[lane] - fast_log2(size)) / (k as f64 - 1.0);
+            radius[lane] = if (size > 1e-300) & (own < radius[lane]) { own } else { radius[lane] };
+            sum[lane] += size;
+        }
+    }
+    let mut steps = [0.0; W];
+    for lane in 0..W {
+        let log2 = radius[lane] + tolerance_log2 / order as f64;
+        let step = fast_exp2(if log2 < 1000.0 { log2 } else { 1000.0 });
+        let step = if (log2 < 1000.0) & (step < cap[lane]) { step } else { cap[lane] };
+        steps[lane] = if sum[lane].is_nan() { f64::NAN } else { step };
+    }
+    steps
 }
 
 /// `rest`, and `value` in the constant term: elsewhere nothing is added, not a 0, on which the next would wait.
@@ -208,14 +258,14 @@ fn at_zero<T: Number>(k: usize, value: T, rest: T) -> T {
 
 /// `sum` and coefficient `k` of the base's acceleration, where it may be other than 0.
 #[inline(always)]
-fn with_base<T: Scalar, D: Drive<T>>(sum: T, a: &[T; ROOM], k: usize) -> T {
+fn with_base<T: Number, D: Tail<T>>(sum: T, a: &[T; ROOM], k: usize) -> T {
     if k < D::ZERO_FROM { sum + a[k] } else { sum }
 }
 
 /// The recurrence of the equation of motion over the orders `known`, the force's coefficients by `force`.
 #[allow(clippy::too_many_arguments)] // fields borrowed apart, so that `force` may hold the others
 #[inline(always)]
-fn recur<T: Scalar, D: Drive<T>>(
+fn recur<T: Number, D: Tail<T>>(
     known: std::ops::Range<usize>,
     y: &mut [T; ROOM],
     a: &mut [T; ROOM],
@@ -236,7 +286,7 @@ fn recur<T: Scalar, D: Drive<T>>(
 }
 
 /// Sum of a\[i\] b\[k-i\] over i = 0..=k; two running sums, since one addition waits for the last.
-#[inline]
+#[inline(always)]
 pub(crate) fn convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
     let mut even = T::zero();
     let mut odd = T::zero();
@@ -251,7 +301,7 @@ pub(crate) fn convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
 }
 
 /// Sum of a\[i\] a\[k-i\] over i = 0..=k by symmetry.
-#[inline]
+#[inline(always)]
 fn square<T: Number>(a: &[T; ROOM], k: usize) -> T {
     let half = k.div_ceil(2);
     let mut even = T::zero();
@@ -268,7 +318,7 @@ fn square<T: Number>(a: &[T; ROOM], k: usize) -> T {
 }
 
 /// log2 to 0.01, for step sizes only: the same bits on every processor, unlike a library's.
-#[inline]
+#[inline(always)]
 pub(crate) fn fast_log2(x: f64) -> f64 {
     let bits = x.to_bits();
     let exponent = (bits >> 52) as i64 - 1023;
@@ -276,10 +326,12 @@ pub(crate) fn fast_log2(x: f64) -> f64 {
     exponent as f64 + m * (1.3465 - 0.3465 * m)
 }
 
-/// 2^x to 0.3 %, for |x| below 1000, for step sizes only.
-#[inline]
+/// 2^x to 0.3 %, for |x| up to 1000, for step sizes only.
+#[inline(always)]
 pub(crate) fn fast_exp2(x: f64) -> f64 {
-    let whole = Scalar::floor(x);
+    const NO_FRACTION: f64 = 6_755_399_441_055_744.0; // 1.5 2^52
+    let nearest = (x + NO_FRACTION) - NO_FRACTION;
+    let whole = if nearest > x { nearest - 1.0 } else { nearest };
     let f = x - whole;
     let mantissa = 1.0 + f * (0.6565 + 0.3435 * f);
     f64::from_bits(((whole as i64 + 1023).clamp(1, 2046) as u64) << 52) * mantissa

@@ -3,7 +3,7 @@
 //! Functions of coefficients alone, so that a step that was kept is read as the one that has just been made.
 
 use super::series::ROOM;
-use crate::numeric::{GaussLegendre, MOST_POINTS, Scalar};
+use crate::numeric::{GaussLegendre, MOST_POINTS, Number, Scalar};
 
 /// The coefficients, each times its power of `h`.
 #[inline]
@@ -42,7 +42,8 @@ pub(super) fn slope<T: Scalar>(y: &[T], t: T) -> T {
 /// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base acceleration (`a`)
 /// times velocity; of the step's own polynomials by Gauss' rule. (Products truncated at their order miss, on a long
 /// step under a fast drive, a thousand times the tolerance.)
-pub(super) fn integrals<T: Scalar, const WORK: bool>(
+#[inline(always)]
+pub(super) fn integrals<T: Number, const WORK: bool>(
     y: &[T],
     a: &[T],
     rule: &GaussLegendre<T>,

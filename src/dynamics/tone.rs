@@ -1,9 +1,9 @@
 //! What does one tone do, and when does it let go of a mass on a stop?
 
 use super::clock::{Clock, Instant};
-use super::drive::{Drive, Fall, Press, Span};
+use super::drive::{Drive, Fall, Press, Span, Tail};
 use super::series::ROOM;
-use crate::numeric::{DoubleDouble, Ratio, Scalar};
+use crate::numeric::{DoubleDouble, Number, Ratio, Scalar};
 
 /// Linear growth of a tone's amplitude from the run's start to an instant; constant from there.
 #[derive(Debug, Clone)]
@@ -97,35 +97,70 @@ pub(crate) struct Sine<T> {
     pub tone: Tone<T>,
 }
 
+/// Where a tone was last evaluated, and what it and its time derivative were per unit amplitude.
+pub(crate) type Looked<T> = Option<(Instant<T>, (T, T))>;
+
+/// The series of a tone of this curvature, -(2 pi frequency)^2.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Swing<T> {
+    pub curvature: T,
+}
+
+impl<T: Number> Swing<T> {
+    /// The first coefficients from value and time derivative.
+    #[inline(always)]
+    pub fn seed(self, value: T, slope: T, a: &mut [T; ROOM]) {
+        a[0] = value;
+        a[1] = slope;
+        a[2] = self.curvature * a[0] * T::of(0.5);
+        a[3] = self.curvature * a[1] / T::of(6.0);
+    }
+}
+
+impl<T: Number> Tail<T> for Swing<T> {
+    type Rolling = ();
+
+    #[inline(always)]
+    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], (): &mut ()) {
+        a[k] = self.curvature * a[k - 2] * inverse[k];
+    }
+}
+
 impl<T: Scalar> Sine<T> {
     /// Value and time derivative per unit amplitude: each cycle begins at the same turn.
     #[inline]
     fn unit(&self, at: &Instant<T>) -> (T, T) {
         self.tone.after(at.phase, self.tone.phase)
     }
+
+    /// The same, where it was looked at last if that was there.
+    #[inline]
+    pub fn looked(&self, at: &Instant<T>, last: &Looked<T>) -> (T, T) {
+        match last {
+            Some((when, unit)) if when == at => *unit,
+            _ => self.unit(at),
+        }
+    }
+}
+
+impl<T: Scalar> Tail<T> for Sine<T> {
+    /// A step begins where the check of the last one looked.
+    type Rolling = Looked<T>;
+
+    #[inline]
+    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], _: &mut Self::Rolling) {
+        Swing { curvature: self.tone.curvature() }.extend(k, a, inverse, &mut ());
+    }
 }
 
 impl<T: Scalar> Drive<T> for Sine<T> {
-    /// Where the tone was last evaluated, and what it was: a step begins where the check of the last one looked.
-    type Rolling = Option<(Instant<T>, (T, T))>;
     const ODD: bool = true;
 
     #[inline]
     fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Rolling) {
-        let (s, d) = match last {
-            Some((when, unit)) if when == at => *unit,
-            _ => self.unit(at),
-        };
-        let w = self.tone.curvature();
-        a[0] = self.tone.amplitude * s;
-        a[1] = self.tone.amplitude * d;
-        a[2] = w * a[0] * T::of(0.5);
-        a[3] = w * a[1] / T::of(6.0);
-    }
-
-    #[inline]
-    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], _: &mut Self::Rolling) {
-        a[k] = self.tone.curvature() * a[k - 2] * inverse[k];
+        let (s, d) = self.looked(at, last);
+        let swing = Swing { curvature: self.tone.curvature() };
+        swing.seed(self.tone.amplitude * s, self.tone.amplitude * d, a);
     }
 
     #[inline]

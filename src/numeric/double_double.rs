@@ -131,6 +131,12 @@ impl Number for DoubleDouble {
     fn of(value: f64) -> Self {
         Self { high: value, low: 0.0 }
     }
+    fn ratio(over: f64, under: f64) -> Self {
+        Self::of(over) / Self::of(under)
+    }
+    fn abs(self) -> Self {
+        if self.high < 0.0 || (self.high == 0.0 && self.low < 0.0) { -self } else { self }
+    }
 }
 
 impl Scalar for DoubleDouble {
@@ -147,9 +153,6 @@ impl Scalar for DoubleDouble {
     }
     fn of_pair(pair: DoubleDouble) -> Self {
         pair
-    }
-    fn abs(self) -> Self {
-        if self.high < 0.0 || (self.high == 0.0 && self.low < 0.0) { -self } else { self }
     }
     fn floor(self) -> Self {
         let high = self.high.floor();

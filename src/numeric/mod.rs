@@ -3,6 +3,7 @@
 mod decimal;
 mod double_double;
 pub mod fit;
+mod lanes;
 mod quadrature;
 pub mod real_roots;
 mod roots;
@@ -13,6 +14,7 @@ mod sum;
 pub use decimal::Ratio;
 pub(crate) use decimal::greatest_common_divisor;
 pub use double_double::DoubleDouble;
+pub use lanes::Lanes;
 pub use quadrature::{GaussLegendre, MOST_POINTS, even_half};
 pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::{Number, Scalar};

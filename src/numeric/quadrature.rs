@@ -1,6 +1,6 @@
 //! At which points is a smooth function sampled to integrate it over a step?
 
-use super::scalar::Scalar;
+use super::scalar::{Number, Scalar};
 
 /// The most points of a rule.
 pub const MOST_POINTS: usize = 20;
@@ -16,6 +16,25 @@ pub struct GaussLegendre<T> {
     weights: [T; MOST_POINTS],
 }
 
+impl<T: Number> GaussLegendre<T> {
+    /// The points, ascending.
+    #[inline(always)]
+    pub fn nodes(&self) -> &[T] {
+        &self.nodes[..self.points]
+    }
+
+    /// The weight of each point; their sum is 1.
+    #[inline(always)]
+    pub fn weights(&self) -> &[T] {
+        &self.weights[..self.points]
+    }
+
+    /// The same rule in other numbers.
+    pub fn map<U: Number>(&self, of: impl Fn(T) -> U) -> GaussLegendre<U> {
+        GaussLegendre { points: self.points, nodes: self.nodes.map(&of), weights: self.weights.map(&of) }
+    }
+}
+
 impl<T: Scalar> GaussLegendre<T> {
     /// The rule with 1 to [`MOST_POINTS`] points (clamped), to the rounding of `T`: Newton's method on the
     /// Legendre polynomials from the usual cosine guess.
@@ -29,16 +48,6 @@ impl<T: Scalar> GaussLegendre<T> {
             rule.weights[i] = one / ((one - x[i] * x[i]) * slope[i] * slope[i]);
         }
         rule
-    }
-
-    /// The points, ascending.
-    pub fn nodes(&self) -> &[T] {
-        &self.nodes[..self.points]
-    }
-
-    /// The weight of each point; their sum is 1.
-    pub fn weights(&self) -> &[T] {
-        &self.weights[..self.points]
     }
 }
 

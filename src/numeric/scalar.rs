@@ -1,6 +1,6 @@
 //! Which operations must a number offer so that the integrator can run on it?
 //!
-//! Two levels. [`Number`] is what a power series needs: ring operations without a branch, so that a
+//! Two levels. [`Number`] is what a power series needs: arithmetic without a branch, so that a
 //! bundle of several trajectories can be one. [`Scalar`] adds order and a few functions, for the
 //! decisions between steps. `f64` is the working type, [`DoubleDouble`](super::DoubleDouble) the
 //! reference.
@@ -10,19 +10,24 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::double_double::DoubleDouble;
 
-/// Ring operations without a branch.
+/// Arithmetic without a branch.
 pub trait Number:
     Copy
     + Debug
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
+    + Div<Output = Self>
     + Neg<Output = Self>
     + AddAssign
     + SubAssign
 {
     /// The number nearest to `value`.
     fn of(value: f64) -> Self;
+    /// The number nearest to `over / under`.
+    fn ratio(over: f64, under: f64) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
 
     /// 0.
     fn zero() -> Self {
@@ -31,7 +36,7 @@ pub trait Number:
 }
 
 /// A single real number: order, division, a few functions.
-pub trait Scalar: Number + PartialOrd + Div<Output = Self> {
+pub trait Scalar: Number + PartialOrd {
     /// Spacing of the numbers just above 1, relative.
     const EPSILON: f64;
 
@@ -43,8 +48,6 @@ pub trait Scalar: Number + PartialOrd + Div<Output = Self> {
     fn to_pair(self) -> DoubleDouble;
     /// The nearest number to a sum of two doubles.
     fn of_pair(pair: DoubleDouble) -> Self;
-    /// Magnitude.
-    fn abs(self) -> Self;
     /// Largest whole number that is not above.
     fn floor(self) -> Self;
     /// Square root of a number that is 0 or above.
@@ -72,6 +75,14 @@ impl Number for f64 {
     fn of(value: f64) -> Self {
         value
     }
+    #[inline(always)]
+    fn ratio(over: f64, under: f64) -> Self {
+        over / under
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
 }
 
 impl Scalar for f64 {
@@ -92,10 +103,6 @@ impl Scalar for f64 {
         pair.to_f64()
     }
     #[inline(always)]
-    fn abs(self) -> Self {
-        f64::abs(self)
-    }
-    #[inline(always)]
     fn floor(self) -> Self {
         // The library's is a call on a processor that is only promised SSE2.
         if self.abs() < 4.0e18 {
@@ -109,25 +116,40 @@ impl Scalar for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    #[inline]
+    /// As [`sin_cos_by_octant`], every choice a selection, so that several can be made at once.
+    #[inline(always)]
     fn sin_cos_turns(u: Self) -> (Self, Self) {
-        sin_cos_by_octant(u, |r| {
-            // Taylor series in (2 pi r)^2 for |2 pi r| <= pi/4: the first omitted term is 4e-18 of
-            // the leading one.
-            let y = std::f64::consts::TAU * r;
-            let z = y * y;
-            let mut s = 1.0 / 355_687_428_096_000.0;
-            for d in [-1_307_674_368_000.0, 6_227_020_800.0, -39_916_800.0, 362_880.0, -5_040.0, 120.0, -6.0]
-            {
-                s = s * z + 1.0 / d;
-            }
-            let mut c = 1.0 / 20_922_789_888_000.0;
-            for d in [-87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0] {
-                c = c * z + 1.0 / d;
-            }
-            (y + y * (z * s), 1.0 - (0.5 * z - z * z * c))
-        })
+        let a = u.abs();
+        let f = a - floor_below_2_51(a); // exact
+        let quarter = floor_below_2_51(f * 4.0 + 0.5);
+        let r = f - quarter * 0.25; // exact
+        // Taylor series in (2 pi r)^2 for |2 pi r| <= pi/4: the first omitted term is 4e-18 of
+        // the leading one.
+        let y = std::f64::consts::TAU * r;
+        let z = y * y;
+        let mut s = 1.0 / 355_687_428_096_000.0;
+        for d in [-1_307_674_368_000.0, 6_227_020_800.0, -39_916_800.0, 362_880.0, -5_040.0, 120.0, -6.0] {
+            s = s * z + 1.0 / d;
+        }
+        let mut c = 1.0 / 20_922_789_888_000.0;
+        for d in [-87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0] {
+            c = c * z + 1.0 / d;
+        }
+        let (s, c) = (y + y * (z * s), 1.0 - (0.5 * z - z * z * c));
+        let (one, two, three) = (quarter == 1.0, quarter == 2.0, quarter == 3.0);
+        let (sine, cosine) = if one | three { (c, s) } else { (s, c) };
+        let sine = if two | three { -sine } else { sine };
+        let cosine = if one | two { -cosine } else { cosine };
+        (if u < 0.0 { -sine } else { sine }, cosine)
     }
+}
+
+/// Largest whole number that is not above 0 <= `x` < 2^51: adding 2^52 leaves no room for a fraction.
+#[inline(always)]
+fn floor_below_2_51(x: f64) -> f64 {
+    const NO_FRACTION: f64 = 4_503_599_627_370_496.0;
+    let nearest = (x + NO_FRACTION) - NO_FRACTION;
+    if nearest > x { nearest - 1.0 } else { nearest }
 }
 
 /// Reduces `u` exactly to |r| <= 1/8 turn, asks `small` for (sin, cos) there and puts the octants back.

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::Task;
 use super::grid::Grid;
 use super::table::{Table, Values};
-use crate::dynamics::{Model, Outcome, Request, Summary};
+use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
 
@@ -108,6 +108,9 @@ impl Tally {
 /// per cent of the chunk even where one cell takes several times the others.
 const CELLS_PER_THREAD: u64 = 256;
 
+/// Cells that a thread runs together: several times the lanes of any processor, so that few of them fly alone at the end.
+const BATCH: usize = 64;
+
 /// Mechanisms kept for the whole sweep, up to some 50 kB each (flexures with their states); beyond that each cell
 /// builds its own.
 const KEPT_MECHANISMS: u64 = 4096;
@@ -171,13 +174,16 @@ impl Sweep {
         while tally.cells < self.grid.cells() {
             let begin = tally.cells;
             let end = (begin + chunk).min(self.grid.cells());
-            let run = |scene: &mut Scene, offset: usize| {
-                let cell = self.run_cell(begin + offset as u64, scene, task);
-                (task.tick)();
-                cell
+            let batches = (begin..end).step_by(BATCH).map(|from| from..(from + BATCH as u64).min(end));
+            let run = |scene: &mut Scene, batch: std::ops::Range<u64>| {
+                let cells = batch.collect::<Vec<_>>();
+                let rows = self.run_batch(&cells, scene, task);
+                cells.iter().for_each(|_| (task.tick)());
+                rows
             };
-            let cells = (0..(end - begin) as usize).into_par_iter().with_max_len(1);
-            let rows: Vec<Cell> = pool.install(|| cells.map_init(|| self.base.clone(), run).collect());
+            let batches = batches.collect::<Vec<_>>().into_par_iter().with_max_len(1);
+            let rows: Vec<Vec<Cell>> = pool.install(|| batches.map_init(|| self.base.clone(), run).collect());
+            let rows = rows.concat();
             if task.is_cancelled() {
                 return Err(SweepEnd::Cancelled);
             }
@@ -202,34 +208,45 @@ impl Sweep {
     ) -> bool {
         // A shared counter keeps the order that a recursive split would lose, and no thread waits for a part.
         let next = AtomicUsize::new(0);
+        let batches: Vec<&[u64]> = cells.chunks(BATCH).collect();
         pool.broadcast(|_| {
             let mut scene = self.base.clone();
-            while let Some(index) = cells.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let cell = self.run_cell(*index, &mut scene, task);
+            while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let rows = self.run_batch(batch, &mut scene, task);
                 if task.is_cancelled() {
                     return;
                 }
-                each(*index, cell);
-                (task.tick)();
+                for (index, cell) in batch.iter().zip(rows) {
+                    each(*index, cell);
+                    (task.tick)();
+                }
             }
         });
         !task.is_cancelled()
     }
 
-    fn run_cell(&self, index: u64, scene: &mut Scene, task: &Task) -> Cell {
-        if task.is_cancelled() {
-            return Cell::NOT_RUN;
-        }
-        let request = Request { cancel: Some(task.cancel), ..Request::default() };
-        match self.model(index, scene) {
-            Some(Ok(model)) => {
-                let summary = model.run(&request).summary;
-                Cell { outcome: summary.outcome.name(), summary: Some(summary) }
+    /// Runs some cells on this thread, many at once where the processor can.
+    fn run_batch(&self, cells: &[u64], scene: &mut Scene, task: &Task) -> Vec<Cell> {
+        let mut rows = vec![Cell::NOT_RUN; cells.len()];
+        let (mut models, mut places) = (Vec::with_capacity(cells.len()), Vec::with_capacity(cells.len()));
+        for (place, index) in cells.iter().enumerate() {
+            if task.is_cancelled() {
+                return rows;
             }
-            // Not after the sweep has been validated.
-            Some(Err(_)) => Cell::NOT_RUN,
-            None => Cell { outcome: NOT_CONVERGED, summary: None },
+            match self.model(*index, scene) {
+                Some(Ok(model)) => {
+                    models.push(model);
+                    places.push(place);
+                }
+                // Not after the sweep has been validated.
+                Some(Err(_)) => {}
+                None => rows[place].outcome = NOT_CONVERGED,
+            }
         }
+        for (place, run) in places.into_iter().zip(Model::run_all(&models, Some(task.cancel))) {
+            rows[place] = Cell { outcome: run.summary.outcome.name(), summary: Some(run.summary) };
+        }
+        rows
     }
 
     /// The model of a cell, or its faults; none where its mechanism was not solved.

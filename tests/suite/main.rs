@@ -10,6 +10,7 @@ mod compliant;
 mod convergence;
 mod drives;
 mod impacts;
+mod lanes;
 mod layers;
 mod live;
 mod mechanics;

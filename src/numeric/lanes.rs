@@ -1,0 +1,104 @@
+//! How do several trajectories go through the same arithmetic at once?
+//!
+//! A bundle of numbers, each with its own value and all with the same operations. The loops are over a fixed width and
+//! without a branch, so that the compiler makes them instructions on whole registers, as wide as the processor's where
+//! the caller is compiled for it. Each lane gets the bits that it would get alone: nothing is fused or reordered.
+
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+use super::scalar::Number;
+
+/// `W` numbers side by side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C, align(64))]
+pub struct Lanes<const W: usize>(pub [f64; W]);
+
+impl<const W: usize> Lanes<W> {
+    /// The number of each lane.
+    #[inline(always)]
+    pub fn from_fn(of: impl FnMut(usize) -> f64) -> Self {
+        Self(std::array::from_fn(of))
+    }
+}
+
+macro_rules! lane_by_lane {
+    ($trait:ident, $method:ident, $operator:tt) => {
+        impl<const W: usize> $trait for Lanes<W> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let mut result = self;
+                for (own, other) in result.0.iter_mut().zip(&other.0) {
+                    *own = *own $operator *other;
+                }
+                result
+            }
+        }
+    };
+}
+
+lane_by_lane!(Add, add, +);
+lane_by_lane!(Sub, sub, -);
+lane_by_lane!(Mul, mul, *);
+lane_by_lane!(Div, div, /);
+
+impl<const W: usize> Neg for Lanes<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.map(|own| -own))
+    }
+}
+
+impl<const W: usize> AddAssign for Lanes<W> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const W: usize> SubAssign for Lanes<W> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const W: usize> Number for Lanes<W> {
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        Self([value; W])
+    }
+    #[inline(always)]
+    fn ratio(over: f64, under: f64) -> Self {
+        Self([over / under; W])
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f64::abs))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_lane_is_a_number_of_its_own() {
+        let a = Lanes([1.5, -2.0, 0.1, 1e300]);
+        let b = Lanes([0.5, 3.0, 0.2, 1e-300]);
+        for i in 0..4 {
+            let (x, y) = (a.0[i], b.0[i]);
+            let all = [
+                (a + b, x + y),
+                (a - b, x - y),
+                (a * b, x * y),
+                (a / b, x / y),
+                (-a, -x),
+                (a.abs(), x.abs()),
+            ];
+            assert!(all.iter().all(|(lanes, alone)| lanes.0[i].to_bits() == alone.to_bits()));
+        }
+        assert_eq!(Lanes::<2>::ratio(1.0, 3.0).0, [1.0 / 3.0; 2]);
+    }
+}

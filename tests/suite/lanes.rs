@@ -1,0 +1,81 @@
+//! Runs that share their steps are the runs that each would be alone, to the last bit.
+
+use interwell::dynamics::{Model, Request, Summary};
+
+use super::support::*;
+
+/// The summaries of models run together, and of each alone.
+fn compare(models: &[Model]) {
+    let together = Model::run_all(models, None);
+    assert_eq!(together.len(), models.len());
+    for (model, run) in models.iter().zip(&together) {
+        let alone = model.run(&Request::default());
+        let own = Summary { cpu_s: 0.0, ..run.summary };
+        assert_eq!(own, Summary { cpu_s: 0.0, ..alone.summary });
+        assert!(run.samples.is_empty() && run.events.is_empty());
+    }
+}
+
+fn models(scene: &str, all: &[&str], each: impl IntoIterator<Item = String>) -> Vec<Model> {
+    each.into_iter().map(|own| preset(scene, &[all, &[own.as_str()]].concat())).collect()
+}
+
+fn amplitudes(count: usize) -> impl Iterator<Item = String> {
+    (0..count).map(|i| format!("excitation.amplitude_g={}", 0.1 * i as f64))
+}
+
+#[test]
+fn maps_with_and_without_stops() {
+    for (scene, all) in [
+        ("nominal-cubic", &["stops=None", "run.duration_s=5", "run.settle_s=2.345"][..]),
+        ("nominal-cubic", &["run.duration_s=6"]),
+        ("nominal-cubic", &["run.duration_s=6", "run.recurrence=false", "excitation.phase_deg=123"]),
+        ("nominal-cubic", &["stops.travel_limit_mm=6.5", "run.tolerance=1e-4", "excitation.phase_deg=90"]),
+        ("paper", &["run.duration_s=3", "run.settle_s=1"]),
+        ("paper", &["stops=None", "run.duration_s=3", "run.settle_s=1", "run.tolerance=1e-12"]),
+        ("uneven-stops", &["run.duration_s=5"]),
+        ("monostable", &["run.duration_s=5", "run.settle_s=1"]),
+    ] {
+        compare(&models(scene, all, amplitudes(21)));
+    }
+}
+
+#[test]
+fn any_company_will_do() {
+    // Other tolerances, drives, stops, curves and lengths; some that cannot fly in company at all.
+    let mut all = Vec::new();
+    for (i, changes) in [
+        &["stops=None"][..],
+        &["run.tolerance=1e-6"],
+        &["excitation=None"],
+        &["mechanism=Cubic(linear_n_per_m: -20, cubic_n_per_m3: 1e6)"],
+        &["mechanism=Polynomial(coefficients_si: [0, -40, 100, 8e5])"],
+        &["excitation=Noise(rms_g: 0.5, low_hz: 1, high_hz: 9, seed: 3, lines: 20)"],
+        &["stops=Hertz(travel_limit_mm: 4, stiffness_n_per_m1_5: 1e9, loss_s_per_m: 0.5)"],
+        &["excitation.amplitude_g=0"],
+        &["excitation.frequency_hz=0.31"],
+        &["start=At(x_mm: 1, v_m_per_s: 0.3)"],
+        &["mass_g=150"],
+    ]
+    .iter()
+    .enumerate()
+    {
+        for seconds in [1, 4] {
+            let length = format!("run.duration_s={}", seconds as f64 + 0.01 * i as f64);
+            all.push(preset("nominal-cubic", &[&["run.settle_s=0.7", length.as_str()], *changes].concat()));
+        }
+    }
+    compare(&all);
+    all.reverse();
+    compare(&all);
+    compare(&all[..1]);
+    compare(&[]);
+}
+
+#[test]
+fn a_curve_that_ends_and_one_of_several_pieces() {
+    let table = |amplitude: f64| format!("excitation.amplitude_g={amplitude}");
+    let each = [0.5, 1.0, 1.5, 2.0, 3.0, 6.0, 12.0].map(table);
+    compare(&models("paper-table", &["stops=None", "run.duration_s=3", "run.settle_s=1"], each.clone()));
+    compare(&models("paper", &["stops.travel_limit_mm=7.17", "run.duration_s=3", "run.settle_s=1"], each));
+}
