@@ -209,7 +209,8 @@ impl Model {
         left.map(|stop| (stop - x, false)).into_iter().chain(right).find(|(depth, _)| *depth > 0.0)
     }
 
-    /// Whether the mirror image of a free motion is one: an odd curve, stops alike on both sides.
+    /// Whether the mirror image of a free motion is one, and crosses where the motion does: an odd curve, stops alike on
+    /// both sides.
     pub(crate) fn is_symmetric(&self) -> bool {
         let (left, right) = self.stops.map_or((None, None), |pair| (pair.left, pair.right));
         let alike = match (left, right) {
@@ -217,7 +218,7 @@ impl Model {
             (None, None) => true,
             _ => false,
         };
-        alike && self.mechanism.curve.is_odd()
+        alike && self.mechanism.curve.is_odd() && self.crossing_level.is_none_or(|level| level == 0.0)
     }
 
     /// Whether the base moves at all.

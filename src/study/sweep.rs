@@ -111,6 +111,9 @@ const CELLS_PER_THREAD: u64 = 256;
 /// Cells that a thread runs together: several times the lanes of any processor, so that few of them fly alone at the end.
 const BATCH: usize = 64;
 
+/// The same where each cell is waited for.
+const SHOWN: usize = 16;
+
 /// Mechanisms kept for the whole sweep, up to some 50 kB each (flexures with their states); beyond that each cell
 /// builds its own.
 const KEPT_MECHANISMS: u64 = 4096;
@@ -208,7 +211,7 @@ impl Sweep {
     ) -> bool {
         // A shared counter keeps the order that a recursive split would lose, and no thread waits for a part.
         let next = AtomicUsize::new(0);
-        let batches: Vec<&[u64]> = cells.chunks(BATCH).collect();
+        let batches: Vec<&[u64]> = cells.chunks(SHOWN).collect();
         pool.broadcast(|_| {
             let mut scene = self.base.clone();
             while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
