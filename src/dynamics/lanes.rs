@@ -260,6 +260,7 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
     }
 
     /// One step of every lane that flies.
+    #[allow(clippy::needless_range_loop)] // a lane is a place in every column
     #[inline(always)]
     fn fly(&mut self) {
         let zero = Lanes([0.0; W]);

@@ -29,7 +29,7 @@ macro_rules! lane_by_lane {
             fn $method(self, other: Self) -> Self {
                 let mut result = self;
                 for (own, other) in result.0.iter_mut().zip(&other.0) {
-                    *own = *own $operator *other;
+                    *own $operator *other;
                 }
                 result
             }
@@ -37,10 +37,10 @@ macro_rules! lane_by_lane {
     };
 }
 
-lane_by_lane!(Add, add, +);
-lane_by_lane!(Sub, sub, -);
-lane_by_lane!(Mul, mul, *);
-lane_by_lane!(Div, div, /);
+lane_by_lane!(Add, add, +=);
+lane_by_lane!(Sub, sub, -=);
+lane_by_lane!(Mul, mul, *=);
+lane_by_lane!(Div, div, /=);
 
 impl<const W: usize> Neg for Lanes<W> {
     type Output = Self;
