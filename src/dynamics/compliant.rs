@@ -16,9 +16,9 @@ use super::motion::{
     BY_SPEED, Contact, Depth, Flow, HELD, MOST_HALVINGS, Motion, RESIDUAL, ROUNDINGS, Touch,
 };
 use super::path::Path;
+use super::path::StepView;
 use super::penetration::{Entry, FEWEST_LEVELS, Penetration};
 use super::prepare::base_at;
-use super::record::StepView;
 use super::result::Outcome;
 use super::series::fast_log2;
 use crate::numeric::{PolynomialRoots, Scalar};

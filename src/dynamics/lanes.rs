@@ -10,10 +10,10 @@
 
 use super::clock::Instant;
 use super::equation::{Equation, PieceForce};
+use super::glide::Glide;
 use super::model::{Model, Request};
 use super::motion::{Begun, Contact, Motion, Step};
 use super::prepare::{Form, clock, form};
-use super::record::Glide;
 use super::result::{Outcome, Run};
 use super::series::{SEEDED, Series, State, natural_steps};
 use super::taylor;

@@ -4,6 +4,7 @@
 //! parameter, of which time is itself a polynomial. What is asked of either is the same, and for a flight the parameter
 //! is the time since the step's start: there these methods are the series' own, and cost nothing.
 
+use super::clock::Instant;
 use super::result::Phase;
 use super::series::{ROOM, Series};
 use super::taylor;
@@ -37,6 +38,36 @@ pub(crate) trait Path<T: Scalar> {
     /// Integrals over time between two parameters: of the squared velocity and, where `WORK`, of base acceleration times
     /// velocity.
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T);
+}
+
+/// One accepted step, as the recorder sees it.
+pub(crate) struct StepView<'a, T, P = Series<T>> {
+    pub path: &'a P,
+    /// Origin that the series is about.
+    pub origin: T,
+    /// When the step starts.
+    pub at: Instant<T>,
+    /// Length of the step as it was chosen, in the path's parameter.
+    pub whole: T,
+    /// Length that is kept, up to the whole.
+    pub length: T,
+    /// The time that it takes.
+    pub duration: T,
+    /// Bound of |x - x(start)| over the step.
+    pub bound: T,
+    /// Ends of the arena: x never passes them.
+    pub limits: (T, T),
+    /// State at the end of what is kept.
+    pub x: T,
+    pub v: T,
+}
+
+impl<T: Scalar, P: Path<T>> StepView<'_, T, P> {
+    /// Displacement at a parameter of the step, never beyond the arena by the rounding of its origin.
+    pub fn x_at(&self, t: T) -> T {
+        let x = self.path.position(t) + self.origin;
+        x.larger(self.limits.0).smaller(self.limits.1)
+    }
 }
 
 /// A step whose parameter is the time since its start.

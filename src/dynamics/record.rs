@@ -2,63 +2,13 @@
 
 use super::clock::{Clock, Instant};
 use super::model::{Model, Request};
-use super::path::Path;
+use super::path::{Path, StepView};
 use super::penetration::Penetration;
 use super::recurrence::{Entry, Log};
 use super::regime::{CrossingLog, Strobe};
 use super::result::{Event, EventKind, Phase, Sample, Side};
-use super::series::Series;
+use super::totals::{Counts, Sums};
 use crate::numeric::{CompensatedSum, GaussLegendre, PolynomialRoots, Scalar};
-
-/// One accepted step, as the recorder sees it.
-pub(crate) struct StepView<'a, T, P = Series<T>> {
-    pub path: &'a P,
-    /// Origin that the series is about.
-    pub origin: T,
-    /// When the step starts.
-    pub at: Instant<T>,
-    /// Length of the step as it was chosen, in the path's parameter.
-    pub whole: T,
-    /// Length that is kept, up to the whole.
-    pub length: T,
-    /// The time that it takes.
-    pub duration: T,
-    /// Bound of |x - x(start)| over the step.
-    pub bound: T,
-    /// Ends of the arena: x never passes them.
-    pub limits: (T, T),
-    /// State at the end of what is kept.
-    pub x: T,
-    pub v: T,
-}
-
-impl<T: Scalar, P: Path<T>> StepView<'_, T, P> {
-    /// Displacement at a parameter of the step, never beyond the arena by the rounding of its origin.
-    fn x_at(&self, t: T) -> T {
-        let x = self.path.position(t) + self.origin;
-        x.larger(self.limits.0).smaller(self.limits.1)
-    }
-}
-
-/// Sums over an interval of time.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Sums<T> {
-    /// Integral of v^2, kernel units.
-    pub squared_velocity: CompensatedSum<T>,
-    /// - integral of a v.
-    pub work: CompensatedSum<T>,
-    /// Kinetic energy over mass taken by impacts.
-    pub impact: CompensatedSum<T>,
-    /// Time at rest on a stop.
-    pub rested: CompensatedSum<T>,
-}
-
-impl<T: Scalar> Sums<T> {
-    fn new() -> Self {
-        let sum = CompensatedSum::new();
-        Self { squared_velocity: sum, work: sum, impact: sum, rested: sum }
-    }
-}
 
 pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) model: &'a Model,
@@ -92,17 +42,6 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) order: usize,
     /// All that is told, where a cycle is waited for.
     pub(super) log: Option<Box<Log<T>>>,
-}
-
-#[derive(Debug, Default, Clone, Copy)]
-pub(super) struct Counts {
-    pub crossings: u64,
-    pub impacts: u64,
-    pub releases: u64,
-    pub total_crossings: u64,
-    pub total_impacts: u64,
-    pub sums: u64,
-    pub rests: u64,
 }
 
 impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
@@ -157,7 +96,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
 
     /// The part of [at, at + length) inside the settled window, from the start of the step.
     #[inline]
-    fn overlap(&self, at: &Instant<T>, length: T) -> Option<(T, T)> {
+    pub(super) fn overlap(&self, at: &Instant<T>, length: T) -> Option<(T, T)> {
         let from = self.clock.between(at, &self.window.0).larger(T::zero());
         let to = self.clock.between(at, &self.window.1).smaller(length);
         (to > from).then_some((from, to))
@@ -523,75 +462,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     }
 }
 
-/// A step of free flight that may be one on which nothing happens.
-pub(super) struct Glide<T> {
-    pub at: Instant<T>,
-    pub length: T,
-    /// Displacement at its start and at its end.
-    pub start: T,
-    pub end: T,
-    /// Bound of |x - x(start)|.
-    pub bound: T,
-    /// Ends of the arena.
-    pub limits: (T, T),
-    /// As [`Recorder::wholly_inside`] says.
-    pub inside: Option<bool>,
-    /// Integral of the squared velocity over it, where that is asked for.
-    pub squared: T,
-}
-
-impl<T: Scalar> Recorder<'_, T, false> {
-    /// Whether a step lies wholly inside the settled window, or wholly outside; none where it does neither.
-    #[inline(always)]
-    pub fn wholly_inside(&self, at: &Instant<T>, length: T) -> Option<bool> {
-        match self.overlap(at, length) {
-            None => Some(false),
-            Some((from, to)) => (from == T::zero() && to == length).then_some(true),
-        }
-    }
-
-    /// Takes in a step on which nothing happens, as [`step`](Self::step) would; false where something may, and nothing
-    /// has been taken in.
-    #[inline(always)]
-    pub fn glide(&mut self, step: &Glide<T>) -> bool {
-        let Some(inside) = step.inside else { return false };
-        if self.log.is_some() || self.next_time < self.times.len() {
-            return false;
-        }
-        if let Some(barrier) = self.barrier
-            && (side_of(step.end, barrier) != self.barrier_side
-                || !((step.start - barrier).abs() > step.bound))
-        {
-            return false;
-        }
-        if let Some(strobe) = &self.next_strobe
-            && self.clock.between(&step.at, strobe) < step.length
-        {
-            return false;
-        }
-        if inside {
-            let within = step.start.larger(step.limits.0).smaller(step.limits.1);
-            let low = self.low.smaller(within).smaller(step.end);
-            let high = self.high.larger(within).larger(step.end);
-            let highest = (step.start + step.bound).smaller(step.limits.1);
-            let lowest = (step.start - step.bound).larger(step.limits.0);
-            if highest > high || lowest < low {
-                return false; // a turning point inside may lie beyond both ends
-            }
-            (self.low, self.high) = (low, high);
-            self.settled.squared_velocity.add(step.squared);
-            self.covered.add(step.length);
-        }
-        true
-    }
-
-    /// What integrals over a step are taken with.
-    pub fn rule_of_steps(&self) -> GaussLegendre<T> {
-        GaussLegendre::new(self.order / 2 + 1)
-    }
-}
-
-fn side_of<T: Scalar>(x: T, barrier: T) -> i8 {
+pub(super) fn side_of<T: Scalar>(x: T, barrier: T) -> i8 {
     if x > barrier {
         1
     } else if x < barrier {

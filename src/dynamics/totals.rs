@@ -1,12 +1,43 @@
 //! What has a record added up so far, and what is it after some more of the same?
 
 use super::clock::Instant;
-use super::record::{Counts, Recorder, Sums};
+use super::record::Recorder;
 use super::regime::Strobe;
 use crate::numeric::{CompensatedSum, Scalar};
 
 /// Share of the clock's cycle that keeps a stretch of time clear of a border.
 const CLEAR: f64 = 1e-9;
+
+/// Sums over an interval of time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sums<T> {
+    /// Integral of v^2, kernel units.
+    pub squared_velocity: CompensatedSum<T>,
+    /// - integral of a v.
+    pub work: CompensatedSum<T>,
+    /// Kinetic energy over mass taken by impacts.
+    pub impact: CompensatedSum<T>,
+    /// Time at rest on a stop.
+    pub rested: CompensatedSum<T>,
+}
+
+impl<T: Scalar> Sums<T> {
+    pub fn new() -> Self {
+        let sum = CompensatedSum::new();
+        Self { squared_velocity: sum, work: sum, impact: sum, rested: sum }
+    }
+}
+
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct Counts {
+    pub crossings: u64,
+    pub impacts: u64,
+    pub releases: u64,
+    pub total_crossings: u64,
+    pub total_impacts: u64,
+    pub sums: u64,
+    pub rests: u64,
+}
 
 /// The sums and counts of a recorder at an instant.
 #[derive(Debug, Clone, Copy)]

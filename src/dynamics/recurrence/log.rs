@@ -4,8 +4,8 @@ use std::cell::Cell;
 
 use super::super::clock::{Clock, Instant};
 use super::super::motion::{Carried, Contact, Touch};
-use super::super::path::{InTime, Path};
-use super::super::record::{Recorder, StepView};
+use super::super::path::{InTime, Path, StepView};
+use super::super::record::Recorder;
 use super::super::result::{Phase, Side};
 use super::super::taylor;
 use super::super::totals::Totals;

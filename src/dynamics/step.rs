@@ -1,0 +1,165 @@
+//! How long is a step of free flight, and what does it run into?
+
+use super::drive::Drive;
+use super::equation::End;
+use super::motion::{BY_JERK, BY_SPEED, HELD, MOST_HALVINGS, Motion, RESIDUAL, ROUNDINGS, Step, Touch};
+use super::path::Path;
+use super::series::{ROOM, State};
+use crate::numeric::{PolynomialRoots, Scalar};
+
+impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+    /// Extends the series as far as the step needs; none where the coefficients are not finite.
+    ///
+    /// Coefficients may vanish one after the other without the next one vanishing (a high power from its flat
+    /// middle, tones that cancel), and then the last ones promise too long a step. So each step is checked
+    /// against the equation of motion at its end, and halved until it holds.
+    pub(super) fn choose_step(&mut self, flight: Option<T>, left: T) -> Option<Step<T>> {
+        let natural = |motion: &Self| {
+            let s = &motion.settings;
+            motion.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest)
+        };
+        let mut h = match flight {
+            Some(flight) if self.expand_for(flight) => flight,
+            _ => {
+                self.expand();
+                let natural = T::of(natural(self));
+                flight.map_or(natural, |flight| flight.smaller(natural))
+            }
+        };
+        let border = self.drive.segment_end(self.segment);
+        for _ in 0..MOST_HALVINGS {
+            if !(h > T::zero()) {
+                return None;
+            }
+            let mut arrival = None;
+            if left <= h {
+                h = left;
+                arrival = Some(self.end);
+            }
+            if let Some(border) = border {
+                let to_border = self.clock.between(&self.at, &border);
+                if to_border <= h {
+                    h = to_border;
+                    arrival = Some(border);
+                }
+            }
+            let end = self.series.state(h);
+            if self.step_holds(h, &end) {
+                return Some(Step { length: h, arrival, end });
+            }
+            if self.series.known <= self.settings.order {
+                self.expand();
+                h = h.smaller(T::of(natural(self)));
+            } else {
+                h = h * T::of(0.5);
+            }
+        }
+        None
+    }
+
+    /// Extends the series to the full order.
+    fn expand(&mut self) {
+        if let (2, Some(Touch { order: BY_JERK.., .. })) = (self.series.known, self.touch) {
+            self.push();
+        }
+        let arena = &self.equation.arenas[self.arena];
+        let order = self.settings.order;
+        self.series.extend_to(order, &arena.force, self.equation.damping, self.drive, &mut self.roll);
+    }
+
+    fn push(&mut self) {
+        let arena = &self.equation.arenas[self.arena];
+        self.series.push(&arena.force, self.equation.damping, self.drive, &mut self.roll);
+        if self.series.known == 3
+            && let Some(Touch { order: BY_JERK.., .. }) = self.touch
+        {
+            self.series.y[2] = T::zero(); // a release: the net force is 0 by definition
+        }
+    }
+
+    /// Extends the series until two terms in a row are negligible over `flight`, against the rebound's own speed;
+    /// false where the full order is not enough for that.
+    fn expand_for(&mut self, flight: T) -> bool {
+        let negligible = self.v.abs() * T::of(self.settings.tolerance * 0.1);
+        let mut power = T::of(1.0);
+        let mut small = 0;
+        while self.series.known <= self.settings.order {
+            self.push();
+            let k = self.series.known - 1;
+            power = power * flight;
+            if k >= 3 {
+                let term = (self.series.y[k] * power).abs() * T::of(k as f64);
+                small = if term <= negligible { small + 1 } else { 0 };
+                if small == 2 {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and
+    /// rounding ask: the residual is what the first neglected terms leave.
+    fn step_holds(&mut self, h: T, &State { y, v, acceleration, .. }: &State<T>) -> bool {
+        let arena = &self.equation.arenas[self.arena];
+        let at = self.clock.advance(&self.at, h);
+        let series = &self.series;
+        let base = self.drive.value(&self.clock, &at, self.segment, || series.base(h), &mut self.roll);
+        let sum = (acceleration + self.equation.damping * v) + base;
+        let residual = (arena.force.at(y) + sum).abs() * h;
+        let order = self.series.known - 1;
+        let speed = if order < self.settings.order { self.v.abs() } else { self.settings.speed };
+        let allowed = T::of(RESIDUAL * order as f64 * self.settings.tolerance) * speed;
+        if residual <= allowed {
+            return true;
+        }
+        // larger than asked for: rounding?
+        let (_, _, rounding) = arena.force.value(y);
+        let size = acceleration.abs() + (self.equation.damping * v).abs() + base.abs();
+        residual <= (rounding + size * T::of(T::EPSILON)) * h * T::of(ROUNDINGS)
+    }
+
+    /// The first contact with an end of the arena within the step, as a share of it.
+    pub(super) fn find_exit(&mut self, h: T, bound: T) -> Option<(T, End)> {
+        let zero = T::zero();
+        let arena = &self.equation.arenas[self.arena];
+        let n = self.series.known;
+        let mut first: Option<(T, End)> = None;
+        let mut scaled = None;
+        for end in [End::Low, End::High] {
+            let sign = end.sign::<T>();
+            let gap = sign * (arena.end(end).0 - self.x);
+            let touch = self.touch.filter(|t| t.end == end);
+            if touch.map_or(gap > bound, |touch| touch.order == HELD) {
+                continue;
+            }
+            let mut g = [zero; ROOM];
+            let scaled = scaled.get_or_insert_with(|| self.series.scaled(h));
+            for (slot, c) in g[1..n].iter_mut().zip(&scaled[1..n]) {
+                *slot = -(sign * *c);
+            }
+            g[0] = gap;
+            // Beyond the surface only by rounding, after it was held, and not on the way out: it is touched.
+            let returns = touch.is_none() && gap < zero && sign * self.v <= zero;
+            let mut from = if returns { BY_SPEED } else { touch.map_or(0, |t| t.order.min(n - 1)) };
+            // A coefficient that is exactly 0 decides nothing.
+            while from + 1 < n && g[from] == zero {
+                from += 1;
+            }
+            let g = &g[from..n];
+            let s = if g[0] > zero {
+                PolynomialRoots::new(g).first()
+            } else if g[0] < zero {
+                Some(zero) // outward at once
+            } else {
+                None // it stays where it is
+            };
+            if let Some(s) = s
+                && first.is_none_or(|f| s < f.0)
+            {
+                first = Some((s, end));
+            }
+        }
+        first
+    }
+}
