@@ -116,7 +116,7 @@ impl Scalar for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    /// As [`sin_cos_by_octant`], every choice a selection, so that several can be made at once.
+    /// As `sin_cos_by_octant`, every choice a selection, so that several can be made at once.
     #[inline(always)]
     fn sin_cos_turns(u: Self) -> (Self, Self) {
         let a = u.abs();
