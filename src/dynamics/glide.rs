@@ -1,69 +1,99 @@
-//! What does a record make of a step on which nothing happens? Most steps are such.
+//! What does a record make of steps on which nothing happens? Most steps are such.
 
 use super::clock::Instant;
-use super::record::{Recorder, side_of};
-use crate::numeric::{GaussLegendre, Scalar};
+use super::record::Recorder;
+use crate::numeric::{CompensatedSum, GaussLegendre, Scalar};
 
-/// A step of free flight that may be one on which nothing happens.
+/// Share of the clock's cycle that a step on which nothing happens stays before the next border: more than rounding can
+/// hide.
+pub(super) const MARGIN: f64 = 1e-9;
+
+/// What changes in a record while nothing happens, and up to when that may go on.
+pub(super) struct Gliding<T> {
+    /// The end of the run, a border of the settled window or a strobe, whichever comes first.
+    pub border: Instant<T>,
+    /// Whether the time up to there is in the settled window.
+    pub inside: bool,
+    /// The top that crossings are counted at, and the side of it.
+    pub barrier: Option<T>,
+    pub side: i8,
+    pub low: T,
+    pub high: T,
+    pub squared: CompensatedSum<T>,
+    pub covered: CompensatedSum<T>,
+}
+
+/// Where a step of free flight goes.
 pub(super) struct Glide<T> {
-    pub at: Instant<T>,
-    pub length: T,
     /// Displacement at its start and at its end.
     pub start: T,
     pub end: T,
     /// Bound of |x - x(start)|.
     pub bound: T,
+    /// Bound of how far it leaves the chord between its ends, as [`taylor::bend`](super::taylor::bend) gives it.
+    pub bend: T,
     /// Ends of the arena.
     pub limits: (T, T),
-    /// As [`Recorder::wholly_inside`] says.
-    pub inside: Option<bool>,
-    /// Integral of the squared velocity over it, where that is asked for.
-    pub squared: T,
+}
+
+impl<T: Scalar> Glide<T> {
+    /// The extremes with the ends of the step, and whether a turning point inside it may lie beyond them.
+    #[inline(always)]
+    pub fn extremes(&self, (low, high): (T, T)) -> (T, T, bool) {
+        let start = self.start.larger(self.limits.0).smaller(self.limits.1);
+        let (lower, higher) = (start.smaller(self.end), start.larger(self.end));
+        let (low, high) = (low.smaller(lower), high.larger(higher));
+        let highest = (self.start + self.bound).smaller(self.limits.1).smaller(higher + self.bend);
+        let lowest = (self.start - self.bound).larger(self.limits.0).larger(lower - self.bend);
+        (low, high, (highest > high) | (lowest < low))
+    }
 }
 
 impl<T: Scalar> Recorder<'_, T, false> {
-    /// Whether a step lies wholly inside the settled window, or wholly outside; none where it does neither.
-    #[inline(always)]
-    pub fn wholly_inside(&self, at: &Instant<T>, length: T) -> Option<bool> {
-        match self.overlap(at, length) {
-            None => Some(false),
-            Some((from, to)) => (from == T::zero() && to == length).then_some(true),
+    /// What it is to be told of steps after `at` on which nothing happens, in a run up to `end`; none where it must be told
+    /// of each.
+    pub fn glide(&self, at: &Instant<T>, end: &Instant<T>) -> Option<Gliding<T>> {
+        if self.log.is_some() || self.next_time < self.times.len() {
+            return None;
         }
+        let until = |border: &Instant<T>| self.clock.between(at, border);
+        let (from, to) = (&self.window.0, &self.window.1);
+        let mut border = *end;
+        let ahead = [from, to].into_iter().filter(|border| until(border) > T::zero());
+        for own in ahead.chain(&self.next_strobe) {
+            if until(own) < until(&border) {
+                border = *own;
+            }
+        }
+        let inside = until(from) <= T::zero() && until(to) > T::zero();
+        Some(Gliding {
+            border,
+            inside,
+            barrier: self.barrier,
+            side: self.barrier_side,
+            low: self.low,
+            high: self.high,
+            squared: self.settled.squared_velocity,
+            covered: self.covered,
+        })
     }
 
-    /// Takes in a step on which nothing happens, as [`step`](Self::step) would; false where something may, and nothing
-    /// has been taken in.
-    #[inline(always)]
-    pub fn glide(&mut self, step: &Glide<T>) -> bool {
-        let Some(inside) = step.inside else { return false };
-        if self.log.is_some() || self.next_time < self.times.len() {
-            return false;
-        }
-        if let Some(barrier) = self.barrier
-            && (side_of(step.end, barrier) != self.barrier_side
-                || !((step.start - barrier).abs() > step.bound))
-        {
-            return false;
-        }
-        if let Some(strobe) = &self.next_strobe
-            && self.clock.between(&step.at, strobe) < step.length
-        {
-            return false;
-        }
-        if inside {
-            let within = step.start.larger(step.limits.0).smaller(step.limits.1);
-            let low = self.low.smaller(within).smaller(step.end);
-            let high = self.high.larger(within).larger(step.end);
-            let highest = (step.start + step.bound).smaller(step.limits.1);
-            let lowest = (step.start - step.bound).larger(step.limits.0);
-            if highest > high || lowest < low {
-                return false; // a turning point inside may lie beyond both ends
-            }
-            (self.low, self.high) = (low, high);
-            self.settled.squared_velocity.add(step.squared);
-            self.covered.add(step.length);
-        }
-        true
+    /// Takes in what such steps have changed.
+    pub fn end_glide(
+        &mut self,
+        (low, high): (T, T),
+        squared: CompensatedSum<T>,
+        covered: CompensatedSum<T>,
+    ) {
+        (self.low, self.high) = (low, high);
+        self.settled.squared_velocity = squared;
+        self.covered = covered;
+    }
+
+    /// The same of passages of the top before the settled window, and on which side they have led.
+    pub fn end_glide_crossings(&mut self, side: i8, count: u64) {
+        self.barrier_side = side;
+        self.counts.total_crossings += count;
     }
 
     /// What integrals over a step are taken with.

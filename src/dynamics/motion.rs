@@ -309,6 +309,12 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         Ok(left)
     }
 
+    /// Whether it may take `steps` more, one impact a step, without its budget being spent.
+    pub fn has_budget_for(&self, steps: u64) -> bool {
+        self.steps + CONTACT_WEIGHT * self.contact_steps + steps < STEP_BUDGET
+            && self.record.total_impacts() + steps < IMPACT_BUDGET
+    }
+
     /// How the run ends where its budget is spent, or it is told to.
     #[inline]
     pub fn spent(&self) -> Flow {

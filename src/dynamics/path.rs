@@ -103,6 +103,13 @@ impl<T: Scalar> InTime for Series<T> {
     fn base_coefficients(&self) -> &[T] {
         Series::base_coefficients(self)
     }
+    #[inline]
+    fn integrals_in_time<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
+        match self.measured {
+            Some((length, squared)) if !WORK && from == T::zero() && to == length => (squared, T::zero()),
+            _ => taylor::integrals::<_, WORK>(self.coefficients(), self.base_coefficients(), rule, from, to),
+        }
+    }
 }
 
 impl<T: Scalar, P: InTime<Number = T>> Path<T> for P {

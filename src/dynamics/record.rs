@@ -1,12 +1,14 @@
 //! What of a run is kept: samples, events, statistics, ledger. Nothing here acts on the motion.
 
 use super::clock::{Clock, Instant};
+use super::glide::Glide;
 use super::model::{Model, Request};
 use super::path::{Path, StepView};
 use super::penetration::Penetration;
 use super::recurrence::{Entry, Log};
 use super::regime::{CrossingLog, Strobe};
 use super::result::{Event, EventKind, Phase, Sample, Side};
+use super::taylor;
 use super::totals::{Counts, Sums};
 use crate::numeric::{CompensatedSum, GaussLegendre, PolynomialRoots, Scalar};
 
@@ -177,22 +179,25 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     }
 
     fn extremes<P: Path<T>>(&mut self, step: &StepView<T, P>, from: T, to: T, full: bool) {
-        let mut widen = |x: T| {
-            self.low = self.low.smaller(x);
-            self.high = self.high.larger(x);
+        let (first, last) = match full {
+            true => (step.path.start() + step.origin, step.x),
+            false => (step.x_at(from), step.x_at(to)),
         };
-        let start = step.path.start() + step.origin;
-        if full {
-            widen(step.x_at(T::zero()));
-            widen(step.x);
-        } else {
-            widen(step.x_at(from));
-            widen(step.x_at(to));
+        let endless = T::of(f64::INFINITY);
+        let mut glide =
+            Glide { start: first, end: last, bound: endless, bend: endless, limits: step.limits };
+        glide.bound = if full { step.bound } else { step.bound + step.bound };
+        let (low, high, mut turns) = glide.extremes((self.low, self.high));
+        if turns
+            && full
+            && step.length == step.whole
+            && let Some((y, _)) = step.path.in_time()
+        {
+            glide.bend = taylor::bend(y, step.length);
+            (_, _, turns) = glide.extremes((low, high));
         }
-        let highest = (start + step.bound).smaller(step.limits.1);
-        let lowest = (start - step.bound).larger(step.limits.0);
-        if highest > self.high || lowest < self.low {
-            // A turning point inside may lie beyond both ends.
+        (self.low, self.high) = (low, high);
+        if turns {
             let n = step.path.known();
             let mut slope = [T::zero(); super::series::ROOM];
             let scaled = step.path.scaled(step.whole);

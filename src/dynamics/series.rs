@@ -29,6 +29,8 @@ pub(crate) struct Series<T> {
     pub a: [T; ROOM],
     /// Number of coefficients of y that are known.
     pub known: usize,
+    /// The length of a step over which the integral of the squared velocity is known, and that.
+    pub measured: Option<(T, T)>,
     square: [T; ROOM],
     nested: [[T; ROOM]; ROWS],
     inverse: [T; ROOM],
@@ -52,7 +54,7 @@ impl<T: Number> Series<T> {
             *slot = T::ratio(1.0, (k * (k - 1)) as f64);
         }
         let zeros = [T::zero(); ROOM];
-        Self { y: zeros, a: zeros, known: 0, square: zeros, nested: [zeros; ROWS], inverse }
+        Self { y: zeros, a: zeros, known: 0, measured: None, square: zeros, nested: [zeros; ROWS], inverse }
     }
 
     /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first
@@ -62,6 +64,7 @@ impl<T: Number> Series<T> {
         self.y[0] = y;
         self.y[1] = v;
         self.known = 2;
+        self.measured = None;
     }
 
     /// Adds the next coefficient.
@@ -233,9 +236,10 @@ pub(super) fn natural_steps<const W: usize>(
     let (mut radius, mut sum) = ([f64::INFINITY; W], [0.0; W]);
     for k in order.saturating_sub(3).max(2)..=order {
         let coefficients = coefficients(k);
+        let inverse = 1.0 / (k as f64 - 1.0);
         for lane in 0..W {
             let size = coefficients[lane].abs() * k as f64;
-            let own = (speed_log2[lane] - fast_log2(size)) / (k as f64 - 1.0);
+            let own = (speed_log2[lane] - fast_log2(size)) * inverse;
             radius[lane] = if (size > 1e-300) & (own < radius[lane]) { own } else { radius[lane] };
             sum[lane] += size;
         }

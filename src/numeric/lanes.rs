@@ -46,7 +46,11 @@ impl<const W: usize> Neg for Lanes<W> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|own| -own))
+        let mut result = self;
+        for own in &mut result.0 {
+            *own = -*own;
+        }
+        result
     }
 }
 
@@ -75,7 +79,11 @@ impl<const W: usize> Number for Lanes<W> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(self.0.map(f64::abs))
+        let mut result = self;
+        for own in &mut result.0 {
+            *own = own.abs();
+        }
+        result
     }
 }
 

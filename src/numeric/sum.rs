@@ -16,12 +16,24 @@ impl<T: Scalar> CompensatedSum<T> {
     }
 
     /// Adds one term.
-    #[inline]
+    #[inline(always)]
     pub fn add(&mut self, term: T) {
         let sum = self.sum + term;
         self.carry +=
             if self.sum.abs() >= term.abs() { (self.sum - sum) + term } else { (term - sum) + self.sum };
         self.sum = sum;
+    }
+
+    /// The sum that [`parts`](Self::parts) were of.
+    #[inline(always)]
+    pub fn of_parts(sum: T, carry: T) -> Self {
+        Self { sum, carry }
+    }
+
+    /// The rounded sum, and what rounding has left of it.
+    #[inline(always)]
+    pub fn parts(&self) -> (T, T) {
+        (self.sum, self.carry)
     }
 
     /// The sum of all terms so far.

@@ -1,0 +1,338 @@
+//! What do the lanes hold in common while they fly, and how do they go on by one step?
+
+use super::super::clock::Instant;
+use super::super::equation::PieceForce;
+use super::super::glide::{Glide, MARGIN};
+use super::super::series::{Series, State, natural_steps};
+use super::super::taylor;
+use super::super::tone::Swing;
+use super::Flight;
+use crate::numeric::{CompensatedSum, GaussLegendre, Lanes, Number, Scalar};
+
+/// The lanes, in columns.
+pub(super) struct Columns<const W: usize> {
+    /// Which lanes fly.
+    pub flying: [bool; W],
+    /// Steps taken and passages of the top since a lane was filled.
+    flown: Lanes<W>,
+    crossed: Lanes<W>,
+    // what stays while a lane is in one arena of one run
+    /// Which run and which arena that is.
+    of: [(usize, usize); W],
+    force: PieceForce<Lanes<W>>,
+    origin: Lanes<W>,
+    low_end: Lanes<W>,
+    high_end: Lanes<W>,
+    damping: Lanes<W>,
+    curvature: Lanes<W>,
+    amplitude: Lanes<W>,
+    frequency: Lanes<W>,
+    turn: Lanes<W>,
+    quarter: [bool; W],
+    speed_log2: [f64; W],
+    longest: [f64; W],
+    allowed: Lanes<W>,
+    period: Lanes<W>,
+    // what stays while nothing happens
+    /// The top that crossings are counted at, NaN without one, and the side of it.
+    barrier: Lanes<W>,
+    side: Lanes<W>,
+    border: Clocks<W>,
+    /// Whether the time up to there lies in the settled window.
+    pub inside: [bool; W],
+    // what changes with each step
+    x: Lanes<W>,
+    v: Lanes<W>,
+    at: Clocks<W>,
+    /// The drive and its time derivative per unit amplitude.
+    value: Lanes<W>,
+    slope: Lanes<W>,
+    low: Lanes<W>,
+    high: Lanes<W>,
+    squared: CompensatedSums<W>,
+    covered: CompensatedSums<W>,
+}
+
+/// Instants; the cycles are whole numbers below 2^53.
+#[derive(Clone, Copy)]
+struct Clocks<const W: usize> {
+    cycle: Lanes<W>,
+    phase: Lanes<W>,
+}
+
+impl<const W: usize> Clocks<W> {
+    fn set(&mut self, lane: usize, at: &Instant<f64>) {
+        (self.cycle.0[lane], self.phase.0[lane]) = (at.cycle as f64, at.phase);
+    }
+
+    fn get(&self, lane: usize) -> Instant<f64> {
+        Instant { cycle: self.cycle.0[lane] as i64, phase: self.phase.0[lane] }
+    }
+
+    /// As [`Clock::advance`](super::super::clock::Clock::advance) by up to a cycle; of more the phase lies beyond the
+    /// cycle.
+    #[inline(always)]
+    fn advance(&self, by: &Lanes<W>, period: &Lanes<W>) -> Self {
+        let mut later = *self;
+        for lane in 0..W {
+            let (period, phase) = (period.0[lane], self.phase.0[lane] + by.0[lane]);
+            let whole = if phase >= period { 1.0 } else { 0.0 };
+            later.phase.0[lane] = phase - whole * period;
+            later.cycle.0[lane] = self.cycle.0[lane] + whole;
+        }
+        later
+    }
+}
+
+/// Sums with compensation.
+#[derive(Clone, Copy)]
+struct CompensatedSums<const W: usize> {
+    sum: Lanes<W>,
+    carry: Lanes<W>,
+}
+
+impl<const W: usize> CompensatedSums<W> {
+    fn set(&mut self, lane: usize, sum: &CompensatedSum<f64>) {
+        (self.sum.0[lane], self.carry.0[lane]) = sum.parts();
+    }
+
+    #[inline(always)]
+    fn get(&self, lane: usize) -> CompensatedSum<f64> {
+        CompensatedSum::of_parts(self.sum.0[lane], self.carry.0[lane])
+    }
+
+    /// What a sum becomes with one more term.
+    #[inline(always)]
+    fn with(&self, lane: usize, term: f64) -> (f64, f64) {
+        let mut own = self.get(lane);
+        own.add(term);
+        own.parts()
+    }
+}
+
+/// A step that all lanes have tried.
+pub(super) struct Trial<const W: usize> {
+    /// Those that flew and did not take it: something may happen on it.
+    pub landed: [bool; W],
+    /// Whether the polynomial satisfies the equation at the step's end.
+    pub holds: [bool; W],
+    pub length: Lanes<W>,
+    end: State<Lanes<W>>,
+    at: Clocks<W>,
+    value: Lanes<W>,
+    slope: Lanes<W>,
+    /// Integral of the squared velocity, where any lane is in the settled window.
+    pub squared: Lanes<W>,
+}
+
+impl<const W: usize> Trial<W> {
+    /// Where the polynomial of a lane leads.
+    pub fn end(&self, lane: usize) -> State<f64> {
+        let State { y, v, acceleration, bound } = &self.end;
+        State { y: y.0[lane], v: v.0[lane], acceleration: acceleration.0[lane], bound: bound.0[lane] }
+    }
+
+    /// When the step of a lane ends, and the drive and its time derivative there.
+    pub fn drive_at_end(&self, lane: usize) -> (Instant<f64>, (f64, f64)) {
+        (self.at.get(lane), (self.value.0[lane], self.slope.0[lane]))
+    }
+}
+
+impl<const W: usize> Columns<W> {
+    pub fn new() -> Self {
+        let zero = Lanes([0.0; W]);
+        let clocks = Clocks { cycle: zero, phase: zero };
+        let sums = CompensatedSums { sum: zero, carry: zero };
+        Self {
+            flying: [false; W],
+            flown: zero,
+            crossed: zero,
+            of: [(usize::MAX, 0); W],
+            force: PieceForce::new(vec![zero], false),
+            origin: zero,
+            low_end: zero,
+            high_end: zero,
+            damping: zero,
+            curvature: zero,
+            amplitude: zero,
+            frequency: zero,
+            turn: zero,
+            quarter: [false; W],
+            speed_log2: [0.0; W],
+            longest: [1.0; W],
+            allowed: zero,
+            period: Lanes([1.0; W]),
+            barrier: zero,
+            side: zero,
+            border: clocks,
+            inside: [false; W],
+            x: zero,
+            v: zero,
+            at: clocks,
+            value: zero,
+            slope: zero,
+            low: zero,
+            high: zero,
+            squared: sums,
+            covered: sums,
+        }
+    }
+
+    /// Takes a motion into the air, as number `index` of the runs; false where the others fly under a force of another
+    /// shape, or somebody wants to be told of each of its steps.
+    pub fn fill(&mut self, lane: usize, index: usize, motion: &Flight) -> bool {
+        let arena = &motion.equation.arenas[motion.arena];
+        let (count, odd) = (arena.force.coefficients().len(), arena.force.is_odd());
+        if self.force.coefficients().len() != count || self.force.is_odd() != odd {
+            if self.flying.contains(&true) {
+                return false;
+            }
+            self.force = PieceForce::new(vec![Lanes([0.0; W]); count], odd);
+            self.of = [(usize::MAX, 0); W];
+        }
+        let Some(glide) = motion.record.glide(&motion.at, &motion.end) else { return false };
+        if self.of[lane] != (index, motion.arena) {
+            self.of[lane] = (index, motion.arena);
+            for (degree, own) in arena.force.coefficients().iter().enumerate() {
+                self.force.coefficient_mut(degree).0[lane] = *own;
+            }
+            let (tone, settings) = (&motion.drive.tone, &motion.settings);
+            self.origin.0[lane] = arena.origin;
+            (self.low_end.0[lane], self.high_end.0[lane]) = (arena.low, arena.high);
+            self.damping.0[lane] = motion.equation.damping;
+            self.curvature.0[lane] = tone.curvature();
+            self.amplitude.0[lane] = tone.amplitude;
+            self.frequency.0[lane] = tone.frequency;
+            self.turn.0[lane] = tone.phase;
+            self.quarter[lane] = tone.quarter;
+            self.speed_log2[lane] = settings.speed_log2;
+            self.longest[lane] = settings.longest;
+            self.allowed.0[lane] = settings.residual_of_a_full_step();
+            self.period.0[lane] = motion.clock.period();
+        }
+        self.barrier.0[lane] = glide.barrier.unwrap_or(f64::NAN);
+        self.side.0[lane] = f64::from(glide.side);
+        self.border.set(lane, &glide.border);
+        self.inside[lane] = glide.inside;
+        (self.low.0[lane], self.high.0[lane]) = (glide.low, glide.high);
+        self.squared.set(lane, &glide.squared);
+        self.covered.set(lane, &glide.covered);
+        (self.x.0[lane], self.v.0[lane]) = (motion.x, motion.v);
+        self.at.set(lane, &motion.at);
+        (self.value.0[lane], self.slope.0[lane]) = motion.drive.looked(&motion.at, &motion.roll);
+        self.flown.0[lane] = 0.0;
+        self.crossed.0[lane] = 0.0;
+        self.flying[lane] = true;
+        true
+    }
+
+    /// Gives a lane back to its motion.
+    pub fn land(&mut self, lane: usize, motion: &mut Flight) {
+        self.flying[lane] = false;
+        let flown = self.flown.0[lane] as u64;
+        if flown == 0 {
+            return;
+        }
+        motion.steps += flown;
+        motion.evaluations += flown;
+        (motion.x, motion.v) = (self.x.0[lane], self.v.0[lane]);
+        motion.at = self.at.get(lane);
+        motion.roll = Some((motion.at, (self.value.0[lane], self.slope.0[lane])));
+        motion.turned_back = false;
+        motion.record.end_glide(
+            (self.low.0[lane], self.high.0[lane]),
+            self.squared.get(lane),
+            self.covered.get(lane),
+        );
+        motion.record.end_glide_crossings(self.side.0[lane] as i8, self.crossed.0[lane] as u64);
+    }
+
+    /// Tries one step in all lanes, and takes it where nothing happens.
+    #[inline(always)]
+    pub fn step(
+        &mut self,
+        series: &mut Series<Lanes<W>>,
+        rule: &GaussLegendre<Lanes<W>>,
+        order: usize,
+        tolerance_log2: f64,
+    ) -> Trial<W> {
+        let swing = Swing { curvature: self.curvature };
+        swing.seed(self.amplitude * self.value, self.amplitude * self.slope, &mut series.a);
+        series.begin(self.x - self.origin, self.v);
+        series.extend_to(order, &self.force, self.damping, &swing, &mut ());
+        let y = &series.y;
+        let length = natural_steps(order, |k| y[k].0, &self.speed_log2, tolerance_log2, &self.longest);
+        let length = Lanes(length);
+        let at = self.at.advance(&length, &self.period);
+        let end = series.state(length);
+
+        let (mut value, mut slope) = (length, length);
+        for lane in 0..W {
+            let turns = at.phase.0[lane] * self.frequency.0[lane] + self.turn.0[lane];
+            let (s, c) = f64::sin_cos_turns(turns);
+            let omega = f64::tau() * self.frequency.0[lane];
+            value.0[lane] = if self.quarter[lane] { c } else { s };
+            slope.0[lane] = if self.quarter[lane] { -(s * omega) } else { c * omega };
+        }
+        let base = self.amplitude * value;
+        let sum = (end.acceleration + self.damping * end.v) + base;
+        let residual = (self.force.at(end.y) + sum).abs() * length;
+
+        let mut squared = Lanes([0.0; W]);
+        let bend = taylor::bend(&series.y[..=order], length);
+        if self.inside.contains(&true) {
+            squared = taylor::integrals::<_, false>(&series.y[..=order], &[], rule, squared, length).0;
+        }
+        let start = series.y[0] + self.origin;
+        let x = end.y + self.origin;
+        let (mut holds, mut landed) = ([false; W], [false; W]);
+        for lane in 0..W {
+            let (length, period) = (length.0[lane], self.period.0[lane]);
+            let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
+            let to_border = cycles * period + (self.border.phase.0[lane] - self.at.phase.0[lane]);
+            let left = to_border - MARGIN * period;
+            let held = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
+
+            let (bound, limits) = (end.bound.0[lane], (self.low_end.0[lane], self.high_end.0[lane]));
+            let clear = (self.x.0[lane] - limits.0 > bound) & (limits.1 - self.x.0[lane] > bound);
+            let glide = Glide { start: start.0[lane], end: x.0[lane], bound, bend: bend.0[lane], limits };
+            let (low, high, turns) = glide.extremes((self.low.0[lane], self.high.0[lane]));
+
+            // Without a top to cross, what compares with it is NaN and says no.
+            let (top, side, inside) = (self.barrier.0[lane], self.side.0[lane], self.inside[lane]);
+            let (from, to) = ((glide.start - top) * side, (glide.end - top) * side);
+            let (near, onto, passed) = ((glide.start - top).abs() <= bound, to == 0.0, to < 0.0);
+            let monotone = 8.0 * glide.bend < self.v.0[lane].abs() * length;
+            // outside the window only their number counts
+            let countable = !inside & (length + length < left);
+            let clear_of_top = !(near | passed | onto) | (monotone & (from > 0.0) & !onto & (!passed | countable));
+
+            let quiet = clear & held & clear_of_top & !(turns & inside) & (length < left);
+            let quiet = quiet & (at.phase.0[lane] < period) & (end.v.0[lane].abs() < f64::INFINITY);
+            let taken = quiet & self.flying[lane];
+            holds[lane] = held;
+            landed[lane] = !quiet & self.flying[lane];
+
+            let measured = taken & inside;
+            let (squared, covered) = (self.squared.with(lane, squared.0[lane]), self.covered.with(lane, length));
+            let set = |place: &mut f64, value: f64, which: bool| *place = if which { value } else { *place };
+            set(&mut self.low.0[lane], low, measured);
+            set(&mut self.high.0[lane], high, measured);
+            set(&mut self.squared.sum.0[lane], squared.0, measured);
+            set(&mut self.squared.carry.0[lane], squared.1, measured);
+            set(&mut self.covered.sum.0[lane], covered.0, measured);
+            set(&mut self.covered.carry.0[lane], covered.1, measured);
+            let crosses = taken & passed;
+            set(&mut self.side.0[lane], -side, crosses);
+            self.crossed.0[lane] += if crosses { 1.0 } else { 0.0 };
+            self.flown.0[lane] += if taken { 1.0 } else { 0.0 };
+            set(&mut self.x.0[lane], glide.end, taken);
+            set(&mut self.v.0[lane], end.v.0[lane], taken);
+            set(&mut self.at.cycle.0[lane], at.cycle.0[lane], taken);
+            set(&mut self.at.phase.0[lane], at.phase.0[lane], taken);
+            set(&mut self.value.0[lane], value.0[lane], taken);
+            set(&mut self.slope.0[lane], slope.0[lane], taken);
+        }
+        Trial { landed, holds, length, end, at, value, slope, squared }
+    }
+}
