@@ -8,6 +8,9 @@ use crate::numeric::{CompensatedSum, GaussLegendre, Scalar};
 /// hide.
 pub(super) const MARGIN: f64 = 1e-9;
 
+/// How much further than its bend a step must stay away from a surface that it is clear of: rounding never decides it.
+const ROOM_BESIDE_A_CHORD: f64 = 1.0625;
+
 /// What changes in a record while nothing happens, and up to when that may go on.
 pub(super) struct Gliding<T> {
     /// The end of the run, a border of the settled window or a strobe, whichever comes first.
@@ -37,6 +40,14 @@ pub(super) struct Glide<T> {
 }
 
 impl<T: Scalar> Glide<T> {
+    /// Whether the step stays clear of both ends of the arena, as far as its chord can tell.
+    #[inline(always)]
+    pub fn is_clear(&self) -> bool {
+        let bend = self.bend * T::of(ROOM_BESIDE_A_CHORD);
+        (self.start.smaller(self.end) - bend > self.limits.0)
+            & (self.start.larger(self.end) + bend < self.limits.1)
+    }
+
     /// The extremes with the ends of the step, and whether a turning point inside it may lie beyond them.
     #[inline(always)]
     pub fn extremes(&self, (low, high): (T, T)) -> (T, T, bool) {
@@ -50,10 +61,10 @@ impl<T: Scalar> Glide<T> {
 }
 
 impl<T: Scalar> Recorder<'_, T, false> {
-    /// What it is to be told of steps after `at` on which nothing happens, in a run up to `end`; none where it must be told
-    /// of each.
+    /// What it is to be told of steps after `at` on which nothing happens, in a run up to `end`; none where samples are
+    /// taken. (Steps that are kept must be told of each.)
     pub fn glide(&self, at: &Instant<T>, end: &Instant<T>) -> Option<Gliding<T>> {
-        if self.log.is_some() || self.next_time < self.times.len() {
+        if self.next_time < self.times.len() {
             return None;
         }
         let until = |border: &Instant<T>| self.clock.between(at, border);
@@ -97,7 +108,7 @@ impl<T: Scalar> Recorder<'_, T, false> {
     }
 
     /// What integrals over a step are taken with.
-    pub fn rule_of_steps(&self) -> GaussLegendre<T> {
-        GaussLegendre::new(self.order / 2 + 1)
+    pub fn rule_of_steps(&self) -> &'static GaussLegendre<T> {
+        T::gauss_legendre(self.order / 2 + 1)
     }
 }

@@ -17,6 +17,7 @@ mod motion;
 mod path;
 mod penetration;
 mod prepare;
+mod rebound;
 mod record;
 mod recurrence;
 mod regime;

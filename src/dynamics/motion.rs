@@ -448,6 +448,12 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         }
 
         self.series.begin(self.x - arena.origin, self.v);
+        if let Some(flight) = flight {
+            if let Some(flow) = self.rebound(flight, left) {
+                return flow;
+            }
+            self.series.begin(self.x - arena.origin, self.v);
+        }
         let Some(step) = self.choose_step(flight, left) else {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
         };
@@ -456,16 +462,28 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
 
     /// Goes along a step of flight up to its end or the first surface.
     pub fn take(&mut self, &Step { length: h, arrival, end }: &Step<T>) -> Flow {
+        let arena = &self.equation.arenas[self.arena];
+        match self.find_exit(h, &end) {
+            Some((s, exit)) => {
+                let (length, level) = (s * h, arena.end(exit).0);
+                let state = (level, self.series.velocity(length));
+                self.arrive((h, length), end.bound, state, None, Some(exit))
+            }
+            None => self.arrive((h, h), end.bound, (end.y + arena.origin, end.v), arrival, None),
+        }
+    }
+
+    /// Tells of a step that was chosen `h` long, of which `length` is kept, and goes to its end: at the state `(x, v)` and,
+    /// where that is known, the instant `arrival`, on the surface of the end `touched`.
+    pub(super) fn arrive(
+        &mut self,
+        (h, length): (T, T),
+        bound: T,
+        (x, v): (T, T),
+        arrival: Option<Instant<T>>,
+        touched: Option<End>,
+    ) -> Flow {
         let (arena, zero) = (&self.equation.arenas[self.arena], T::zero());
-        let exit = self.find_exit(h, end.bound);
-        let (length, touched) = match exit {
-            Some((s, end)) => (s * h, Some(end)),
-            None => (h, None),
-        };
-        let (x, v) = match touched {
-            Some(end) => (arena.end(end).0, self.series.velocity(length)),
-            None => (end.y + arena.origin, end.v),
-        };
         if !(x.is_finite() && v.is_finite()) {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
         }
@@ -477,17 +495,14 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             whole: h,
             length,
             duration: length,
-            bound: end.bound,
+            bound,
             limits: (arena.low, arena.high),
             x,
             v,
         };
         let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
         self.record.step(&view, |at| base_at(drive, &clock, segment, at, unit));
-        self.at = match arrival {
-            Some(arrival) if touched.is_none() => arrival,
-            _ => self.clock.advance(&self.at, length),
-        };
+        self.at = arrival.unwrap_or_else(|| self.clock.advance(&self.at, length));
         self.x = x;
         self.v = v;
         self.touch = None;

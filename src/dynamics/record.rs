@@ -39,8 +39,7 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) counts: Counts,
     /// Largest force of a compliant stop over mass, kernel units.
     pub(super) peak_contact: T,
-    /// What integrals over a step are taken with, made for the first of them, and the order of the series.
-    pub(super) rule: Option<GaussLegendre<T>>,
+    /// Order of the series.
     pub(super) order: usize,
     /// All that is told, where a cycle is waited for.
     pub(super) log: Option<Box<Log<T>>>,
@@ -90,7 +89,6 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             strobe_cycles: cycles,
             counts: Counts::default(),
             peak_contact: T::zero(),
-            rule: None,
             order,
             log: None,
         }
@@ -109,6 +107,14 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             && self.clock.between(at, &self.window.1) > T::zero()
     }
 
+    /// What integrals over a step are taken with: half as many points as a full series has coefficients, and no more than
+    /// a shorter one needs.
+    #[inline]
+    fn rule_of<P: Path<T>>(&self, path: &P) -> &'static GaussLegendre<T> {
+        let points = self.order / 2 + 1;
+        T::gauss_legendre(if P::IN_CONTACT { points } else { points.min(path.known() - 1) })
+    }
+
     /// Takes in a step of free flight, or of contact with a compliant stop.
     #[inline]
     pub fn step<P: Path<T>>(&mut self, step: &StepView<T, P>, mut base: impl FnMut(&Instant<T>) -> f64) {
@@ -116,11 +122,9 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             log.add_step(step);
         }
         let overlap = self.overlap(&step.at, step.duration);
-        if self.rule.is_none() && (LEDGER || overlap.is_some()) {
-            self.rule = Some(GaussLegendre::new(self.order / 2 + 1));
-        }
+        let rule = self.rule_of(step.path);
         let full = overlap.is_some_and(|(from, to)| from == T::zero() && to == step.duration);
-        if LEDGER && let Some(rule) = &self.rule {
+        if LEDGER {
             let (squared, av) = step.path.integrals::<true>(rule, T::zero(), step.length);
             self.whole.squared_velocity.add(squared);
             self.whole.work.add(-av);
@@ -137,9 +141,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
                 true => (T::zero(), step.length),
                 false => (step.path.parameter(begin, step.length), step.path.parameter(end, step.length)),
             };
-            if (!LEDGER || !full)
-                && let Some(rule) = &self.rule
-            {
+            if !LEDGER || !full {
                 let (squared, av) = step.path.integrals::<LEDGER>(rule, from, to);
                 self.settled.squared_velocity.add(squared);
                 self.settled.work.add(-av);
@@ -397,7 +399,8 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
 
     /// What a compliant stop took and how hard it was pressed, over a step in contact that has been taken in.
     pub fn contact(&mut self, step: &StepView<T, Penetration<T>>) {
-        if LEDGER && let Some(rule) = &self.rule {
+        if LEDGER {
+            let rule = self.rule_of(step.path);
             let whole = step.path.loss(rule, T::zero(), step.length);
             self.whole.impact.add(whole);
             match self.overlap(&step.at, step.duration) {

@@ -3,8 +3,10 @@
 use super::drive::Drive;
 use super::equation::End;
 use super::motion::{BY_JERK, BY_SPEED, HELD, MOST_HALVINGS, Motion, RESIDUAL, ROUNDINGS, Step, Touch};
+use super::glide::Glide;
 use super::path::Path;
 use super::series::{ROOM, State};
+use super::taylor;
 use crate::numeric::{PolynomialRoots, Scalar};
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
@@ -79,7 +81,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
 
     /// Extends the series until two terms in a row are negligible over `flight`, against the rebound's own speed;
     /// false where the full order is not enough for that.
-    fn expand_for(&mut self, flight: T) -> bool {
+    pub(super) fn expand_for(&mut self, flight: T) -> bool {
         let negligible = self.v.abs() * T::of(self.settings.tolerance * 0.1);
         let mut power = T::of(1.0);
         let mut small = 0;
@@ -100,7 +102,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
 
     /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and
     /// rounding ask: the residual is what the first neglected terms leave.
-    fn step_holds(&mut self, h: T, &State { y, v, acceleration, .. }: &State<T>) -> bool {
+    pub(super) fn step_holds(&mut self, h: T, &State { y, v, acceleration, .. }: &State<T>) -> bool {
         let arena = &self.equation.arenas[self.arena];
         let at = self.clock.advance(&self.at, h);
         let series = &self.series;
@@ -119,13 +121,26 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         residual <= (rounding + size * T::of(T::EPSILON)) * h * T::of(ROUNDINGS)
     }
 
-    /// The first contact with an end of the arena within the step, as a share of it.
-    pub(super) fn find_exit(&mut self, h: T, bound: T) -> Option<(T, End)> {
+    /// The first contact with an end of the arena within the step, as a share of it; of the step's end is known how it
+    /// lies in the piece.
+    pub(super) fn find_exit(&mut self, h: T, &State { y: end, bound, .. }: &State<T>) -> Option<(T, End)> {
         let zero = T::zero();
         let arena = &self.equation.arenas[self.arena];
         let n = self.series.known;
         let mut first: Option<(T, End)> = None;
         let mut scaled = None;
+        if self.touch.is_none() {
+            let limits = (arena.low, arena.high);
+            let near = !(self.x - limits.0 > bound && limits.1 - self.x > bound);
+            if !near {
+                return None;
+            }
+            let (y, to) = (&self.series.y[..n], end + arena.origin);
+            let bend = taylor::bend(y, h);
+            if (Glide { start: self.x, end: to, bound, bend, limits }).is_clear() {
+                return None;
+            }
+        }
         for end in [End::Low, End::High] {
             let sign = end.sign::<T>();
             let gap = sign * (arena.end(end).0 - self.x);

@@ -8,6 +8,7 @@
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+use super::quadrature::{GaussLegendre, Rules};
 use super::scalar::{Number, Scalar, sin_cos_by_octant};
 
 /// high + low with |low| at most half an ulp of high.
@@ -141,6 +142,11 @@ impl Number for DoubleDouble {
 
 impl Scalar for DoubleDouble {
     const EPSILON: f64 = 1.0e-31;
+
+    fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self> {
+        static RULES: Rules<DoubleDouble> = Rules::new();
+        RULES.of(points)
+    }
 
     fn tau() -> Self {
         TAU

@@ -1,5 +1,7 @@
 //! At which points is a smooth function sampled to integrate it over a step?
 
+use std::sync::OnceLock;
+
 use super::scalar::{Number, Scalar};
 
 /// The most points of a rule.
@@ -48,6 +50,23 @@ impl<T: Scalar> GaussLegendre<T> {
             rule.weights[i] = one / ((one - x[i] * x[i]) * slope[i] * slope[i]);
         }
         rule
+    }
+}
+
+/// The rules of all numbers of points, each made when it is first asked for.
+pub struct Rules<T>([OnceLock<GaussLegendre<T>>; MOST_POINTS]);
+
+impl<T: Scalar> Rules<T> {
+    /// None yet.
+    pub const fn new() -> Self {
+        Self([const { OnceLock::new() }; MOST_POINTS])
+    }
+
+    /// The rule with 1 to [`MOST_POINTS`] points (clamped).
+    #[inline]
+    pub fn of(&self, points: usize) -> &GaussLegendre<T> {
+        let points = points.clamp(1, MOST_POINTS);
+        self.0[points - 1].get_or_init(|| GaussLegendre::new(points))
     }
 }
 

@@ -9,10 +9,12 @@ use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::double_double::DoubleDouble;
+use super::quadrature::{GaussLegendre, Rules};
 
 /// Arithmetic without a branch.
 pub trait Number:
-    Copy
+    'static
+    + Copy
     + Debug
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -56,6 +58,9 @@ pub trait Scalar: Number + PartialOrd {
     /// sin(-u) = -sin(u) bit for bit. Precondition: |u| well below 2^52.
     fn sin_cos_turns(u: Self) -> (Self, Self);
 
+    /// The Gauss-Legendre rule of 1 to 20 points (clamped), made once.
+    fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self>;
+
     /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool {
         self.to_f64().is_finite()
@@ -87,6 +92,12 @@ impl Number for f64 {
 
 impl Scalar for f64 {
     const EPSILON: f64 = f64::EPSILON;
+
+    #[inline]
+    fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self> {
+        static RULES: Rules<f64> = Rules::new();
+        RULES.of(points)
+    }
 
     #[inline(always)]
     fn tau() -> Self {

@@ -38,6 +38,8 @@ pub(super) struct Columns<const W: usize> {
     barrier: Lanes<W>,
     side: Lanes<W>,
     border: Clocks<W>,
+    /// Whether each step is kept, in case the motion comes back.
+    pub kept: [bool; W],
     /// Whether the time up to there lies in the settled window.
     pub inside: [bool; W],
     // what changes with each step
@@ -114,6 +116,8 @@ impl<const W: usize> CompensatedSums<W> {
 pub(super) struct Trial<const W: usize> {
     /// Those that flew and did not take it: something may happen on it.
     pub landed: [bool; W],
+    /// Those that took it.
+    pub taken: [bool; W],
     /// Whether the polynomial satisfies the equation at the step's end.
     pub holds: [bool; W],
     pub length: Lanes<W>,
@@ -165,6 +169,7 @@ impl<const W: usize> Columns<W> {
             barrier: zero,
             side: zero,
             border: clocks,
+            kept: [false; W],
             inside: [false; W],
             x: zero,
             v: zero,
@@ -213,6 +218,7 @@ impl<const W: usize> Columns<W> {
         self.barrier.0[lane] = glide.barrier.unwrap_or(f64::NAN);
         self.side.0[lane] = f64::from(glide.side);
         self.border.set(lane, &glide.border);
+        self.kept[lane] = motion.record.log.is_some();
         self.inside[lane] = glide.inside;
         (self.low.0[lane], self.high.0[lane]) = (glide.low, glide.high);
         self.squared.set(lane, &glide.squared);
@@ -224,6 +230,14 @@ impl<const W: usize> Columns<W> {
         self.crossed.0[lane] = 0.0;
         self.flying[lane] = true;
         true
+    }
+
+    /// Goes on with the motion of a lane whose last step is kept.
+    pub fn follow(&self, lane: usize, motion: &mut Flight) {
+        (motion.x, motion.v) = (self.x.0[lane], self.v.0[lane]);
+        motion.at = self.at.get(lane);
+        motion.turned_back = false;
+        motion.record.barrier_side = self.side.0[lane] as i8;
     }
 
     /// Gives a lane back to its motion.
@@ -285,7 +299,7 @@ impl<const W: usize> Columns<W> {
         }
         let start = series.y[0] + self.origin;
         let x = end.y + self.origin;
-        let (mut holds, mut landed) = ([false; W], [false; W]);
+        let (mut holds, mut landed, mut tooks) = ([false; W], [false; W], [false; W]);
         for lane in 0..W {
             let (length, period) = (length.0[lane], self.period.0[lane]);
             let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
@@ -294,8 +308,9 @@ impl<const W: usize> Columns<W> {
             let held = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
 
             let (bound, limits) = (end.bound.0[lane], (self.low_end.0[lane], self.high_end.0[lane]));
-            let clear = (self.x.0[lane] - limits.0 > bound) & (limits.1 - self.x.0[lane] > bound);
             let glide = Glide { start: start.0[lane], end: x.0[lane], bound, bend: bend.0[lane], limits };
+            let clear = (self.x.0[lane] - limits.0 > bound) & (limits.1 - self.x.0[lane] > bound);
+            let clear = clear | glide.is_clear();
             let (low, high, turns) = glide.extremes((self.low.0[lane], self.high.0[lane]));
 
             // Without a top to cross, what compares with it is NaN and says no.
@@ -311,6 +326,7 @@ impl<const W: usize> Columns<W> {
             let quiet = quiet & (at.phase.0[lane] < period) & (end.v.0[lane].abs() < f64::INFINITY);
             let taken = quiet & self.flying[lane];
             holds[lane] = held;
+            tooks[lane] = taken;
             landed[lane] = !quiet & self.flying[lane];
 
             let measured = taken & inside;
@@ -333,6 +349,6 @@ impl<const W: usize> Columns<W> {
             set(&mut self.value.0[lane], value.0[lane], taken);
             set(&mut self.slope.0[lane], slope.0[lane], taken);
         }
-        Trial { landed, holds, length, end, at, value, slope, squared }
+        Trial { landed, taken: tooks, holds, length, end, at, value, slope, squared }
     }
 }

@@ -15,11 +15,12 @@ mod columns;
 use super::equation::Equation;
 use super::model::{Model, Request};
 use super::motion::{Begun, Contact, Motion, Step};
+use super::path::StepView;
 use super::prepare::{Form, clock, form};
 use super::result::{Outcome, Run};
 use super::series::{SEEDED, Series};
 use super::tone::Sine;
-use crate::numeric::{GaussLegendre, Lanes};
+use crate::numeric::{GaussLegendre, Lanes, Scalar};
 use columns::{Columns, Trial};
 
 /// Lanes where registers hold eight numbers: two registers a column, so that one addition need not wait for the last.
@@ -130,7 +131,7 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
             lanes: [const { None }; W],
             columns: Box::new(Columns::new()),
             series: Box::new(Series::new()),
-            rule: GaussLegendre::<f64>::new(1).map(|value| Lanes([value; W])),
+            rule: f64::gauss_legendre(1).map(|value| Lanes([value; W])),
             order: 0,
             tolerance_log2: 0.0,
         };
@@ -183,8 +184,13 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
             loop {
                 let trial = self.columns.step(&mut self.series, &self.rule, self.order, self.tolerance_log2);
                 rounds += 1;
+                for lane in 0..W {
+                    if trial.taken[lane] & self.columns.kept[lane] {
+                        self.keep(lane, &trial);
+                    }
+                }
                 if rounds % STRIDE == 0 {
-                    self.land_all();
+                    self.look_round();
                     break;
                 }
                 if trial.landed.contains(&true) {
@@ -231,14 +237,8 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
         self.columns.land(lane, motion);
         let left = motion.clock.between(&motion.at, &motion.end);
         let flow = if trial.holds[lane] && trial.length.0[lane] < left {
-            let (order, alone) = (self.order, &mut motion.series);
-            for k in 0..=order {
-                alone.y[k] = self.series.y[k].0[lane];
-            }
-            for k in 0..(order - 1).max(SEEDED) {
-                alone.a[k] = self.series.a[k].0[lane];
-            }
-            alone.known = order + 1;
+            copy_lane(&self.series, lane, self.order, &mut motion.series);
+            let alone = &mut motion.series;
             alone.measured = self.columns.inside[lane].then(|| (trial.length.0[lane], trial.squared.0[lane]));
             motion.evaluations += 1;
             motion.roll = Some(trial.drive_at_end(lane));
@@ -251,18 +251,58 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
         }
     }
 
-    /// Gives all lanes back to their motions.
-    fn land_all(&mut self) {
+    /// Keeps the step that a lane has just taken.
+    fn keep(&mut self, lane: usize, trial: &Trial<W>) {
+        let Some(own) = &mut self.lanes[lane] else { return };
+        let motion = &mut own.motion;
+        copy_lane(&self.series, lane, self.order, &mut motion.series);
+        let arena = &motion.equation.arenas[motion.arena];
+        let (length, end) = (trial.length.0[lane], trial.end(lane));
+        let view = StepView {
+            path: &motion.series,
+            origin: arena.origin,
+            at: motion.at,
+            whole: length,
+            length,
+            duration: length,
+            bound: end.bound,
+            limits: (arena.low, arena.high),
+            x: end.y + arena.origin,
+            v: end.v,
+        };
+        if let Some(log) = &mut motion.record.log {
+            log.add_step(&view);
+        }
+        self.columns.follow(lane, motion);
+        motion.mark();
+    }
+
+    /// Looks at what is not looked at in flight: whether the run is to go on.
+    fn look_round(&mut self) {
         for lane in 0..W {
             let Some(own) = &mut self.lanes[lane] else { continue };
             if !self.columns.flying[lane] {
                 continue;
             }
-            self.columns.land(lane, &mut own.motion);
-            if own.motion.is_cancelled() {
-                let outcome = Outcome::Cancelled { at: own.motion.clock.seconds(&own.motion.at) };
+            let motion = &mut own.motion;
+            self.columns.land(lane, motion);
+            if motion.is_cancelled() {
+                let outcome = Outcome::Cancelled { at: motion.clock.seconds(&motion.at) };
                 self.end(lane, outcome);
+            } else if motion.has_budget_for(2 * STRIDE) {
+                self.columns.fill(lane, own.index, motion);
             }
         }
     }
+}
+
+/// Makes the series of one lane that of a motion alone.
+fn copy_lane<const W: usize>(all: &Series<Lanes<W>>, lane: usize, order: usize, alone: &mut Series<f64>) {
+    for k in 0..=order {
+        alone.y[k] = all.y[k].0[lane];
+    }
+    for k in 0..(order - 1).max(SEEDED) {
+        alone.a[k] = all.a[k].0[lane];
+    }
+    alone.known = order + 1;
 }
