@@ -8,8 +8,8 @@ use crate::numeric::{CompensatedSum, GaussLegendre, Scalar};
 /// hide.
 pub(super) const MARGIN: f64 = 1e-9;
 
-/// How much further than its bend a step must stay away from a surface that it is clear of: rounding never decides it.
-const ROOM_BESIDE_A_CHORD: f64 = 1.0625;
+/// How much further than a bound asks a step must stay away from a surface that it is clear of: rounding never decides it.
+pub(super) const ROOM_BESIDE: f64 = 1.0625;
 
 /// What changes in a record while nothing happens, and up to when that may go on.
 pub(super) struct Gliding<T> {
@@ -40,12 +40,13 @@ pub(super) struct Glide<T> {
 }
 
 impl<T: Scalar> Glide<T> {
-    /// Whether the step stays clear of both ends of the arena, as far as its chord can tell.
+    /// Whether the step stays clear of the low and of the high end of the arena, as far as its chord can tell.
     #[inline(always)]
-    pub fn is_clear(&self) -> bool {
-        let bend = self.bend * T::of(ROOM_BESIDE_A_CHORD);
-        (self.start.smaller(self.end) - bend > self.limits.0)
-            & (self.start.larger(self.end) + bend < self.limits.1)
+    pub fn is_clear(&self) -> (bool, bool) {
+        let bend = self.bend * T::of(ROOM_BESIDE);
+        let low = self.start.smaller(self.end) - bend > self.limits.0;
+        let high = self.start.larger(self.end) + bend < self.limits.1;
+        (low, high)
     }
 
     /// The extremes with the ends of the step, and whether a turning point inside it may lie beyond them.

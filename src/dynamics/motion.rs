@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::clock::{Clock, Instant};
 use super::drive::Drive;
-use super::equation::{Compliant, End, EndKind, Equation};
+use super::equation::{Compliant, End, Equation};
 use super::model::{Model, Request};
 use super::path::{Path, StepView};
 use super::penetration::Penetration;
@@ -422,7 +422,6 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
 
     /// One step of free flight; `left` is the time to the end of the run.
     pub fn fly(&mut self, left: T) -> Flow {
-        let zero = T::zero();
         if self.pass_segment_end() {
             return None;
         }
@@ -430,28 +429,16 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         self.drive.seed(&self.clock, &self.at, self.segment, &mut self.series.a, &mut self.roll);
         self.evaluations += 1;
 
-        // A rebound that is pressed back announces the length of its flight.
-        let mut flight = None;
-        if let Some(Touch { end, order: BY_SPEED }) = self.touch
-            && matches!(arena.end(end).1, EndKind::Stop | EndKind::Compliant)
-        {
-            let sign = end.sign::<T>();
-            let a = &self.series.a;
-            let press = self.equation.stop(end).map_or(zero, |s| s.press) - sign * a[0];
-            if press > zero {
-                let rates = [press, -(sign * a[1]), -(sign * a[2] * T::of(2.0))];
-                if self.sum_chatter(end, rates) {
-                    return None;
-                }
-                flight = Some(T::of(3.0) * self.v.abs() / press);
-            }
-        }
-
+        let flight = match self.pressed_back() {
+            Some((end, rates)) if self.sum_chatter(end, rates) => return None,
+            pressed => pressed.and_then(|(end, rates)| self.short_flight(end, rates)),
+        };
         self.series.begin(self.x - arena.origin, self.v);
         if let Some(flight) = flight {
             if let Some(flow) = self.rebound(flight, left) {
                 return flow;
             }
+            self.drive.seed(&self.clock, &self.at, self.segment, &mut self.series.a, &mut self.roll);
             self.series.begin(self.x - arena.origin, self.v);
         }
         let Some(step) = self.choose_step(flight, left) else {

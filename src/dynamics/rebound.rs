@@ -2,18 +2,53 @@
 //!
 //! Before a mass comes to rest it bounces a dozen times, each time a fraction as fast; most impacts of a run are such.
 //! Their flights are all but parabolas, so they need no search: with the gap as the variable, which is 0 at the start by
-//! definition, the flight ends where a polynomial with one root is 0, and Newton's method from the parabola's own
-//! end finds that to the last digit in three or four steps, however short the flight.
+//! definition, the flight ends where a polynomial with one root is 0, and a method of third order from the parabola's own
+//! end finds that to the last digit in two or three steps, however short the flight.
 
 use super::drive::Drive;
-use super::equation::EndKind;
+use super::equation::{End, EndKind};
 use super::motion::{BY_SPEED, Flow, Motion, Touch};
 use crate::numeric::Scalar;
 
-/// The most steps of Newton's method; each squares the error, and the first is smaller than a half.
+/// The most steps to the root; each takes the error to its third power.
 const MOST_STEPS: usize = 12;
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+    /// Whether the next step is one of the full order, on which nothing need be known of a surface that the mass stands on
+    /// but that it leaves it by its speed.
+    pub(super) fn flies_freely(&mut self) -> bool {
+        match self.touch {
+            None => true,
+            Some(Touch { order: BY_SPEED, .. }) => {
+                self.drive.seed(&self.clock, &self.at, self.segment, &mut self.series.a, &mut self.roll);
+                self.pressed_back().is_none_or(|(end, rates)| self.short_flight(end, rates).is_none())
+            }
+            Some(_) => false,
+        }
+    }
+
+    /// Whether the mass has just been thrown off a stop that it is pressed on, and off which: with the outward acceleration
+    /// with which it is pressed there and its first two derivatives. Expects the drive to be seeded.
+    pub(super) fn pressed_back(&self) -> Option<(End, [T; 3])> {
+        let Some(Touch { end, order: BY_SPEED }) = self.touch else { return None };
+        if !matches!(self.equation.arenas[self.arena].end(end).1, EndKind::Stop | EndKind::Compliant) {
+            return None;
+        }
+        let (a, sign) = (&self.series.a, end.sign::<T>());
+        let press = self.equation.stop(end).map_or(T::zero(), |stop| stop.press) - sign * a[0];
+        (press > T::zero()).then(|| (end, [press, -(sign * a[1]), -(sign * a[2] * T::of(2.0))]))
+    }
+
+    /// A time in which a rebound that is pressed back is back, where neither the drive nor the mechanism changes the press
+    /// much meanwhile; none where it is a flight like any other.
+    pub(super) fn short_flight(&self, end: End, [press, jerk, _]: [T; 3]) -> Option<T> {
+        let (speed, damping) = (self.v.abs(), self.equation.damping);
+        let stiffness = self.equation.stop(end).map_or(T::zero(), |stop| stop.stiffness.abs());
+        let flight = T::of(3.0) * speed / press;
+        let change = (jerk.abs() + stiffness * speed + damping * press) * flight;
+        (change < press * T::of(1.5)).then_some(flight)
+    }
+
     /// Flies from the stop that the mass has just been thrown off back to it; none where the flight may be longer than
     /// `flight`, or is too far from a parabola for its end to be known without a search. Expects the series to be begun.
     pub(super) fn rebound(&mut self, flight: T, left: T) -> Option<Flow> {
@@ -51,27 +86,27 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         if !(falls > others) {
             return None;
         }
-        let value_and_slope = |t: T| {
-            let (mut value, mut slope) = (zero, zero);
-            for c in y.iter().rev() {
-                slope = slope * t + value;
-                value = value * t - sign * *c;
-            }
-            (value, slope)
-        };
-        if value_and_slope(flight).0 > zero {
+        if y.iter().rev().fold(zero, |gap, c| gap * flight - sign * *c) > zero {
             return None;
         }
         let mut t = -(y[0] / y[1]);
         for _ in 0..MOST_STEPS {
-            let (value, slope) = value_and_slope(t);
-            let change = value / slope;
+            let (mut value, mut slope, mut bend) = (zero, zero, zero);
+            for c in y.iter().rev() {
+                bend = bend * t + slope;
+                slope = slope * t + value;
+                value = value * t - sign * *c;
+            }
+            let newton = value / slope;
+            let bent = newton * bend / slope;
+            let change = newton + newton * bent;
             t -= change;
             if !(t > zero && t <= flight) {
                 return None;
             }
-            if change.abs() <= t * T::of(4.0 * T::EPSILON) {
-                return Some(t);
+            let close = T::of(T::ROUGH);
+            if change.abs() <= t * close && bent.abs() <= close {
+                return Some(t); // what is left is the third power of that
             }
         }
         None

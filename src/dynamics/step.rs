@@ -9,6 +9,9 @@ use super::series::{ROOM, State};
 use super::taylor;
 use crate::numeric::{PolynomialRoots, Scalar};
 
+/// The order up to which the series of a rebound is extended at once.
+const FEW: usize = 5;
+
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// Extends the series as far as the step needs; none where the coefficients are not finite.
     ///
@@ -79,22 +82,30 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
     }
 
-    /// Extends the series until two terms in a row are negligible over `flight`, against the rebound's own speed;
-    /// false where the full order is not enough for that.
+    /// Extends the series, just begun, until two terms in a row are negligible over `flight`, against the rebound's own
+    /// speed; false where the full order is not enough for that.
     pub(super) fn expand_for(&mut self, flight: T) -> bool {
         let negligible = self.v.abs() * T::of(self.settings.tolerance * 0.1);
+        let arena = &self.equation.arenas[self.arena];
+        let (order, damping) = (self.settings.order, self.equation.damping);
+        let Self { series, drive, roll, .. } = self;
+        let mut known = series.known;
         let mut power = T::of(1.0);
         let mut small = 0;
-        while self.series.known <= self.settings.order {
-            self.push();
-            let k = self.series.known - 1;
+        while known <= order {
+            if known == series.known {
+                // the first few are always needed
+                series.extend_to((known + 1).max(FEW).min(order), &arena.force, damping, *drive, roll);
+            }
             power = power * flight;
-            if k >= 3 {
-                let term = (self.series.y[k] * power).abs() * T::of(k as f64);
+            if known >= 3 {
+                let term = (series.y[known] * power).abs() * T::of(known as f64);
                 small = if term <= negligible { small + 1 } else { 0 };
-                if small == 2 {
-                    return true;
-                }
+            }
+            known += 1;
+            if small == 2 {
+                series.known = known;
+                return true;
             }
         }
         false
@@ -137,7 +148,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             }
             let (y, to) = (&self.series.y[..n], end + arena.origin);
             let bend = taylor::bend(y, h);
-            if (Glide { start: self.x, end: to, bound, bend, limits }).is_clear() {
+            if (Glide { start: self.x, end: to, bound, bend, limits }).is_clear() == (true, true) {
                 return None;
             }
         }

@@ -159,6 +159,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
     #[inline]
     fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Rolling) {
         let (s, d) = self.looked(at, last);
+        *last = Some((*at, (s, d)));
         let swing = Swing { curvature: self.tone.curvature() };
         swing.seed(self.tone.amplitude * s, self.tone.amplitude * d, a);
     }

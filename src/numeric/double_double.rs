@@ -142,6 +142,7 @@ impl Number for DoubleDouble {
 
 impl Scalar for DoubleDouble {
     const EPSILON: f64 = 1.0e-31;
+    const ROUGH: f64 = 4e-12;
 
     fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self> {
         static RULES: Rules<DoubleDouble> = Rules::new();

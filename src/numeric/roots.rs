@@ -176,33 +176,68 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         self.isolate(&left, low, w, depth + 1, visit) && self.isolate(&right, low + w, w, depth + 1, visit)
     }
 
-    /// The root between `low` and `high`, by Newton steps kept inside a shrinking bracket.
+    /// Value, first and half the second derivative at `s`. Even and odd powers apart: one long chain of products would
+    /// wait for itself.
+    #[inline]
+    fn expansion(&self, s: T) -> (T, T, T) {
+        let zero = T::zero();
+        let square = s * s;
+        // of each part: value, and first and half the second derivative by the square
+        let (mut e, mut o) = ([zero; 3], [zero; 3]);
+        let add = |part: &mut [T; 3], c: T| {
+            part[2] = part[2] * square + part[1];
+            part[1] = part[1] * square + part[0];
+            part[0] = part[0] * square + c;
+        };
+        let mut pairs = self.g.rchunks_exact(2);
+        if self.g.len() % 2 == 0 {
+            for pair in pairs.by_ref() {
+                add(&mut o, pair[1]);
+                add(&mut e, pair[0]);
+            }
+        } else {
+            for pair in pairs.by_ref() {
+                add(&mut e, pair[1]);
+                add(&mut o, pair[0]);
+            }
+            add(&mut e, pairs.remainder()[0]);
+        }
+        let two = T::of(2.0);
+        let first = e[1] + s * o[1];
+        let value = e[0] + s * o[0];
+        let slope = o[0] + two * s * first;
+        let half_curvature = first + two * s * (o[1] + two * s * (e[2] + s * o[2]));
+        (value, slope, half_curvature)
+    }
+
+    /// The root between `low` and `high`, by Chebyshev's steps (third order) kept inside a shrinking bracket.
     fn polish(&self, mut low: T, mut high: T) -> T {
         let zero = T::zero();
         let below = self.value(low) > zero;
-        let mut s = (low + high) * T::of(0.5);
+        let half = T::of(0.5);
+        let mut s = self.guess(low, high).unwrap_or_else(|| (low + high) * half);
+        let close = T::of(T::ROUGH);
         let mut last_move = high - low;
         for _ in 0..120 {
-            let mut value = zero;
-            let mut slope = zero;
-            for c in self.g.iter().rev() {
-                slope = slope * s + value;
-                value = value * s + *c;
-            }
+            let (value, slope, half_curvature) = self.expansion(s);
             if (value > zero) == below {
                 low = s
             } else {
                 high = s
             }
-            let newton = s - value / slope;
-            // A Newton step must stay inside and at least halve the last move; else halve the bracket.
-            let next = if newton >= low && newton <= high && (newton - s).abs() * T::of(2.0) <= last_move {
-                newton
-            } else if (newton - s).abs() <= s.abs() * T::of(T::EPSILON) {
+            let newton = value / slope;
+            let bent = newton * half_curvature / slope;
+            let step = newton + newton * bent;
+            let next = s - step;
+            // A step must stay inside and at least halve the last move; else halve the bracket.
+            let inside = next >= low && next <= high && step.abs() * T::of(2.0) <= last_move;
+            if inside && step.abs() <= s.abs() * close && bent.abs() <= close {
+                return next; // what is left is the third power of that
+            }
+            if !inside && step.abs() <= s.abs() * T::of(T::EPSILON) {
                 return s;
-            } else {
-                (low + high) * T::of(0.5)
-            };
+            }
+            let next = if inside { next } else { (low + high) * half };
             last_move = (next - s).abs();
             if last_move <= s.abs() * T::of(T::EPSILON) {
                 return next;
@@ -210,6 +245,20 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
             s = next;
         }
         s
+    }
+
+    /// Where the parabola that shares value and slope at 0 and the value at 1 changes sign, where the bracket is all of it.
+    fn guess(&self, low: T, high: T) -> Option<T> {
+        if low != T::zero() || high != T::of(1.0) || self.g.len() < 2 {
+            return None;
+        }
+        let end = self.g.iter().map(|c| c.to_f64()).sum::<f64>();
+        let (a, b) = (self.g[0].to_f64(), self.g[1].to_f64());
+        let c = end - a - b;
+        let root = (b * b - 4.0 * a * c).sqrt();
+        let near = -2.0 * a / (b + root.copysign(b));
+        let far = -(b + root.copysign(b)) / (2.0 * c);
+        [near, far].into_iter().find(|s| *s > 0.0 && *s < 1.0).map(T::of)
     }
 }
 

@@ -42,6 +42,9 @@ pub trait Scalar: Number + PartialOrd {
     /// Spacing of the numbers just above 1, relative.
     const EPSILON: f64;
 
+    /// A relative error whose third power is below rounding by far.
+    const ROUGH: f64;
+
     /// 2 pi.
     fn tau() -> Self;
     /// The nearest `f64`.
@@ -92,6 +95,7 @@ impl Number for f64 {
 
 impl Scalar for f64 {
     const EPSILON: f64 = f64::EPSILON;
+    const ROUGH: f64 = 6e-7;
 
     #[inline]
     fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self> {

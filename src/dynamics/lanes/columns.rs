@@ -2,7 +2,7 @@
 
 use super::super::clock::Instant;
 use super::super::equation::PieceForce;
-use super::super::glide::{Glide, MARGIN};
+use super::super::glide::{Glide, MARGIN, ROOM_BESIDE};
 use super::super::series::{Series, State, natural_steps};
 use super::super::taylor;
 use super::super::tone::Swing;
@@ -43,6 +43,8 @@ pub(super) struct Columns<const W: usize> {
     /// Whether the time up to there lies in the settled window.
     pub inside: [bool; W],
     // what changes with each step
+    /// -1 or 1 on the low or high end of the arena, leaving it by its speed; else 0.
+    touch: Lanes<W>,
     x: Lanes<W>,
     v: Lanes<W>,
     at: Clocks<W>,
@@ -171,6 +173,7 @@ impl<const W: usize> Columns<W> {
             border: clocks,
             kept: [false; W],
             inside: [false; W],
+            touch: zero,
             x: zero,
             v: zero,
             at: clocks,
@@ -223,6 +226,7 @@ impl<const W: usize> Columns<W> {
         (self.low.0[lane], self.high.0[lane]) = (glide.low, glide.high);
         self.squared.set(lane, &glide.squared);
         self.covered.set(lane, &glide.covered);
+        self.touch.0[lane] = motion.touch.map_or(0.0, |touch| touch.end.sign());
         (self.x.0[lane], self.v.0[lane]) = (motion.x, motion.v);
         self.at.set(lane, &motion.at);
         (self.value.0[lane], self.slope.0[lane]) = motion.drive.looked(&motion.at, &motion.roll);
@@ -237,6 +241,7 @@ impl<const W: usize> Columns<W> {
         (motion.x, motion.v) = (self.x.0[lane], self.v.0[lane]);
         motion.at = self.at.get(lane);
         motion.turned_back = false;
+        motion.touch = None;
         motion.record.barrier_side = self.side.0[lane] as i8;
     }
 
@@ -253,6 +258,7 @@ impl<const W: usize> Columns<W> {
         motion.at = self.at.get(lane);
         motion.roll = Some((motion.at, (self.value.0[lane], self.slope.0[lane])));
         motion.turned_back = false;
+        motion.touch = None;
         motion.record.end_glide(
             (self.low.0[lane], self.high.0[lane]),
             self.squared.get(lane),
@@ -309,8 +315,14 @@ impl<const W: usize> Columns<W> {
 
             let (bound, limits) = (end.bound.0[lane], (self.low_end.0[lane], self.high_end.0[lane]));
             let glide = Glide { start: start.0[lane], end: x.0[lane], bound, bend: bend.0[lane], limits };
-            let clear = (self.x.0[lane] - limits.0 > bound) & (limits.1 - self.x.0[lane] > bound);
-            let clear = clear | glide.is_clear();
+            let (clear_low, clear_high) = glide.is_clear();
+            let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
+            let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
+            // from a surface: its own speed leads further away than all the rest can lead back
+            let leaves = 2.0 * self.v.0[lane].abs() * length > bound * ROOM_BESIDE;
+            let clear_low = clear_low | (leaves & (self.touch.0[lane] < 0.0));
+            let clear_high = clear_high | (leaves & (self.touch.0[lane] > 0.0));
+            let clear = clear_low & clear_high;
             let (low, high, turns) = glide.extremes((self.low.0[lane], self.high.0[lane]));
 
             // Without a top to cross, what compares with it is NaN and says no.
@@ -342,6 +354,7 @@ impl<const W: usize> Columns<W> {
             set(&mut self.side.0[lane], -side, crosses);
             self.crossed.0[lane] += if crosses { 1.0 } else { 0.0 };
             self.flown.0[lane] += if taken { 1.0 } else { 0.0 };
+            set(&mut self.touch.0[lane], 0.0, taken);
             set(&mut self.x.0[lane], glide.end, taken);
             set(&mut self.v.0[lane], end.v.0[lane], taken);
             set(&mut self.at.cycle.0[lane], at.cycle.0[lane], taken);

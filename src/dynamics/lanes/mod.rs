@@ -218,7 +218,7 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
             };
             let motion = &mut own.motion;
             if motion.contact == Contact::Free
-                && motion.touch.is_none()
+                && motion.flies_freely()
                 && motion.has_budget_for(2 * STRIDE)
                 && self.columns.fill(lane, own.index, motion)
             {
