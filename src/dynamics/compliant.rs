@@ -120,7 +120,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return None;
         }
         let stop = self.equation.compliant?;
-        let mut path = self.penetration.take().unwrap_or_else(|| Box::new(Penetration::new(stop)));
+        let new = || Box::new(Penetration::new(stop, self.equation.most_coefficients()));
+        let mut path = self.penetration.take().unwrap_or_else(new);
         let flow = self.press_along(end, left, &mut path);
         self.penetration = Some(path);
         flow

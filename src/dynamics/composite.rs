@@ -270,6 +270,10 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         a[..SEEDED].copy_from_slice(&sums);
     }
 
+    fn common_cycles(&self) -> i64 {
+        self.common_cycles.unwrap_or(1)
+    }
+
     fn value(
         &self,
         clock: &Clock<T>,

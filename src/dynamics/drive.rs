@@ -26,6 +26,11 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
     /// Whether half a cycle of the clock later it is always the opposite.
     const ODD: bool = false;
 
+    /// Cycles of the clock after which it repeats, where it does.
+    fn common_cycles(&self) -> i64 {
+        1
+    }
+
     /// Fills the first `SEEDED` coefficients of `a`, at `at`.
     fn seed(
         &self,

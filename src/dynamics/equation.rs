@@ -258,6 +258,11 @@ impl<T: Scalar> Equation<T> {
         }
     }
 
+    /// The most coefficients of a piece's force.
+    pub fn most_coefficients(&self) -> usize {
+        self.arenas.iter().map(|arena| arena.force.coefficients().len()).max().unwrap_or(0)
+    }
+
     /// The arena of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant stop the one
     /// outside it.
     pub fn arena_at(&self, x: T, piece: usize) -> usize {

@@ -78,10 +78,11 @@ pub(crate) struct Residual<T> {
 }
 
 impl<T: Scalar> Penetration<T> {
-    pub fn new(stop: Compliant<T>) -> Self {
+    /// With room for forces of up to `coefficients` coefficients.
+    pub fn new(stop: Compliant<T>, coefficients: usize) -> Self {
         let zeros = [T::zero(); ROOM];
         Self {
-            inner: Series::new(),
+            inner: Series::new(coefficients),
             root: zeros,
             speed: zeros,
             time: zeros,

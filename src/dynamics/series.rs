@@ -17,8 +17,6 @@ pub(crate) const MAX_ORDER: usize = 32;
 pub(crate) const ROOM: usize = MAX_ORDER + 2;
 /// Coefficients of the drive that are there from the start.
 pub(crate) const SEEDED: usize = 4;
-/// Products kept for the nested form of the force: one row a degree above the first.
-const ROWS: usize = crate::mechanics::ForceCurve::MAX_COEFFICIENTS;
 
 /// The Taylor coefficients of one step and the workspace to extend them.
 #[derive(Debug, Clone)]
@@ -32,7 +30,8 @@ pub(crate) struct Series<T> {
     /// The length of a step over which the integral of the squared velocity is known, and that.
     pub measured: Option<(T, T)>,
     square: [T; ROOM],
-    nested: [[T; ROOM]; ROWS],
+    /// Products kept for the nested form of the force: one row a degree above the first.
+    nested: Vec<[T; ROOM]>,
     inverse: [T; ROOM],
 }
 
@@ -48,13 +47,14 @@ pub(crate) struct State<T> {
 }
 
 impl<T: Number> Series<T> {
-    pub fn new() -> Self {
+    /// With room for forces of up to `coefficients` coefficients.
+    pub fn new(coefficients: usize) -> Self {
         let mut inverse = [T::zero(); ROOM];
         for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
             *slot = T::ratio(1.0, (k * (k - 1)) as f64);
         }
         let zeros = [T::zero(); ROOM];
-        Self { y: zeros, a: zeros, known: 0, measured: None, square: zeros, nested: [zeros; ROWS], inverse }
+        Self { y: zeros, a: zeros, known: 0, measured: None, square: zeros, nested: vec![zeros; coefficients.max(1)], inverse }
     }
 
     /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first

@@ -106,10 +106,10 @@ impl Tally {
 
 /// Cells a thread gets per chunk: a chunk waits for its last cell, so this keeps that wait to some
 /// per cent of the chunk even where one cell takes several times the others.
-const CELLS_PER_THREAD: u64 = 256;
+const CELLS_PER_THREAD: u64 = 512;
 
 /// Cells that a thread runs together: several times the lanes of any processor, so that few of them fly alone at the end.
-const BATCH: usize = 64;
+const BATCH: usize = 128;
 
 /// The same where each cell is waited for.
 const SHOWN: usize = 16;

@@ -123,6 +123,7 @@ struct Bundle<'a, 'r, const W: usize> {
 
 impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
     fn new(prepared: &'a [Prepared<'a>], request: &'a Request<'a>, runs: &'r mut [Option<Run>]) -> Self {
+        let most = prepared.iter().map(|own| own.equation.most_coefficients()).max().unwrap_or(0);
         let mut bundle = Self {
             prepared,
             request,
@@ -130,7 +131,7 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
             next: 0,
             lanes: [const { None }; W],
             columns: Box::new(Columns::new()),
-            series: Box::new(Series::new()),
+            series: Box::new(Series::new(most)),
             rule: f64::gauss_legendre(1).map(|value| Lanes([value; W])),
             order: 0,
             tolerance_log2: 0.0,
@@ -275,6 +276,7 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
         }
         self.columns.follow(lane, motion);
         motion.mark();
+        self.columns.kept[lane] = motion.record.log.is_some();
     }
 
     /// Looks at what is not looked at in flight: whether the run is to go on.

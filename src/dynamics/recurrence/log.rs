@@ -41,15 +41,16 @@ pub(in super::super) struct Kept<T: Copy> {
     first: usize,
     known: usize,
     base: usize,
-    /// The integrals over all of it, once they have been taken.
-    integrals: Cell<Option<(T, T)>>,
+    /// Which of the log's integrals are those over all of it; a step and its mirror image share them.
+    integrals: usize,
 }
 
 /// A kept step with its coefficients.
 struct KeptPath<'a, T: Copy> {
     y: &'a [T],
     a: &'a [T],
-    step: &'a Kept<T>,
+    length: T,
+    integrals: &'a Cell<Option<(T, T)>>,
 }
 
 impl<T: Scalar> InTime for KeptPath<'_, T> {
@@ -62,12 +63,12 @@ impl<T: Scalar> InTime for KeptPath<'_, T> {
         self.a
     }
     fn integrals_in_time<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
-        if from != T::zero() || to != self.step.length {
+        if from != T::zero() || to != self.length {
             return taylor::integrals::<T, WORK>(self.y, self.a, rule, from, to);
         }
-        let known = self.step.integrals.get();
+        let known = self.integrals.get();
         let integrals = known.unwrap_or_else(|| taylor::integrals::<T, WORK>(self.y, self.a, rule, from, to));
-        self.step.integrals.set(Some(integrals));
+        self.integrals.set(Some(integrals));
         integrals
     }
 }
@@ -85,6 +86,8 @@ struct Mark<T> {
 pub(in super::super) struct Log<T: Copy> {
     entries: Vec<Entry<T>>,
     coefficients: Vec<T>,
+    /// Integrals over whole steps, once they have been taken.
+    integrals: Vec<Cell<Option<(T, T)>>>,
     marks: Vec<Mark<T>>,
     /// The releases with a label: where they stand, and what the recorder had then.
     labels: Vec<(Label<T>, usize, Totals<T>)>,
@@ -103,9 +106,10 @@ impl Later {
 impl<T: Scalar> Log<T> {
     pub fn new() -> Self {
         Self {
-            entries: Vec::with_capacity(256),
-            coefficients: Vec::with_capacity(2048),
-            marks: Vec::with_capacity(128),
+            entries: Vec::with_capacity(96),
+            coefficients: Vec::with_capacity(1024),
+            integrals: Vec::with_capacity(64),
+            marks: Vec::with_capacity(64),
             labels: Vec::new(),
         }
     }
@@ -137,8 +141,14 @@ impl<T: Scalar> Log<T> {
             first,
             known: y.len(),
             base: a.len(),
-            integrals: Cell::new(None),
+            integrals: self.integrals.len(),
         }));
+        self.integrals.push(Cell::new(None));
+    }
+
+    /// Cycles of the clock since the last labelled release.
+    pub fn cycles_until(&self, at: &Instant<T>) -> i64 {
+        self.labels.last().and_then(|(_, mark, _)| self.marks.get(*mark)).map_or(0, |mark| at.cycle - mark.carried.at.cycle)
     }
 
     pub fn mark(&mut self, carried: Carried<T>) {
@@ -190,7 +200,7 @@ impl<T: Scalar> Log<T> {
                     let (y, a) =
                         self.coefficients[step.first..][..step.known + step.base].split_at(step.known);
                     let view = StepView {
-                        path: &KeptPath { y, a, step },
+                        path: &KeptPath { y, a, length: step.length, integrals: &self.integrals[step.integrals] },
                         origin: step.origin,
                         at: later.instant(&step.at),
                         whole: step.whole,

@@ -33,6 +33,10 @@ use log::Later;
 /// Share of the clock's cycle by which a lap must keep clear of what would set it apart: more than rounding can hide.
 const CLEAR: f64 = 1e-9;
 
+/// Common periods of the drive after which a motion that has not come back is no longer kept: most cycles take one or two,
+/// and a motion that never rests again would be kept to its end.
+const PATIENCE: i64 = 8;
+
 /// Which release this is. All of it is computed from the drive alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Label<T> {
@@ -92,8 +96,13 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     pub(super) fn mark(&mut self) {
         if self.record.log.is_some() {
             let carried = self.carry();
+            let patience = PATIENCE.saturating_mul(self.drive.common_cycles());
             if let Some(log) = &mut self.record.log {
-                log.mark(carried);
+                if log.cycles_until(&carried.at) > patience {
+                    self.record.log = None; // the next release begins another
+                } else {
+                    log.mark(carried);
+                }
             }
         }
     }
