@@ -136,7 +136,7 @@ impl Problem {
             for (j, c) in (order - 3..).zip(&y[order - 3..=order]) {
                 let size = c.abs() * j as f64;
                 if size > 1e-300 {
-                    radius = radius.min((speed_log2 - fast_log2(size)) / (j - 1) as f64);
+                    radius = radius.min((speed_log2 - fast_log2(size)) * (1.0 / (j - 1) as f64));
                 }
             }
             let log2 = radius + tolerance_log2 / order as f64;

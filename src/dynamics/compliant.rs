@@ -120,7 +120,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return None;
         }
         let stop = self.equation.compliant?;
-        let new = || Box::new(Penetration::new(stop, self.equation.most_coefficients()));
+        let new = || Box::new(Penetration::new(stop, self.equation.most_products()));
         let mut path = self.penetration.take().unwrap_or_else(new);
         let flow = self.press_along(end, left, &mut path);
         self.penetration = Some(path);

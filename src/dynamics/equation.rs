@@ -41,6 +41,12 @@ impl<T: Number> PieceForce<T> {
         self.odd
     }
 
+    /// Products of series that its own series takes beyond the first.
+    pub fn products(&self) -> usize {
+        let count = self.coefficients.len();
+        if self.odd { count / 2 - 1 } else { count - 1 }
+    }
+
     /// Force over mass at displacement `y` from the origin.
     #[inline(always)]
     pub fn at(&self, y: T) -> T {
@@ -258,9 +264,9 @@ impl<T: Scalar> Equation<T> {
         }
     }
 
-    /// The most coefficients of a piece's force.
-    pub fn most_coefficients(&self) -> usize {
-        self.arenas.iter().map(|arena| arena.force.coefficients().len()).max().unwrap_or(0)
+    /// The most products of series that a piece's force takes beyond the first.
+    pub fn most_products(&self) -> usize {
+        self.arenas.iter().map(|arena| arena.force.products()).max().unwrap_or(0)
     }
 
     /// The arena of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant stop the one

@@ -239,7 +239,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             clock,
             record: Recorder::new(model, clock, unit, settings.order, request, (x, v)),
             settings,
-            series: Series::new(equation.most_coefficients()),
+            series: Series::new(equation.most_products()),
             roll: D::Rolling::default(),
             segment: 0,
             at: Instant { cycle: 0, phase: T::zero() },

@@ -78,11 +78,11 @@ pub(crate) struct Residual<T> {
 }
 
 impl<T: Scalar> Penetration<T> {
-    /// With room for forces of up to `coefficients` coefficients.
-    pub fn new(stop: Compliant<T>, coefficients: usize) -> Self {
+    /// With room for forces that take up to `products` products of series beyond the first.
+    pub fn new(stop: Compliant<T>, products: usize) -> Self {
         let zeros = [T::zero(); ROOM];
         Self {
-            inner: Series::new(coefficients),
+            inner: Series::new(products),
             root: zeros,
             speed: zeros,
             time: zeros,

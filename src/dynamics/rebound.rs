@@ -40,13 +40,13 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     }
 
     /// A time in which a rebound that is pressed back is back, where neither the drive nor the mechanism changes the press
-    /// much meanwhile; none where it is a flight like any other.
+    /// much meanwhile, and off a compliant stop in any case; none where it is a flight like any other.
     pub(super) fn short_flight(&self, end: End, [press, jerk, _]: [T; 3]) -> Option<T> {
         let (speed, damping) = (self.v.abs(), self.equation.damping);
         let stiffness = self.equation.stop(end).map_or(T::zero(), |stop| stop.stiffness.abs());
         let flight = T::of(3.0) * speed / press;
         let change = (jerk.abs() + stiffness * speed + damping * press) * flight;
-        (change < press * T::of(1.5)).then_some(flight)
+        (self.equation.compliant.is_some() || change < press * T::of(1.5)).then_some(flight)
     }
 
     /// Flies from the stop that the mass has just been thrown off back to it; none where the flight may be longer than

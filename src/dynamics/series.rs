@@ -47,14 +47,14 @@ pub(crate) struct State<T> {
 }
 
 impl<T: Number> Series<T> {
-    /// With room for forces of up to `coefficients` coefficients.
-    pub fn new(coefficients: usize) -> Self {
+    /// With room for forces that take up to `products` products beyond the first.
+    pub fn new(products: usize) -> Self {
         let mut inverse = [T::zero(); ROOM];
         for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
             *slot = T::ratio(1.0, (k * (k - 1)) as f64);
         }
         let zeros = [T::zero(); ROOM];
-        Self { y: zeros, a: zeros, known: 0, measured: None, square: zeros, nested: vec![zeros; coefficients.max(1)], inverse }
+        Self { y: zeros, a: zeros, known: 0, measured: None, square: zeros, nested: vec![zeros; products], inverse }
     }
 
     /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first

@@ -123,7 +123,7 @@ struct Bundle<'a, 'r, const W: usize> {
 
 impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
     fn new(prepared: &'a [Prepared<'a>], request: &'a Request<'a>, runs: &'r mut [Option<Run>]) -> Self {
-        let most = prepared.iter().map(|own| own.equation.most_coefficients()).max().unwrap_or(0);
+        let most = prepared.iter().map(|own| own.equation.most_products()).max().unwrap_or(0);
         let mut bundle = Self {
             prepared,
             request,
