@@ -1,0 +1,268 @@
+//! Where the time goes, as the tables of docs/speed.md: `cargo bench --bench speed`.
+//!
+//! The flexure preset's work against precision; how time grows with jobs, duration, impacts and the size of a map; what a
+//! step costs against what the processor can do; and what each measure saves, switched off one by one.
+
+mod shared;
+
+use std::hint::black_box;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use interwell::dynamics::{Model, Request};
+use interwell::scene::Document;
+use interwell::study::{Grid, Sweep, Task};
+use pulp::{Arch, Simd, WithSimd};
+
+/// Runs that a sweep hands to one thread at a time.
+const TOGETHER: usize = 128;
+
+/// Tolerance of the runs in some 31 digits.
+const REFERENCE: f64 = 1e-27;
+
+/// Rounds of which each figure is the median.
+const ROUNDS: usize = 9;
+
+fn main() {
+    flexures();
+    duration();
+    impacts();
+    map_size();
+    step();
+    measures();
+    jobs();
+}
+
+/// CPU time in s of a run alone, and of one in company, medians.
+fn alone_and_together(model: &Model) -> (f64, f64) {
+    let many = vec![model.clone(); TOGETHER];
+    let (mut alone, mut together) = (Vec::new(), Vec::new());
+    for _ in 0..shared::rounds(ROUNDS) {
+        let some = &many[..8];
+        alone.push(shared::cpu(|| some.iter().map(|own| own.run(&Request::default())).count()) / 8.0);
+        together.push(shared::cpu(|| Model::run_all(&many, None)) / TOGETHER as f64);
+    }
+    (shared::median(&mut alone), shared::median(&mut together))
+}
+
+/// CPU time in s of some models, in company or each alone, the median.
+fn cpu_of(models: &[Model], together: bool) -> f64 {
+    let mut all = Vec::new();
+    for _ in 0..shared::rounds(3) {
+        all.push(match together {
+            true => shared::cpu(|| models.chunks(TOGETHER).map(|some| Model::run_all(some, None).len()).sum::<usize>()),
+            false => shared::cpu(|| models.iter().map(|model| model.run(&Request::default()).summary.steps).sum::<u64>()),
+        });
+    }
+    shared::median(&mut all)
+}
+
+/// The cells of a scene over travel limits in mm and amplitudes in g.
+fn cells(document: &Document, (limits, amplitudes): (usize, usize)) -> Vec<Model> {
+    let mechanism = interwell::mechanics::Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+    let mechanism = std::sync::Arc::new(mechanism);
+    let mut scene = document.scene.clone();
+    let grid = grid(document, (limits, amplitudes));
+    let cell = |index| {
+        grid.apply(index, &mut scene);
+        Model::build(&scene, mechanism.clone()).unwrap()
+    };
+    let all: Vec<Model> = (0..grid.cells()).map(cell).collect();
+    if shared::is_measured() { all } else { all.into_iter().step_by(97).collect() }
+}
+
+fn grid(document: &Document, (limits, amplitudes): (usize, usize)) -> Grid {
+    let axis = |field: &str, from: f64, to: f64, count: usize| match count {
+        1 => format!("{field}={from}"),
+        _ => format!("{field}={from}:{to}:{}", (to - from) / (count - 1) as f64),
+    };
+    let mut axes = vec![axis("excitation.amplitude_g", 0.0, 2.0, amplitudes)];
+    if limits > 0 {
+        axes.insert(0, axis("stops.travel_limit_mm", 0.5, 6.5, limits));
+    }
+    Grid::new(document.axes(&axes).unwrap()).unwrap()
+}
+
+fn flexures() {
+    println!("\n| `paper` | tolerance | error | steps | CPU | in company |");
+    println!("| --- | --- | --- | --- | --- | --- |");
+    for (name, changes) in [
+        ("without stops, 1 g", &["stops=None", "excitation.amplitude_g=1"][..]),
+        ("stops, its cycle comes back", &[]),
+        ("stops, integrated to its end", &["run.recurrence=false"]),
+    ] {
+        let mut model = shared::model("paper", changes);
+        let exact = model.run_reference(&Request::default(), REFERENCE).summary.rms_velocity.unwrap();
+        for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
+            model.tolerance = tolerance;
+            let run = model.run(&Request::default()).summary;
+            let error = (run.rms_velocity.unwrap() / exact - 1.0).abs();
+            let (alone, together) = alone_and_together(&model);
+            let (alone, together) = (alone * 1e6, together * 1e6);
+            println!("| {name} | {tolerance:.0e} | {error:.1e} | {} | {alone:.0} us | {together:.0} us |", run.steps);
+        }
+    }
+}
+
+fn duration() {
+    println!("\n| duration | P1, no stops, in company | P2, its cycle comes back | P2, integrated |");
+    println!("| --- | --- | --- | --- |");
+    for seconds in ["1", "10", "100", "1000"] {
+        let (duration, settle) = (format!("run.duration_s={seconds}"), format!("run.settle_s={seconds}e-1"));
+        let at = |changes: &[&str]| {
+            let changes = [changes, &["run.tolerance=1e-6", &duration, &settle]].concat();
+            shared::model("nominal-cubic", &changes)
+        };
+        let (_, free) = alone_and_together(&at(&["stops=None", "excitation.amplitude_g=1.1"]));
+        let (closed, _) = alone_and_together(&at(&[]));
+        let (integrated, _) = alone_and_together(&at(&["run.recurrence=false"]));
+        println!("| {seconds} s | {:.0} us | {:.0} us | {:.0} us |", free * 1e6, closed * 1e6, integrated * 1e6);
+    }
+}
+
+fn impacts() {
+    println!("\n| restitution | impacts | steps | CPU | an impact more |");
+    println!("| --- | --- | --- | --- | --- |");
+    let mut last: Option<(f64, f64)> = None;
+    for restitution in ["0", "0.36", "0.6", "0.8", "0.9", "0.95"] {
+        let own = format!("stops.restitution={restitution}");
+        let changes = [&own, "run.tolerance=1e-6", "run.recurrence=false", "excitation.amplitude_g=1.5"];
+        let model = shared::model("nominal-cubic", &changes);
+        let run = model.run(&Request::default()).summary;
+        let (alone, _) = alone_and_together(&model);
+        let impacts = run.total_impacts as f64;
+        let each = last.filter(|(before, _)| impacts > *before);
+        let each = each.map_or(String::new(), |(before, time)| format!("{:.0} ns", (alone - time) / (impacts - before) * 1e9));
+        println!("| {restitution} | {} | {} | {:.0} us | {each} |", run.total_impacts, run.steps, alone * 1e6);
+        last = Some((impacts, alone));
+    }
+}
+
+fn map_size() {
+    println!("\n| map | cells | with stops | a cell | without stops | a cell |");
+    println!("| --- | --- | --- | --- | --- | --- |");
+    let stopped = shared::document("nominal-cubic", &["run.tolerance=1e-6"]);
+    let free = shared::document("nominal-cubic", &["run.tolerance=1e-6", "stops=None"]);
+    for (limits, amplitudes) in [(6, 11), (21, 51), (41, 101), (81, 201)] {
+        let with = cells(&stopped, (limits, amplitudes));
+        let without = cells(&free, (0, amplitudes));
+        let (stops, none) = (cpu_of(&with, true), cpu_of(&without, true));
+        println!(
+            "| {limits} x {amplitudes} | {} | {:.3} s | {:.1} us | {:.4} s ({amplitudes} cells) | {:.0} us |",
+            with.len(),
+            stops,
+            stops / with.len() as f64 * 1e6,
+            none,
+            none / without.len() as f64 * 1e6
+        );
+    }
+}
+
+/// Products and sums as fast as the processor does them, in eight independent chains.
+struct Peak {
+    rounds: usize,
+}
+
+impl WithSimd for Peak {
+    type Output = usize;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> usize {
+        let factor = simd.splat_f64s(black_box(0.999_999));
+        let term = simd.splat_f64s(black_box(1e-6));
+        let mut chains = [simd.splat_f64s(black_box(1.0)); 16];
+        for _ in 0..self.rounds {
+            for chain in &mut chains {
+                *chain = simd.add_f64s(simd.mul_f64s(*chain, factor), term);
+            }
+        }
+        black_box(chains);
+        size_of::<S::f64s>() / size_of::<f64>()
+    }
+}
+
+/// Products and sums of a step of order `order` under an odd cubic: its series, state and check.
+fn operations(order: usize) -> usize {
+    let series: usize = (0..order - 1).map(|k| 2 * (k.div_ceil(2) + 1) + 2 * (k + 1) + 10).sum();
+    series + 8 * order + 80
+}
+
+fn step() {
+    println!("\n| P1 | order | a step alone | in company | operations | alone | in company |");
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    let rounds = if shared::is_measured() { 2_000_000 } else { 10 };
+    let peak = |simd: bool| {
+        let mut all: Vec<f64> = (0..shared::rounds(5))
+            .map(|_| {
+                let mut width = 1;
+                let arch = if simd { Arch::new() } else { Arch::Scalar };
+                let time = shared::cpu(|| width = arch.dispatch(Peak { rounds }));
+                time / (rounds * 16 * 2 * width) as f64
+            })
+            .collect();
+        1.0 / shared::median(&mut all)
+    };
+    let (scalar, wide) = (peak(false), peak(true));
+    for (tolerance, order) in [("1e-3", 9), ("1e-6", 13), ("1e-9", 16), ("1e-12", 20)] {
+        let tolerance = format!("run.tolerance={tolerance}");
+        let model = shared::model("nominal-cubic", &["stops=None", "excitation.amplitude_g=1.1", &tolerance]);
+        let steps = model.run(&Request::default()).summary.steps as f64;
+        let (alone, together) = alone_and_together(&model);
+        let work = operations(order) as f64;
+        println!(
+            "| {tolerance} | {order} | {:.0} ns | {:.0} ns | {work} | {:.0} % of the peak | {:.0} % of the peak |",
+            alone / steps * 1e9,
+            together / steps * 1e9,
+            100.0 * work * steps / alone / scalar,
+            100.0 * work * steps / together / wide
+        );
+    }
+    println!(
+        "\nPeak: {:.1} G products and sums of doubles a second one at a time, {:.0} G in the widest registers.",
+        scalar * 1e-9,
+        wide * 1e-9
+    );
+}
+
+fn measures() {
+    println!("\n| at 1e-6 | as it is | without lanes | without recurrence | without both |");
+    println!("| --- | --- | --- | --- | --- |");
+    let rows = [
+        ("201 cells without stops", "nominal-cubic", &["stops=None", "run.tolerance=1e-6"][..], (0, 201)),
+        ("P3, 41 x 101 cells", "nominal-cubic", &["run.tolerance=1e-6"], (41, 101)),
+        ("`paper`, 41 x 101 cells", "paper", &["run.tolerance=1e-6"], (41, 101)),
+    ];
+    for (name, scene, changes, size) in rows {
+        let on = cells(&shared::document(scene, changes), size);
+        let mut off = on.clone();
+        off.iter_mut().for_each(|model| model.recurrence = false);
+        let all = [cpu_of(&on, true), cpu_of(&on, false), cpu_of(&off, true), cpu_of(&off, false)];
+        let text: Vec<String> = all.iter().map(|time| format!("{time:.3} s ({:.1})", time / all[0])).collect();
+        println!("| {name} | {} |", text.join(" | "));
+    }
+}
+
+/// Wall time, since that is what jobs are for.
+fn jobs() {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    println!("\n| jobs ({cores} cores) | P3 of 161 x 401 cells, wall | against one |");
+    println!("| --- | --- | --- |");
+    let document = shared::document("nominal-cubic", &["run.tolerance=1e-6"]);
+    let size = if shared::is_measured() { (161, 401) } else { (3, 4) };
+    let mut first = None;
+    for jobs in (0..).map(|power| 1 << power).take_while(|jobs| *jobs <= cores) {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build().unwrap();
+        let mut all = Vec::new();
+        for _ in 0..shared::rounds(3) {
+            let sweep = Sweep::new(&document.scene, &document.files, grid(&document, size));
+            let watch = Instant::now();
+            let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+            let tally = sweep.run::<()>(&pool, &task, |_| Ok(true));
+            black_box(tally.is_ok());
+            all.push(watch.elapsed().as_secs_f64());
+        }
+        let time = shared::median(&mut all);
+        let one = *first.get_or_insert(time);
+        println!("| {jobs} | {time:.2} s | {:.2} |", one / time);
+    }
+}
