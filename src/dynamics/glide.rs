@@ -91,12 +91,7 @@ impl<T: Scalar> Recorder<'_, T, false> {
     }
 
     /// Takes in what such steps have changed.
-    pub fn end_glide(
-        &mut self,
-        (low, high): (T, T),
-        squared: CompensatedSum<T>,
-        covered: CompensatedSum<T>,
-    ) {
+    pub fn end_glide(&mut self, (low, high): (T, T), squared: CompensatedSum<T>, covered: CompensatedSum<T>) {
         (self.low, self.high) = (low, high);
         self.settled.squared_velocity = squared;
         self.covered = covered;

@@ -186,8 +186,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             false => (step.x_at(from), step.x_at(to)),
         };
         let endless = T::of(f64::INFINITY);
-        let mut glide =
-            Glide { start: first, end: last, bound: endless, bend: endless, limits: step.limits };
+        let mut glide = Glide { start: first, end: last, bound: endless, bend: endless, limits: step.limits };
         glide.bound = if full { step.bound } else { step.bound + step.bound };
         let (low, high, mut turns) = glide.extremes((self.low, self.high));
         if turns

@@ -54,7 +54,15 @@ impl<T: Number> Series<T> {
             *slot = T::ratio(1.0, (k * (k - 1)) as f64);
         }
         let zeros = [T::zero(); ROOM];
-        Self { y: zeros, a: zeros, known: 0, measured: None, square: zeros, nested: vec![zeros; products], inverse }
+        Self {
+            y: zeros,
+            a: zeros,
+            known: 0,
+            measured: None,
+            square: zeros,
+            nested: vec![zeros; products],
+            inverse,
+        }
     }
 
     /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first

@@ -2,8 +2,8 @@
 
 use super::drive::Drive;
 use super::equation::End;
-use super::motion::{BY_JERK, BY_SPEED, HELD, MOST_HALVINGS, Motion, RESIDUAL, ROUNDINGS, Step, Touch};
 use super::glide::Glide;
+use super::motion::{BY_JERK, BY_SPEED, HELD, MOST_HALVINGS, Motion, RESIDUAL, ROUNDINGS, Step, Touch};
 use super::path::Path;
 use super::series::{ROOM, State};
 use super::taylor;

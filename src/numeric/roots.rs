@@ -190,7 +190,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
             part[0] = part[0] * square + c;
         };
         let mut pairs = self.g.rchunks_exact(2);
-        if self.g.len() % 2 == 0 {
+        if self.g.len().is_multiple_of(2) {
             for pair in pairs.by_ref() {
                 add(&mut o, pair[1]);
                 add(&mut e, pair[0]);

@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -104,9 +105,14 @@ impl Tally {
     }
 }
 
-/// Cells a thread gets per chunk: a chunk waits for its last cell, so this keeps that wait to some
-/// per cent of the chunk even where one cell takes several times the others.
+/// Cells a thread gets of the first chunk, and the most of any. A chunk waits for its last cell: while chunks are over in
+/// less than [`SHORT`], the next is twice as large, so that the wait is a small part of it; where cells take long, rows
+/// come often.
 const CELLS_PER_THREAD: u64 = 512;
+const MOST_CELLS_PER_THREAD: u64 = 1 << 14;
+
+/// A short time for a chunk.
+const SHORT: Duration = Duration::from_millis(300);
 
 /// Cells that a thread runs together: several times the lanes of any processor, so that few of them fly alone at the end.
 const BATCH: usize = 128;
@@ -172,10 +178,11 @@ impl Sweep {
         task: &Task,
         mut write: impl FnMut(&Table) -> Result<bool, E>,
     ) -> Result<Tally, SweepEnd<E>> {
-        let chunk = CELLS_PER_THREAD * pool.current_num_threads() as u64;
+        let threads = pool.current_num_threads() as u64;
+        let mut chunk = CELLS_PER_THREAD * threads;
         let mut tally = Tally::default();
         while tally.cells < self.grid.cells() {
-            let begin = tally.cells;
+            let (begin, watch) = (tally.cells, Instant::now());
             let end = (begin + chunk).min(self.grid.cells());
             let batches = (begin..end).step_by(BATCH).map(|from| from..(from + BATCH as u64).min(end));
             let run = |scene: &mut Scene, batch: std::ops::Range<u64>| {
@@ -187,6 +194,9 @@ impl Sweep {
             let batches = batches.collect::<Vec<_>>().into_par_iter().with_max_len(1);
             let rows: Vec<Vec<Cell>> = pool.install(|| batches.map_init(|| self.base.clone(), run).collect());
             let rows = rows.concat();
+            if watch.elapsed() < SHORT {
+                chunk = (2 * chunk).min(MOST_CELLS_PER_THREAD * threads);
+            }
             if task.is_cancelled() {
                 return Err(SweepEnd::Cancelled);
             }

@@ -332,7 +332,8 @@ impl<const W: usize> Columns<W> {
             let monotone = 8.0 * glide.bend < self.v.0[lane].abs() * length;
             // outside the window only their number counts
             let countable = !inside & (length + length < left);
-            let clear_of_top = !(near | passed | onto) | (monotone & (from > 0.0) & !onto & (!passed | countable));
+            let clear_of_top =
+                !(near | passed | onto) | (monotone & (from > 0.0) & !onto & (!passed | countable));
 
             let quiet = clear & held & clear_of_top & !(turns & inside) & (length < left);
             let quiet = quiet & (at.phase.0[lane] < period) & (end.v.0[lane].abs() < f64::INFINITY);
@@ -342,7 +343,8 @@ impl<const W: usize> Columns<W> {
             landed[lane] = !quiet & self.flying[lane];
 
             let measured = taken & inside;
-            let (squared, covered) = (self.squared.with(lane, squared.0[lane]), self.covered.with(lane, length));
+            let (squared, covered) =
+                (self.squared.with(lane, squared.0[lane]), self.covered.with(lane, length));
             let set = |place: &mut f64, value: f64, which: bool| *place = if which { value } else { *place };
             set(&mut self.low.0[lane], low, measured);
             set(&mut self.high.0[lane], high, measured);

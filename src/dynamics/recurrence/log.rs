@@ -148,7 +148,10 @@ impl<T: Scalar> Log<T> {
 
     /// Cycles of the clock since the last labelled release.
     pub fn cycles_until(&self, at: &Instant<T>) -> i64 {
-        self.labels.last().and_then(|(_, mark, _)| self.marks.get(*mark)).map_or(0, |mark| at.cycle - mark.carried.at.cycle)
+        self.labels
+            .last()
+            .and_then(|(_, mark, _)| self.marks.get(*mark))
+            .map_or(0, |mark| at.cycle - mark.carried.at.cycle)
     }
 
     pub fn mark(&mut self, carried: Carried<T>) {
@@ -200,7 +203,12 @@ impl<T: Scalar> Log<T> {
                     let (y, a) =
                         self.coefficients[step.first..][..step.known + step.base].split_at(step.known);
                     let view = StepView {
-                        path: &KeptPath { y, a, length: step.length, integrals: &self.integrals[step.integrals] },
+                        path: &KeptPath {
+                            y,
+                            a,
+                            length: step.length,
+                            integrals: &self.integrals[step.integrals],
+                        },
                         origin: step.origin,
                         at: later.instant(&step.at),
                         whole: step.whole,
