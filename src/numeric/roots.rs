@@ -333,6 +333,23 @@ mod tests {
     }
 
     #[test]
+    fn the_expansion_is_value_and_slopes() {
+        for count in 1..9 {
+            let g: Vec<f64> = (0..count).map(|k| 1.0 / (1.5 + k as f64) - 0.3 * (k % 3) as f64).collect();
+            let polynomial = PolynomialRoots::new(&g);
+            for s in [-0.7, 0.0, 0.3, 1.0, 1.4] {
+                let (value, slope, half_curvature) = polynomial.expansion(s);
+                let (v, first, second) = polynomial.value_and_slopes(s);
+                let near = |a: f64, b: f64| (a - b).abs() < 1e-13 * (1.0 + b.abs());
+                assert!(
+                    near(value, v) && near(slope, first) && near(2.0 * half_curvature, second),
+                    "{count} {s}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn the_same_code_in_double_double() {
         let g: Vec<DoubleDouble> = [2.0, 0.0, -4.0].iter().map(|c| crate::numeric::Number::of(*c)).collect();
         let s = PolynomialRoots::new(&g).first().unwrap();

@@ -79,3 +79,15 @@ fn a_curve_that_ends_and_one_of_several_pieces() {
     compare(&models("paper-table", &["stops=None", "run.duration_s=3", "run.settle_s=1"], each.clone()));
     compare(&models("paper", &["stops.travel_limit_mm=7.17", "run.duration_s=3", "run.settle_s=1"], each));
 }
+
+#[test]
+fn stops_near_and_far_with_every_kind_of_rebound() {
+    let all = ["run.duration_s=7", "run.settle_s=2.9", "run.tolerance=1e-6"];
+    for (restitution, amplitude) in [("0", 0.9), ("0.36", 1.3), ("0.36", 1.9), ("0.8", 1.1), ("1", 0.6)] {
+        let (restitution, amplitude) =
+            (format!("stops.restitution={restitution}"), format!("excitation.amplitude_g={amplitude}"));
+        let changes = [&all[..], &[restitution.as_str(), amplitude.as_str()]].concat();
+        let limits = (0..37).map(|i| format!("stops.travel_limit_mm={}", 0.5 + 0.25 * i as f64));
+        compare(&models("nominal-cubic", &changes, limits));
+    }
+}

@@ -305,7 +305,7 @@ impl<const W: usize> Columns<W> {
         }
         let start = series.y[0] + self.origin;
         let x = end.y + self.origin;
-        let (mut holds, mut landed, mut tooks) = ([false; W], [false; W], [false; W]);
+        let (mut holds, mut landed, mut took) = ([false; W], [false; W], [false; W]);
         for lane in 0..W {
             let (length, period) = (length.0[lane], self.period.0[lane]);
             let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
@@ -339,7 +339,7 @@ impl<const W: usize> Columns<W> {
             let quiet = quiet & (at.phase.0[lane] < period) & (end.v.0[lane].abs() < f64::INFINITY);
             let taken = quiet & self.flying[lane];
             holds[lane] = held;
-            tooks[lane] = taken;
+            took[lane] = taken;
             landed[lane] = !quiet & self.flying[lane];
 
             let measured = taken & inside;
@@ -364,6 +364,6 @@ impl<const W: usize> Columns<W> {
             set(&mut self.value.0[lane], value.0[lane], taken);
             set(&mut self.slope.0[lane], slope.0[lane], taken);
         }
-        Trial { landed, taken: tooks, holds, length, end, at, value, slope, squared }
+        Trial { landed, taken: took, holds, length, end, at, value, slope, squared }
     }
 }
