@@ -5,12 +5,12 @@ use super::equation::End;
 use super::glide::Glide;
 use super::motion::{BY_JERK, BY_SPEED, HELD, MOST_HALVINGS, Motion, RESIDUAL, ROUNDINGS, Step, Touch};
 use super::path::Path;
-use super::series::{ROOM, State};
+use super::series::{ROOM, SEEDED, State};
 use super::taylor;
 use crate::numeric::{PolynomialRoots, Scalar};
 
-/// The order up to which the series of a rebound is extended at once.
-const FEW: usize = 5;
+/// The order up to which the series of a rebound is extended at once: all that the drive's first coefficients are there for.
+const FEW: usize = SEEDED + 1;
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// Extends the series as far as the step needs; none where the coefficients are not finite.
@@ -94,8 +94,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let mut small = 0;
         while known <= order {
             if known == series.known {
-                // the first few are always needed
-                series.extend_to((known + 1).max(FEW).min(order), &arena.force, damping, *drive, roll);
+                // the first few are always needed; a drive goes on once for each of the others
+                series.extend_to(known.max(FEW).min(order), &arena.force, damping, *drive, roll);
             }
             power = power * flight;
             if known >= 3 {
