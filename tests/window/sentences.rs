@@ -20,11 +20,14 @@ fn shaken() {
     let stops = |mm: f64| format!("stops=Rigid(travel_limit_mm: {mm}, restitution: 0.36)");
     let (kind, text) = of("first-look", &[]);
     assert_eq!(kind, Kind::Intrawell);
-    // it rattles without a rhythm: the turning point is 5.65 mm, give or take some micrometres
-    let low = ["5.6", "5.7"].map(|low| {
-        format!("Intrawell: stays in the right-hand well, between {low} and 7.3 mm; RMS velocity 17 mm/s.")
+    // It rattles without a rhythm: the turning point is 5.65 mm, give or take some micrometres, and the RMS velocity 17.1 to
+    // 17.9 mm/s at tolerances from 1e-3 to 1e-12.
+    let likely = ["5.6", "5.7"].into_iter().flat_map(|low| ["17", "18"].map(|speed| (low, speed)));
+    let mut likely = likely.map(|(low, speed)| {
+        let between = format!("between {low} and 7.3 mm");
+        format!("Intrawell: stays in the right-hand well, {between}; RMS velocity {speed} mm/s.")
     });
-    assert!(low.iter().any(|low| text.starts_with(low)), "{text}");
+    assert!(likely.any(|own| text.starts_with(&own)), "{text}");
     assert!(text.ends_with("About 0.3 g short of crossing."), "{text}");
 
     let (kind, text) = of("first-look", &[&stops(1.5)]);
