@@ -90,8 +90,10 @@ fn fly_together(prepared: &[Prepared], request: &Request, runs: &mut [Option<Run
 
 /// What is run by instructions that not every processor has. (A type of its own and no closure: a closure's body would
 /// be compiled apart, for every processor.)
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 struct Wide<'a, 'r, const W: usize>(Bundle<'a, 'r, W>);
 
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 impl<const W: usize> pulp::NullaryFnOnce for Wide<'_, '_, W> {
     type Output = ();
 
