@@ -3,7 +3,7 @@
 //! The run is a chain of free flights in one arena each and of rests on a stop. A step of a flight is a
 //! Taylor series (`series`); its polynomial is also the dense output, and contacts, breaks and crossings are
 //! roots of it, found with none missed. Chosen for that, and for its cost: on the nominal cubic without stops
-//! six more digits cost 1.7 times the time (`benches/work_precision.rs` prints error and cost), where a
+//! six more digits cost 1.9 times the time (`benches/work_precision.rs` prints error and cost), where a
 //! Runge-Kutta method of order 5 pays 16 times and would need a dense output of its own to look for contacts.
 //!
 //! Three habits keep events sound:
@@ -14,8 +14,8 @@
 //!   contact cannot be found again, however short the flight. Since x = D exactly, the gap needs no difference
 //!   of large numbers: a flight of 1e-6 m/s is as exact, relatively, as one of 1 m/s.
 //! - A pressed rebound announces its own length, 2 v / a; the series is then extended only until its terms are
-//!   negligible over that length: four or five coefficients where a full step has sixteen. Extending each to
-//!   the full order makes a run with 780 impacts cost half as much again.
+//!   negligible over that length: four or five coefficients where a full step has sixteen. Its end is the one root of
+//!   that series in the gap, found without a search (`rebound`).
 //! - What remains of a chatter once it is short is summed in closed form (Nordmark and Piiroinen 2009).
 
 use std::sync::atomic::{AtomicBool, Ordering};
