@@ -99,7 +99,7 @@ impl Problem {
             *slot = 1.0 / (k * (k - 1)) as f64;
         }
         let (mut y, mut a) = ([0.0; ROOM], [0.0; ROOM]);
-        let (mut square, mut nested) = ([0.0; ROOM], [0.0; ROOM]);
+        let mut row = [0.0; ROOM]; // linear + cubic y^2
         let (speed_log2, tolerance_log2) = (fast_log2(self.speed), self.tolerance.log2());
         let (mut cycle, mut phase) = (0, 0.0);
         let mut turned = (0.0, 1.0); // sine and cosine of the drive where a step starts
@@ -120,17 +120,29 @@ impl Problem {
             }
             y[0] = x;
             y[1] = v;
-            for k in 0..order - 1 {
-                if DRIVEN && k >= 4 {
-                    a[k] = curvature * a[k - 2] * inverse[k];
-                }
-                square[k] = square_of(&y, k);
-                nested[k] = if k == 0 { cubic * square[k] + linear } else { cubic * square[k] };
-                let force = convolve(&nested, &y, k);
-                let drag = damping * (k + 1) as f64 * y[k + 1];
-                let sum = if DRIVEN { (drag + force) + a[k] } else { drag + force };
-                y[k + 2] = -sum * inverse[k + 2];
-            }
+            row[0] = cubic * (x * x) + linear;
+            let change = cubic * (x + x);
+            let stiffness = row[0] + change * x;
+            each_order::<0>(
+                order - 1,
+                #[inline(always)]
+                |k| {
+                    if DRIVEN && k >= 4 {
+                        a[k] = curvature * a[k - 2] * inverse[k];
+                    }
+                    let drag = damping * (k + 1) as f64 * y[k + 1];
+                    let sum = if k == 0 {
+                        let force = row[0] * x;
+                        if DRIVEN { force + a[k] } else { force }
+                    } else {
+                        let rest = cubic * inner_square(&y, k);
+                        row[k] = rest + change * y[k];
+                        let rest = inner_convolve(&row, &y, k) + rest * x;
+                        (if DRIVEN { rest + a[k] } else { rest }) + stiffness * y[k]
+                    };
+                    y[k + 2] = -(sum + drag) * inverse[k + 2];
+                },
+            );
 
             let mut radius = f64::INFINITY;
             for (j, c) in (order - 3..).zip(&y[order - 3..=order]) {
@@ -148,21 +160,26 @@ impl Problem {
                 if last {
                     h = left;
                 }
-                let (mut position, mut velocity, mut half) = (0.0, 0.0, 0.0);
+                let (mut position, mut velocity, mut acceleration) = (0.0, v, 0.0);
                 bound = 0.0;
-                for c in y[1..=order].iter().rev() {
-                    half = half * h + velocity;
-                    velocity = velocity * h + position;
-                    position = position * h + *c;
-                    if COUNT {
-                        bound = bound * h + c.abs();
-                    }
-                }
-                half = half * h + velocity;
-                velocity = velocity * h + position;
-                position = position * h + y[0];
-                bound *= h; // the mass is never further from where the step starts
-                let acceleration = half + half;
+                let (mut before, mut power) = (1.0, h);
+                each_order::<2>(
+                    order + 1,
+                    #[inline(always)]
+                    |k| {
+                        acceleration += (k * (k - 1)) as f64 * y[k] * before;
+                        velocity += k as f64 * y[k] * power;
+                        (before, power) = (power, power * h);
+                        let term = y[k] * power;
+                        position += term;
+                        if COUNT {
+                            bound += term.abs();
+                        }
+                    },
+                );
+                let term = v * h;
+                let position = x + (term + position);
+                bound += term.abs(); // the mass is never further from where the step starts
                 let (mut next_cycle, mut next_phase) = (cycle, phase + h);
                 if next_phase >= period {
                     let whole = (next_phase / period).floor();
@@ -196,14 +213,51 @@ impl Problem {
                 h *= 0.5;
             };
             steps += 1;
-            if COUNT && ((y[0] > 0.0) != (position > 0.0) || y[0].abs() <= bound) {
-                crossings += passages(&y[..=order], h, position);
+            if COUNT {
+                let passed = (y[0] > 0.0) != (position > 0.0);
+                if passed || y[0].abs() <= bound {
+                    crossings += match bend(&y[..=order], h) < y[1].abs() {
+                        true => u64::from(passed), // the velocity keeps its sign
+                        false => passages(&y[..=order], h, position),
+                    };
+                }
             }
             (x, v) = (position, velocity);
             (cycle, phase) = next;
         }
         End { x, v: v / self.unit, steps, crossings }
     }
+}
+
+/// Does something for each order from the first on, by its number, which spares the bookkeeping of a loop.
+#[inline(always)]
+fn each_order<const FIRST: usize>(end: usize, mut next: impl FnMut(usize)) {
+    macro_rules! each {
+        ($($k:literal)*) => {
+            $(
+                if $k >= FIRST {
+                    if end <= $k {
+                        return;
+                    }
+                    next($k);
+                }
+            )*
+        };
+    }
+    each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19);
+    for k in 20..end {
+        next(k);
+    }
+}
+
+/// A bound of what the velocity changes by within a step of length `h`.
+fn bend(y: &[f64], h: f64) -> f64 {
+    let (mut sum, mut power) = (0.0, 1.0);
+    for (k, c) in y.iter().enumerate().skip(2) {
+        power *= h;
+        sum += c.abs() * power * f64::from((k * (k - 1)) as u32);
+    }
+    sum
 }
 
 /// Passages of 0 within a step of length `h` that ends at `end`.
@@ -221,46 +275,57 @@ fn passages(y: &[f64], h: f64, end: f64) -> u64 {
     if (count % 2 == 1) == passed { count } else { count.checked_sub(1).unwrap_or(1) }
 }
 
-#[inline]
-fn convolve(a: &[f64; ROOM], b: &[f64; ROOM], k: usize) -> f64 {
-    let (mut even, mut odd) = (0.0, 0.0);
-    let mut pairs = a[..=k].iter().zip(b[..=k].iter().rev());
-    while let Some((p, q)) = pairs.next() {
-        even += p * q;
-        if let Some((p, q)) = pairs.next() {
-            odd += p * q;
-        }
+/// Sum of a[i] b[k-i] over i = 1..k, from the middle outwards.
+#[inline(always)]
+fn inner_convolve(a: &[f64; ROOM], b: &[f64; ROOM], k: usize) -> f64 {
+    if k < 2 {
+        return 0.0;
     }
-    even + odd
+    let half = k.div_ceil(2);
+    let middle = a[k - half] * b[half];
+    if k == 2 {
+        return middle;
+    }
+    let (mut low, mut high) = match k.is_multiple_of(2) {
+        true => (middle + a[half - 1] * b[half + 1], a[half + 1] * b[half - 1]),
+        false => (middle, a[half] * b[k - half]),
+    };
+    for i in (1..half - 1).rev() {
+        low += a[i] * b[k - i];
+        high += a[k - i] * b[i];
+    }
+    low + high
 }
 
-#[inline]
-fn square_of(a: &[f64; ROOM], k: usize) -> f64 {
-    let half = k.div_ceil(2);
-    let (mut even, mut odd) = (0.0, 0.0);
-    let mut pairs = a[..half].iter().zip(a[k + 1 - half..=k].iter().rev());
-    while let Some((p, q)) = pairs.next() {
-        even += p * q;
-        if let Some((p, q)) = pairs.next() {
-            odd += p * q;
-        }
+/// Sum of a[i] a[k-i] over i = 1..k, from the middle outwards.
+#[inline(always)]
+fn inner_square(a: &[f64; ROOM], k: usize) -> f64 {
+    match k {
+        0 | 1 => return 0.0,
+        2 => return a[1] * a[1],
+        _ => {}
     }
-    let twice = (even + odd) + (even + odd);
+    let last = (k - 1) / 2;
+    let mut sum = a[last] * a[k - last];
+    for i in (1..last).rev() {
+        sum += a[i] * a[k - i];
+    }
+    let twice = sum + sum;
     if k.is_multiple_of(2) { twice + a[k / 2] * a[k / 2] } else { twice }
 }
 
 #[inline]
 fn fast_log2(x: f64) -> f64 {
     let bits = x.to_bits();
-    let exponent = (bits >> 52) as i64 - 1023;
+    let exponent = f64::from_bits(bits >> 52 | 0x4330_0000_0000_0000) - (4_503_599_627_370_496.0 + 1023.0);
     let m = f64::from_bits((bits & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000) - 1.0;
-    exponent as f64 + m * (1.3465 - 0.3465 * m)
+    exponent + m * (1.3465 - 0.3465 * m)
 }
 
 #[inline]
 fn fast_exp2(x: f64) -> f64 {
-    let whole = Scalar::floor(x);
-    let f = x - whole;
-    let mantissa = 1.0 + f * (0.6565 + 0.3435 * f);
-    f64::from_bits(((whole as i64 + 1023).clamp(1, 2046) as u64) << 52) * mantissa
+    let shifted = x + 6_755_399_441_055_744.0;
+    let f = x - (shifted - 6_755_399_441_055_744.0);
+    let mantissa = 1.0 + f * (0.7035 + 0.2402 * f);
+    f64::from_bits((shifted.to_bits() << 52).wrapping_add(1023 << 52)) * mantissa
 }

@@ -78,7 +78,7 @@ impl<T: Scalar> Clock<T> {
     }
 
     /// The instant `dt` >= 0 kernel time units later.
-    #[inline]
+    #[inline(always)]
     pub fn advance(&self, at: &Instant<T>, dt: T) -> Instant<T> {
         let mut phase = at.phase + dt;
         let mut cycle = at.cycle;
@@ -98,7 +98,7 @@ impl<T: Scalar> Clock<T> {
     }
 
     /// Kernel time units from one instant to another.
-    #[inline]
+    #[inline(always)]
     pub fn between(&self, from: &Instant<T>, to: &Instant<T>) -> T {
         T::of((to.cycle - from.cycle) as f64) * self.period + (to.phase - from.phase)
     }

@@ -12,11 +12,14 @@ pub(super) const MARGIN: f64 = 1e-9;
 pub(super) const ROOM_BESIDE: f64 = 1.0625;
 
 /// What changes in a record while nothing happens, and up to when that may go on.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Gliding<T> {
     /// The end of the run, a border of the settled window or a strobe, whichever comes first.
     pub border: Instant<T>,
     /// Whether the time up to there is in the settled window.
     pub inside: bool,
+    /// Whether events are listed.
+    pub listed: bool,
     /// The top that crossings are counted at, and the side of it.
     pub barrier: Option<T>,
     pub side: i8,
@@ -61,13 +64,15 @@ impl<T: Scalar> Glide<T> {
     }
 }
 
-impl<T: Scalar> Recorder<'_, T, false> {
-    /// What it is to be told of steps after `at` on which nothing happens, in a run up to `end`; none where samples are
-    /// taken. (Steps that are kept must be told of each.)
-    pub fn glide(&self, at: &Instant<T>, end: &Instant<T>) -> Option<Gliding<T>> {
-        if self.next_time < self.times.len() {
-            return None;
-        }
+impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+    /// Whether it need not be told of steps on which nothing happens: no samples are taken, and no steps are kept.
+    #[inline]
+    pub fn is_quiet(&self) -> bool {
+        self.next_time >= self.times.len() && self.log.is_none()
+    }
+
+    /// What it is to be told of steps after `at` on which nothing happens, up to `end`.
+    pub fn glide(&self, at: &Instant<T>, end: &Instant<T>) -> Gliding<T> {
         let until = |border: &Instant<T>| self.clock.between(at, border);
         let (from, to) = (&self.window.0, &self.window.1);
         let mut border = *end;
@@ -78,16 +83,17 @@ impl<T: Scalar> Recorder<'_, T, false> {
             }
         }
         let inside = until(from) <= T::zero() && until(to) > T::zero();
-        Some(Gliding {
+        Gliding {
             border,
             inside,
+            listed: self.events.is_some(),
             barrier: self.barrier,
             side: self.barrier_side,
             low: self.low,
             high: self.high,
             squared: self.settled.squared_velocity,
             covered: self.covered,
-        })
+        }
     }
 
     /// Takes in what such steps have changed.

@@ -23,6 +23,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::clock::{Clock, Instant};
 use super::drive::Drive;
 use super::equation::{Compliant, End, Equation};
+use super::flight::Flown;
 use super::model::{Model, Request};
 use super::path::{Path, StepView};
 use super::penetration::Penetration;
@@ -58,7 +59,7 @@ pub(super) const ROUNDINGS: f64 = 32.0;
 pub(super) const MOST_HALVINGS: u32 = 200;
 
 /// Steps between two looks at the cancel flag.
-const CANCEL_STRIDE: u64 = 256;
+pub(super) const CANCEL_STRIDE: u64 = 256;
 
 /// A surface that the mass touches at the start of a step, and how many of the leading coefficients of the
 /// gap are 0 by definition.
@@ -281,7 +282,17 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
                 Ok(left) => left,
                 Err(outcome) => break outcome,
             };
-            if let Some(outcome) = self.proceed(left).or_else(|| self.spent()) {
+            let flow = match self.glide() {
+                Flown::On => None,
+                Flown::To(step) => self.take(&step),
+                Flown::Before(length) => {
+                    let left = self.clock.between(&self.at, &self.end);
+                    let step = self.shorten(length, left);
+                    self.take_any(step)
+                }
+                Flown::Not => self.proceed(left),
+            };
+            if let Some(outcome) = flow.or_else(|| self.spent()) {
                 break outcome;
             }
         };
@@ -441,10 +452,16 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             self.drive.seed(&self.clock, &self.at, self.segment, &mut self.series.a, &mut self.roll);
             self.series.begin(self.x - arena.origin, self.v);
         }
-        let Some(step) = self.choose_step(flight, left) else {
-            return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
-        };
-        self.take(&step)
+        let step = self.choose_step(flight, left);
+        self.take_any(step)
+    }
+
+    /// Goes along the step that was chosen; none is the end of the run.
+    fn take_any(&mut self, step: Option<Step<T>>) -> Flow {
+        match step {
+            Some(step) => self.take(&step),
+            None => Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) }),
+        }
     }
 
     /// Goes along a step of flight up to its end or the first surface.

@@ -19,9 +19,10 @@
 
 use super::drive::Drive;
 use super::equation::{Compliant, PieceForce};
+use super::force_series::convolve;
 use super::path::Path;
 use super::result::Phase;
-use super::series::{MAX_ORDER, ROOM, SEEDED, Series, convolve, fast_exp2, fast_log2};
+use super::series::{MAX_ORDER, ROOM, SEEDED, Series, fast_exp2, fast_log2};
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
 
 /// Everything about one step of contact, in the parameter s, and the workspace.

@@ -79,7 +79,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         // The slope is that of the parabola, give or take what all the others can come to.
         let mut others = zero;
         for (k, c) in y.iter().enumerate().skip(2).rev() {
-            others = others * flight + c.abs() * T::of(k as f64);
+            others = others * flight + c.abs() * T::whole(k);
         }
         let others = others * flight;
         let falls = sign * y[1];

@@ -3,6 +3,7 @@
 use super::clock::{Clock, Instant};
 use super::glide::Glide;
 use super::model::{Model, Request};
+use super::passages::{Passages, side_of};
 use super::path::{Path, StepView};
 use super::penetration::Penetration;
 use super::recurrence::{Entry, Log};
@@ -203,7 +204,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             let mut slope = [T::zero(); super::series::ROOM];
             let scaled = step.path.scaled(step.whole);
             for (k, slot) in (1..n).zip(slope.iter_mut()) {
-                *slot = scaled[k] * T::of(k as f64);
+                *slot = scaled[k] * T::whole(k);
             }
             if slope[0] < T::zero() {
                 // a value of 0 counts as negative: the mirrored motion must be told the same
@@ -223,36 +224,15 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
 
     /// Takes in the passages of the top within a step that starts `gap` to the right of it and ends on `end_side`.
     fn crossings<P: Path<T>>(&mut self, step: &StepView<T, P>, gap: T, end_side: i8) {
-        let n = step.path.known();
         let mut g = step.path.scaled(step.whole);
         g[0] = gap;
-        // A step that starts on the top leaves it by its first coefficient that is not 0.
-        let first = g[..n].iter().position(|c| *c != T::zero());
-        let Some(first) = first else { return };
-        let departs: i8 = if g[first] > T::zero() { 1 } else { -1 };
-        if self.barrier_side == 0 {
-            self.barrier_side = departs; // a start on the top is no crossing
-        }
-        // the top was reached at the end of the last step and is passed now, at 0
-        let at_once = usize::from(departs != self.barrier_side);
-        if departs < 0 {
-            for c in &mut g[first..n] {
-                *c = -*c;
-            }
-        }
-        let roots = PolynomialRoots::new(&g[first..n]);
-        // The end decides the parity: rounding may put a root just beyond it, or a touch of the top.
-        let passed = end_side != self.barrier_side;
-        let settle = |count: usize| match count % 2 == 1 {
-            odd if end_side == 0 => count - usize::from(odd), // on the top: the next step tells
-            odd if odd == passed => count,
-            _ => count.checked_sub(1).unwrap_or(1),
+        let Some(passages) = Passages::new(&mut g[..step.path.known()], self.barrier_side, end_side) else {
+            return;
         };
+        self.barrier_side = passages.from;
         if !self.instants_matter(step) {
-            let count = settle(at_once + roots.count_sign_changes());
-            if count % 2 == 1 {
-                self.barrier_side = -self.barrier_side;
-            }
+            let count = passages.count();
+            self.barrier_side = passages.side_after(count);
             self.counts.total_crossings += count as u64;
             if self.in_window(&step.at) {
                 self.counts.crossings += count as u64;
@@ -260,8 +240,8 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             return;
         }
         let mut found = [T::zero(); super::series::ROOM];
-        let mut count = at_once;
-        roots.each_sign_change(|s| {
+        let mut count = passages.at_once;
+        passages.roots.each_sign_change(|s| {
             let t = s * step.whole;
             if t > step.length || count == found.len() {
                 return false;
@@ -273,7 +253,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         if count == 0 {
             found[0] = step.length;
         }
-        for t in &found[..settle(count)] {
+        for t in &found[..passages.settle(count)] {
             self.crossing(step, *t);
         }
     }
@@ -466,15 +446,5 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
 
     pub fn total_impacts(&self) -> u64 {
         self.counts.total_impacts
-    }
-}
-
-pub(super) fn side_of<T: Scalar>(x: T, barrier: T) -> i8 {
-    if x > barrier {
-        1
-    } else if x < barrier {
-        -1
-    } else {
-        0
     }
 }

@@ -9,6 +9,7 @@
 
 use super::drive::Tail;
 use super::equation::PieceForce;
+use super::force_series::{self, ForceSeries};
 use crate::numeric::{Number, Scalar};
 
 /// The highest order of a step.
@@ -29,9 +30,7 @@ pub(crate) struct Series<T> {
     pub known: usize,
     /// The length of a step over which the integral of the squared velocity is known, and that.
     pub measured: Option<(T, T)>,
-    square: [T; ROOM],
-    /// Products kept for the nested form of the force: one row a degree above the first.
-    nested: Vec<[T; ROOM]>,
+    forces: ForceSeries<T>,
     inverse: [T; ROOM],
 }
 
@@ -54,15 +53,7 @@ impl<T: Number> Series<T> {
             *slot = T::ratio(1.0, (k * (k - 1)) as f64);
         }
         let zeros = [T::zero(); ROOM];
-        Self {
-            y: zeros,
-            a: zeros,
-            known: 0,
-            measured: None,
-            square: zeros,
-            nested: vec![zeros; products],
-            inverse,
-        }
+        Self { y: zeros, a: zeros, known: 0, measured: None, forces: ForceSeries::new(products), inverse }
     }
 
     /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first
@@ -75,20 +66,7 @@ impl<T: Number> Series<T> {
         self.measured = None;
     }
 
-    /// Adds the next coefficient.
-    #[inline(always)]
-    pub fn push<D: Tail<T>>(&mut self, force: &PieceForce<T>, damping: T, drive: &D, roll: &mut D::Rolling) {
-        let k = self.known - 2;
-        if k >= SEEDED {
-            drive.extend(k, &mut self.a, &self.inverse, roll);
-        }
-        let f = self.force_coefficient(force, k);
-        let drag = damping * T::of((k + 1) as f64) * self.y[k + 1];
-        self.y[k + 2] = -with_base::<T, D>(drag + f, &self.a, k) * self.inverse[k + 2];
-        self.known += 1;
-    }
-
-    /// Adds coefficients up to `order`: what [`Self::push`] does, with the shape of the force decided once.
+    /// Adds coefficients up to `order`.
     #[inline(always)]
     pub fn extend_to<D: Tail<T>>(
         &mut self,
@@ -98,57 +76,31 @@ impl<T: Number> Series<T> {
         drive: &D,
         roll: &mut D::Rolling,
     ) {
-        let c = force.coefficients();
-        let Self { y, a, nested, inverse, .. } = self;
+        let Self { y, a, forces, inverse, .. } = self;
         let known = self.known - 2..order.min(MAX_ORDER) - 1; // the bound spares a look at each index
-        match c {
-            [c0] => recur(
-                known,
-                y,
-                a,
-                inverse,
-                damping,
-                drive,
-                roll,
-                #[inline(always)]
-                |k, _| at_zero(k, *c0, T::zero()),
-            ),
-            [c0, c1] => {
-                recur(
+        // The shape of the force is decided once.
+        macro_rules! recur {
+            ($unrolled:expr, $force:expr) => {
+                recur::<T, D, { $unrolled }>(
                     known,
-                    y,
-                    a,
-                    inverse,
+                    (y, a, inverse),
                     damping,
                     drive,
                     roll,
                     #[inline(always)]
-                    |k, y| at_zero(k, *c0, *c1 * y[k]),
-                );
-            }
+                    $force,
+                )
+            };
+        }
+        match force.coefficients() {
+            [c0] => recur!(true, |k, _, more| force_series::constant(*c0, k, more)),
+            [c0, c1] => recur!(true, |k, y, more| force_series::linear(*c0, *c1, y, k, more)),
             [_, c1, _, c3] if force.is_odd() => {
-                let row = &mut nested[0];
-                recur(
-                    known,
-                    y,
-                    a,
-                    inverse,
-                    damping,
-                    drive,
-                    roll,
-                    #[inline(always)]
-                    |k, y| {
-                        row[k] = at_zero(k, *c1, *c3 * square(y, k));
-                        convolve(row, y, k)
-                    },
-                );
+                let mut cubic = forces.cubic(*c1, *c3, y[0]);
+                recur!(true, |k, y, more| cubic.coefficient(y, k, more));
             }
-            _ => {
-                while self.known <= order {
-                    self.push(force, damping, drive, roll);
-                }
-                return;
-            }
+            c if force.is_odd() => recur!(false, |k, y, more| forces.odd(c, y, k, more)),
+            c => recur!(false, |k, y, more| forces.dense(c, y, k, more)),
         }
         self.known = order + 1;
     }
@@ -156,35 +108,7 @@ impl<T: Number> Series<T> {
     /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones have been asked for before.
     #[inline(always)]
     pub(super) fn force_coefficient(&mut self, force: &PieceForce<T>, k: usize) -> T {
-        let c = force.coefficients();
-        let constant = if k == 0 { c[0] } else { T::zero() };
-        if c.len() <= 2 {
-            return match c.get(1) {
-                Some(c1) => constant + *c1 * self.y[k],
-                None => constant,
-            };
-        }
-        if force.is_odd() {
-            self.square[k] = square(&self.y, k);
-            // nested[j] is the series of c[2j+1] + c[2j+3] w + c[2j+5] w^2 + ..., w = y^2
-            let top = c.len() / 2 - 1;
-            for j in (0..top).rev() {
-                let product = if j + 1 == top {
-                    c[2 * j + 3] * self.square[k]
-                } else {
-                    convolve(&self.nested[j + 1], &self.square, k)
-                };
-                self.nested[j][k] = if k == 0 { product + c[2 * j + 1] } else { product };
-            }
-            return convolve(&self.nested[0], &self.y, k);
-        }
-        let top = c.len() - 1;
-        for j in (0..top).rev() {
-            let product =
-                if j + 1 == top { c[top] * self.y[k] } else { convolve(&self.nested[j + 1], &self.y, k) };
-            self.nested[j][k] = if k == 0 { product + c[j] } else { product };
-        }
-        self.nested[0][k]
+        self.forces.coefficient(force, &self.y, k, None)
     }
 
     /// Adds coefficient `k` of the drive, at or above [`SEEDED`]; once each and in ascending order.
@@ -196,17 +120,25 @@ impl<T: Number> Series<T> {
     #[inline(always)]
     pub fn state(&self, t: T) -> State<T> {
         let zero = T::zero();
-        let (mut y, mut v, mut half, mut bound) = (zero, zero, zero, zero);
-        for c in self.y[1..self.known].iter().rev() {
-            half = half * t + v;
-            v = v * t + y;
-            y = y * t + *c;
-            bound = bound * t + c.abs();
-        }
-        half = half * t + v;
-        v = v * t + y;
-        y = y * t + self.y[0];
-        State { y, v, acceleration: half + half, bound: bound * t }
+        let (mut y, mut v, mut acceleration, mut bound) = (zero, self.y[1], zero, zero);
+        // Powers, and sums of terms: where Horner's rule waits for a product and a sum at each coefficient, this waits for one.
+        let (mut before, mut power) = (T::of(1.0), t);
+        each_order::<2>(
+            T::QUICK,
+            2..self.known,
+            #[inline(always)]
+            |k| {
+                let c = self.y[k];
+                acceleration += T::whole(k * (k - 1)) * c * before;
+                v += T::whole(k) * c * power;
+                (before, power) = (power, power * t);
+                let term = c * power;
+                y += term;
+                bound += term.abs();
+            },
+        );
+        let term = self.y[1] * t;
+        State { y: self.y[0] + (term + y), v, acceleration, bound: term.abs() + bound }
     }
 
     /// The coefficients of the base's acceleration that go with those of the motion.
@@ -217,6 +149,19 @@ impl<T: Number> Series<T> {
 }
 
 impl<T: Scalar> Series<T> {
+    /// As [`Self::extend_to`], compiled once: it is large.
+    #[inline(never)]
+    pub fn extend<D: Tail<T>>(
+        &mut self,
+        order: usize,
+        force: &PieceForce<T>,
+        damping: T,
+        drive: &D,
+        roll: &mut D::Rolling,
+    ) {
+        self.extend_to(order, force, damping, drive, roll);
+    }
+
     /// The longest step whose first neglected term in the velocity stays below `tolerance` times `speed`, at most `cap`.
     #[inline]
     pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
@@ -242,7 +187,8 @@ pub(super) fn natural_steps<const W: usize>(
     cap: &[f64; W],
 ) -> [f64; W] {
     let (mut radius, mut sum) = ([f64::INFINITY; W], [0.0; W]);
-    for k in order.saturating_sub(3).max(2)..=order {
+    let last = order.clamp(5, MAX_ORDER);
+    for k in [last - 3, last - 2, last - 1, last] {
         let coefficients = coefficients(k);
         let inverse = 1.0 / (k as f64 - 1.0);
         for lane in 0..W {
@@ -262,91 +208,82 @@ pub(super) fn natural_steps<const W: usize>(
     steps
 }
 
-/// `rest`, and `value` in the constant term: elsewhere nothing is added, not a 0, on which the next would wait.
+/// The recurrence of the equation of motion over the orders `known`, the force's coefficients and what is added to them by
+/// `force`.
 #[inline(always)]
-fn at_zero<T: Number>(k: usize, value: T, rest: T) -> T {
-    if k == 0 { rest + value } else { rest }
-}
-
-/// `sum` and coefficient `k` of the base's acceleration, where it may be other than 0.
-#[inline(always)]
-fn with_base<T: Number, D: Tail<T>>(sum: T, a: &[T; ROOM], k: usize) -> T {
-    if k < D::ZERO_FROM { sum + a[k] } else { sum }
-}
-
-/// The recurrence of the equation of motion over the orders `known`, the force's coefficients by `force`.
-#[allow(clippy::too_many_arguments)] // fields borrowed apart, so that `force` may hold the others
-#[inline(always)]
-fn recur<T: Number, D: Tail<T>>(
+fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
     known: std::ops::Range<usize>,
-    y: &mut [T; ROOM],
-    a: &mut [T; ROOM],
-    inverse: &[T; ROOM],
+    (y, a, inverse): (&mut [T; ROOM], &mut [T; ROOM], &[T; ROOM]),
     damping: T,
     drive: &D,
     roll: &mut D::Rolling,
-    mut force: impl FnMut(usize, &[T; ROOM]) -> T,
+    mut force: impl FnMut(usize, &[T; ROOM], Option<T>) -> T,
 ) {
-    for k in known {
-        if k >= SEEDED {
-            drive.extend(k, a, inverse, roll);
-        }
-        let f = force(k, y);
-        let drag = damping * T::of((k + 1) as f64) * y[k + 1];
-        y[k + 2] = -with_base::<T, D>(drag + f, a, k) * inverse[k + 2];
-    }
+    each_order::<0>(
+        T::QUICK && SIMPLE,
+        known,
+        #[inline(always)]
+        |k| {
+            if k >= SEEDED {
+                drive.extend(k, a, inverse, roll);
+            }
+            let base = if k < D::ZERO_FROM { Some(a[k]) } else { None };
+            let drag = damping * T::whole(k + 1) * y[k + 1];
+            y[k + 2] = -(force(k, y, base) + drag) * inverse[k + 2];
+        },
+    );
 }
 
-/// Sum of a\[i\] b\[k-i\] over i = 0..=k; two running sums, since one addition waits for the last.
+/// Does something for each of the orders; where `unrolled`, and the first of them is `USUAL`, with numbers that the compiler
+/// knows: the bookkeeping of a loop may cost as much as what is done in it.
 #[inline(always)]
-pub(crate) fn convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
-    let mut even = T::zero();
-    let mut odd = T::zero();
-    let mut pairs = a[..=k].iter().zip(b[..=k].iter().rev());
-    while let Some((p, q)) = pairs.next() {
-        even += *p * *q;
-        if let Some((p, q)) = pairs.next() {
-            odd += *p * *q;
+fn each_order<const USUAL: usize>(
+    unrolled: bool,
+    orders: std::ops::Range<usize>,
+    mut next: impl FnMut(usize),
+) {
+    let mut rest = orders.start;
+    if unrolled && orders.start == USUAL {
+        macro_rules! each {
+            ($($k:literal)*) => {
+                $(
+                    if $k >= USUAL {
+                        if orders.end <= $k {
+                            return;
+                        }
+                        next($k);
+                    }
+                )*
+            };
         }
+        each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19);
+        rest = 20;
     }
-    even + odd
-}
-
-/// Sum of a\[i\] a\[k-i\] over i = 0..=k by symmetry.
-#[inline(always)]
-fn square<T: Number>(a: &[T; ROOM], k: usize) -> T {
-    let half = k.div_ceil(2);
-    let mut even = T::zero();
-    let mut odd = T::zero();
-    let mut pairs = a[..half].iter().zip(a[k + 1 - half..=k].iter().rev());
-    while let Some((p, q)) = pairs.next() {
-        even += *p * *q;
-        if let Some((p, q)) = pairs.next() {
-            odd += *p * *q;
-        }
+    for k in rest..orders.end {
+        next(k);
     }
-    let twice = (even + odd) + (even + odd);
-    if k.is_multiple_of(2) { twice + a[k / 2] * a[k / 2] } else { twice }
 }
 
 /// log2 to 0.01, for step sizes only: the same bits on every processor, unlike a library's.
 #[inline(always)]
 pub(crate) fn fast_log2(x: f64) -> f64 {
+    // 2^52 with the exponent in its last bits: whole numbers are made and taken apart where the others are.
+    const WHOLE: u64 = 0x4330_0000_0000_0000;
+    const BIAS: f64 = 4_503_599_627_370_496.0 + 1023.0;
     let bits = x.to_bits();
-    let exponent = (bits >> 52) as i64 - 1023;
+    let exponent = f64::from_bits(bits >> 52 | WHOLE) - BIAS;
     let m = f64::from_bits((bits & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000) - 1.0;
-    exponent as f64 + m * (1.3465 - 0.3465 * m)
+    exponent + m * (1.3465 - 0.3465 * m)
 }
 
 /// 2^x to 0.3 %, for |x| up to 1000, for step sizes only.
 #[inline(always)]
 pub(crate) fn fast_exp2(x: f64) -> f64 {
     const NO_FRACTION: f64 = 6_755_399_441_055_744.0; // 1.5 2^52
-    let nearest = (x + NO_FRACTION) - NO_FRACTION;
-    let whole = if nearest > x { nearest - 1.0 } else { nearest };
-    let f = x - whole;
-    let mantissa = 1.0 + f * (0.6565 + 0.3435 * f);
-    f64::from_bits(((whole as i64 + 1023).clamp(1, 2046) as u64) << 52) * mantissa
+    let shifted = x + NO_FRACTION;
+    let f = x - (shifted - NO_FRACTION);
+    let mantissa = 1.0 + f * (0.7035 + 0.2402 * f); // of -1/2 to 1/2
+    f64::from_bits((shifted.to_bits() << 52).wrapping_add(1023 << 52)) * mantissa
 }
 
 #[cfg(test)]

@@ -19,18 +19,24 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// middle, tones that cancel), and then the last ones promise too long a step. So each step is checked
     /// against the equation of motion at its end, and halved until it holds.
     pub(super) fn choose_step(&mut self, flight: Option<T>, left: T) -> Option<Step<T>> {
-        let natural = |motion: &Self| {
-            let s = &motion.settings;
-            motion.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest)
-        };
-        let mut h = match flight {
+        let length = match flight {
             Some(flight) if self.expand_for(flight) => flight,
             _ => {
                 self.expand();
-                let natural = T::of(natural(self));
+                let natural = self.natural_step();
                 flight.map_or(natural, |flight| flight.smaller(natural))
             }
         };
+        self.shorten(length, left)
+    }
+
+    fn natural_step(&self) -> T {
+        let s = &self.settings;
+        T::of(self.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest))
+    }
+
+    /// The step of up to length `h` that ends in time, and with which the equation of motion holds.
+    pub(super) fn shorten(&mut self, mut h: T, left: T) -> Option<Step<T>> {
         let border = self.drive.segment_end(self.segment);
         for _ in 0..MOST_HALVINGS {
             if !(h > T::zero()) {
@@ -54,7 +60,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             }
             if self.series.known <= self.settings.order {
                 self.expand();
-                h = h.smaller(T::of(natural(self)));
+                h = h.smaller(self.natural_step());
             } else {
                 h = h * T::of(0.5);
             }
@@ -69,12 +75,13 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
         let arena = &self.equation.arenas[self.arena];
         let order = self.settings.order;
-        self.series.extend_to(order, &arena.force, self.equation.damping, self.drive, &mut self.roll);
+        self.series.extend(order, &arena.force, self.equation.damping, self.drive, &mut self.roll);
     }
 
     fn push(&mut self) {
         let arena = &self.equation.arenas[self.arena];
-        self.series.push(&arena.force, self.equation.damping, self.drive, &mut self.roll);
+        let next = self.series.known;
+        self.series.extend(next, &arena.force, self.equation.damping, self.drive, &mut self.roll);
         if self.series.known == 3
             && let Some(Touch { order: BY_JERK.., .. }) = self.touch
         {
@@ -95,11 +102,11 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         while known <= order {
             if known == series.known {
                 // the first few are always needed; a drive goes on once for each of the others
-                series.extend_to(known.max(FEW).min(order), &arena.force, damping, *drive, roll);
+                series.extend(known.max(FEW).min(order), &arena.force, damping, *drive, roll);
             }
             power = power * flight;
             if known >= 3 {
-                let term = (series.y[known] * power).abs() * T::of(known as f64);
+                let term = (series.y[known] * power).abs() * T::whole(known);
                 small = if term <= negligible { small + 1 } else { 0 };
             }
             known += 1;

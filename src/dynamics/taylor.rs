@@ -34,7 +34,7 @@ pub(super) fn value<T: Scalar>(y: &[T], t: T) -> T {
 pub(super) fn slope<T: Scalar>(y: &[T], t: T) -> T {
     let mut sum = T::zero();
     for k in (1..y.len()).rev() {
-        sum = sum * t + y[k] * T::of(k as f64);
+        sum = sum * t + y[k] * T::whole(k);
     }
     sum
 }
@@ -46,7 +46,7 @@ pub(super) fn bend<T: Number>(y: &[T], h: T) -> T {
     let (mut sum, mut power) = (T::zero(), h);
     for (k, c) in y.iter().enumerate().skip(2) {
         power = power * h;
-        sum += c.abs() * power * T::of((k * (k - 1)) as f64);
+        sum += c.abs() * power * T::whole(k * (k - 1));
     }
     sum * T::of(0.125)
 }
@@ -70,7 +70,7 @@ pub(super) fn integrals<T: Number, const WORK: bool>(
     while nodes.len() - done >= 4 {
         let time = |i: usize| from + length * nodes[done + i];
         let times = (time(0), time(1), time(2), time(3));
-        let v = at_four_times(y.len(), |k| y[k] * T::of(k as f64), 1, times);
+        let v = at_four_times(y.len(), |k| y[k] * T::whole(k), 1, times);
         let weight = |i: usize| weights[done + i];
         squared += v.0 * v.0 * weight(0);
         squared += v.1 * v.1 * weight(1);
@@ -89,7 +89,7 @@ pub(super) fn integrals<T: Number, const WORK: bool>(
         let time = from + length * nodes[done];
         let mut v = T::zero();
         for k in (1..y.len()).rev() {
-            v = v * time + y[k] * T::of(k as f64);
+            v = v * time + y[k] * T::whole(k);
         }
         squared += v * v * weights[done];
         if WORK {

@@ -64,7 +64,7 @@ impl<T: Scalar> Tone<T> {
     }
 
     /// The same where the tone is `start` turns in at phase 0 of the cycle.
-    #[inline]
+    #[inline(always)]
     fn after(&self, phase: T, start: T) -> (T, T) {
         let turns = phase * self.frequency + start;
         let (s, c) = T::sin_cos_turns(turns);
@@ -73,7 +73,7 @@ impl<T: Scalar> Tone<T> {
     }
 
     /// -(2 pi frequency)^2.
-    #[inline]
+    #[inline(always)]
     pub fn curvature(&self) -> T {
         let omega = T::tau() * self.frequency;
         -(omega * omega)
@@ -128,13 +128,13 @@ impl<T: Number> Tail<T> for Swing<T> {
 
 impl<T: Scalar> Sine<T> {
     /// Value and time derivative per unit amplitude: each cycle begins at the same turn.
-    #[inline]
+    #[inline(always)]
     fn unit(&self, at: &Instant<T>) -> (T, T) {
         self.tone.after(at.phase, self.tone.phase)
     }
 
     /// The same, where it was looked at last if that was there.
-    #[inline]
+    #[inline(always)]
     pub fn looked(&self, at: &Instant<T>, last: &Looked<T>) -> (T, T) {
         match last {
             Some((when, unit)) if when == at => *unit,
@@ -147,7 +147,7 @@ impl<T: Scalar> Tail<T> for Sine<T> {
     /// A step begins where the check of the last one looked.
     type Rolling = Looked<T>;
 
-    #[inline]
+    #[inline(always)]
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], _: &mut Self::Rolling) {
         Swing { curvature: self.tone.curvature() }.extend(k, a, inverse, &mut ());
     }
@@ -156,7 +156,7 @@ impl<T: Scalar> Tail<T> for Sine<T> {
 impl<T: Scalar> Drive<T> for Sine<T> {
     const ODD: bool = true;
 
-    #[inline]
+    #[inline(always)]
     fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Rolling) {
         let (s, d) = self.looked(at, last);
         *last = Some((*at, (s, d)));
@@ -164,7 +164,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         swing.seed(self.tone.amplitude * s, self.tone.amplitude * d, a);
     }
 
-    #[inline]
+    #[inline(always)]
     fn value(
         &self,
         _: &Clock<T>,

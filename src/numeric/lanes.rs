@@ -69,6 +69,8 @@ impl<const W: usize> SubAssign for Lanes<W> {
 }
 
 impl<const W: usize> Number for Lanes<W> {
+    const QUICK: bool = true;
+
     #[inline(always)]
     fn of(value: f64) -> Self {
         Self([value; W])

@@ -113,7 +113,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         for (k, c) in g.iter().enumerate().skip(1).rev() {
             least = *c + least.smaller(zero);
             most = *c + most.larger(zero);
-            let slope = *c * T::of(k as f64);
+            let slope = *c * T::whole(k);
             least_slope = slope + least_slope.smaller(zero);
             most_slope = slope + most_slope.larger(zero);
         }

@@ -24,12 +24,21 @@ pub trait Number:
     + AddAssign
     + SubAssign
 {
+    /// Whether an operation takes so little that the bookkeeping of a short loop costs as much.
+    const QUICK: bool = false;
+
     /// The number nearest to `value`.
     fn of(value: f64) -> Self;
     /// The number nearest to `over / under`.
     fn ratio(over: f64, under: f64) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
+
+    /// A whole number below 2^32, a degree as a rule.
+    #[inline(always)]
+    fn whole(number: usize) -> Self {
+        Self::of(f64::from(number as u32)) // (one instruction, where 64 bits without a sign take several)
+    }
 
     /// 0.
     fn zero() -> Self {
@@ -79,6 +88,8 @@ pub trait Scalar: Number + PartialOrd {
 }
 
 impl Number for f64 {
+    const QUICK: bool = true;
+
     #[inline(always)]
     fn of(value: f64) -> Self {
         value
@@ -131,40 +142,31 @@ impl Scalar for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    /// As `sin_cos_by_octant`, every choice a selection, so that several can be made at once.
+    /// As `sin_cos_by_octant`, every choice a selection, so that several can be made at once, and as little as can be that
+    /// waits for something else: a step of the motion begins with it.
     #[inline(always)]
     fn sin_cos_turns(u: Self) -> (Self, Self) {
-        let a = u.abs();
-        let f = a - floor_below_2_51(a); // exact
-        let quarter = floor_below_2_51(f * 4.0 + 0.5);
-        let r = f - quarter * 0.25; // exact
+        const NO_FRACTION: f64 = 6_755_399_441_055_744.0; // 1.5 2^52: of its sum with a number below 2^50 the last bits are the whole
+        let shifted = u * 4.0 + NO_FRACTION;
+        let quarter = shifted.to_bits();
+        let r = u - (shifted - NO_FRACTION) * 0.25; // exact
         // Taylor series in (2 pi r)^2 for |2 pi r| <= pi/4: the first omitted term is 4e-18 of
-        // the leading one.
+        // the leading one. By pairs, and pairs of pairs.
         let y = std::f64::consts::TAU * r;
         let z = y * y;
-        let mut s = 1.0 / 355_687_428_096_000.0;
-        for d in [-1_307_674_368_000.0, 6_227_020_800.0, -39_916_800.0, 362_880.0, -5_040.0, 120.0, -6.0] {
-            s = s * z + 1.0 / d;
-        }
-        let mut c = 1.0 / 20_922_789_888_000.0;
-        for d in [-87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0] {
-            c = c * z + 1.0 / d;
-        }
-        let (s, c) = (y + y * (z * s), 1.0 - (0.5 * z - z * z * c));
-        let (one, two, three) = (quarter == 1.0, quarter == 2.0, quarter == 3.0);
-        let (sine, cosine) = if one | three { (c, s) } else { (s, c) };
-        let sine = if two | three { -sine } else { sine };
-        let cosine = if one | two { -cosine } else { cosine };
-        (if u < 0.0 { -sine } else { sine }, cosine)
+        let (z2, reciprocal) = (z * z, |d: f64| 1.0 / d);
+        let z4 = z2 * z2;
+        let pair = |low: f64, high: f64| reciprocal(low) + z * reciprocal(high);
+        let s = (pair(-6.0, 120.0) + z2 * pair(-5_040.0, 362_880.0))
+            + z4 * (pair(-39_916_800.0, 6_227_020_800.0)
+                + z2 * pair(-1_307_674_368_000.0, 355_687_428_096_000.0));
+        let c = (pair(24.0, -720.0) + z2 * pair(40_320.0, -3_628_800.0))
+            + z4 * (pair(479_001_600.0, -87_178_291_200.0) + z2 * reciprocal(20_922_789_888_000.0));
+        let (s, c) = (y + y * (z * s), 1.0 - (0.5 * z - z2 * c));
+        let (sine, cosine) = if quarter & 1 == 1 { (c, s) } else { (s, c) };
+        let negated = |value: f64, bit: u64| f64::from_bits(value.to_bits() ^ (bit & 2) << 62);
+        (negated(sine, quarter), negated(cosine, quarter + 1))
     }
-}
-
-/// Largest whole number that is not above 0 <= `x` < 2^51: adding 2^52 leaves no room for a fraction.
-#[inline(always)]
-fn floor_below_2_51(x: f64) -> f64 {
-    const NO_FRACTION: f64 = 4_503_599_627_370_496.0;
-    let nearest = (x + NO_FRACTION) - NO_FRACTION;
-    if nearest > x { nearest - 1.0 } else { nearest }
 }
 
 /// Reduces `u` exactly to |r| <= 1/8 turn, asks `small` for (sin, cos) there and puts the octants back.

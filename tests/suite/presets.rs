@@ -219,9 +219,9 @@ fn the_ramp_frees_then_hops_then_crosses() {
     // Twice in every one of the 540 periods of the window.
     assert_eq!(ramp.summary.crossings, 2 * 540);
     let open = run(&preset("paper-ramp", &["stops=None"]));
-    // Chaotic in its well from 1.1 g on: over tolerances of 1e-8 to 1e-13 it was 175.1 to 178.8 s.
+    // Chaotic in its well from 1.1 g on: over eleven tolerances of 1e-6 to 1e-13 it was 173.8 to 181.8 s.
     let crossed = of_kind(&open, EventKind::Crossing)[0].t;
-    near(amplitude(crossed), 1.18, 0.02);
+    near(amplitude(crossed), 1.185, 0.03);
     assert_eq!(open.summary.regime, Regime::Irregular);
 }
 

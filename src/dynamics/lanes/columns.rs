@@ -198,7 +198,7 @@ impl<const W: usize> Columns<W> {
             self.force = PieceForce::new(vec![Lanes([0.0; W]); count], odd);
             self.of = [(usize::MAX, 0); W];
         }
-        let Some(glide) = motion.record.glide(&motion.at, &motion.end) else { return false };
+        let glide = motion.record.glide(&motion.at, &motion.end);
         if self.of[lane] != (index, motion.arena) {
             self.of[lane] = (index, motion.arena);
             for (degree, own) in arena.force.coefficients().iter().enumerate() {
