@@ -50,8 +50,9 @@ impl<T: Number> PieceForce<T> {
     /// Force over mass at displacement `y` from the origin.
     #[inline(always)]
     pub fn at(&self, y: T) -> T {
-        let mut sum = T::zero();
-        for c in self.coefficients.iter().rev() {
+        let Some((last, others)) = self.coefficients.split_last() else { return T::zero() };
+        let mut sum = *last;
+        for c in others.iter().rev() {
             sum = sum * y + *c;
         }
         sum

@@ -158,8 +158,14 @@ impl<T: Scalar> Drive<T> for Sine<T> {
 
     #[inline(always)]
     fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Rolling) {
-        let (s, d) = self.looked(at, last);
-        *last = Some((*at, (s, d)));
+        let (s, d) = match last {
+            Some((when, unit)) if when == at => *unit,
+            _ => {
+                let unit = self.unit(at);
+                *last = Some((*at, unit));
+                unit
+            }
+        };
         let swing = Swing { curvature: self.tone.curvature() };
         swing.seed(self.tone.amplitude * s, self.tone.amplitude * d, a);
     }
