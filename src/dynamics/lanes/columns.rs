@@ -187,7 +187,7 @@ impl<const W: usize> Columns<W> {
     }
 
     /// Takes a motion into the air, as number `index` of the runs; false where the others fly under a force of another
-    /// shape, or somebody wants to be told of each of its steps.
+    /// shape.
     pub fn fill(&mut self, lane: usize, index: usize, motion: &Flight) -> bool {
         let arena = &motion.equation.arenas[motion.arena];
         let (count, odd) = (arena.force.coefficients().len(), arena.force.is_odd());
