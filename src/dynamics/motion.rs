@@ -3,7 +3,7 @@
 //! The run is a chain of free flights in one arena each and of rests on a stop. A step of a flight is a
 //! Taylor series (`series`); its polynomial is also the dense output, and contacts, breaks and crossings are
 //! roots of it, found with none missed. Chosen for that, and for its cost: on the nominal cubic without stops
-//! six more digits cost 1.9 times the time (`benches/work_precision.rs` prints error and cost), where a
+//! six more digits cost 1.8 times the time (`benches/work_precision.rs` prints error and cost), where a
 //! Runge-Kutta method of order 5 pays 16 times and would need a dense output of its own to look for contacts.
 //!
 //! Three habits keep events sound:
