@@ -96,3 +96,28 @@ fn what_is_not_kept_takes_no_room() {
     let (sampled, _) = allocations(&model, &Request { sample_times: &times, ..Request::default() });
     assert_eq!(sampled.count_total, bare.count_total + 1);
 }
+
+#[test]
+fn a_motion_that_nobody_watches_is_counted_the_same() {
+    // Starts on the top, beside it, on a stop and in a well; free, between stops, on compliant ones, over breaks of the force.
+    let times = every(0.07, 140);
+    let request = Request { sample_times: &times, events: true, ledger: true, cancel: None };
+    for start in [(0.0, 0.3), (0.0, -0.3), (1e-6, -0.1), (-4.0, 0.0), (4.0, -1.0), (3.2, 0.01)] {
+        for change in [
+            "stops=None",
+            "stops=Rigid(travel_limit_mm: 4, restitution: 0.36)",
+            "stops=Rigid(travel_limit_mm: 4, restitution: 0.95)",
+            "stops=Hertz(travel_limit_mm: 4, stiffness_n_per_m1_5: 1e9, loss_s_per_m: 5)",
+            "mechanism=Table(path: \"force_dl2.7.csv\")",
+        ] {
+            for settle in ["run.settle_s=0", "run.settle_s=4.3", "run.settle_s=9.99"] {
+                let start = format!("start=At(x_mm: {}, v_m_per_s: {})", start.0, start.1);
+                let model = preset("nominal-cubic", &[change, settle, &start, "run.recurrence=false"]);
+                let (watched, bare) = (model.run(&request), model.run(&Request::default()));
+                let mut expected = watched.summary;
+                (expected.cpu_s, expected.ledger, expected.impact_share) = (bare.summary.cpu_s, None, None);
+                assert_eq!(bare.summary, expected, "{change}, {settle}, {start}");
+            }
+        }
+    }
+}
