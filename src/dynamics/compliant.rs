@@ -12,15 +12,14 @@
 use super::contact::side;
 use super::drive::Drive;
 use super::equation::{End, EndKind};
-use super::motion::{
-    BY_SPEED, Contact, Depth, Flow, HELD, MOST_HALVINGS, Motion, RESIDUAL, ROUNDINGS, Touch,
-};
+use super::motion::{BY_SPEED, Contact, Depth, Flow, HELD, MOST_HALVINGS, Motion, Touch};
 use super::path::Path;
 use super::path::StepView;
 use super::penetration::{Entry, FEWEST_LEVELS, Penetration};
 use super::prepare::base_at;
 use super::result::Outcome;
 use super::series::fast_log2;
+use super::settings::{RESIDUAL, ROUNDINGS};
 use crate::numeric::{PolynomialRoots, Scalar};
 
 /// Speed of a touch without speed, in roundings of a rounding of the speed scale. The parameter of a contact begins with a

@@ -180,11 +180,11 @@ fn inner_convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
         return middle;
     }
     // (no sum begins with 0: the next would wait for it)
-    let (mut low, mut high, last) = match k.is_multiple_of(2) {
-        true => (middle + a[half - 1] * b[half + 1], a[half + 1] * b[half - 1], half - 1),
-        false => (middle, a[half] * b[k - half], half - 1),
+    let (mut low, mut high) = match k.is_multiple_of(2) {
+        true => (middle + a[half - 1] * b[half + 1], a[half + 1] * b[half - 1]),
+        false => (middle, a[half] * b[k - half]),
     };
-    for i in (1..last).rev() {
+    for i in (1..half - 1).rev() {
         low += a[i] * b[k - i];
         high += a[k - i] * b[i];
     }
@@ -194,19 +194,16 @@ fn inner_convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
 /// Sum of a\[i\] a\[k-i\] over i = 1..k by symmetry, in that order.
 #[inline(always)]
 fn inner_square<T: Number>(a: &[T; ROOM], k: usize) -> T {
-    if k < 2 {
-        return T::zero();
+    match k {
+        0 | 1 => return T::zero(),
+        2 => return a[1] * a[1],
+        _ => {}
     }
-    let half = k / 2;
-    let even = k.is_multiple_of(2);
-    if k == 2 {
-        return a[1] * a[1];
-    }
-    let last = if even { half - 1 } else { half };
+    let last = (k - 1) / 2;
     let mut sum = a[last] * a[k - last];
     for i in (1..last).rev() {
         sum += a[i] * a[k - i];
     }
     let twice = sum + sum;
-    if even { twice + a[half] * a[half] } else { twice }
+    if k.is_multiple_of(2) { twice + a[k / 2] * a[k / 2] } else { twice }
 }

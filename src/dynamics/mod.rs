@@ -27,6 +27,7 @@ mod regime;
 mod result;
 mod scales;
 mod series;
+mod settings;
 mod step;
 mod summary;
 mod taylor;

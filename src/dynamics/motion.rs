@@ -31,7 +31,8 @@ use super::prepare::base_at;
 use super::record::Recorder;
 use super::recurrence::Label;
 use super::result::{Outcome, Phase, Run};
-use super::series::{MAX_ORDER, Series, State, fast_log2};
+use super::series::{Series, State};
+use super::settings::Settings;
 use super::summary::Ending;
 use crate::numeric::Scalar;
 
@@ -43,17 +44,6 @@ pub(super) const IMPACT_BUDGET: u64 = 2_000_000;
 /// What a step in contact with a compliant stop takes beyond one of free flight, in steps of the budget: six products of
 /// series in place of two or three, measured.
 const CONTACT_WEIGHT: u64 = 3;
-
-/// The tolerance of a step relative to that of the scene: errors of some hundred steps add up, and even the energy
-/// of an undamped run of some hundred periods then stays within the tolerance. A fifth of it costs a tenth more.
-const LOCAL_SHARE: f64 = 0.02;
-
-/// How many times the neglected term that the step was chosen for the residual at its end may be. It is rarely above
-/// 3 where the coefficients tell the truth, and above 1e3 soon where they do not.
-pub(super) const RESIDUAL: f64 = 20.0;
-
-/// Roundings of the terms that add up in a residual.
-pub(super) const ROUNDINGS: f64 = 32.0;
 
 /// A step halved so often is no step.
 pub(super) const MOST_HALVINGS: u32 = 200;
@@ -98,38 +88,6 @@ pub(super) struct Depth<T> {
     pub root: T,
     /// The stop began or ceased to trail right here.
     pub turned: bool,
-}
-
-/// Settings of the stepper that follow from the tolerance.
-pub(super) struct Settings<T> {
-    pub order: usize,
-    pub tolerance: f64,
-    pub tolerance_log2: f64,
-    pub speed: T,
-    pub speed_log2: f64,
-    pub longest: f64,
-}
-
-impl<T: Scalar> Settings<T> {
-    /// The residual that a step of the full order may leave, by the tolerance.
-    pub fn residual_of_a_full_step(&self) -> T {
-        T::of(RESIDUAL * self.order as f64 * self.tolerance) * self.speed
-    }
-
-    /// The order is the cheapest one by measurement on the nominal cubic: about 5/4 coefficients a digit.
-    fn new(model: &Model, unit: f64, tolerance: f64) -> Self {
-        let local = tolerance * LOCAL_SHARE;
-        let order = (3.0 - 1.25 * local.log10()).round().clamp(8.0, MAX_ORDER as f64) as usize;
-        let speed = model.scales.speed * unit;
-        Self {
-            order,
-            tolerance: local,
-            tolerance_log2: local.log2(),
-            speed: T::of(speed),
-            speed_log2: fast_log2(speed),
-            longest: model.scales.longest_step / unit,
-        }
-    }
 }
 
 pub(super) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {

@@ -3,9 +3,10 @@
 use super::drive::Drive;
 use super::equation::End;
 use super::glide::Glide;
-use super::motion::{BY_JERK, BY_SPEED, HELD, MOST_HALVINGS, Motion, RESIDUAL, ROUNDINGS, Step, Touch};
+use super::motion::{BY_JERK, BY_SPEED, HELD, MOST_HALVINGS, Motion, Step, Touch};
 use super::path::Path;
 use super::series::{ROOM, SEEDED, State};
+use super::settings::{RESIDUAL, ROUNDINGS};
 use super::taylor;
 use crate::numeric::{PolynomialRoots, Scalar};
 
