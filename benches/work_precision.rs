@@ -70,7 +70,7 @@ fn runs() {
             alone.push(model.run(&Request::default()).summary.cpu_s);
             if round % TOGETHER == 0 {
                 let many = vec![model.clone(); TOGETHER];
-                together.push(Model::run_all(&many, None)[0].summary.cpu_s);
+                together.push(Model::run_all(&many, None, None)[0].summary.cpu_s);
             }
         }
     }
@@ -104,7 +104,11 @@ fn map() {
     }
     let mut at = |tolerance: f64| -> Vec<Summary> {
         models.iter_mut().for_each(|model| model.tolerance = tolerance);
-        models.chunks(TOGETHER).flat_map(|many| Model::run_all(many, None)).map(|run| run.summary).collect()
+        models
+            .chunks(TOGETHER)
+            .flat_map(|many| Model::run_all(many, None, None))
+            .map(|run| run.summary)
+            .collect()
     };
     let exact = at(MAP_REFERENCE);
     let mut maps: Vec<Vec<Vec<Summary>>> = TOLERANCES.map(|_| Vec::new()).into();

@@ -240,12 +240,12 @@ pub fn driven(
         return ended(model, summary.outcome);
     }
     let words = if tense == Tense::Future { &SOON } else { &NOW };
-    let (Some(rms), Some(reach), Some(range)) = (summary.rms_velocity, summary.max_abs_x, settled.range)
+    let (Some(rms), Some(reach), Some(range)) = (summary.rms_velocity, summary.max_abs_x, summary.range)
     else {
         return Sentence::new(Kind::Other, "The run is too short to settle.");
     };
     let rms_text = format!("RMS velocity {} mm/s", speed(rms));
-    let periods = settled.periods.filter(|periods| *periods >= 1.0);
+    let periods = Some(summary.periods as f64).filter(|periods| *periods >= 1.0);
     let per_period = |count: u64| periods.map_or(0.0, |periods| count as f64 / periods);
     let right = summary.final_x >= model.mechanism.landscape.barrier.map_or(0.0, |barrier| barrier.x);
     let side = hand(if right { Side::Right } else { Side::Left });
@@ -290,15 +290,15 @@ pub fn driven(
             } else {
                 let (cross, count) =
                     (if tense == Tense::Future { "Will cross" } else { "Crossed" }, summary.crossings);
-                format!("{cross} {count} times in {:.0} s; {rms_text}.", settled.window)
+                format!("{cross} {count} times in {:.0} s; {rms_text}.", summary.window.1 - summary.window.0)
             };
             Sentence::new(if summary.crossings == 0 { Kind::Intrawell } else { Kind::Irregular }, text)
         }
         (Regime::Intrawell, Some(periods)) if summary.releases > 0 => {
-            let every = if settled.release_periods as f64 >= periods {
+            let every = if summary.release_periods as f64 >= periods {
                 "every period".to_owned()
             } else {
-                format!("in {} of {periods:.0} periods", settled.release_periods)
+                format!("in {} of {periods:.0} periods", summary.release_periods)
             };
             let impacts = per_period(summary.impacts);
             let text = format!(
@@ -325,7 +325,7 @@ pub fn driven(
             );
             Sentence::new(Kind::Intrawell, text)
         }
-        (Regime::Irregular, Some(periods)) if settled.crossing_periods as f64 >= periods => {
+        (Regime::Irregular, Some(periods)) if summary.crossing_periods as f64 >= periods => {
             let text =
                 format!("Irregular: {} in every period, never twice alike; {rms_text}.", words.crosses);
             Sentence::new(Kind::Irregular, text)
@@ -334,15 +334,15 @@ pub fn driven(
             let text = format!(
                 "Irregular: {} in {} of {periods:.0} periods, with no lasting rhythm; {rms_text}, reach {} mm.",
                 words.crosses,
-                settled.crossing_periods,
+                summary.crossing_periods,
                 mm(reach)
             );
             Sentence::new(Kind::Irregular, text)
         }
-        (Regime::Interwell, Some(periods)) => {
+        (Regime::Interwell | Regime::Crossing, Some(periods)) => {
             let rate = per_period(summary.crossings);
             let how = match summary.period {
-                Some(n) if n > 1 && settled.crossing_periods as f64 >= periods => {
+                Some(n) if n > 1 && summary.crossing_periods as f64 >= periods => {
                     format!("{} every period and repeats after {n} periods", words.crosses)
                 }
                 Some(n) if n > 1 => {
@@ -424,7 +424,9 @@ pub fn ways(scene: &Scene, settled: &Settled, thresholds: &Thresholds, stops_mm:
     let stops = stops_mm.map(|limit| format!("with stops at ±{} mm", at_least_one_decimal(limit)));
     match settled.summary.regime {
         Regime::OneWell => "There is no barrier, so nothing to cross.".to_owned(),
-        Regime::Interwell => "It crosses already, again and again in the same way.".to_owned(),
+        Regime::Interwell | Regime::Crossing => {
+            "It crosses already, again and again in the same way.".to_owned()
+        }
         Regime::Irregular => match stops {
             Some(stops) => format!("Crosses in the same way every time {stops}."),
             None => "It crosses already, if not regularly.".to_owned(),
@@ -459,7 +461,7 @@ pub fn is_swept(scene: &Scene) -> bool {
 /// How far into the settled window in s a motion is to be seen before its sentence speaks of the present: a shaking that
 /// changes has to come to the window, one without a period to its end.
 pub fn seen_after(scene: &Scene, settled: &Settled) -> f64 {
-    if is_swept(scene) { 0.0 } else { settled.window }
+    if is_swept(scene) { 0.0 } else { settled.summary.window.1 - settled.summary.window.0 }
 }
 
 fn amplitude(scene: &Scene) -> Option<f64> {

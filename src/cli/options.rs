@@ -215,6 +215,11 @@ pub struct SimulateOptions {
     #[arg(long, value_name = "T1,T2,..", allow_hyphen_values = true)]
     pub at: Option<String>,
 
+    /// Go on, window after window, until the motion repeats, or up to this time in s. Samples and averages are then of the
+    /// longer run; its window is the last one. Needs a drive that repeats
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    pub until_settled: Option<String>,
+
     /// Write impacts, rests, releases and crossings as CSV
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub events: Option<PathBuf>,
@@ -242,6 +247,16 @@ pub struct SweepOptions {
     /// Sweep a field; replaces the scene's own sweep (repeatable, the first is the slowest)
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
+
+    /// Columns after those of the swept fields: names of the summary, or all [default: rms_velocity_m_per_s, regime,
+    /// crossings, impacts, max_abs_x_m, period, outcome]
+    #[arg(long, value_name = "A,B,..|all", allow_hyphen_values = true, value_delimiter = ',')]
+    pub columns: Vec<String>,
+
+    /// Let each run go on, window after window, until its motion repeats, or up to this time in s. Needs a drive that
+    /// repeats
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    pub until_settled: Option<String>,
 
     /// The picture.
     #[command(flatten)]

@@ -7,7 +7,9 @@ use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_tra
 use super::failure::Failure;
 use super::options::SimulateOptions;
 use super::picture::{Picture, caption};
-use super::support::{Watch, finish, inputs, load_with_mechanism, numbers, open, write_table, write_text};
+use super::support::{
+    Watch, finish, inputs, load_with_mechanism, numbers, open, until_settled, write_table, write_text,
+};
 use super::{interrupt, say};
 
 /// Runs the scene and writes samples, events and summary.
@@ -25,7 +27,8 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     };
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
-    let times = sample_times(&document.scene, &model, &sampling)?;
+    let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
+    let times = sample_times(&document.scene, &model, &sampling, until_settled)?;
     let events = options.events.as_deref().map(|path| ("--events", path));
     let summary_path = options.summary.as_deref().map(|path| ("--summary", path));
     let outputs = [Some(("--out", &*common.out)), events, summary_path, picture.map(|own| own.output())];
@@ -33,7 +36,7 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
 
     let cancel = interrupt::listen();
     let watch = Watch::start();
-    let keep = Keep { times, events: events.is_some() };
+    let keep = Keep { times, events: events.is_some(), until_settled };
     let (simulation, trace) = match picture {
         None => (simulate(&model, &keep, Some(cancel)), None),
         Some(_) => {

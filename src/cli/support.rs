@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
+use interwell::dynamics::Model;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Origin, Sink, header, rows, same_target};
 use interwell::scene::{Document, SceneError};
@@ -43,6 +44,9 @@ impl Watch {
         }
     }
 }
+
+/// The longest time in s for which a motion is waited for to settle, that of the longest run.
+const LONGEST_WAIT: f64 = 1e9;
 
 /// Rows that are turned into text at a time.
 const ROWS: usize = 1 << 15;
@@ -121,6 +125,39 @@ pub fn numbers(option: &str, text: &str, separator: char) -> Result<Vec<f64>, Fa
         part.trim().parse().map_err(|_| wrong())
     };
     text.split(separator).map(number).collect()
+}
+
+/// The time in s of `--until-settled`, where it was given and runs of `model` can go on so far.
+pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> Result<Option<f64>, Failure> {
+    let Some(text) = text else { return Ok(None) };
+    let wrong = |problem: String| Err(Failure::argument(format!("--until-settled {text}: {problem}")));
+    let Some(until) = text.trim().parse().ok().filter(|until: &f64| until.is_finite()) else {
+        return wrong("not a time; give seconds, such as 300".into());
+    };
+    let scene = &document.name;
+    if !model.can_settle() {
+        return match model.forcing_period {
+            Some(period) if model.repeats() => wrong(format!(
+                "{scene}: its settled window of {} s holds less than two forcing periods of {period} s, too few to tell \
+                 whether the motion repeats; lengthen run.duration_s",
+                model.duration - model.settle()
+            )),
+            _ => wrong(format!(
+                "{scene}: its excitation does not repeat, so the motion has no period to wait for; take a Sine, or a Sum of \
+                 sines whose frequencies have a common period"
+            )),
+        };
+    }
+    if until < model.duration {
+        return wrong(format!(
+            "{scene}: its run already lasts {} s; give at least that, or shorten run.duration_s",
+            model.duration
+        ));
+    }
+    if until > LONGEST_WAIT {
+        return wrong(format!("at most {LONGEST_WAIT:e} s"));
+    }
+    Ok(Some(until))
 }
 
 /// Opens the outputs, each given with its option, before any work is done for them. None may be one of the

@@ -8,21 +8,32 @@ use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Overlay, can_show, header, is_regular, manifest, rows, sweep_figure};
 use interwell::scene::Document;
-use interwell::study::{Grid, Sweep, SweepEnd, Table, Task, first_interwell, release_line};
+use interwell::study::{
+    Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, SummaryField, Sweep, SweepEnd, SweepOptions, Table, Task,
+    first_interwell, release_line,
+};
 
 use super::failure::{Failure, wrong_cell};
-use super::options::SweepOptions;
+use super::options::SweepOptions as Arguments;
 use super::picture::{Picture, caption};
-use super::support::{Watch, finish, inputs, load, open, unbuilt, warn, write_text};
+use super::support::{Watch, finish, inputs, load, open, unbuilt, until_settled, warn, write_text};
 use super::{interrupt, say};
 
 /// Runs the grid and writes a row a cell.
-pub fn run(options: &SweepOptions) -> Result<(), Failure> {
+pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
     let (document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
     let mechanism = first_mechanism(&document, &sweep)?;
+    let columns = columns(&options.columns, sweep.grid())?;
+    let model = sweep.first_model().and_then(Result::ok);
+    let until_settled = match &model {
+        Some(model) => until_settled(options.until_settled.as_deref(), &document, model)?,
+        None => None, // said below, cell by cell
+    };
+    let fields = columns.iter().filter_map(|name| SummaryField::find(name)).collect();
+    let sweep = sweep.with(SweepOptions { columns: fields, until_settled });
     warn(&document, common, &warnings, mechanism.as_deref());
     if picture.is_some() {
         can_show(sweep.grid())?;
@@ -42,12 +53,12 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let watch = Watch::start();
     let result = (|| {
         sweep.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
-        write_text(&mut sinks[0], &header(&sweep.empty_table()))?;
+        write_text(&mut sinks[0], &header(&sweep.empty_table().only(&columns)))?;
         let write = |table: &Table| {
             if let Some(shown) = &mut shown {
                 shown.append(table);
             }
-            write_text(&mut sinks[0], &rows(table, 0..usize::MAX))?;
+            write_text(&mut sinks[0], &rows(&table.only(&columns), 0..usize::MAX))?;
             let Some(sink) = &mut sinks[0] else { return Ok(false) };
             sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
             // Where the reader of a pipe has gone, a picture may still be wanted.
@@ -99,6 +110,35 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// The columns of the rows: those of the swept fields, and what was asked for.
+fn columns(asked: &[String], grid: &Grid) -> Result<Vec<String>, Failure> {
+    let mut names = grid.columns().to_vec();
+    match asked {
+        [] => names.extend(STANDARD_COLUMNS.map(str::to_owned)),
+        [all] if all == "all" => {
+            let more = SUMMARY_FIELDS.iter().map(|field| field.name);
+            let more = more.filter(|name| !STANDARD_COLUMNS.contains(name));
+            names.extend(STANDARD_COLUMNS.into_iter().chain(more).map(str::to_owned));
+        }
+        list => {
+            for name in list.iter().map(|name| name.trim()) {
+                let Some(field) = SummaryField::find(name) else {
+                    let known: Vec<&str> = SUMMARY_FIELDS.iter().map(|field| field.name).collect();
+                    return Err(Failure::argument(format!(
+                        "--columns {name}: no such column; there are all, {}",
+                        known.join(", ")
+                    )));
+                };
+                if names.iter().any(|known| known == field.name) {
+                    return Err(Failure::argument(format!("--columns {name}: named twice; name it once")));
+                }
+                names.push(field.name.to_owned());
+            }
+        }
+    }
+    Ok(names)
 }
 
 /// The mechanism of the sweep's first cell. Where it was not solved: none, if the mechanism is swept, since that is an

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
+use super::regime::Rhythm;
 use crate::numeric::{Ratio, greatest_common_divisor};
 use crate::scene::{Excitation, Fault, Record};
 
@@ -159,6 +160,27 @@ impl BaseMotion {
             && self.tones.iter().all(|t| t.amplitude == 0.0 && t.ramp.is_none_or(|r| r.0 == 0.0))
             && self.chirps.iter().all(|c| c.amplitude == 0.0)
             && self.records.iter().all(|r| r.peak() == 0.0)
+    }
+
+    /// Whether it repeats; `common` are its [`common_cycles`](Self::common_cycles).
+    pub fn rhythm(&self, common: Option<u64>) -> Rhythm {
+        let empty = self.tones.is_empty() && self.chirps.is_empty() && self.records.is_empty();
+        match common {
+            _ if empty => Rhythm::Absent,
+            Some(_) if self.tones.iter().all(|tone| tone.ramp.is_none()) => Rhythm::Periodic,
+            _ => Rhythm::Changing,
+        }
+    }
+
+    /// Amplitude in m/s^2 at a time in s, where it is one ramp.
+    pub fn ramped_amplitude(&self, t: f64) -> Option<f64> {
+        let alone = self.constant == 0.0 && self.chirps.is_empty() && self.records.is_empty();
+        match self.tones.as_slice() {
+            [BaseTone { amplitude, ramp: Some((from, over)), .. }] if alone => {
+                Some(from + (amplitude - from) * (t / over).min(1.0))
+            }
+            _ => None,
+        }
     }
 
     /// Amplitude in m/s^2 and angular frequency in 1/s of each part, for the scales; a constant and a record

@@ -18,7 +18,7 @@ pub(super) struct Gliding<T> {
     pub border: Instant<T>,
     /// Whether the time up to there is in the settled window.
     pub inside: bool,
-    /// Whether events are listed.
+    /// Whether the instant of every crossing matters.
     pub listed: bool,
     /// The top that crossings are counted at, and the side of it.
     pub barrier: Option<T>,
@@ -86,7 +86,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         Gliding {
             border,
             inside,
-            listed: self.events.is_some(),
+            listed: self.lists_crossings(),
             barrier: self.barrier,
             side: self.barrier_side,
             low: self.low,

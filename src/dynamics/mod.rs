@@ -24,6 +24,7 @@ mod rebound;
 mod record;
 mod recurrence;
 mod regime;
+mod repeats;
 mod result;
 mod scales;
 mod series;

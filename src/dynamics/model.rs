@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::base::BaseMotion;
+use super::regime::Rhythm;
 use super::result::Run;
 use super::scales::{Landmarks, Scales};
 use crate::mechanics::{Hertz, Mechanism};
@@ -45,6 +46,7 @@ pub struct Model {
     pub(crate) one_well: bool,
     /// Cycles of the clock in a forcing period.
     cycles_per_period: i64,
+    pub(super) rhythm: Rhythm,
 }
 
 /// The stops of a scene; a side without one is open.
@@ -72,6 +74,9 @@ pub struct Request<'a> {
     pub ledger: bool,
     /// Set from elsewhere to end the run early with the outcome `Cancelled`.
     pub cancel: Option<&'a AtomicBool>,
+    /// Goes on, window after window, until the motion repeats or the next window would end after this time in s. Under a
+    /// drive that does not repeat, and where the window holds less than two forcing periods, nothing changes.
+    pub until_settled: Option<f64>,
 }
 
 fn fault(field: &str, value: impl ToString, problem: impl Into<String>) -> Fault {
@@ -157,6 +162,7 @@ impl Model {
             settle: scene.run.settle_s.unwrap_or(scene.run.duration_s * 0.5),
             stops,
             compliant,
+            rhythm: drive.rhythm(common),
             drive,
             start,
             motionless,
@@ -176,9 +182,9 @@ impl Model {
     }
 
     /// Runs several models with nothing listed, many at once where the processor can: what [`run`](Self::run) gives for
-    /// each, bit for bit, in their order. The CPU time of all is shared evenly between them.
-    pub fn run_all(models: &[Self], cancel: Option<&AtomicBool>) -> Vec<Run> {
-        super::lanes::run_all(models, &Request { cancel, ..Request::default() })
+    /// each, bit for bit, in their order; `until_settled` as in [`Request`]. The CPU time of all is shared evenly between them.
+    pub fn run_all(models: &[Self], until_settled: Option<f64>, cancel: Option<&AtomicBool>) -> Vec<Run> {
+        super::lanes::run_all(models, &Request { cancel, until_settled, ..Request::default() })
     }
 
     /// Runs the model once in double-double arithmetic, some 31 digits, with its own `tolerance` (1e-28 is
@@ -245,6 +251,16 @@ impl Model {
             }
             None => (0, 0),
         }
+    }
+
+    /// Whether the drive repeats: a sine, or several with a common period.
+    pub fn repeats(&self) -> bool {
+        self.rhythm == Rhythm::Periodic
+    }
+
+    /// Whether a run may go on until the motion repeats: the drive does, and the settled window holds two periods of it.
+    pub fn can_settle(&self) -> bool {
+        self.repeats() && self.window_periods().0 >= 2
     }
 
     /// The model in words: a line for each thing that is modelled, then what is left out.

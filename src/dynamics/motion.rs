@@ -123,6 +123,8 @@ pub(super) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     /// The mass has just been let go, and how.
     pub label: Option<Label<T>>,
     cancel: Option<&'a AtomicBool>,
+    /// Time in s up to which the run goes on until the motion repeats.
+    until_settled: Option<f64>,
 }
 
 /// What a motion carries from one step to the next. The drive's rolling state is no part of it: it only keeps
@@ -192,17 +194,20 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let x = T::of(model.start.0);
         let v = T::of(model.start.1 * unit);
         let settings = Settings::new(model, unit, tolerance);
+        let record = Recorder::new(model, clock, unit, settings.order, request, (x, v));
+        let until_settled = request.until_settled.filter(|_| model.can_settle());
+        let end = if until_settled.is_some() { record.window_end() } else { clock.at(model.duration) };
         Self {
             equation,
             drive,
             clock,
-            record: Recorder::new(model, clock, unit, settings.order, request, (x, v)),
+            record,
             settings,
             series: Series::new(equation.most_products()),
             roll: D::Rolling::default(),
             segment: 0,
             at: Instant { cycle: 0, phase: T::zero() },
-            end: clock.at(model.duration),
+            end,
             x,
             v,
             arena: equation.arena_at(x, model.mechanism.curve.piece_index(model.start.0)),
@@ -219,6 +224,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             symmetric: false,
             label: None,
             cancel: request.cancel,
+            until_settled,
         }
     }
 
@@ -270,12 +276,27 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         if let Some(label) = self.label.take() {
             self.let_go(label);
         }
-        let left = self.clock.between(&self.at, &self.end);
+        let mut left = self.clock.between(&self.at, &self.end);
         if !(left > T::zero()) {
-            return Err(Outcome::Done);
+            if !self.goes_on() {
+                return Err(Outcome::Done);
+            }
+            left = self.clock.between(&self.at, &self.end);
         }
         self.mark();
         Ok(left)
+    }
+
+    /// At the end of a settled window: whether the run goes on with another, since the motion does not repeat yet.
+    fn goes_on(&mut self) -> bool {
+        let Some(until) = self.until_settled else { return false };
+        self.record.last_strobe(&self.at, (self.x, self.v));
+        let next = match self.record.judge.has_settled() {
+            true => None,
+            false => self.record.next_window(until),
+        };
+        self.end = next.unwrap_or(self.end);
+        next.is_some()
     }
 
     /// Whether it may take `steps` more, one impact a step, without its budget being spent.

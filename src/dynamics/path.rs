@@ -38,6 +38,8 @@ pub(crate) trait Path<T: Scalar> {
     /// Integrals over time between two parameters: of the squared velocity and, where `WORK`, of base acceleration times
     /// velocity.
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T);
+    /// Integral over time between two parameters of the displacement from the piece's origin.
+    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;
 }
 
 /// One accepted step, as the recorder sees it.
@@ -154,5 +156,8 @@ impl<T: Scalar, P: InTime<Number = T>> Path<T> for P {
     #[inline]
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
         self.integrals_in_time::<WORK>(rule, from, to)
+    }
+    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
+        taylor::moment(self.coefficients(), rule, from, to)
     }
 }

@@ -391,6 +391,15 @@ impl<T: Scalar> Path<T> for Penetration<T> {
         }
         (squared * length, power * length)
     }
+    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
+        let length = to - from;
+        let parts = rule.nodes().iter().zip(rule.weights());
+        let moment = parts.fold(T::zero(), |sum, (node, weight)| {
+            let s = from + length * *node;
+            sum + self.position(s) * self.root_at(s) * *weight
+        });
+        moment * length
+    }
 }
 
 /// Fewest terms of the drive that are composed: those that are there from the start.

@@ -7,11 +7,16 @@ use super::passages::{Passages, side_of};
 use super::path::{Path, StepView};
 use super::penetration::Penetration;
 use super::recurrence::{Entry, Log};
-use super::regime::{CrossingLog, Strobe};
+use super::regime::Judge;
+use super::repeats::Strobe;
 use super::result::{Event, EventKind, Phase, Sample, Side};
 use super::taylor;
 use super::totals::{Counts, Sums};
 use crate::numeric::{CompensatedSum, GaussLegendre, PolynomialRoots, Scalar};
+
+/// Stroboscopic states of a mass that stands still that are told one by one before some are passed over: more than a
+/// period is looked for.
+const STILL: u32 = 32;
 
 pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) model: &'a Model,
@@ -22,7 +27,7 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) samples: Vec<Sample>,
     pub(super) events: Option<Vec<Event>>,
     pub(super) window: (Instant<T>, Instant<T>),
-    /// Forcing period in kernel units; 0 without one.
+    /// Forcing period in kernel units; 0 where the drive has none.
     pub(super) period: T,
     pub(super) whole: Sums<T>,
     pub(super) settled: Sums<T>,
@@ -34,9 +39,16 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) barrier: Option<T>,
     /// -1, 0 (on it since the start) or 1.
     pub(super) barrier_side: i8,
-    pub(super) log_of_crossings: CrossingLog,
+    pub(super) judge: Judge,
+    /// The first instant of the run at the window's phase.
+    origin: Instant<T>,
     pub(super) next_strobe: Option<Instant<T>>,
-    pub(super) strobe_cycles: i64,
+    /// Cycles of the clock in a forcing period.
+    pub(super) period_cycles: i64,
+    /// Forcing periods in the window.
+    periods: u64,
+    /// Speed of the fastest impact in the window.
+    pub(super) impact_speed: T,
     pub(super) counts: Counts,
     /// Largest force of a compliant stop over mass, kernel units.
     pub(super) peak_contact: T,
@@ -62,6 +74,12 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         } else {
             clock.at(model.duration)
         };
+        let origin = match cycles {
+            0 => from,
+            _ => Instant { cycle: from.cycle.rem_euclid(cycles), phase: from.phase },
+        };
+        let first = if cycles == 0 { 0 } else { from.cycle.div_euclid(cycles) as u64 };
+        let scales = (model.scales.length, model.scales.speed);
         let barrier = model.crossing_level.map(T::of);
         let side = barrier.map_or(0, |b| side_of(start.0, b));
         let mut samples = Vec::new();
@@ -75,7 +93,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             samples,
             events: request.events.then(Vec::new),
             window: (from, to),
-            period: if periods > 0 { clock.period() * T::of(cycles as f64) } else { T::zero() },
+            period: clock.period() * T::of(cycles as f64),
             whole: Sums::new(),
             settled: Sums::new(),
             low: T::of(f64::INFINITY),
@@ -85,9 +103,12 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             peak_kinetic: 0.5 * (start.1 * start.1).to_f64(),
             barrier,
             barrier_side: side,
-            log_of_crossings: CrossingLog::new(periods),
-            next_strobe: (periods > 0).then_some(from),
-            strobe_cycles: cycles,
+            judge: Judge::new(model.rhythm, scales, periods, first),
+            origin,
+            next_strobe: (periods > 0).then_some(origin),
+            period_cycles: cycles,
+            periods,
+            impact_speed: T::zero(),
             counts: Counts::default(),
             peak_contact: T::zero(),
             order,
@@ -150,6 +171,10 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             self.covered.add(end - begin);
             if P::IN_CONTACT {
                 self.settled.rested.add(end - begin);
+            }
+            if LEDGER {
+                let moment = step.path.moment(rule, from, to) + step.origin * (end - begin);
+                self.settled.displacement.add(moment);
             }
             self.extremes(step, from, to, full);
         }
@@ -266,10 +291,20 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             let left = self.clock.between(&step.at, border);
             left <= T::zero() || left > step.duration + step.duration
         };
-        self.events.is_some()
+        self.lists_crossings()
             || step.length != step.whole
             || !(clear(&self.window.0) && clear(&self.window.1))
             || (self.period > T::zero() && self.in_window(&step.at))
+    }
+
+    /// Whether the instant of every crossing matters.
+    pub(super) fn lists_crossings(&self) -> bool {
+        self.events.is_some() || self.judge.times_all_crossings()
+    }
+
+    /// Forcing periods since the first stroboscopic state; NaN where the drive has no period.
+    pub(super) fn in_periods(&self, at: &Instant<T>) -> f64 {
+        (self.clock.between(&self.origin, at) / self.period).to_f64()
     }
 
     fn crossing<P: Path<T>>(&mut self, step: &StepView<T, P>, into: T) {
@@ -280,11 +315,8 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         self.counts.total_crossings += 1;
         if self.in_window(&at) {
             self.counts.crossings += 1;
-            if self.period > T::zero() {
-                let time = (self.clock.between(&self.window.0, &at) / self.period).to_f64();
-                self.log_of_crossings.keep_crossing(time, side);
-            }
         }
+        self.judge.crossing(self.in_periods(&at), side, self.clock.seconds(&at));
         self.event(&at, EventKind::Crossing, side, v, v);
     }
 
@@ -303,11 +335,80 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
 
     pub(super) fn strobe(&mut self, x: T, v: T) {
         let Some(strobe) = &mut self.next_strobe else { return };
-        strobe.cycle += self.strobe_cycles;
-        let more = self.log_of_crossings.keep_strobe(Strobe { x: x.to_f64(), v: v.to_f64() / self.unit });
-        if !more || self.clock.between(strobe, &self.window.1) < T::zero() {
+        strobe.cycle += self.period_cycles;
+        if self.clock.between(strobe, &self.window.1) < T::zero() {
             self.next_strobe = None;
         }
+        let state = Strobe { x: x.to_f64(), v: v.to_f64() / self.unit };
+        self.judge.strobe(state, self.settled.squared_velocity.value().to_f64(), self.counts.crossings);
+    }
+
+    /// Passes over stroboscopic states of a mass that stands still up to `until`, all like the last ones, but for some
+    /// before the next border of the window.
+    fn skip_strobes(&mut self, until: &Instant<T>) {
+        let Some(strobe) = &mut self.next_strobe else { return };
+        let left = |border: &Instant<T>| {
+            let periods = (self.clock.between(strobe, border) / self.period).to_f64();
+            Some(periods).filter(|periods| *periods > 0.0)
+        };
+        let borders = [until, &self.window.0, &self.window.1];
+        let fewest = borders.into_iter().filter_map(left).fold(f64::INFINITY, f64::min);
+        let more = (fewest - f64::from(STILL)).floor() as i64;
+        if more > 0 && fewest.is_finite() {
+            strobe.cycle += more * self.period_cycles;
+            self.judge.skip_still(more as u64);
+        }
+    }
+
+    /// The stroboscopic state at `end`, the end of the run, where the window ends there too.
+    pub(super) fn last_strobe(&mut self, end: &Instant<T>, (x, v): (T, T)) {
+        let due = |strobe: &Instant<T>| self.clock.between(strobe, end).abs() <= self.period * T::of(1e-9);
+        if self.next_strobe.as_ref().is_some_and(due) {
+            self.strobe(x, v);
+        }
+    }
+
+    /// The first instant of the run at the window's phase.
+    pub(super) fn origin(&self) -> Instant<T> {
+        self.origin
+    }
+
+    /// Whole forcing periods in the settled window; 0 where it holds none.
+    pub(super) fn periods(&self) -> u64 {
+        self.periods
+    }
+
+    /// Begin and end of the settled window in s, as far as a run that ended at `end` came.
+    pub(super) fn window_seconds(&self, end: &Instant<T>) -> (f64, f64) {
+        let (from, to) = &self.window;
+        let reached = if self.clock.between(to, end) > T::zero() { to } else { end };
+        let (from, reached) = (self.clock.seconds(from), self.clock.seconds(reached));
+        (from, reached.max(from))
+    }
+
+    /// The end of the settled window.
+    pub fn window_end(&self) -> Instant<T> {
+        self.window.1
+    }
+
+    /// The settled window begins anew at its end, where the run stands; where the new one ends, if that is not after
+    /// `until` in s.
+    pub fn next_window(&mut self, until: f64) -> Option<Instant<T>> {
+        let from = self.window.1;
+        let length = self.periods as i64 * self.period_cycles;
+        let to = Instant { cycle: from.cycle + length, phase: from.phase };
+        if self.clock.seconds(&to) > until {
+            return None;
+        }
+        self.window = (from, to);
+        self.next_strobe = Some(Instant { cycle: from.cycle + self.period_cycles, phase: from.phase });
+        self.settled = Sums::new();
+        self.covered = CompensatedSum::new();
+        (self.low, self.high) = (T::of(f64::INFINITY), T::of(f64::NEG_INFINITY));
+        self.impact_speed = T::zero();
+        (self.counts.crossings, self.counts.impacts, self.counts.releases) = (0, 0, 0);
+        self.judge.open_window();
+        Some(to)
     }
 
     /// Takes in a span in which the mass stands still at `x` (at rest on a stop, in an equilibrium, or in
@@ -327,14 +428,23 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             if phase != Phase::Free {
                 self.settled.rested.add(to - from);
             }
+            if LEDGER {
+                self.settled.displacement.add(x * (to - from));
+            }
             self.low = self.low.smaller(x);
             self.high = self.high.larger(x);
         }
+        let mut told = 0;
         while let Some(strobe) = self.next_strobe {
             if self.clock.between(&strobe, until) <= T::zero() {
                 break;
             }
             self.strobe(x, T::zero());
+            told += 1;
+            if told == STILL {
+                told = 0;
+                self.skip_strobes(until);
+            }
         }
         if self.next_time < self.times.len() {
             let (begin, end) = (self.clock.seconds(at), self.clock.seconds(until));
@@ -372,6 +482,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         if self.in_window(at) {
             self.settled.impact.add(taken);
             self.counts.impacts += 1;
+            self.impact_speed = self.impact_speed.larger(v_in.abs());
         }
         self.event(at, EventKind::Impact, side, v_in.to_f64() / self.unit, v_out.to_f64() / self.unit);
     }
@@ -404,6 +515,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             self.counts.total_impacts += 1;
             if self.in_window(at) {
                 self.counts.impacts += 1;
+                self.impact_speed = self.impact_speed.larger(v.abs());
             }
         }
         if LEDGER {
@@ -441,6 +553,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         if self.in_window(at) {
             self.counts.releases += 1;
         }
+        self.judge.release(self.in_periods(at), self.clock.seconds(at));
         self.event(at, EventKind::Release, side, 0.0, 0.0);
     }
 

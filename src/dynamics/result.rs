@@ -128,6 +128,8 @@ pub enum Regime {
     Interwell,
     /// Crosses without such a period.
     Irregular,
+    /// Crosses under a drive that has no period or another amplitude in each, or under none.
+    Crossing,
     /// The curve has one well or none: nothing to cross.
     OneWell,
 }
@@ -140,6 +142,7 @@ impl Regime {
             Self::Intrawell => "intrawell",
             Self::Interwell => "interwell",
             Self::Irregular => "irregular",
+            Self::Crossing => "crossing",
             Self::OneWell => "",
         }
     }
@@ -224,6 +227,49 @@ pub struct Ledger {
     pub energy_residual: f64,
 }
 
+/// On which side of the barrier top a motion is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Never to the right of it.
+    Left,
+    /// Never to the left of it.
+    Right,
+    /// On both sides.
+    Both,
+}
+
+impl Place {
+    /// The word in the CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Both => "both",
+        }
+    }
+}
+
+/// When something happened first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct First {
+    /// Time in s.
+    pub t: f64,
+    /// Amplitude of the base's acceleration then in m/s^2, where the drive is one amplitude ramp.
+    pub amplitude: Option<f64>,
+}
+
+/// What happened first in a run under a drive that changes: an amplitude ramp, a chirp, noise, a record, tones without a
+/// common period.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Firsts {
+    /// The mass left a stop on which it rested.
+    pub release: Option<First>,
+    /// It crossed the barrier.
+    pub crossing: Option<First>,
+    /// From this crossing on it crossed in every forcing period up to the end of the run; none where the drive has none.
+    pub crossing_in_every_period: Option<First>,
+}
+
 /// Statistics of a run; those of the settled window come first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summary {
@@ -239,12 +285,34 @@ pub struct Summary {
     pub crossings: u64,
     /// Impacts in the settled window; the contacts of a compliant stop are impacts too.
     pub impacts: u64,
+    /// Speed in m/s of the fastest impact in the settled window; none without one.
+    pub impact_speed_max: Option<f64>,
     /// Releases in the settled window.
     pub releases: u64,
     /// Largest |x| in the settled window in m; none where the run ended before it.
     pub max_abs_x: Option<f64>,
-    /// Peak to peak displacement in the settled window in m; none where the run ended before it.
-    pub travel: Option<f64>,
+    /// Smallest and largest displacement in the settled window in m; none where the run ended before it.
+    pub range: Option<(f64, f64)>,
+    /// Mean displacement over the settled window in m; none where the run ended before it, or no ledger was asked for.
+    pub mean_x: Option<f64>,
+    /// Where the motion is in the settled window; none where the run ended before it, and for one well.
+    pub side: Option<Place>,
+    /// Begin and end of the settled window in s, as far as the run came.
+    pub window: (f64, f64),
+    /// Forcing periods in the settled window; 0 where the drive has none.
+    pub periods: u64,
+    /// Forcing periods of the settled window with a crossing in them.
+    pub crossing_periods: u64,
+    /// Forcing periods of the settled window with a release in them.
+    pub release_periods: u64,
+    /// Whether the motion has settled: it repeats, or it is irregular, at least 200 forcing periods old, and RMS velocity and
+    /// crossings in both halves of the window agree within three standard errors. Without a drive, whether it is at rest.
+    /// None under a drive that changes.
+    pub settled: Option<bool>,
+    /// Since when in s the motion repeats; none where it does not.
+    pub settles_at: Option<f64>,
+    /// What happened first, under a drive that changes.
+    pub firsts: Option<Firsts>,
     /// Share of the work that impacts took in the settled window; none without work or ledger.
     pub impact_share: Option<f64>,
     /// Share of the settled window spent at rest on a stop, or in contact with a compliant one.
@@ -275,6 +343,13 @@ pub struct Summary {
     pub cpu_s: f64,
     /// Energy ledger, where it was asked for.
     pub ledger: Option<Ledger>,
+}
+
+impl Summary {
+    /// Peak to peak displacement in the settled window in m; none where the run ended before it.
+    pub fn travel(&self) -> Option<f64> {
+        self.range.map(|(low, high)| high - low)
+    }
 }
 
 /// Everything a run returns.

@@ -2,7 +2,8 @@
 
 use super::clock::Instant;
 use super::record::Recorder;
-use super::result::{Ledger, Outcome, Phase, Regime, Run, Sample, Summary};
+use super::regime::Rhythm;
+use super::result::{Ledger, Outcome, Phase, Place, Regime, Run, Sample, Summary};
 use crate::numeric::{CompensatedSum, Scalar};
 
 /// Below this share of the length scale a motion is rounding: the mass has not moved.
@@ -42,12 +43,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             });
             self.next_time += 1;
         }
-        if let Some(strobe) = self.next_strobe {
-            // the strobe at the end of the window, which is the end of the run
-            if self.clock.between(&strobe, &end).abs() <= self.period * T::of(1e-9) {
-                self.strobe(x, v);
-            }
-        }
+        self.last_strobe(&end, (x, v));
         let m = self.model.mass;
         let energy = m / (self.unit * self.unit);
         let value = |sum: &CompensatedSum<T>| sum.value().to_f64();
@@ -91,17 +87,30 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             Regime::Rest
         } else if self.counts.crossings == 0 {
             Regime::Intrawell
-        } else if self.log_of_crossings.crossings_repeat() {
+        } else if self.model.rhythm != Rhythm::Periodic {
+            Regime::Crossing
+        } else if self.judge.crossings_repeat() {
             Regime::Interwell
         } else {
             Regime::Irregular
         };
         let done = outcome == Outcome::Done;
-        let period =
-            if done && moved { self.log_of_crossings.period(scales.length, scales.speed) } else { None };
+        let origin = self.origin();
+        let strobed = |number: u64| {
+            let cycle = origin.cycle + number as i64 * self.period_cycles;
+            self.clock.seconds(&Instant { cycle, phase: origin.phase })
+        };
+        let (low, high) = (self.low.to_f64(), self.high.to_f64());
+        let side = self.model.crossing_level.filter(|_| seen && !self.model.one_well).map(|top| match () {
+            () if low >= top => Place::Right,
+            () if high <= top => Place::Left,
+            () => Place::Both,
+        });
+        let (crossing_periods, release_periods) = self.judge.periods_with();
+        let ramped = |t: f64| self.model.drive.ramped_amplitude(t);
         Run {
-            samples: self.samples,
-            events: self.events.unwrap_or_default(),
+            samples: std::mem::take(&mut self.samples),
+            events: self.events.take().unwrap_or_default(),
             summary: Summary {
                 final_x,
                 final_v,
@@ -109,16 +118,29 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 regime,
                 crossings: self.counts.crossings,
                 impacts: self.counts.impacts,
+                impact_speed_max: (self.counts.impacts > 0).then(|| self.impact_speed.to_f64() / self.unit),
                 releases: self.counts.releases,
-                max_abs_x: seen.then(|| self.high.to_f64().abs().max(self.low.to_f64().abs())),
-                travel: seen.then_some(travel),
+                max_abs_x: seen.then(|| high.abs().max(low.abs())),
+                range: seen.then_some((low, high)),
+                mean_x: (LEDGER && seen).then(|| value(&self.settled.displacement) / covered),
+                side,
+                window: self.window_seconds(&end),
+                periods: self.periods(),
+                crossing_periods,
+                release_periods,
+                settled: match done {
+                    true => self.judge.settled(moved),
+                    false => self.judge.settled(moved).map(|_| false),
+                },
+                settles_at: self.judge.settles_at(strobed).filter(|_| done),
+                firsts: self.judge.firsts(self.in_periods(&end), ramped),
                 impact_share,
                 rested_share: seen.then(|| value(&self.settled.rested) / covered),
                 total_crossings: self.counts.total_crossings,
                 total_impacts: self.counts.total_impacts,
                 chatter_sums: self.counts.sums,
                 rests: self.counts.rests,
-                period,
+                period: self.judge.period().filter(|_| done && moved),
                 peak_contact_force: force,
                 peak_contact_pressure: pressure,
                 contact_yields: yields,

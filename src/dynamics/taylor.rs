@@ -104,6 +104,13 @@ pub(super) fn integrals<T: Number, const WORK: bool>(
     (squared * length, power * length)
 }
 
+/// The integral of the displacement over (from, to) within the step.
+pub(super) fn moment<T: Scalar>(y: &[T], rule: &GaussLegendre<T>, from: T, to: T) -> T {
+    let length = to - from;
+    let parts = rule.nodes().iter().zip(rule.weights());
+    parts.fold(T::zero(), |sum, (node, weight)| sum + value(y, from + length * *node) * *weight) * length
+}
+
 /// The polynomial of the coefficients `first..count`, the lowest of them the constant, at four times.
 #[inline(always)]
 fn at_four_times<T: Number>(

@@ -2,7 +2,6 @@
 
 use super::clock::Instant;
 use super::record::Recorder;
-use super::regime::Strobe;
 use crate::numeric::{CompensatedSum, Scalar};
 
 /// Share of the clock's cycle that keeps a stretch of time clear of a border.
@@ -19,12 +18,14 @@ pub(super) struct Sums<T> {
     pub impact: CompensatedSum<T>,
     /// Time at rest on a stop.
     pub rested: CompensatedSum<T>,
+    /// Integral of the displacement; with a ledger only.
+    pub displacement: CompensatedSum<T>,
 }
 
 impl<T: Scalar> Sums<T> {
     pub fn new() -> Self {
         let sum = CompensatedSum::new();
-        Self { squared_velocity: sum, work: sum, impact: sum, rested: sum }
+        Self { squared_velocity: sum, work: sum, impact: sum, rested: sum, displacement: sum }
     }
 }
 
@@ -47,9 +48,8 @@ pub(super) struct Totals<T> {
     covered: CompensatedSum<T>,
     work_moved: f64,
     counts: Counts,
-    /// Crossings and stroboscopic states that are kept.
-    crossings: usize,
-    strobes: usize,
+    /// What the judge has kept.
+    taped: usize,
     next_strobe: Option<Instant<T>>,
 }
 
@@ -68,8 +68,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             covered: self.covered,
             work_moved: self.work_moved,
             counts: self.counts,
-            crossings: self.log_of_crossings.crossings.len(),
-            strobes: self.log_of_crossings.strobes.len(),
+            taped: self.judge.taped(),
             next_strobe: self.next_strobe,
         }
     }
@@ -119,13 +118,11 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         self.work_moved = totals.work_moved;
         self.counts = totals.counts;
         self.next_strobe = totals.next_strobe;
-        self.log_of_crossings.crossings.truncate(totals.crossings);
-        self.log_of_crossings.strobes.truncate(totals.strobes);
     }
 
     /// Takes in `laps` more laps of `cycles` cycles of the clock, each like the one that led from `before` to `after`, the
     /// present; all of them inside or all of them outside the window.
-    pub fn repeat(&mut self, before: &Totals<T>, after: &Totals<T>, laps: i64, cycles: i64, inside: bool) {
+    pub fn repeat(&mut self, before: &Totals<T>, after: &Totals<T>, laps: i64, cycles: i64) {
         let times = T::of(laps as f64);
         let more = |sum: &mut CompensatedSum<T>, before: &CompensatedSum<T>, after: &CompensatedSum<T>| {
             sum.add((after.value() - before.value()) * times);
@@ -135,28 +132,10 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         more(&mut self.covered, &before.covered, &after.covered);
         self.work_moved += (after.work_moved - before.work_moved) * laps as f64;
         self.counts.repeat(&before.counts, &after.counts, laps as u64);
-        if !inside {
-            return;
-        }
-        let log = &mut self.log_of_crossings;
-        let periods = cycles as f64 / self.strobe_cycles.max(1) as f64;
-        for lap in 1..=laps {
-            for index in before.crossings..after.crossings {
-                let (time, side) = log.crossings[index];
-                log.keep_crossing(time + lap as f64 * periods, side);
-            }
-        }
+        let periods = cycles / self.period_cycles.max(1);
+        self.judge.repeat(before.taped, after.taped, laps as u64, periods as u64);
         if let Some(strobe) = &mut self.next_strobe {
             strobe.cycle += laps * cycles;
-            for _ in 0..laps {
-                for index in before.strobes..after.strobes {
-                    let Strobe { x, v } = log.strobes[index];
-                    if !log.keep_strobe(Strobe { x, v }) {
-                        self.next_strobe = None;
-                        return;
-                    }
-                }
-            }
         }
     }
 }
@@ -185,5 +164,6 @@ impl<T: Scalar> Sums<T> {
         more(&mut self.work, &before.work, &after.work);
         more(&mut self.impact, &before.impact, &after.impact);
         more(&mut self.rested, &before.rested, &after.rested);
+        more(&mut self.displacement, &before.displacement, &after.displacement);
     }
 }

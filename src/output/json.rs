@@ -7,59 +7,47 @@ use super::manifest::{Origin, seed};
 use crate::dynamics::{Ledger, Outcome, Summary};
 use crate::mechanics::{Landscape, Mechanism};
 use crate::scene::Scene;
-use crate::study::small_amplitude_frequency;
+use crate::study::{Read, SUMMARY_FIELDS, SummaryField, small_amplitude_frequency};
 
 /// The summary of a run of `scene`, as text. Compliant stops add two keys, their peak force and pressure. A run that ended early has two keys more, `ended_at_s`
 /// and, where a budget ran out, `ended_after`, the impacts or steps made.
 pub fn summary(summary: &Summary, scene: &Scene, origin: &Origin) -> String {
-    // Before the settled window began there is nothing to count in it.
-    let settled = summary.rms_velocity.is_some();
-    let count = |n: u64| settled.then_some(n);
-    let mut object = json!({
-        "final_x_m": summary.final_x,
-        "final_v_m_per_s": summary.final_v,
-        "rms_velocity_m_per_s": summary.rms_velocity,
-        "regime": settled.then(|| summary.regime.name()),
-        "crossings": count(summary.crossings),
-        "impacts": count(summary.impacts),
-        "releases": count(summary.releases),
-        "max_abs_x_m": summary.max_abs_x,
-        "travel_m": summary.travel,
-        "impact_share": summary.impact_share,
-        "rested_share": summary.rested_share,
-        "total_crossings": summary.total_crossings,
-        "total_impacts": summary.total_impacts,
-        "chatter_sums": summary.chatter_sums,
-        "rests": summary.rests,
-        "period": summary.period,
-        "outcome": summary.outcome.name(),
-    });
+    let mut object = Value::Object(SUMMARY_FIELDS.iter().filter_map(|field| entry(field, summary)).collect());
     let mut add = |key: &str, value: Value| {
         if let Value::Object(map) = &mut object {
             map.insert(key.to_owned(), value);
         }
     };
-    if let Some(at) = summary.outcome.ended_at() {
-        add("ended_at_s", json!(at));
-    }
     if let Outcome::ImpactBudget { count, .. } | Outcome::StepBudget { count, .. } = summary.outcome {
         add("ended_after", json!(count));
     }
-    if let Some(force) = summary.peak_contact_force {
-        add("peak_contact_force_n", json!(force));
-        add("peak_contact_pressure_pa", json!(summary.peak_contact_pressure));
-    }
-    add("steps", json!(summary.steps));
-    add("evaluations", json!(summary.evaluations));
     add("cpu_s", json!(summary.cpu_s));
     add("ledger", summary.ledger.as_ref().map_or(Value::Null, ledger));
-    add("energy_residual", json!(summary.ledger.map(|ledger| ledger.energy_residual)));
     add("scene", serde_json::to_value(scene).unwrap_or(Value::Null));
     add("version", json!(origin.version));
     add("arguments", json!(origin.arguments));
     add("seed", seed(scene));
     add("wall_s", json!(origin.wall_s));
     pretty(&object)
+}
+
+/// A field with its value. What only some runs have is left out of the others: the contact with a compliant stop, an early
+/// end, what happened first under a drive that changes, and the terms of the ledger, which stand together elsewhere.
+fn entry(field: &SummaryField, summary: &Summary) -> Option<(String, Value)> {
+    let value = match field.read {
+        Read::Number(of) => json!(of(summary)),
+        Read::Count(of) => json!(of(summary)),
+        Read::Word(of) => Some(of(summary)).filter(|word| !word.is_empty()).into(),
+        Read::Flag(of) => json!(of(summary)),
+    };
+    let has = match field.name {
+        "peak_contact_force_n" | "peak_contact_pressure_pa" => summary.peak_contact_force.is_some(),
+        "ended_at_s" => !value.is_null(),
+        "work_j" | "damping_j" | "impact_j" | "stored_j" => false,
+        name if name.starts_with("first_") || name.starts_with("crosses_always") => summary.firsts.is_some(),
+        _ => true,
+    };
+    has.then(|| (field.name.to_owned(), value))
 }
 
 fn ledger(ledger: &Ledger) -> Value {

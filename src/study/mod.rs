@@ -8,6 +8,7 @@ pub mod accuracy;
 mod contact;
 mod curve;
 mod edges;
+mod fields;
 mod flexures;
 mod grid;
 mod inspect;
@@ -32,6 +33,7 @@ pub use curve::{
     stop_positions,
 };
 pub use edges::{Edges, first_interwell_edge};
+pub use fields::{Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
 pub use inspect::inspect;
@@ -41,7 +43,7 @@ pub use models::Held;
 pub use passage::between;
 pub use settled::{Settled, Standing, settled, standing};
 pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};
-pub use sweep::{Cell, CellFaults, Sweep, SweepEnd, Tally};
+pub use sweep::{Cell, CellFaults, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally};
 pub use table::{Column, Table, Values};
 pub use thresholds::{Thresholds, stops_that_cross, thresholds};
 pub use times::{MAX_SAMPLES, Step, TimesError, even_times, listed_times};

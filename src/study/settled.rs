@@ -1,61 +1,27 @@
-//! What does a scene settle to, and where does a mass stand that nothing shakes?
+//! The settled motion of a scene, and the place in the landscape of a mass that nothing shakes.
 
 use std::sync::atomic::AtomicBool;
 
-use crate::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Sample, Side, Summary};
+use crate::dynamics::{Model, Outcome, Phase, Request, Sample, Side, Summary};
+
+/// Forcing periods beyond the scene's own run for which a motion is followed until it repeats: five times what the
+/// longest transients of the prototype take.
+const PATIENCE: f64 = 1000.0;
 
 /// The settled motion of one run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settled {
     /// Its statistics.
     pub summary: Summary,
-    /// Smallest and largest displacement of the settled window in m; none where the run ended before it.
-    pub range: Option<(f64, f64)>,
-    /// Forcing periods in the settled window, where the drive has a period.
-    pub periods: Option<f64>,
-    /// How many of those forcing periods have a crossing in them.
-    pub crossing_periods: u64,
-    /// How many of those forcing periods have a release in them.
-    pub release_periods: u64,
-    /// Length of the settled window in s.
-    pub window: f64,
 }
 
-/// Runs `model` once for its settled motion. None where it was cancelled.
+/// Runs `model` for its settled motion, on beyond its duration until the motion repeats or some 1000 forcing periods have
+/// passed without that. None where it was cancelled.
 pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Settled> {
-    let request = Request { events: true, ledger: true, cancel: Some(cancel), ..Request::default() };
-    let run = model.run(&request);
-    let summary = run.summary;
-    if matches!(summary.outcome, Outcome::Cancelled { .. }) {
-        return None;
-    }
-    // The largest |x| is one end of the range, and the motion's last place tells which one where it stays on a side.
-    let range = summary.max_abs_x.zip(summary.travel).map(|(reach, travel)| {
-        if summary.final_x >= 0.0 { (reach - travel, reach) } else { (-reach, travel - reach) }
-    });
-    let length = model.duration - model.settle();
-    let periods = model.forcing_period.map(|period| (length / period + 1e-9).floor());
-    let window = match (periods, model.forcing_period) {
-        (Some(periods), Some(period)) if periods > 0.0 => periods * period,
-        _ => length,
-    };
-    // the forcing periods of the window in which something of this kind happened
-    let periods_with = |kind: EventKind| {
-        let Some(period) = model.forcing_period else { return 0 };
-        let since = |event: &&Event| event.kind == kind && event.t >= model.settle();
-        let mut all: Vec<u64> =
-            run.events.iter().filter(since).map(|e| ((e.t - model.settle()) / period) as u64).collect();
-        all.dedup();
-        all.iter().filter(|index| (**index as f64) < periods.unwrap_or(0.0)).count() as u64
-    };
-    Some(Settled {
-        summary,
-        range,
-        periods,
-        crossing_periods: periods_with(EventKind::Crossing),
-        release_periods: periods_with(EventKind::Release),
-        window,
-    })
+    let until_settled = model.forcing_period.map(|period| model.duration + PATIENCE * period);
+    let run = model.run(&Request { ledger: true, cancel: Some(cancel), until_settled, ..Request::default() });
+    let cancelled = matches!(run.summary.outcome, Outcome::Cancelled { .. });
+    (!cancelled).then_some(Settled { summary: run.summary })
 }
 
 /// Where a mass stands, or swings, that nothing shakes.

@@ -25,6 +25,8 @@ pub struct Keep {
     pub times: Vec<f64>,
     /// Whether to keep the events.
     pub events: bool,
+    /// Goes on until the motion repeats, or up to this time in s.
+    pub until_settled: Option<f64>,
 }
 
 /// One run, recorded.
@@ -38,10 +40,16 @@ pub struct Simulation {
     pub summary: Summary,
 }
 
-/// The sample times in s that `sampling` asks of this run.
-pub fn sample_times(scene: &Scene, model: &Model, sampling: &Sampling) -> Result<Vec<f64>, TimesError> {
+/// The sample times in s that `sampling` asks of this run, up to the last at which it may end.
+pub fn sample_times(
+    scene: &Scene,
+    model: &Model,
+    sampling: &Sampling,
+    until_settled: Option<f64>,
+) -> Result<Vec<f64>, TimesError> {
+    let duration = until_settled.unwrap_or(model.duration);
     let step = match sampling {
-        Sampling::At(times) => return listed_times(times, model.duration),
+        Sampling::At(times) => return listed_times(times, duration),
         Sampling::Every(dt) => Step::Seconds(*dt),
         Sampling::Default => match (&scene.excitation, model.forcing_period) {
             (Excitation::Sine { frequency_hz, .. } | Excitation::AmplitudeRamp { frequency_hz, .. }, _) => {
@@ -51,7 +59,7 @@ pub fn sample_times(scene: &Scene, model: &Model, sampling: &Sampling) -> Result
             _ => Step::Thousandth,
         },
     };
-    even_times(step, model.duration)
+    even_times(step, duration)
 }
 
 /// Runs `model` once. Setting `cancel` from elsewhere ends it early, as its outcome then says.
@@ -63,7 +71,8 @@ pub fn simulate(model: &Model, keep: &Keep, cancel: Option<&AtomicBool>) -> Simu
         sorted.sort_by(f64::total_cmp);
     }
     let sample_times = if ascending { &keep.times } else { &sorted };
-    let run = model.run(&Request { sample_times, events: keep.events, ledger: true, cancel });
+    let request = Request { sample_times, events: keep.events, cancel, ..Request::default() };
+    let run = model.run(&Request { ledger: true, until_settled: keep.until_settled, ..request });
     let samples = if ascending { run.samples } else { in_order(&keep.times, &run.samples) };
     Simulation { samples: samples_table(&samples), events: events_table(&run.events), summary: run.summary }
 }

@@ -13,11 +13,25 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::Task;
+use super::fields::SummaryField;
 use super::grid::Grid;
 use super::table::{Table, Values};
-use crate::dynamics::{Model, Outcome, Summary};
+use crate::dynamics::{Model, Outcome, Request, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
+
+/// The columns that every sweep has after those of its fields.
+pub const STANDARD: [&str; 7] =
+    ["rms_velocity_m_per_s", "regime", "crossings", "impacts", "max_abs_x_m", "period", "outcome"];
+
+/// What a sweep does beyond running each cell for its duration.
+#[derive(Debug, Clone, Default)]
+pub struct SweepOptions {
+    /// More columns than the [standard](STANDARD) ones. One that needs the energy ledger has the cells run one by one.
+    pub columns: Vec<&'static SummaryField>,
+    /// Each run goes on until its motion repeats, or up to this time in s.
+    pub until_settled: Option<f64>,
+}
 
 /// A scene, the grid over it, and the mechanisms that its cells share.
 #[derive(Debug)]
@@ -25,6 +39,7 @@ pub struct Sweep {
     base: Scene,
     files: Files,
     grid: Grid,
+    options: SweepOptions,
     mechanisms: Vec<OnceLock<Built>>,
     /// Mechanisms built so far.
     built: AtomicU64,
@@ -131,7 +146,15 @@ impl Sweep {
         let base = Scene { notes: String::new(), sweep: Vec::new(), app: None, ..base.clone() };
         let kept = Some(grid.mechanisms()).filter(|n| *n <= KEPT_MECHANISMS).unwrap_or(0);
         let mechanisms = (0..kept).map(|_| OnceLock::new()).collect();
-        Self { base, files: files.clone(), grid, mechanisms, built: AtomicU64::new(0) }
+        let options = SweepOptions::default();
+        Self { base, files: files.clone(), grid, options, mechanisms, built: AtomicU64::new(0) }
+    }
+
+    /// The same with these options.
+    #[must_use]
+    pub fn with(mut self, options: SweepOptions) -> Self {
+        self.options = options;
+        self
     }
 
     /// The grid.
@@ -150,6 +173,11 @@ impl Sweep {
         let mut scene = self.base.clone();
         self.grid.apply(0, &mut scene);
         self.mechanism(0, &scene)
+    }
+
+    /// The model of the first cell, or its faults; none where its mechanism was not solved.
+    pub fn first_model(&self) -> Option<Result<Model, Vec<Fault>>> {
+        self.model(0, &mut self.base.clone())
     }
 
     /// Builds every cell without running it; the first one that is wrong, with all its faults. A mechanism that is
@@ -256,7 +284,15 @@ impl Sweep {
                 None => rows[place].outcome = NOT_CONVERGED,
             }
         }
-        for (place, run) in places.into_iter().zip(Model::run_all(&models, Some(task.cancel))) {
+        let until_settled = self.options.until_settled;
+        let runs = if self.options.columns.iter().any(|field| field.needs_ledger) {
+            let request =
+                Request { ledger: true, until_settled, cancel: Some(task.cancel), ..Request::default() };
+            models.iter().map(|model| model.run(&request)).collect()
+        } else {
+            Model::run_all(&models, until_settled, Some(task.cancel))
+        };
+        for (place, run) in places.into_iter().zip(runs) {
             rows[place] = Cell { outcome: run.summary.outcome.name(), summary: Some(run.summary) };
         }
         rows
@@ -290,23 +326,20 @@ impl Sweep {
             let value = |row: usize| self.grid.values(begin + row as u64).nth(i).unwrap_or(f64::NAN);
             table = table.with(column, Values::Numbers((0..rows.len()).map(value).collect()));
         }
-        let numbers = |of: fn(&Summary) -> Option<f64>| {
-            Values::Numbers(
-                rows.iter().map(|row| row.summary.as_ref().and_then(of).unwrap_or(f64::NAN)).collect(),
-            )
-        };
-        let counts = |of: fn(&Summary) -> Option<u64>| {
-            Values::Counts(rows.iter().map(|row| row.settled().and_then(of)).collect())
-        };
-        let words = |of: fn(&Cell) -> &'static str| Values::Words(rows.iter().map(of).collect());
-        table
-            .with("rms_velocity_m_per_s", numbers(|s| s.rms_velocity))
-            .with("regime", words(|row| row.settled().map_or("", |s| s.regime.name())))
-            .with("crossings", counts(|s| Some(s.crossings)))
-            .with("impacts", counts(|s| Some(s.impacts)))
-            .with("max_abs_x_m", numbers(|s| s.max_abs_x))
-            .with("period", counts(|s| s.period.map(u64::from)))
-            .with("outcome", words(|row| row.outcome))
+        for name in STANDARD {
+            table = table.with(name, self.column(name, rows));
+        }
+        let more = self.options.columns.iter().filter(|field| !STANDARD.contains(&field.name));
+        more.fold(table, |table, field| table.with(field.name, self.column(field.name, rows)))
+    }
+
+    fn column(&self, name: &str, rows: &[Cell]) -> Values {
+        match SummaryField::find(name) {
+            // Of a cell that has no run too.
+            _ if name == "outcome" => Values::Words(rows.iter().map(|row| row.outcome).collect()),
+            Some(field) => field.column(rows.iter().map(|row| row.summary.as_ref())),
+            None => Values::Words(vec![""; rows.len()]),
+        }
     }
 }
 

@@ -118,6 +118,12 @@ impl Table {
         }
     }
 
+    /// The table with these of its columns alone, in this order.
+    #[must_use]
+    pub fn only(&self, names: &[String]) -> Self {
+        Self { columns: names.iter().filter_map(|name| self.column(name)).cloned().collect() }
+    }
+
     /// Adds the rows of `more`, which has the same columns, below.
     pub fn append(&mut self, more: &Self) {
         if self.columns.is_empty() {

@@ -56,21 +56,27 @@ pub fn simulate_with_trace(
     keep: &Keep,
     cancel: Option<&std::sync::atomic::AtomicBool>,
 ) -> (Simulation, Trace) {
-    let mut portrait_from = portrait_from(model);
-    let mut seen = picture_times(model, portrait_from, model.duration);
+    let request = Request { cancel, until_settled: keep.until_settled, ..Request::default() };
+    // where the run ends and what its window is must be known before it is asked for samples
+    let span = match keep.until_settled {
+        Some(_) => model.run(&request).summary.window,
+        None => (model.settle, model.duration),
+    };
+    let mut portrait_from = portrait_from(model, span);
+    let mut seen = picture_times(model, portrait_from, span.1);
     let times = ascending(seen.iter().chain(&keep.times).copied().collect());
-    let run = model.run(&Request { sample_times: &times, events: true, ledger: true, cancel });
+    let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
     let stop = |side: Option<f64>| side.unwrap_or(f64::NAN);
     let stops = model.stops.map_or((f64::NAN, f64::NAN), |pair| {
         (stop(pair.left.map(|own| own.x)), stop(pair.right.map(|own| own.x)))
     });
-    let end = run.summary.outcome.ended_at().unwrap_or(model.duration);
+    let end = run.summary.outcome.ended_at().unwrap_or(span.1);
     let mut shown = in_order(&seen, &run.samples);
-    if end < model.duration && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
+    if end < span.1 && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
         // It ended where hardly a sample had been asked for: the same run again, looked at more closely.
         portrait_from = 0.0;
         seen = picture_times(model, portrait_from, end);
-        shown = model.run(&Request { sample_times: &seen, events: false, ledger: false, cancel }).samples;
+        shown = model.run(&Request { sample_times: &seen, ..request }).samples;
     }
     let path = path(&shown, &run.events, stops);
     let rows = path.numbers("t_s").unwrap_or_default();
@@ -82,9 +88,9 @@ pub fn simulate_with_trace(
         impacts: impacts(&run.events),
         rests: rests(&run.events, run.samples.first(), end),
         portrait_from,
-        shown_from: if end < model.duration { 0.0 } else { shown_from(model) },
+        shown_from: if end < span.1 { 0.0 } else { shown_from(model, end) },
         stops,
-        settle: model.settle,
+        settle: span.0,
         end,
     };
     let samples = samples_table(&in_order(&keep.times, &run.samples));
@@ -92,19 +98,18 @@ pub fn simulate_with_trace(
     (Simulation { samples, events, summary: run.summary }, trace)
 }
 
-fn portrait_from(model: &Model) -> f64 {
+/// From when on in s the phase portrait of a run with this settled window is shown.
+fn portrait_from(model: &Model, (settle, end): (f64, f64)) -> f64 {
     match model.forcing_period {
-        Some(period) => model.settle.max(model.duration - PORTRAIT_PERIODS * period).min(model.duration),
+        Some(period) => settle.max(end - PORTRAIT_PERIODS * period).min(end),
         None => 0.0,
     }
 }
 
-fn shown_from(model: &Model) -> f64 {
+fn shown_from(model: &Model, end: f64) -> f64 {
     let repeats = model.drive.tones.iter().all(|tone| tone.ramp.is_none());
     match model.forcing_period {
-        Some(period) if repeats && model.duration > BAND_PERIODS * period => {
-            model.duration - SHOWN_PERIODS * period
-        }
+        Some(period) if repeats && end > BAND_PERIODS * period => end - SHOWN_PERIODS * period,
         _ => 0.0,
     }
 }

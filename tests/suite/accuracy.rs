@@ -189,7 +189,7 @@ fn samples_lie_on_the_path_and_end_with_it() {
     // For the view of a step's effect: as many samples as were asked for, ascending, inside the stops, at rest where it rests.
     let model = preset("paper", &[]);
     let times = every(0.01, 1000);
-    let keep = Keep { sample_times: &times, impacts: true, cancel: None };
+    let keep = Keep { sample_times: &times, impacts: true, ..Keep::default() };
     let all: [MethodRun; 2] =
         [fixed_step(&model, Scheme::RungeKutta4, 1e-4, &keep), dormand_prince(&model, 1e-8, &keep)];
     for own in &all {

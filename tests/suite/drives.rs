@@ -70,7 +70,7 @@ fn a_mass_follows_chirp_noise_and_record_as_twice_the_digits_do() {
                 ],
             );
             let times = every(0.055, 36);
-            let request = Request { sample_times: &times, events: true, ledger: true, cancel: None };
+            let request = Request { sample_times: &times, events: true, ledger: true, ..Request::default() };
             let (a, b) = (m.run(&request), m.run_reference(&request, 1e-26));
             assert_eq!(a.samples.len(), 36);
             for (s, r) in a.samples.iter().zip(&b.samples) {

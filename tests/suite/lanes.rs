@@ -6,7 +6,7 @@ use super::support::*;
 
 /// The summaries of models run together, and of each alone.
 fn compare(models: &[Model]) {
-    let together = Model::run_all(models, None);
+    let together = Model::run_all(models, None, None);
     assert_eq!(together.len(), models.len());
     for (model, run) in models.iter().zip(&together) {
         let alone = model.run(&Request::default());

@@ -23,3 +23,4 @@ mod scene;
 mod studies;
 mod support;
 mod untrusted;
+mod verdicts;

@@ -9,7 +9,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// A run with everything listed, and one with nothing.
 fn both(model: &Model, times: &[f64]) -> [Run; 2] {
-    let all = Request { sample_times: times, events: true, ledger: true, cancel: None };
+    let all = Request { sample_times: times, events: true, ledger: true, ..Request::default() };
     [model.run(&all), model.run(&Request::default())]
 }
 
@@ -35,7 +35,7 @@ fn same_summary(model: &Model, a: &Summary, b: &Summary) {
     for (of, size) in [
         ((|s| s.rms_velocity) as fn(&Summary) -> Option<f64>, speed),
         (|s| s.max_abs_x, length),
-        (|s| s.travel, length),
+        (|s| s.travel(), length),
         (|s| s.impact_share, 1.0),
         (|s| s.rested_share, 1.0),
     ] {

@@ -96,7 +96,7 @@ fn the_first_wrong_cell_is_named() {
 fn samples_keep_the_order_of_their_times() {
     let model = model(&Document::load("paper").unwrap());
     let times = vec![3.0, 0.25, 10.0, 0.0, 0.25];
-    let keep = |times: &[f64]| Keep { times: times.to_vec(), events: false };
+    let keep = |times: &[f64]| Keep { times: times.to_vec(), events: false, until_settled: None };
     let shuffled = simulate(&model, &keep(&times), None);
     let ascending = simulate(&model, &keep(&[0.0, 0.25, 3.0, 10.0]), None);
     assert_eq!(shuffled.samples.numbers("t_s").unwrap(), times);
@@ -110,7 +110,7 @@ fn default_samples_follow_the_drive() {
     let count = |set: &[&str]| {
         let mut document = Document::load("paper").unwrap();
         set.iter().for_each(|set| document.set(set).unwrap());
-        sample_times(&document.scene, &model(&document), &Sampling::Default).unwrap().len()
+        sample_times(&document.scene, &model(&document), &Sampling::Default, None).unwrap().len()
     };
     assert_eq!(count(&[]), 1801);
     assert_eq!(count(&["excitation=None"]), 1001);

@@ -52,7 +52,7 @@ pub fn run(model: &Model) -> Run {
 
 /// A run with events, ledger, and samples at `times`, ascending.
 pub fn run_at(model: &Model, times: &[f64]) -> Run {
-    model.run(&Request { sample_times: times, events: true, ledger: true, cancel: None })
+    model.run(&Request { sample_times: times, events: true, ledger: true, ..Request::default() })
 }
 
 /// The events of one kind.

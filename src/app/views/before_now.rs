@@ -122,6 +122,7 @@ fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Settled>) 
         Regime::Intrawell => (Kind::Intrawell, "intrawell"),
         Regime::Interwell => (Kind::Interwell, "interwell"),
         Regime::Irregular => (Kind::Irregular, "irregular"),
+        Regime::Crossing => (Kind::Interwell, "crossing"),
         Regime::OneWell => (Kind::Other, "one well"),
     };
     ui.horizontal(|ui| {

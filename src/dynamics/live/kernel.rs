@@ -110,6 +110,7 @@ impl Kernel {
         from: Option<&Carried<f64>>,
     ) -> Motion<'a, f64, D, LEDGER> {
         let mut motion = Motion::new(model, request, model.tolerance, &self.equation, self.clock, drive);
+        motion.record.next_strobe = None; // a live run is not judged
         if let Some(from) = from {
             motion.resume(from);
         }
@@ -143,7 +144,7 @@ impl Kernel {
         times: &[f64],
         drive: &D,
     ) -> Stretch {
-        let request = Request { sample_times: times, events: true, ledger: true, cancel: None };
+        let request = Request { sample_times: times, events: true, ledger: true, ..Request::default() };
         let mut motion = self.motion::<D, true>(model, drive, &request, Some(head));
         let until = self.clock.at(to);
         let (mut last, mut ended) = (None, None);

@@ -75,18 +75,23 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             let cycles = self.at.cycle - log.carried(first).at.cycle;
             let like = self.like(first, &log, before);
             self.complete(&log, Lap { first, cycles, like });
+            self.record.judge.end_tape();
         } else if let Some((first, before)) = log.find(|known| known.end == label.end.other())
             && D::ODD
             && self.symmetric
             && let Some(cycles) = self.half_cycles_since(&log.carried(first).at)
         {
             self.complete_mirrored(log, first, cycles, before);
+            self.record.judge.end_tape();
         } else {
             self.keep_from(log, label);
         }
     }
 
     fn keep_from(&mut self, mut log: Box<Log<T>>, label: Label<T>) {
+        if log.marks() == 0 {
+            self.record.judge.begin_tape();
+        }
         log.label(label, self.record.totals());
         self.record.log = Some(log);
     }
@@ -100,6 +105,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             if let Some(log) = &mut self.record.log {
                 if log.cycles_until(&carried.at) > patience {
                     self.record.log = None; // the next release begins another
+                    self.record.judge.end_tape();
                 } else {
                     log.mark(carried);
                 }
@@ -144,6 +150,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// Completes the run from here, where a lap has just ended.
     fn complete(&mut self, log: &Log<T>, mut lap: Lap<T>) {
         self.recurs = false;
+        self.record.judge.comes_back(self.clock.seconds(&log.carried(lap.first).at));
         let mut later = 0;
         let mut impacts = lap.like.map_or(0, |like| like.after.total_impacts() - like.before.total_impacts());
         loop {
@@ -159,7 +166,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 let laps = self.laps_alike(&lap, like.inside).min(room as i64 - 1);
                 if laps > 0 {
                     self.list(log, &lap, later, laps);
-                    self.record.repeat(&like.before, &like.after, laps, lap.cycles, like.inside);
+                    self.record.repeat(&like.before, &like.after, laps, lap.cycles);
                     later += laps * lap.cycles;
                     self.at.cycle += laps * lap.cycles;
                     continue;
@@ -183,7 +190,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// Tells the recorder the next `laps` as far as something of them is listed; its sums stay, so that what they come to
     /// does not depend on what is listed.
     fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) {
-        let sums = self.record.totals();
+        let (sums, judge) = (self.record.totals(), self.record.judge.clone());
         let mut start = self.at;
         for number in 1..=laps {
             let end = Instant { cycle: start.cycle + lap.cycles, phase: start.phase };
@@ -195,6 +202,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             start = end;
         }
         self.record.take_back(&sums);
+        self.record.judge = judge;
     }
 
     fn tell(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: Later) {

@@ -151,7 +151,13 @@ impl<'a> Bench<'a> {
     }
 
     fn request<'b>(&'b self, times: &'b [f64]) -> Request<'b> {
-        Request { sample_times: times, events: true, ledger: true, cancel: Some(self.task.cancel) }
+        Request {
+            sample_times: times,
+            events: true,
+            ledger: true,
+            cancel: Some(self.task.cancel),
+            ..Request::default()
+        }
     }
 
     /// A run with events, ledger and samples at `times`, ascending.

@@ -138,7 +138,7 @@ fn a_ledger_changes_no_bit_of_the_figures() {
     let (bare, full) = (model.run(&Request::default()).summary, run(&model).summary);
     assert!(full.rested_share.unwrap() > 0.3);
     assert_eq!(bare.rms_velocity, full.rms_velocity);
-    assert_eq!((bare.max_abs_x, bare.travel), (full.max_abs_x, full.travel));
+    assert_eq!((bare.max_abs_x, bare.travel()), (full.max_abs_x, full.travel()));
 }
 
 #[test]

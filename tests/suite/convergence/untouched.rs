@@ -52,7 +52,7 @@ fn a_stop_never_reached_changes_no_bit() {
         };
         let times = every(0.0173, 570);
         let open = run_at(&with("None"), &times);
-        assert!(open.samples.len() == 570 && open.summary.travel.unwrap() > 1e-3);
+        assert!(open.samples.len() == 570 && open.summary.travel().unwrap() > 1e-3);
         let reach_mm = open.summary.max_abs_x.unwrap() * 1e3;
         let table = changes[0].starts_with("mechanism");
         let just = format!("Rigid(travel_limit_mm: {:?}, restitution: 0.36)", reach_mm * (1.0 + 1e-9));
@@ -80,7 +80,7 @@ fn motion(run: &Run) -> (f64, f64, Option<f64>, [u64; 8], Option<u32>, Option<f6
         s.steps,
         s.evaluations,
     ];
-    (s.final_x, s.final_v, s.rms_velocity, counts, s.period, s.travel)
+    (s.final_x, s.final_v, s.rms_velocity, counts, s.period, s.travel())
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn watching_changes_no_bit() {
             (&few, true, true),
             (&times, true, true),
         ] {
-            let run = model.run(&Request { sample_times, events, ledger, cancel: None });
+            let run = model.run(&Request { sample_times, events, ledger, ..Request::default() });
             assert_eq!(motion(&run), motion(&plain));
             assert_eq!(run.summary.ledger, full.summary.ledger.filter(|_| ledger));
             if events {

@@ -96,7 +96,7 @@ pub fn model_on(scene: &Scene, curve: ForceCurve) -> Model {
 }
 
 pub fn full(times: &[f64]) -> Request<'_> {
-    Request { sample_times: times, events: true, ledger: true, cancel: None }
+    Request { sample_times: times, events: true, ledger: true, ..Request::default() }
 }
 
 pub fn run(scene: &Scene) -> Run {

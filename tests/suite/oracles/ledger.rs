@@ -133,7 +133,7 @@ fn the_reference_numbers_of_a_chattering_run() {
     assert_eq!(fast, 780);
     assert_eq!((summary.regime, summary.period), (Regime::Interwell, Some(1)));
     assert_eq!((summary.crossings, summary.releases), (30, 30));
-    assert_eq!((summary.max_abs_x, summary.travel), (Some(0.004), Some(0.008)));
+    assert_eq!((summary.max_abs_x, summary.travel()), (Some(0.004), Some(0.008)));
 }
 
 #[test]

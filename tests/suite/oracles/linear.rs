@@ -79,7 +79,7 @@ fn a_steady_orbit_has_the_textbook_rms() {
     let amplitude = 0.7 * STANDARD_GRAVITY / l;
     let summary = run(&model).summary;
     near_relative(summary.rms_velocity.unwrap(), w * amplitude * 0.5f64.sqrt(), 1e-13);
-    near_relative(summary.travel.unwrap(), 2.0 * amplitude, 2e-13);
+    near_relative(summary.travel().unwrap(), 2.0 * amplitude, 2e-13);
     near_relative(summary.max_abs_x.unwrap(), amplitude, 2e-13);
     assert_eq!(summary.period, Some(1));
 }

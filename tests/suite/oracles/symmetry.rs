@@ -22,7 +22,7 @@ fn assert_mirror(a: &Run, b: &Run) {
     }
     let (p, q) = (&a.summary, &b.summary);
     assert_eq!((p.final_x, p.final_v), (-q.final_x, -q.final_v));
-    assert_eq!((p.rms_velocity, p.travel, p.max_abs_x), (q.rms_velocity, q.travel, q.max_abs_x));
+    assert_eq!((p.rms_velocity, p.travel(), p.max_abs_x), (q.rms_velocity, q.travel(), q.max_abs_x));
     assert_eq!((p.regime, p.period, p.outcome), (q.regime, q.period, q.outcome));
     assert_eq!((p.steps, p.total_impacts, p.rests), (q.steps, q.total_impacts, q.rests));
     assert_eq!(p.ledger, q.ledger);
@@ -34,7 +34,7 @@ fn mirror(a: &Model, b: &Model) -> Run {
     let times = every(a.duration / 200.0, 199);
     let (a, b) = (run_at(a, &times), run_at(b, &times));
     assert_mirror(&a, &b);
-    assert!(a.summary.travel.unwrap() > 0.0);
+    assert!(a.summary.travel().unwrap() > 0.0);
     a
 }
 

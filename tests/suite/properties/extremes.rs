@@ -150,7 +150,13 @@ fn model(scene: &Scene) -> Option<Model> {
 /// something. A run that was told to stop before it began makes some hundred steps, the same ones every time.
 fn begin(model: &Model, sample_times: &[f64]) -> Ran {
     let told = AtomicBool::new(true);
-    model.run(&Request { sample_times, events: true, ledger: true, cancel: Some(&told) })
+    model.run(&Request {
+        sample_times,
+        events: true,
+        ledger: true,
+        cancel: Some(&told),
+        ..Request::default()
+    })
 }
 
 #[test]

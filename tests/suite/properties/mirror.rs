@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use interwell::dynamics::{Event, Phase, Run};
+use interwell::dynamics::{Event, Phase, Place, Run};
 use interwell::scene::{Damping, Excitation, Mechanism, Record, Scene, Start, Stops};
 use proptest::prelude::*;
 
@@ -100,6 +100,13 @@ pub fn same_in_a_mirror(a: &Run, b: &Run) -> Verdict {
     let mut mirrored = b.summary;
     mirrored.final_x = -mirrored.final_x;
     mirrored.final_v = -mirrored.final_v;
+    mirrored.range = mirrored.range.map(|(low, high)| (-high, -low));
+    mirrored.mean_x = mirrored.mean_x.map(|mean| -mean);
+    mirrored.side = mirrored.side.map(|side| match side {
+        Place::Left => Place::Right,
+        Place::Right => Place::Left,
+        Place::Both => Place::Both,
+    });
     mirrored.cpu_s = a.summary.cpu_s;
     prop_assert_eq!(a.summary, mirrored);
     Ok(())

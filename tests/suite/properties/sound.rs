@@ -55,9 +55,9 @@ pub fn finite(model: &Model, run: &Run) -> Verdict {
     for e in &run.events {
         prop_assert!([e.t, e.v_in, e.v_out].iter().all(|own| own.is_finite()), "{:?}", e);
     }
-    let Summary { final_x, final_v, rms_velocity, max_abs_x, travel, impact_share, rested_share, .. } =
-        run.summary;
+    let Summary { final_x, final_v, rms_velocity, max_abs_x, impact_share, rested_share, .. } = run.summary;
     let Summary { peak_contact_force, peak_contact_pressure, cpu_s, ledger, outcome, .. } = run.summary;
+    let travel = run.summary.travel();
     let optional = [rms_velocity, max_abs_x, travel, impact_share, rested_share];
     let optional =
         optional.into_iter().chain([peak_contact_force, peak_contact_pressure, outcome.ended_at()]);
@@ -89,7 +89,7 @@ pub fn within_stops(scene: &Scene, run: &Run) -> Verdict {
         }
     }
     prop_assert!(summary.final_x >= -left && summary.final_x <= right, "beyond a stop: {:?}", summary);
-    if let (Some(reach), Some(travel)) = (summary.max_abs_x, summary.travel) {
+    if let (Some(reach), Some(travel)) = (summary.max_abs_x, summary.travel()) {
         prop_assert!(reach <= left.max(right) && travel <= left + right, "beyond a stop: {:?}", summary);
     }
     Ok(())
@@ -97,7 +97,7 @@ pub fn within_stops(scene: &Scene, run: &Run) -> Verdict {
 
 /// No sample of the settled window lies beyond the extremes that are told of it, nor does it move further.
 fn extremes_hold(model: &Model, run: &Run) -> Verdict {
-    let (Some(reach), Some(travel)) = (run.summary.max_abs_x, run.summary.travel) else { return Ok(()) };
+    let (Some(reach), Some(travel)) = (run.summary.max_abs_x, run.summary.travel()) else { return Ok(()) };
     let periods = |period: f64| ((model.duration - model.settle()) / period + 1e-9).floor() * period;
     let length = model.forcing_period.map(periods).filter(|own| *own > 0.0);
     let end = length.map_or(model.duration, |length| model.settle() + length) * (1.0 - 1e-9);

@@ -274,8 +274,13 @@ fn runs(document: &Document, mechanism: Mechanism) -> Option<Model> {
             std::thread::park_timeout(RUN);
             cancel.store(true, Ordering::Relaxed);
         });
-        let run =
-            model.run(&Request { sample_times: &times, events: true, ledger: true, cancel: Some(&cancel) });
+        let run = model.run(&Request {
+            sample_times: &times,
+            events: true,
+            ledger: true,
+            cancel: Some(&cancel),
+            ..Request::default()
+        });
         watch.thread().unpark();
         run
     });

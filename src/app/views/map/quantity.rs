@@ -138,7 +138,7 @@ pub fn kind(regime: Regime) -> Kind {
         Regime::Rest => Kind::Resting,
         Regime::Intrawell => Kind::Intrawell,
         Regime::Irregular => Kind::Irregular,
-        Regime::Interwell => Kind::Interwell,
+        Regime::Interwell | Regime::Crossing => Kind::Interwell,
         Regime::OneWell => Kind::Other,
     }
 }

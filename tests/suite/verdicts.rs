@@ -1,0 +1,182 @@
+//! What a run says of itself: whether it has settled and to what, where it was, and what happened first.
+
+use interwell::dynamics::{Model, Place, Regime, Request, Summary};
+
+use super::support::*;
+
+/// The summary of a run that goes on until the motion repeats, or up to 300 s.
+fn settled(model: &Model) -> Summary {
+    model.run(&Request { until_settled: Some(300.0), ..Request::default() }).summary
+}
+
+fn unconstrained(amplitude: f64, more: &[&str]) -> Model {
+    let amplitude = format!("excitation.amplitude_g={amplitude}");
+    preset("paper-unconstrained", &[&[amplitude.as_str()], more].concat())
+}
+
+#[test]
+fn a_transient_is_no_verdict() {
+    // A window of 5 s after 5 s calls most of these irregular; each comes to rest in a rhythm within two minutes.
+    let short = ["run.duration_s=10", "run.settle_s=5"];
+    let mut early = 0;
+    for hundredths in 116..=135 {
+        let own = settled(&unconstrained(f64::from(hundredths) / 100.0, &[]));
+        assert_eq!((own.regime, own.settled, own.side), (Regime::Interwell, Some(true), Some(Place::Both)));
+        let first = unconstrained(f64::from(hundredths) / 100.0, &short).run(&Request::default()).summary;
+        early += usize::from(first.regime == Regime::Irregular);
+        // what has no period yet is not called settled
+        assert_eq!(first.settled, Some(first.period.is_some()), "{hundredths}");
+    }
+    assert!(early >= 10, "{early}");
+}
+
+#[test]
+fn it_is_known_since_when_a_motion_repeats() {
+    let own = settled(&unconstrained(1.2, &[]));
+    let since = own.settles_at.unwrap();
+    assert!(own.period == Some(1) && since > 5.0 && since < own.window.0, "{own:?}");
+    // the strobes before that are others, those after it the same
+    let times: Vec<f64> = (-2..6).map(|i| since + f64::from(i) / 3.0).collect();
+    let run = run_at(&unconstrained(1.2, &[]), &times);
+    let apart = |i: usize| (run.samples[i + 1].x - run.samples[i].x).abs();
+    assert!(
+        apart(1) > 5e-6 && (2..7).all(|i| apart(i) < 1e-5),
+        "{:?}",
+        (0..7).map(apart).collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn irregular_for_good_is_said_after_two_hundred_periods() {
+    let model = unconstrained(1.5, &[]);
+    let early = model.run(&Request::default()).summary;
+    assert_eq!((early.regime, early.settled, early.settles_at), (Regime::Irregular, Some(false), None));
+    let late = settled(&model);
+    assert_eq!((late.regime, late.settled, late.period), (Regime::Irregular, Some(true), None));
+    near(late.window.1, 300.0, 10.0);
+    near(late.window.1 - late.window.0, 10.0, 1e-9);
+}
+
+#[test]
+fn a_motion_that_goes_on_is_the_same_motion() {
+    let model = unconstrained(1.16, &[]);
+    let going = model.run(&Request { until_settled: Some(300.0), ledger: true, ..Request::default() });
+    let (from, to) = going.summary.window;
+    let spans = [format!("run.duration_s={to}"), format!("run.settle_s={from}")];
+    let plain = unconstrained(1.16, &[spans[0].as_str(), spans[1].as_str()])
+        .run(&Request { ledger: true, ..Request::default() });
+    let (a, b) = (going.summary, plain.summary);
+    assert!(to > 20.0 && a.period == b.period && a.crossings == b.crossings);
+    near_relative(a.rms_velocity.unwrap(), b.rms_velocity.unwrap(), 1e-6);
+    near(a.mean_x.unwrap(), b.mean_x.unwrap(), 1e-8);
+    near(a.ledger.unwrap().energy_residual, 0.0, 1e-8);
+    // where it repeats at once, and where it cannot be waited for, nothing changes
+    for name in ["paper", "duffing", "random-shaking", "paper-ramp", "elastic-box"] {
+        let model = preset(name, &["run.duration_s=10", "run.settle_s=5"]);
+        let plain = model.run(&Request::default());
+        if plain.summary.settled != Some(false) || !model.can_settle() {
+            same_bits(&model.run(&Request { until_settled: Some(1e3), ..Request::default() }), &plain);
+        }
+    }
+}
+
+#[test]
+fn runs_that_go_on_share_their_steps_too() {
+    let models: Vec<Model> =
+        (100..130).step_by(3).map(|g| unconstrained(f64::from(g) / 100.0, &[])).collect();
+    for (model, run) in models.iter().zip(Model::run_all(&models, Some(60.0), None)) {
+        let alone = model.run(&Request { until_settled: Some(60.0), ..Request::default() });
+        same_bits(&alone, &run);
+    }
+}
+
+#[test]
+fn no_length_of_a_run_changes_its_regime() {
+    // 65536 crossings in the window, and one period more
+    for duration in ["run.duration_s=10927", "run.duration_s=10928"] {
+        for recurrence in ["run.recurrence=true", "run.recurrence=false"] {
+            let own = preset("paper", &[duration, "run.settle_s=5", recurrence]).run(&Request::default());
+            let own = own.summary;
+            assert_eq!((own.regime, own.period, own.settled), (Regime::Interwell, Some(1), Some(true)));
+            assert_eq!((own.crossing_periods, own.release_periods), (own.periods, own.periods));
+            assert_eq!(own.crossings, 2 * own.periods);
+        }
+    }
+}
+
+#[test]
+fn the_range_is_not_mirrored() {
+    for duration in ["10", "10.17", "10.3"] {
+        let duration = format!("run.duration_s={duration}");
+        let own = run(&preset("uneven-stops", &[&duration])).summary;
+        assert_eq!(own.range, Some((-1.5e-3, 1.7e-3)));
+        assert_eq!(own.max_abs_x, Some(1.7e-3));
+    }
+}
+
+#[test]
+fn mean_displacement_side_and_fastest_impact() {
+    // x = a sin(w t) about a constant push: the mean is the push over the stiffness
+    let linear =
+        "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 4]), damping: Coefficient(c_n_s_per_m: 1)";
+    let push = "excitation: Sum([Constant(accel_g: 0.01), Sine(frequency_hz: 1, amplitude_g: 0.1)])";
+    let own = run(&model(&format!("{linear}, {push}, run: (duration_s: 100, settle_s: 50)"))).summary;
+    near_relative(own.mean_x.unwrap(), -0.01 * 9.80665 / 4.0, 1e-9);
+    assert_eq!((own.side, own.impact_speed_max), (None, None)); // one well, no stop
+    // a ball that is dropped from 1 m hits with sqrt(2 g h)
+    let ball = run(&preset("bouncing-ball", &["run.settle_s=0"])).summary;
+    near_relative(ball.impact_speed_max.unwrap(), (2.0 * 9.81_f64).sqrt(), 1e-9);
+    let late = run(&preset("bouncing-ball", &["run.settle_s=0.5"])).summary;
+    assert!(late.impact_speed_max.unwrap() < ball.impact_speed_max.unwrap());
+    // in the right-hand well, and by the mirrored start in the left-hand one
+    let right = run(&preset("first-look", &[])).summary;
+    let left = run(&preset("first-look", &["start=At(x_mm: -7, v_m_per_s: 0)"])).summary;
+    assert_eq!((right.side, left.side), (Some(Place::Right), Some(Place::Left)));
+    // pressed on a stop all the time, and in contact with one that gives way
+    let rests = run(&preset("paper", &["excitation.amplitude_g=0.5"])).summary;
+    near(rests.mean_x.unwrap(), 1.5e-3, 1e-15);
+    let hertz = "stops=Hertz(travel_limit_mm: 1.5, stiffness_n_per_m1_5: 1e9, loss_s_per_m: 5)";
+    let pressed = run(&preset("paper", &[hertz, "excitation.amplitude_g=0.5", "run.settle_s=9"])).summary;
+    near(pressed.mean_x.unwrap(), pressed.range.unwrap().1, 2e-7);
+}
+
+#[test]
+fn a_drive_that_changes_gets_no_word_of_periodicity() {
+    let sums = "excitation=Sum([Sine(frequency_hz: 3, amplitude_g: 1), Sine(frequency_hz: 3.14159265, amplitude_g: 1)])";
+    let chirp = "excitation=Chirp(from_hz: 2, to_hz: 4, over_s: 10, amplitude_g: 1)";
+    let noise = "excitation=Noise(rms_g: 1, low_hz: 1, high_hz: 5, seed: 1)";
+    let ramp = "excitation=AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 2, over_s: 2)";
+    for drive in [sums, chirp, noise, ramp] {
+        let own = run(&preset("paper", &[drive])).summary;
+        assert_eq!((own.regime.name(), own.period, own.settled), ("crossing", None, None), "{drive}");
+        let first = own.firsts.unwrap();
+        assert!(first.release.unwrap().t < first.crossing.unwrap().t, "{drive} {first:?}");
+    }
+    // nothing drives it: it crosses, and does not settle
+    let free = run(&unit_well("start: At(x_mm: 0, v_m_per_s: 1), run: (duration_s: 50)")).summary;
+    assert_eq!((free.regime, free.settled), (Regime::Crossing, Some(false)));
+    let still = run(&preset("paper", &["excitation=None"])).summary;
+    assert_eq!((still.regime, still.settled), (Regime::Rest, Some(true)));
+    assert!(run(&preset("paper", &[])).summary.firsts.is_none());
+}
+
+#[test]
+fn a_ramp_tells_when_it_frees_crosses_and_always_crosses() {
+    let run = run(&preset("paper-ramp", &[]));
+    let firsts = run.summary.firsts.unwrap();
+    let (release, crossing) = (firsts.release.unwrap(), firsts.crossing.unwrap());
+    let listed = |kind| of_kind(&run, kind).first().unwrap().t;
+    assert_eq!(release.t, listed(interwell::dynamics::EventKind::Release));
+    assert_eq!(crossing.t, listed(interwell::dynamics::EventKind::Crossing));
+    let amplitude = |t: f64| 2.0 * 9.80665 * t / 300.0;
+    near_relative(release.amplitude.unwrap(), amplitude(release.t), 1e-12);
+    near_relative(crossing.amplitude.unwrap(), amplitude(crossing.t), 1e-12);
+    // 0.688 g is what the stop at 1.5 mm holds; from the first crossing on it crosses in every period
+    assert!(release.amplitude.unwrap() > 0.688 * 9.80665);
+    assert_eq!(firsts.crossing_in_every_period, firsts.crossing);
+    // a ramp that falls again: it does not cross to the end
+    let down = "excitation=Sum([AmplitudeRamp(frequency_hz: 3, from_g: 2, to_g: 0, over_s: 20)])";
+    let own = super::support::run(&preset("paper", &[down, "run.duration_s=30"])).summary;
+    let firsts = own.firsts.unwrap();
+    assert!(firsts.crossing.is_some() && firsts.crossing_in_every_period.is_none());
+}
