@@ -30,7 +30,7 @@ fn window(scene: Option<&str>) -> Result<(), cli::Failure> {
 #[cfg(not(feature = "app"))]
 fn window(_: Option<&str>) -> Result<(), cli::Failure> {
     Err(cli::Failure::argument(
-        "this build has no window: use interwell --headless with presets, check, curve, simulate, sweep or accuracy; \
+        "this build has no window: use interwell --headless with presets, check, curve, simulate, sweep, threshold or accuracy; \
          see interwell --help",
     ))
 }

@@ -1,4 +1,4 @@
-//! The line of the first minute: what to try next, until it has been done or dismissed.
+//! The line of the first minute: what to try next, and at its end what it showed and why.
 
 use eframe::egui::{RichText, Ui};
 
@@ -6,6 +6,7 @@ use crate::dynamics::EventKind;
 use crate::scene::Stops;
 
 use super::session::Session;
+use super::status::grams;
 use super::style::strong_family;
 
 /// How far in mm the stops are moved before the trade-off counts as tried.
@@ -18,8 +19,10 @@ enum Stage {
     Cross,
     /// It has crossed by shaking: now with stops.
     Compare,
-    /// It crosses between stops, which stood at so many mm: now move them.
+    /// It has crossed between stops at the shaking of the start, with the stops at so many mm: now move them.
     Move { from_mm: f64 },
+    /// The stops have been moved: what there was to see.
+    Answer,
     /// Nothing any more.
     Done,
 }
@@ -48,55 +51,82 @@ impl Hint {
         if self.stage == Stage::Done {
             return false;
         }
-        // crossings are rare and recent: a look at the last events is enough
-        let crossed = session.player.watch().events().iter().rev().take(50).any(|event| {
-            event.kind == EventKind::Crossing && event.t >= session.changed_at() && session.changed_at() > 0.0
-        });
-        let limit_mm = match session.scene().stops {
-            Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
-                Some(travel_limit_mm)
-            }
-            _ => None,
-        };
+        // Crossings are rare and recent: a look at the last events is enough. One by hand does not count.
+        let since = session.changed_at();
+        let crossed = since > 0.0
+            && !session.is_by_hand()
+            && session
+                .player
+                .watch()
+                .events()
+                .iter()
+                .rev()
+                .take(50)
+                .any(|event| event.kind == EventKind::Crossing && event.t >= since);
+        let limit_mm = limit_mm(session);
+        let as_opened = self.is_as_opened(session);
         self.stage = match (self.stage, limit_mm) {
-            (Stage::Cross | Stage::Compare, Some(from_mm)) if crossed => Stage::Move { from_mm },
-            (Stage::Cross, None) if crossed => Stage::Compare,
+            (Stage::Cross | Stage::Compare, Some(from_mm)) if crossed && as_opened => Stage::Move { from_mm },
+            (Stage::Cross, _) if crossed => Stage::Compare,
+            (Stage::Move { .. }, None) => Stage::Compare,
             (Stage::Move { from_mm }, Some(mm))
                 if (mm - from_mm).abs() >= TRIED_MM && !session.editor.in_gesture() =>
             {
-                Stage::Done
+                Stage::Answer
             }
             (stage, _) => stage,
         };
         self.stage != Stage::Done
     }
 
+    /// Whether the shaking is no stronger than at the start.
+    fn is_as_opened(&self, session: &Session) -> bool {
+        session.amplitude_g().is_some_and(|g| g.abs() <= self.opened_g.abs() * (1.0 + 1e-9))
+    }
+
     /// What it says: what there is, and what to try.
-    pub fn text(&self) -> (&'static str, String) {
-        match self.stage {
-            Stage::Cross => (
+    pub fn text(&self, session: &Session) -> (&'static str, String) {
+        let opened = grams(self.opened_g);
+        match (self.stage, limit_mm(session).is_some(), self.is_as_opened(session)) {
+            (Stage::Cross, ..) => (
                 "Make it cross to the other side.",
                 "Two things help: shake harder, or put stops near the middle.".to_owned(),
             ),
-            Stage::Compare => (
-                "It crosses.",
-                format!(
-                    "Now go back to {:.1} g and switch the stops on: what is gained, what does it cost?",
-                    self.opened_g
-                ),
+            (Stage::Compare, false, false) => (
+                "Harder shaking made it cross.",
+                format!("Now go back to {opened} g and switch the stops on: what is gained, what does it cost?"),
             ),
-            Stage::Move { .. } => (
-                "It crosses between stops.",
+            (Stage::Compare, false, true) => (
+                "Now with stops.",
+                "Switch them on at this shaking: does it cross, and what does it cost?".to_owned(),
+            ),
+            (Stage::Compare, true, false) => (
+                "Now with less shaking.",
+                format!("Go back to {opened} g and leave the stops on: does it still cross?"),
+            ),
+            (Stage::Compare, true, true) => (
+                "Now move the stops.",
+                "Where must they stand so that it crosses at this shaking?".to_owned(),
+            ),
+            (Stage::Move { .. }, ..) => (
+                "Between these stops it crossed, without more shaking.",
                 "Compare before and now. Then move the stops outward: how far does that help?".to_owned(),
             ),
-            Stage::Done => ("", String::new()),
+            (Stage::Answer, ..) => (
+                "What stops do, and why:",
+                "a stop near the middle holds the mass high on the barrier, so a weaker push carries it over; but it \
+                 leaves less room, so the mass travels less and more slowly. Further out the mechanism presses the mass \
+                 harder against the stop, and the same push no longer frees it or no longer carries it over."
+                    .to_owned(),
+            ),
+            (Stage::Done, ..) => ("", String::new()),
         }
     }
 
     /// Draws it.
-    pub fn ui(&mut self, ui: &mut Ui) {
-        let (first, then) = self.text();
-        ui.horizontal(|ui| {
+    pub fn ui(&mut self, ui: &mut Ui, session: &Session) {
+        let (first, then) = self.text(session);
+        ui.horizontal_wrapped(|ui| {
             let font = eframe::egui::FontId::new(super::style::BODY, strong_family());
             ui.label(RichText::new(first).font(font));
             ui.label(then);
@@ -104,5 +134,13 @@ impl Hint {
                 self.stage = Stage::Done;
             }
         });
+    }
+}
+
+/// The travel limit of stops alike on both sides.
+fn limit_mm(session: &Session) -> Option<f64> {
+    match session.scene().stops {
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => Some(travel_limit_mm),
+        _ => None,
     }
 }

@@ -16,15 +16,11 @@ use super::accuracy::Accuracy;
 use super::document::Editor;
 use super::map::Mapping;
 use super::player::{Player, fitting_speed};
-use super::status::{self, Sentence, Tense};
+use super::status::{self, Sentence, Told};
 use super::task::{Latest, Wake};
 
 pub use build::CannotRun;
 use build::{solved, unbuilt, why};
-
-/// Forcing periods after a change during which the motion settles, and those until which the future tense is used.
-const SETTLING_PERIODS: f64 = 5.0;
-const FUTURE_PERIODS: f64 = 3.0;
 
 /// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and what it is
 /// off by is not seen. At the end of the gesture they are solved as every study solves them.
@@ -74,6 +70,10 @@ pub struct Session {
     refused: Option<String>,
     /// Live time in s of the last change.
     changed_at: f64,
+    /// Whether that was a hand on the mass.
+    by_hand: bool,
+    /// Live time in s at which the run begins that is asked what the motion settles to.
+    asked_from: f64,
     /// The stops that come back when they are switched on.
     remembered_stops: Stops,
     wake: Wake,
@@ -114,6 +114,8 @@ impl Session {
             built: scene,
             mechanism,
             changed_at: 0.0,
+            by_hand: false,
+            asked_from: 0.0,
             remembered_stops,
             wake,
         };
@@ -263,13 +265,20 @@ impl Session {
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
         self.changed_at = 0.0;
+        self.by_hand = false;
         self.ask_settled();
     }
 
     /// The mass has been moved by hand: what it settles to is asked anew.
     pub fn moved_by_hand(&mut self) {
         self.changed_at = self.player.watch().time();
+        self.by_hand = true;
         self.ask_settled();
+    }
+
+    /// Whether the last change was a hand on the mass.
+    pub fn is_by_hand(&self) -> bool {
+        self.by_hand
     }
 
     /// Switches the stops; the ones that were there are remembered.
@@ -296,14 +305,17 @@ impl Session {
         if *self.editor.scene() == self.built {
             return;
         }
-        self.built = self.editor.scene().clone();
+        let before = std::mem::replace(&mut self.built, self.editor.scene().clone());
         match self.build() {
             Ok(model) => {
                 self.fault = None;
                 self.model = Arc::new(model);
                 self.player.change(&self.model);
                 self.changed_at = self.player.watch().time();
-                self.thresholds.clear();
+                self.by_hand = false;
+                if !differ_in_amplitude_alone(&before, &self.built) {
+                    self.thresholds.clear();
+                }
                 self.stops_that_cross.clear();
                 self.ask_settled();
             }
@@ -354,15 +366,11 @@ impl Session {
         self.changed_at
     }
 
-    /// Forcing periods of the motion since the last change, where the drive has a period.
-    pub fn periods_since_change(&self) -> Option<f64> {
-        self.model.forcing_period.map(|period| (self.player.watch().time() - self.changed_at) / period)
-    }
-
-    /// How far the motion has settled after a change: periods gone, and of how many.
-    pub fn settling(&self) -> Option<(u32, u32)> {
-        let periods = self.periods_since_change().filter(|periods| *periods < SETTLING_PERIODS)?;
-        (self.changed_at > 0.0).then_some((periods as u32, SETTLING_PERIODS as u32))
+    /// How far the motion has come, after a change, towards what the sentence tells of: seconds gone, and of how many.
+    pub fn settling(&self) -> Option<(f64, f64)> {
+        let told = self.told().filter(|_| self.model.is_shaken() && self.changed_at > 0.0)?;
+        let (gone, of) = (told.now - told.origin, told.seen_from() - told.origin);
+        (gone < of).then_some((gone, of))
     }
 
     /// What the status line says.
@@ -380,21 +388,23 @@ impl Session {
         if !self.model.is_shaken() {
             return status::unshaken(&self.model, &state);
         }
-        let Some(settled) = self.settled.current() else { return Sentence::waiting() };
-        let tense = if self.is_early(settled) { Tense::Future } else { Tense::Present };
-        status::driven(self.scene(), &self.model, settled, self.thresholds.current(), tense)
+        match self.told() {
+            Some(told) => status::driven(&told),
+            None => Sentence::waiting(),
+        }
     }
 
-    /// Whether what the sentence tells is still to be seen: after a change for some periods, and where the shaking has
-    /// no period or grows until what was played reaches what is told of.
-    fn is_early(&self, settled: &Settled) -> bool {
-        match self.periods_since_change().filter(|_| !status::is_swept(self.scene())) {
-            Some(periods) => self.changed_at > 0.0 && periods < FUTURE_PERIODS,
-            None => {
-                let gone = self.player.watch().time() - self.changed_at;
-                gone < self.model.settle() + status::seen_after(self.scene(), settled)
-            }
-        }
+    /// What the sentence tells of, once it is known.
+    fn told(&self) -> Option<Told<'_>> {
+        let settled = self.settled.current()?;
+        Some(Told {
+            scene: self.scene(),
+            model: &self.model,
+            summary: &settled.summary,
+            thresholds: self.thresholds.current(),
+            origin: self.asked_from,
+            now: self.player.watch().time(),
+        })
     }
 
     /// Amplitude of the shaking in g, where it is a sine.
@@ -404,6 +414,18 @@ impl Session {
             _ => None,
         }
     }
+}
+
+/// Whether all thresholds of one scene are those of the other.
+fn differ_in_amplitude_alone(a: &Scene, b: &Scene) -> bool {
+    let mut other = a.clone();
+    match (&mut other.excitation, &b.excitation) {
+        (Excitation::Sine { amplitude_g: own, .. }, Excitation::Sine { amplitude_g, .. }) => {
+            *own = *amplitude_g
+        }
+        _ => return false,
+    }
+    other == *b
 }
 
 /// The stops of a scene in mm, left and right; none where a side is open.

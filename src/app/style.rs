@@ -136,7 +136,7 @@ impl Style {
             Kind::Resting | Kind::Other => self.pick(Color32::from_gray(105), Color32::from_gray(170)),
             Kind::Intrawell => self.pick(BLUE, Color32::from_rgb(60, 160, 225)),
             Kind::Irregular => self.pick(Color32::from_rgb(176, 84, 136), PURPLE),
-            Kind::Interwell | Kind::Fault => self.impact(),
+            Kind::Interwell | Kind::Crossing | Kind::Fault => self.impact(),
         }
     }
 

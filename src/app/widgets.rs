@@ -187,7 +187,7 @@ pub fn kind_shapes(kind: Kind, center: Pos2, radius: f32, color: Color32) -> Vec
             center + vec2(0.0, 1.2 * r),
             center + vec2(-1.2 * r, 0.0),
         ])],
-        Kind::Interwell => {
+        Kind::Interwell | Kind::Crossing => {
             let head = |way: f32| {
                 polygon(vec![
                     center + vec2(way * 1.4 * r, 0.0),

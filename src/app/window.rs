@@ -214,7 +214,7 @@ impl Window {
             let ways = self.session.ways();
             Panel::top("ways").frame(line).show(ui, |ui| ui.label(ways));
         } else if hinted {
-            Panel::top("hint").frame(line).show(ui, |ui| self.hint.ui(ui));
+            Panel::top("hint").frame(line).show(ui, |ui| self.hint.ui(ui, &self.session));
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.memory.grab = false;

@@ -72,5 +72,8 @@ impl From<OpenError> for Failure {
 
 /// What is said of a sweep's first wrong cell; `error` has its faults, with their places.
 pub fn wrong_cell(cell: &CellFaults, error: SceneError) -> Failure {
+    if cell.cell.is_empty() {
+        return error.into();
+    }
     Failure::Wrong(anyhow::anyhow!("in the cell {}:\n{error}", cell.cell))
 }

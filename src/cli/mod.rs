@@ -12,6 +12,7 @@ mod scene_accuracy;
 mod simulate;
 mod support;
 mod sweep;
+mod threshold;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -48,7 +49,7 @@ pub fn run(
     window: impl FnOnce(Option<&str>) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let Options { headless, scene, command } = options;
-    let commands = "presets, check, curve, simulate, sweep or accuracy";
+    let commands = "presets, check, curve, simulate, sweep, threshold or accuracy";
     match (command, headless, scene) {
         (Some(_), _, Some(scene)) => {
             Err(Failure::argument(format!("`{scene}` stands before the command: put the scene after it")))
@@ -64,6 +65,7 @@ pub fn run(
             Command::Curve(options) => curve::run(&options),
             Command::Simulate(options) => simulate::run(&options),
             Command::Sweep(options) => sweep::run(&options),
+            Command::Threshold(options) => threshold::run(&options),
             Command::Accuracy(options) => accuracy::run(&options),
         },
         (None, true, None) => Err(Failure::argument(format!(

@@ -57,6 +57,9 @@ pub enum Command {
     /// Run a grid of scenes: CSV with a row for each cell
     #[command(override_usage = "interwell --headless sweep [SCENE] [OPTIONS]")]
     Sweep(SweepOptions),
+    /// The least value of a field from which on a motion from rest is released, crosses or is interwell
+    #[command(override_usage = "interwell --headless threshold [SCENE] [OPTIONS]")]
+    Threshold(ThresholdOptions),
     /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed against error
     /// beside other methods, and the hard cases with the digits that they allow and reach
     #[command(override_usage = "interwell --headless accuracy [SCENE] [OPTIONS]")]
@@ -72,6 +75,7 @@ impl Command {
             Self::Curve(_) => "curve",
             Self::Simulate(_) => "simulate",
             Self::Sweep(_) => "sweep",
+            Self::Threshold(_) => "threshold",
             Self::Accuracy(_) => "accuracy",
         }
     }
@@ -261,6 +265,40 @@ pub struct SweepOptions {
     /// The picture.
     #[command(flatten)]
     pub plot: PlotOptions,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `threshold`.
+#[derive(Debug, Args)]
+pub struct ThresholdOptions {
+    /// Scene file or built-in scene; each run begins at rest
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// The field and its range [default of the step: a 200th of the range]
+    #[arg(
+        long,
+        value_name = "FIELD=FROM:TO[:STEP]",
+        default_value = "excitation.amplitude_g=0:2",
+        allow_hyphen_values = true
+    )]
+    pub field: String,
+
+    /// What begins there: release (the mass leaves the stop it rests on), crossing (the settled motion crosses at all) or
+    /// interwell (its crossings repeat)
+    #[arg(long, value_name = "ONSET", default_value = "crossing", value_parser = ["release", "crossing", "interwell"])]
+    pub of: String,
+
+    /// How closely the threshold is located, in the field's unit [default: a 1000th of the step]
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    pub resolution: Option<String>,
+
+    /// One row for each value of another field (repeatable, the first is the slowest)
+    #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
+    pub over: Vec<String>,
 
     /// What every command takes.
     #[command(flatten)]

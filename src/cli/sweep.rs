@@ -14,7 +14,7 @@ use interwell::study::{
 };
 
 use super::failure::{Failure, wrong_cell};
-use super::options::SweepOptions as Arguments;
+use super::options::{Common, SweepOptions as Arguments};
 use super::picture::{Picture, caption};
 use super::support::{Watch, finish, inputs, load, open, unbuilt, until_settled, warn, write_text};
 use super::{interrupt, say};
@@ -38,10 +38,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     if picture.is_some() {
         can_show(sweep.grid())?;
     }
-    let threads = common.jobs.map_or_else(cores, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool =
-        pool.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot start {threads} threads: {error}")))?;
+    let (threads, pool) = pool(common)?;
     let beside = manifest_path(&common.out);
     let beside = beside.as_deref().map(|path| ("the manifest of --out", path));
     let outputs = [Some(("--out", &*common.out)), picture.map(|own| own.output()), beside];
@@ -160,11 +157,17 @@ fn manifest_path(out: &Path) -> Option<PathBuf> {
     })
 }
 
-fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
+/// As many threads as were asked for, and how many these are.
+pub fn pool(common: &Common) -> Result<(usize, rayon::ThreadPool), Failure> {
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = common.jobs.map_or_else(cores, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let refused = |error| Failure::Failed(anyhow::anyhow!("cannot start {threads} threads: {error}"));
+    Ok((threads, pool.map_err(refused)?))
 }
 
-fn located(document: &Document, cell: interwell::study::CellFaults) -> Failure {
+/// The error of a cell that is wrong, with the places of its faults.
+pub fn located(document: &Document, cell: interwell::study::CellFaults) -> Failure {
     let error = document.error_from(cell.faults.clone());
     wrong_cell(&cell, error)
 }

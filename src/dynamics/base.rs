@@ -172,12 +172,12 @@ impl BaseMotion {
         }
     }
 
-    /// Amplitude in m/s^2 at a time in s, where it is one ramp.
+    /// Size of the amplitude in m/s^2 at a time in s, where it is one ramp.
     pub fn ramped_amplitude(&self, t: f64) -> Option<f64> {
         let alone = self.constant == 0.0 && self.chirps.is_empty() && self.records.is_empty();
         match self.tones.as_slice() {
             [BaseTone { amplitude, ramp: Some((from, over)), .. }] if alone => {
-                Some(from + (amplitude - from) * (t / over).min(1.0))
+                Some((from + (amplitude - from) * (t / over).min(1.0)).abs())
             }
             _ => None,
         }

@@ -253,6 +253,11 @@ impl Model {
         }
     }
 
+    /// Time in s at which the last amplitude ramp of the drive ends; none without one.
+    pub fn ramp_end(&self) -> Option<f64> {
+        self.drive.tones.iter().filter_map(|tone| tone.ramp.map(|ramp| ramp.1)).reduce(f64::max)
+    }
+
     /// Whether the drive repeats: a sine, or several with a common period.
     pub fn repeats(&self) -> bool {
         self.rhythm == Rhythm::Periodic

@@ -382,7 +382,13 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     pub(super) fn window_seconds(&self, end: &Instant<T>) -> (f64, f64) {
         let (from, to) = &self.window;
         let reached = if self.clock.between(to, end) > T::zero() { to } else { end };
-        let (from, reached) = (self.clock.seconds(from), self.clock.seconds(reached));
+        // as it was written, where it was
+        let written = [self.model.settle, self.model.duration];
+        let seconds = |at: &Instant<T>| {
+            let own = written.into_iter().find(|t| self.clock.at(*t) == *at);
+            own.unwrap_or_else(|| self.clock.seconds(at))
+        };
+        let (from, reached) = (seconds(from), seconds(reached));
         (from, reached.max(from))
     }
 

@@ -254,7 +254,7 @@ impl Place {
 pub struct First {
     /// Time in s.
     pub t: f64,
-    /// Amplitude of the base's acceleration then in m/s^2, where the drive is one amplitude ramp.
+    /// Size of the amplitude of the base's acceleration then in m/s^2, where the drive is one amplitude ramp.
     pub amplitude: Option<f64>,
 }
 

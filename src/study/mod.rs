@@ -45,7 +45,9 @@ pub use settled::{Settled, Standing, settled, standing};
 pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};
 pub use sweep::{Cell, CellFaults, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally};
 pub use table::{Column, Table, Values};
-pub use thresholds::{Thresholds, stops_that_cross, thresholds};
+pub use thresholds::{
+    Found, Onset, Scan, Thresholds, stops_that_cross, threshold, threshold_table, thresholds,
+};
 pub use times::{MAX_SAMPLES, Step, TimesError, even_times, listed_times};
 pub use trace::{Trace, simulate_with_trace};
 pub use watch::Watch;

@@ -19,7 +19,7 @@ pub const LONG: Duration = Duration::from_secs(60);
 /// A window on a built-in scene, with its first answers there.
 pub fn window(preset: &str, size: [f32; 2], settings: Settings) -> Harness<'static, Window> {
     let mut window = Window::open(Some(preset), settings, Arc::new(|| ())).unwrap();
-    window.session.wait(LONG);
+    window.session.wait_settled(LONG);
     let draw = |ui: &mut eframe::egui::Ui, window: &mut Window| {
         window.logic(&ui.ctx().clone());
         window.ui(ui);

@@ -14,13 +14,14 @@ impl Session {
         let (now, from_here) = (self.player.watch().time(), self.player.watch().from_here());
         // a ramp that was changed on its way is no run of its own: nothing is known of its error
         let is_known = now == 0.0 || from_here.is_some();
+        self.asked_from = if from_here.is_some() { now } else { 0.0 };
         let model = Arc::new(from_here.unwrap_or_else(|| (*self.model).clone()));
         self.accuracy.begin(is_known.then(|| (Arc::clone(&model), now)));
         self.settled.ask(&self.wake, move |cancel| study::settled(&model, cancel));
     }
 
     pub(super) fn ask_thresholds(&mut self) {
-        if self.thresholds.is_running() || !self.is_searched() {
+        if self.thresholds.is_running() || self.thresholds.current().is_some() || !self.is_searched() {
             return;
         }
         let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
@@ -87,10 +88,15 @@ impl Session {
             && self.mechanism.landscape.barrier.is_some()
     }
 
-    /// Waits for what is being computed, at most so long.
-    pub fn wait(&mut self, most: Duration) {
+    /// Waits until it is known what the motion settles to, at most so long.
+    pub fn wait_settled(&mut self, most: Duration) {
         self.apply();
         self.settled.wait(most);
+    }
+
+    /// Waits for what is being computed, at most so long.
+    pub fn wait(&mut self, most: Duration) {
+        self.wait_settled(most);
         if self.thresholds.is_running() {
             self.thresholds.wait(most);
         }

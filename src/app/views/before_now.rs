@@ -3,7 +3,7 @@
 use eframe::egui::{self, Grid, RichText, Sense, Ui, Vec2};
 
 use crate::app::session::Card;
-use crate::app::status::{Kind, mm, speed};
+use crate::app::status::{Kind, grams, mm, speed};
 use crate::app::widgets::kind_shapes;
 use crate::dynamics::Regime;
 use crate::scene::{Excitation, Scene, Stops};
@@ -67,10 +67,9 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
 
 /// The least shaking that crosses, as far as it was searched for.
 fn crosses_from(card: &Card) -> String {
-    let found = card.thresholds.and_then(|found| found.crosses_from.or(found.crosses_at));
+    let found = card.thresholds.and_then(|found| found.crosses_from);
     match found {
-        Some(g) if card.scene.stops == Stops::None => format!("about {g:.1} g"),
-        Some(g) => format!("{g:.2} g"),
+        Some(g) => format!("{} g", grams(g)),
         None => dash(),
     }
 }
@@ -122,7 +121,7 @@ fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Settled>) 
         Regime::Intrawell => (Kind::Intrawell, "intrawell"),
         Regime::Interwell => (Kind::Interwell, "interwell"),
         Regime::Irregular => (Kind::Irregular, "irregular"),
-        Regime::Crossing => (Kind::Interwell, "crossing"),
+        Regime::Crossing => (Kind::Crossing, "crossing"),
         Regime::OneWell => (Kind::Other, "one well"),
     };
     ui.horizontal(|ui| {

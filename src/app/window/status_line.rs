@@ -34,7 +34,7 @@ pub fn status_ui(
             size * 0.42,
             style.kind(sentence.kind),
         ));
-        let settling = session.settling().map(|(gone, of)| format!("settling: {gone} of {of} periods"));
+        let settling = session.settling().map(|(gone, of)| format!("settling: {gone:.1} of {of:.1} s"));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             beside_ui(ui, session, style, settling);
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {

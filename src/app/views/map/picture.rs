@@ -198,6 +198,6 @@ pub fn bar(painter: &Painter, frame: &Frame, scale: &Scale, style: &Style) {
 
 /// The regimes that a picture shows, in the order of the legend.
 pub fn kinds(picture: &Picture) -> impl Iterator<Item = Kind> {
-    let all = [Kind::Intrawell, Kind::Irregular, Kind::Interwell, Kind::Other];
+    let all = [Kind::Intrawell, Kind::Irregular, Kind::Interwell, Kind::Crossing, Kind::Other];
     all.into_iter().filter(|kind| picture.shows(Look::Kind(*kind)))
 }

@@ -138,7 +138,8 @@ pub fn kind(regime: Regime) -> Kind {
         Regime::Rest => Kind::Resting,
         Regime::Intrawell => Kind::Intrawell,
         Regime::Irregular => Kind::Irregular,
-        Regime::Interwell | Regime::Crossing => Kind::Interwell,
+        Regime::Interwell => Kind::Interwell,
+        Regime::Crossing => Kind::Crossing,
         Regime::OneWell => Kind::Other,
     }
 }
@@ -150,6 +151,7 @@ pub fn kind_name(kind: Kind) -> &'static str {
         Kind::Intrawell => "intrawell",
         Kind::Irregular => "irregular",
         Kind::Interwell => "interwell",
+        Kind::Crossing => "crossing",
         Kind::Other | Kind::Fault => "one well",
     }
 }

@@ -1,0 +1,134 @@
+//! Numbers as the sentences write them.
+
+/// A number with so many significant digits, written out.
+fn significant(value: f64, digits: i32) -> String {
+    let size = value.abs();
+    if !(size > 0.0) || !size.is_finite() {
+        return format!("{}", value + 0.0);
+    }
+    let place = digits - 1 - size.log10().floor() as i32;
+    let rounded: f64 = format!("{value:.0$e}", digits as usize - 1).parse().unwrap_or(value);
+    if !(1e-6..1e7).contains(&size) {
+        return format!("{rounded:e}");
+    }
+    // rounding may have carried into another place
+    let place = if rounded.abs().log10().floor() > size.log10().floor() { place - 1 } else { place };
+    format!("{rounded:.*}", place.max(0) as usize)
+}
+
+/// An amplitude or a threshold in g: three significant digits.
+pub fn grams(g: f64) -> String {
+    significant(g, 3)
+}
+
+/// A threshold in g, rounded up to three significant digits: less than it says is not enough.
+pub fn grams_up(g: f64) -> String {
+    let unit = 10_f64.powf(g.log10().floor() - 2.0);
+    grams(((g / unit - 1e-6).ceil() * unit).max(g))
+}
+
+/// A difference of two thresholds in g: two significant digits.
+pub fn grams_apart(g: f64) -> String {
+    significant(g, 2)
+}
+
+/// A force in N: two significant digits.
+pub fn newtons(n: f64) -> String {
+    format!("{} N", significant(n, 2))
+}
+
+/// Speed in mm/s: whole, below 10 with one decimal.
+pub fn speed(m_per_s: f64) -> String {
+    let mm = m_per_s * 1e3;
+    if mm > 0.0 && mm < 0.05 {
+        return "below 0.1".to_owned();
+    }
+    if mm < 9.95 { format!("{mm:.1}") } else { format!("{mm:.0}") }
+}
+
+/// Length in mm: one decimal, two below 1 mm.
+pub fn mm(m: f64) -> String {
+    // -0.0 is no place
+    let tenths = (m * 1e4).round() / 10.0 + 0.0;
+    if tenths == 0.0 || m.abs() >= 0.95e-3 { format!("{tenths:.1}") } else { format!("{:.2}", m * 1e3) }
+}
+
+/// A travel limit in mm as it was set: one decimal, or the two that a slider has.
+pub fn limit_mm(mm: f64) -> String {
+    let text = format!("{mm:.2}");
+    match text.strip_suffix('0') {
+        Some(short) => short.to_owned(),
+        None => text,
+    }
+}
+
+/// Energy in mJ: two decimals, or three significant digits below that.
+pub fn energy(j: f64) -> String {
+    let mj = j.max(0.0) * 1e3;
+    if mj == 0.0 || mj >= 0.1 { format!("{mj:.2} mJ") } else { format!("{} mJ", significant(mj, 3)) }
+}
+
+/// A range in mm, `5.6 and 7.3 mm`, with as many decimals as tell its ends apart.
+pub fn between(low: f64, high: f64) -> String {
+    let text = |m: f64, decimals: usize| format!("{:.decimals$}", m * 1e3 + 0.0);
+    let apart = |decimals: &usize| text(low, *decimals) != text(high, *decimals);
+    match (1..=6).find(apart) {
+        Some(1) => format!("between {} and {} mm", mm(low), mm(high)),
+        Some(decimals) => format!("between {} and {} mm", text(low, decimals), text(high, decimals)),
+        None => format!("at {} mm", mm(high)),
+    }
+}
+
+/// A time in s: whole from ten on.
+pub fn seconds(s: f64) -> String {
+    if s >= 9.95 || s == 0.0 { format!("{s:.0} s") } else { format!("{s:.1} s") }
+}
+
+/// How often a period.
+pub fn times(count: f64) -> String {
+    if count < 0.1 {
+        return "less than once in ten periods".to_owned();
+    }
+    let rare = (1.0 / count).round();
+    match count {
+        c if rare > 1.0 && (1.0 / c - rare).abs() < 0.05 * rare => format!("once in {rare:.0} periods"),
+        c if (c - 1.0).abs() < 0.05 => "once a period".to_owned(),
+        c if (c - 2.0).abs() < 0.05 => "twice a period".to_owned(),
+        c if (c - c.round()).abs() < 0.05 => format!("{c:.0} times a period"),
+        c => format!("{c:.1} times a period"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_significant() {
+        for (value, text) in [
+            (0.71885, "0.719"),
+            (0.0377, "0.0377"),
+            (1.16, "1.16"),
+            (0.9996, "1.00"),
+            (123.4, "123"),
+            (2.5e-9, "2.5e-9"),
+            (0.0, "0"),
+            (-0.5, "-0.500"),
+        ] {
+            assert_eq!(grams(value), text);
+        }
+        assert_eq!(
+            (grams_up(0.6881), grams_up(1.15), grams_up(0.9991)),
+            ("0.689".into(), "1.15".into(), "1.00".into())
+        );
+        assert_eq!((grams_apart(0.2604), newtons(0.196_8)), ("0.26".into(), "0.20 N".into()));
+    }
+
+    #[test]
+    fn the_ends_of_a_range_differ() {
+        assert_eq!(between(5.61e-3, 7.29e-3), "between 5.6 and 7.3 mm");
+        assert_eq!(between(6.0012e-3, 6.0037e-3), "between 6.001 and 6.004 mm");
+        assert_eq!(between(-1.000_01, -1.0), "between -1000.01 and -1000.00 mm");
+        assert_eq!(between(2e-3, 2e-3), "at 2.0 mm");
+    }
+}

@@ -1,0 +1,101 @@
+//! What it would take to cross, and how much there is to spare.
+
+use crate::dynamics::{Regime, Summary};
+use crate::scene::{Excitation, Scene, Stops};
+use crate::study::{Settled, Thresholds};
+
+use super::numbers::{grams, grams_apart, grams_up};
+
+/// Amplitude in g of a drive that is one sine.
+pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
+    match scene.excitation {
+        Excitation::Sine { amplitude_g, .. } => Some(amplitude_g.abs()),
+        _ => None,
+    }
+}
+
+/// A gap that ends below this multiple of the least amplitude that crosses is not worth a word.
+const NARROW: f64 = 1.03;
+
+/// How far above the least amplitude that crosses the gaps end, where there are any.
+fn gaps(found: &Thresholds, from: f64) -> String {
+    match found.without_gap {
+        Some(whole) if whole > NARROW * from => format!(", without a gap from {} g", grams(whole)),
+        None => ", with gaps above it".to_owned(),
+        Some(_) => String::new(),
+    }
+}
+
+/// What the thresholds, all from rest at this frequency, say of the present amplitude and motion.
+pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> String {
+    let Some(g) = amplitude(scene) else { return String::new() };
+    if summary.regime == Regime::OneWell {
+        return String::new();
+    }
+    let crosses = summary.crossings > 0;
+    let Some(from) = found.crosses_from else {
+        let most = grams(found.searched_to);
+        return match crosses {
+            true => String::new(),
+            false => format!("From rest no shaking up to {most} g crosses."),
+        };
+    };
+    // without stops it hangs on next to nothing whether a motion near it crosses
+    let about = if scene.stops == Stops::None { "about " } else { "" };
+    let (least, gaps) = (format!("{about}{}", grams(from)), gaps(found, from));
+    let text = match (crosses, g >= from) {
+        (true, true) => format!("{about}{} g to spare: crosses from {least} g{gaps}.", grams_apart(g - from)),
+        (true, false) => format!("From rest it takes {least} g to cross{gaps}."),
+        (false, true) => format!("From rest it crosses from {least} g{gaps}."),
+        (false, false) => match found.frees_at.filter(|frees| *frees > g) {
+            Some(frees) => format!("Frees at {} g, crosses from {least} g{gaps}.", grams_up(frees)),
+            None => {
+                format!("{about}{} g short of crossing, which takes {least} g{gaps}.", grams_apart(from - g))
+            }
+        },
+    };
+    capital(&text)
+}
+
+/// A text with a capital at its beginning.
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// What it would take to cross, or to cross every period: more shaking or stops, where they were searched for.
+///
+/// `stops_mm` is the travel limit that [`study::stops_that_cross`](crate::study::stops_that_cross) found.
+pub fn ways(scene: &Scene, settled: &Settled, thresholds: &Thresholds, stops_mm: Option<f64>) -> String {
+    let Some(g) = amplitude(scene) else { return String::new() };
+    let stops = stops_mm.map(|limit| format!("with stops at ±{} mm", at_least_one_decimal(limit)));
+    match settled.summary.regime {
+        Regime::OneWell => "There is no barrier, so nothing to cross.".to_owned(),
+        Regime::Interwell | Regime::Crossing => {
+            "It crosses already, again and again in the same way.".to_owned()
+        }
+        Regime::Irregular => match stops.filter(|_| scene.stops == Stops::None) {
+            Some(stops) => format!("Crosses in the same way every time {stops}."),
+            None => "It crosses already, if not regularly.".to_owned(),
+        },
+        Regime::Rest | Regime::Intrawell => {
+            let more = thresholds.crosses_from.filter(|from| *from > g);
+            let more = more.map(|from| format!("with {} g more", grams_apart(from - g)));
+            match (more, stops) {
+                (Some(more), Some(stops)) => format!("Crosses {more}, or {stops}."),
+                (Some(more), None) => format!("Crosses {more}; no stops alone would do it."),
+                (None, Some(stops)) => format!("Crosses {stops}."),
+                (None, None) => format!(
+                    "From rest neither shaking up to {} g nor any stops make it cross.",
+                    grams(thresholds.searched_to)
+                ),
+            }
+        }
+    }
+}
+
+/// A decimal with one place, or as many as it has.
+fn at_least_one_decimal(mm: f64) -> String {
+    let text = format!("{mm}");
+    if text.contains('.') { text } else { format!("{mm:.1}") }
+}
