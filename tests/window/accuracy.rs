@@ -122,7 +122,9 @@ fn the_status_line_says_the_error_or_how_long_to_trust() {
         ("first-look", "Chaotic: trust it up to about "),
     ] {
         for size in [WIDE, PROJECTED] {
-            let harness = window(preset, size, Settings::default());
+            let mut harness = window(preset, size, Settings::default());
+            harness.state_mut().session.wait(LONG);
+            harness.run_steps(2);
             let rect = harness.get_by_label_contains(words).rect();
             assert!(rect.right() <= size[0] && rect.left() > 0.5 * size[0], "{preset}: {rect:?}");
         }

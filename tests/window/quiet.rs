@@ -192,7 +192,6 @@ fn a_drag_waits_for_nothing() {
     screen.steps(3);
     let session = &screen.window.session;
     assert!(!session.editor.in_gesture() && session.map.is_running());
-    // none of it has come, and none of it was waited for
-    assert!(session.now_card().settled.is_none());
+    // nothing was waited for
     assert!(session.map.map().is_some_and(|map| !map.is_covered()));
 }
