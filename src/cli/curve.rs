@@ -58,7 +58,7 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
     let mut sinks = open(
         &inputs(&options.scene, &document),
         [
-            Some(("--out", &common.out)),
+            Some(("--out", common.out())),
             landscape_path,
             picture.map(|own| own.output()),
             shapes_path,

@@ -47,7 +47,7 @@ pub fn run(
     options: Options,
     window: impl FnOnce(Option<&str>) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    let Options { headless, scene, command } = options;
+    let Options { headless, common, scene, command } = options;
     let commands = "presets, check, curve, simulate, sweep or accuracy";
     match (command, headless, scene) {
         (Some(_), _, Some(scene)) => {
@@ -58,21 +58,31 @@ pub fn run(
             let remedy = format!("`{name}` works without a window: write interwell --headless {name}");
             Err(Failure::argument(remedy))
         }
-        (Some(command), true, None) => match command {
-            Command::Presets(options) => presets::run(&options),
-            Command::Check(options) => check::run(&options),
-            Command::Curve(options) => curve::run(&options),
-            Command::Simulate(options) => simulate::run(&options),
-            Command::Sweep(options) => sweep::run(&options),
-            Command::Accuracy(options) => accuracy::run(&options),
-        },
+        (Some(mut command), true, None) => {
+            command.common().put_before(common).map_err(|option| {
+                Failure::argument(format!("{option} is given before and after the command: give it once"))
+            })?;
+            match command {
+                Command::Presets(options) => presets::run(&options),
+                Command::Check(options) => check::run(&options),
+                Command::Curve(options) => curve::run(&options),
+                Command::Simulate(options) => simulate::run(&options),
+                Command::Sweep(options) => sweep::run(&options),
+                Command::Accuracy(options) => accuracy::run(&options),
+            }
+        }
         (None, true, None) => Err(Failure::argument(format!(
             "--headless needs a command: {commands}, such as interwell --headless simulate paper; see interwell --help"
         ))),
         (None, true, Some(word)) => Err(Failure::argument(format!(
             "--headless needs a command before `{word}`: {commands}; see interwell --help"
         ))),
-        (None, false, scene) => window(scene.as_deref()),
+        (None, false, scene) => match common.given(false) {
+            Some(option) => Err(Failure::argument(format!(
+                "{option} belongs to a command: {commands}, such as interwell --headless simulate; the window takes a scene alone"
+            ))),
+            None => window(scene.as_deref()),
+        },
     }
 }
 

@@ -1,6 +1,6 @@
-//! What can be asked for on the command line? The text of `--help` is here.
+//! The arguments of the command line, and the text of `--help`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
@@ -37,6 +37,10 @@ pub struct Options {
     /// What to compute
     #[command(subcommand)]
     pub command: Option<Command>,
+
+    /// Common options before the command.
+    #[command(flatten)]
+    pub common: Common,
 }
 
 /// A command of `--headless`.
@@ -75,14 +79,27 @@ impl Command {
             Self::Accuracy(_) => "accuracy",
         }
     }
+
+    /// Its common options.
+    pub fn common(&mut self) -> &mut Common {
+        match self {
+            Self::Presets(PresetsOptions { common, .. })
+            | Self::Check(CheckOptions { common, .. })
+            | Self::Curve(CurveOptions { common, .. })
+            | Self::Simulate(SimulateOptions { common, .. })
+            | Self::Sweep(SweepOptions { common, .. })
+            | Self::Accuracy(AccuracyOptions { common, .. }) => common,
+        }
+    }
 }
 
-/// What every command takes.
+/// What every command takes, before its name or after it.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Common options")]
 pub struct Common {
-    /// Where the data goes; `-` is standard output
-    #[arg(long, value_name = "FILE", default_value = "-", allow_hyphen_values = true)]
-    pub out: PathBuf,
+    /// Where the data goes [default: -, standard output]
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub out: Option<PathBuf>,
 
     /// Change a field of the scene, such as stops.travel_limit_mm=2 or stops=None (repeatable)
     #[arg(long, value_name = "FIELD=VALUE", allow_hyphen_values = true)]
@@ -99,6 +116,48 @@ pub struct Common {
     /// Say nothing on standard error but errors
     #[arg(long)]
     pub quiet: bool,
+}
+
+impl Common {
+    /// Where the data goes.
+    pub fn out(&self) -> &Path {
+        self.out.as_deref().unwrap_or(Path::new("-"))
+    }
+
+    /// Puts what stood before the command in front of what stands after it; an error names an option that may be given
+    /// once and was given in both places.
+    ///
+    /// clap's own global arguments would forget a `--set` before the command where another one follows it.
+    pub fn put_before(&mut self, before: Self) -> Result<(), &'static str> {
+        fn one<T>(own: &mut Option<T>, before: Option<T>, name: &'static str) -> Result<(), &'static str> {
+            match (own.is_some(), before) {
+                (_, None) => Ok(()),
+                (true, Some(_)) => Err(name),
+                (false, before) => {
+                    *own = before;
+                    Ok(())
+                }
+            }
+        }
+        self.set.splice(0..0, before.set);
+        self.quiet |= before.quiet;
+        one(&mut self.out, before.out, "--out")?;
+        one(&mut self.tolerance, before.tolerance, "--tolerance")?;
+        one(&mut self.jobs, before.jobs, "--jobs")
+    }
+
+    /// The first of these that was given, for where it has no meaning: all of them, or those alone that change a scene or
+    /// how it is run.
+    pub fn given(&self, of_a_scene: bool) -> Option<&'static str> {
+        let given = [
+            (!self.set.is_empty(), "--set"),
+            (self.tolerance.is_some(), "--tolerance"),
+            (self.jobs.is_some(), "--jobs"),
+            (!of_a_scene && self.out.is_some(), "--out"),
+            (!of_a_scene && self.quiet, "--quiet"),
+        ];
+        given.into_iter().find(|own| own.0).map(|own| own.1)
+    }
 }
 
 /// What the commands take that can draw.
@@ -259,14 +318,6 @@ pub struct AccuracyOptions {
     #[arg(value_name = "SCENE", conflicts_with_all = ["case", "list", "picture"])]
     pub scene: Option<String>,
 
-    /// With a scene: change a field of it (repeatable)
-    #[arg(long, value_name = "FIELD=VALUE", allow_hyphen_values = true, requires = "scene")]
-    pub set: Vec<String>,
-
-    /// With a scene: its tolerance, 1e-14 to 1e-3
-    #[arg(long, value_name = "T", allow_hyphen_values = true, requires = "scene")]
-    pub tolerance: Option<String>,
-
     /// With a scene: what fixed steps make of it, each in s or as a fraction such as 1/60; stops clamp and bounce
     #[arg(long, value_name = "S1,S2,..", allow_hyphen_values = true, requires = "scene")]
     pub step_s: Option<String>,
@@ -284,15 +335,11 @@ pub struct AccuracyOptions {
     #[arg(long)]
     pub list: bool,
 
-    /// Write everything as CSV; `-` is standard output, and the table then goes to standard error
-    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
-    pub out: Option<PathBuf>,
-
     /// The picture: error over time, of the problems p1, p2 and flexures.
     #[command(flatten)]
     pub plot: PlotOptions,
 
-    /// Say nothing on standard error but errors
-    #[arg(long)]
-    pub quiet: bool,
+    /// What every command takes; --out has everything as CSV, and where that is `-` the table goes to standard error.
+    #[command(flatten)]
+    pub common: Common,
 }

@@ -28,7 +28,7 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let times = sample_times(&document.scene, &model, &sampling)?;
     let events = options.events.as_deref().map(|path| ("--events", path));
     let summary_path = options.summary.as_deref().map(|path| ("--summary", path));
-    let outputs = [Some(("--out", &*common.out)), events, summary_path, picture.map(|own| own.output())];
+    let outputs = [Some(("--out", common.out())), events, summary_path, picture.map(|own| own.output())];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
 
     let cancel = interrupt::listen();

@@ -31,13 +31,13 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool =
         pool.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot start {threads} threads: {error}")))?;
-    let beside = manifest_path(&common.out);
+    let beside = manifest_path(common.out());
     let beside = beside.as_deref().map(|path| ("the manifest of --out", path));
-    let outputs = [Some(("--out", &*common.out)), picture.map(|own| own.output()), beside];
+    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output()), beside];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
 
-    let bar = bar(sweep.grid().cells(), common.quiet, &common.out);
+    let bar = bar(sweep.grid().cells(), common.quiet, common.out());
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let watch = Watch::start();
     let result = (|| {
@@ -72,7 +72,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     }
     if sinks[2].is_some() {
         let data =
-            common.out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+            common.out().file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let grid = sweep.grid();
         let origin = watch.origin(threads);
         let text = manifest(&document.scene, &document.name, grid, &tally, &origin, &data);

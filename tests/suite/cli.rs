@@ -287,15 +287,44 @@ fn options_stand_anywhere_and_values_may_be_negative() {
     for line in
         ["--quiet curve --at-mm -1", "curve --at-mm=-1 paper --quiet", "curve --quiet --at-mm -1 paper"]
     {
-        if line.starts_with("curve") {
-            assert_eq!(stdout(line), right);
-        }
+        assert_eq!(stdout(line), right, "{line}");
     }
     let mut after = plain("curve --at-mm -1 --headless");
     after.assert().success().stdout(right);
     let shifted = "simulate elastic-box --set start.x_mm=-3 --at 0";
     headless(shifted).assert().success().stdout(contains("\n0,-0.003,").or(contains("\n0,-3e-3,")));
     headless("presets --out -").assert().success().stdout(starts_with("first-look"));
+}
+
+#[test]
+fn common_options_may_stand_before_the_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |line: &str| {
+        let path = folder.path().join("rows.csv");
+        let (before, after) = line.split_once(" | ").unwrap();
+        let mut command = headless(before);
+        command.arg("--out").arg(&path).args(after.split_whitespace());
+        command.assert().success().stdout("").stderr("");
+        std::fs::read_to_string(&path).unwrap()
+    };
+    let over =
+        "sweep nominal-cubic --over excitation.amplitude_g=0.5,1 --set run.duration_s=2 --set run.settle_s=1";
+    let right = rows(&format!("--quiet | {over} --set mass_g=12 --tolerance 1e-6 --jobs 2"));
+    // What stands before the command counts first: a later --set of the same field wins, and none is forgotten.
+    let line = format!("--set mass_g=12 --tolerance 1e-6 --quiet --jobs 2 --set run.settle_s=0.5 | {over}");
+    assert_eq!(rows(&line), right);
+    refused(headless("--jobs 2 curve --jobs 1"), &["--jobs", "before and after"]);
+    refused(headless("--out a curve --out b"), &["--out", "before and after"]);
+    refused(plain("--quiet"), &["--quiet", "command"]);
+    refused(plain("paper --set mass_g=1"), &["--set", "command"]);
+}
+
+#[test]
+fn presets_take_no_option_of_a_run() {
+    for line in ["presets --set a=b", "--tolerance 1e-6 presets", "presets --jobs 2"] {
+        refused(headless(line), &["presets"]);
+    }
+    headless("--quiet presets").assert().success();
 }
 
 #[test]
