@@ -13,14 +13,19 @@ use interwell::study::{Grid, Sweep, SweepEnd, Table, Task, first_interwell, rele
 use super::failure::{Failure, wrong_cell};
 use super::options::SweepOptions;
 use super::picture::{Picture, caption};
-use super::support::{Watch, finish, inputs, load, open, unbuilt, warn, write_text};
+use super::support::{MANIFEST, Watch, finish, inputs, load, open, unbuilt, warn, write_text};
 use super::{interrupt, say};
 
 /// Runs the grid and writes a row a cell.
 pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
-    let (document, warnings) = load(&options.scene, common, Some(&options.over))?;
+    let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
+    let beside = manifest_path(common.out());
+    if beside.is_some() {
+        // The rows and the manifest are of the same bytes, whatever becomes of the files meanwhile.
+        document.hold_files().map_err(Failure::argument)?;
+    }
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
     let mechanism = first_mechanism(&document, &sweep)?;
     warn(&document, common, &warnings, mechanism.as_deref());
@@ -31,8 +36,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool =
         pool.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot start {threads} threads: {error}")))?;
-    let beside = manifest_path(common.out());
-    let beside = beside.as_deref().map(|path| ("the manifest of --out", path));
+    let beside = beside.as_deref().map(|path| (MANIFEST, path));
     let outputs = [Some(("--out", common.out())), picture.map(|own| own.output()), beside];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
@@ -75,7 +79,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
             common.out().file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let grid = sweep.grid();
         let origin = watch.origin(threads);
-        let text = manifest(&document.scene, &document.name, grid, &tally, &origin, &data);
+        let text = manifest(&document, grid, &tally, &origin, &data);
         write_text(&mut sinks[2], &text)?;
     }
     finish(sinks)?;

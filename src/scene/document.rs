@@ -7,8 +7,9 @@ use super::check::{check, corners};
 use super::data::{Mechanism, Scene};
 use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 use super::fields::{Field, FieldPath, Slot, all_fields};
-use super::files::{Files, ReadError, read_text};
+use super::files::{FileError, Files, ReadError, read_from, read_text};
 use super::locate::Places;
+use super::manifest;
 use super::presets::{self, PRESETS};
 use super::record;
 use super::text::{self, LARGEST_SCENE, clip, explain};
@@ -19,6 +20,9 @@ const MOST_FAULTS: usize = 50;
 /// The most values that the axes of a sweep may have together. Three axes that pass it, of which none alone is too long,
 /// make more cells than any sweep may have; they are refused before they are all written out.
 const MOST_VALUES: usize = 2 * LARGEST_AXIS;
+
+/// How messages call a scene that came through a pipe.
+const STANDARD_INPUT: &str = "standard input";
 
 /// A scene, its text, and the arguments that changed it since.
 #[derive(Debug, Clone)]
@@ -38,6 +42,19 @@ pub struct Document {
 }
 
 impl Document {
+    /// What a command is given as its scene: what [`load`](Self::load) takes, the manifest of a sweep, or `-` for the text
+    /// of a scene on standard input.
+    pub fn of_argument(spec: &str) -> Result<Self, SceneError> {
+        if spec == "-" {
+            return match read_from(std::io::stdin(), LARGEST_SCENE) {
+                Ok(text) => Self::from_text(STANDARD_INPUT, &text, Files::beside(Path::new(""))),
+                Err(problem) => Err(SceneError::Unreadable { name: STANDARD_INPUT.to_owned(), problem }),
+            };
+        }
+        let path = Path::new(spec);
+        if manifest::is_json(path) { manifest::load(path, spec) } else { Self::load(spec) }
+    }
+
     /// Reads a scene file, or the built-in scene of that name. A file that is called like a built-in
     /// scene is reached by `./paper`.
     pub fn load(spec: &str) -> Result<Self, SceneError> {
@@ -72,6 +89,10 @@ impl Document {
             place: refusal.place,
             problem: refusal.problem,
         })?;
+        if scene.title.is_empty() && Places::of(text).find("title").is_none() {
+            let stem = Path::new(name).file_stem().unwrap_or_default();
+            scene.title = stem.to_string_lossy().into_owned();
+        }
         let unread = record::attach(&mut scene.excitation, "excitation", &files);
         let (name, text) = (name.to_owned(), text.to_owned());
         Ok(Self { scene, name, text, files, assigned: Vec::new(), unread })
@@ -111,14 +132,25 @@ impl Document {
         }
     }
 
-    /// Where the files lie that the scene names: its table and its records.
-    pub fn named_files(&self) -> Vec<PathBuf> {
+    /// The files that the scene names, as it names them: its table and its records.
+    fn paths(&self) -> Vec<&str> {
         let table = match &self.scene.mechanism {
             Mechanism::Table { path, .. } => Some(path.as_str()),
             _ => None,
         };
-        let named = table.into_iter().chain(record::paths(&self.scene.excitation));
-        named.filter_map(|path| self.files.place(path)).collect()
+        table.into_iter().chain(record::paths(&self.scene.excitation)).collect()
+    }
+
+    /// Where the files lie that the scene names.
+    pub fn named_files(&self) -> Vec<PathBuf> {
+        self.paths().into_iter().filter_map(|path| self.files.place(path)).collect()
+    }
+
+    /// Reads the files that the scene names, so that they are at hand whatever becomes of them; none but those are held.
+    pub fn hold_files(&mut self) -> Result<(), FileError> {
+        let read = |path: &str| Ok((path.to_owned(), self.files.read(path)?));
+        self.files.held = self.paths().into_iter().map(read).collect::<Result<_, _>>()?;
+        Ok(())
     }
 
     /// Checks the scene: all faults at once as an error, or the warnings, each with the file's name.
@@ -251,4 +283,10 @@ fn replace(found: Field<'_>, value: &str) -> Result<(), String> {
 /// A number as RON writes it or as Rust does: `4`, `.5`, `1e-9`, `-inf`.
 fn parse_number(text: &str) -> Option<f64> {
     text.parse().ok().or_else(|| text::options().from_str(text).ok())
+}
+
+/// Whether there is a scene at `path`: a file whose name ends in `.ron`, mistaken or not, or whose text is one.
+pub fn is_scene_file(path: &Path) -> bool {
+    let named = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
+    path.is_file() && (named || read_text(path, LARGEST_SCENE).is_ok_and(|text| text::parse(&text).is_ok()))
 }

@@ -134,6 +134,7 @@ specs! {
     FROM = "from", COEFFICIENT.0, COEFFICIENT.1, "give the first value of the axis";
     TO = "to", COEFFICIENT.0, COEFFICIENT.1, "give the last value of the axis";
     STEP = "step", 1e-200, 1e200, "an axis goes upwards in steps above 0";
+    VALUES = "values", COEFFICIENT.0, COEFFICIENT.1, "give the values of the axis, in the field's unit";
     SPEED = "speed", 1e-15, 1000.0, "1 is real time, 0.1 a tenth of it";
 }
 

@@ -1,4 +1,4 @@
-//! Do outputs appear whole or not at all, and do bad places cost no work?
+//! Outputs: whole or not at all, and refused before any work where they have no place.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -62,6 +62,30 @@ fn two_outputs_need_two_places() {
     let mut command = headless("simulate");
     command.arg(&scene).arg("--out").arg(&scene);
     refused(command, &["overwrite"]);
+}
+
+#[test]
+fn no_output_replaces_a_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    headless("presets --write").arg(folder.path()).assert().success();
+    let (named, hidden) = (folder.path().join("duffing.ron"), folder.path().join("duffing.csv"));
+    fs::copy(&named, &hidden).unwrap();
+    let broken = folder.path().join("broken.RON");
+    fs::write(&broken, "(title: ").unwrap();
+    for scene in [&named, &hidden, &broken] {
+        let before = fs::read(scene).unwrap();
+        for line in [QUICK, "curve", "check", "sweep --over mass_g=15,16", "presets"] {
+            let mut command = headless(line);
+            command.arg("--out").arg(scene);
+            refused(command, &["--out", "overwrite a scene"]);
+        }
+        let mut command = headless(QUICK);
+        command.arg("--summary").arg(scene);
+        refused(command, &["--summary", "overwrite a scene"]);
+        assert_eq!(fs::read(scene).unwrap(), before);
+    }
+    // A file that is not there yet may be called so, and one that holds no scene is written as ever.
+    headless(QUICK).arg("--out").arg(folder.path().join("new.ron")).assert().success();
 }
 
 #[cfg(target_os = "linux")]

@@ -18,7 +18,6 @@ fn the_smallest_scene_has_the_documented_defaults() {
         start: Start::Rest,
         run: Run { duration_s: 10.0, settle_s: None, tolerance: 1e-9, recurrence: true },
         sweep: vec![],
-        transducer: Transducer::None,
         app: None,
     };
     assert_eq!(scene, expected);
@@ -133,7 +132,6 @@ fn run_sweep_and_window_hints_read_and_write() {
         ("stops", "Rigid(travel_limit_mm: 2, restitution: 0.5)"),
         ("run", "(duration_s: 10, settle_s: 10, tolerance: 1e-14, recurrence: false)"),
         ("sweep", "[(field: \"stops.travel_limit_mm\", from: 0.5, to: 7, step: 0.25)]"),
-        ("transducer", "None"),
         ("app", "(layout: Look, speed: 0.1, stops_when_on: Rigid(travel_limit_mm: 1.5, restitution: 0.36))"),
     ]);
     document.check().unwrap();
@@ -201,7 +199,10 @@ fn structural_errors_have_a_place_and_the_known_names() {
             "s.ron:5:16: mass_g: expected a name, found `2` (a decimal is written with a point)",
         ),
         (("mass_g", "15 title: \"t\""), "expected a comma before this"),
-        (("transducer", "Coil(theta: 1)"), "unknown choice `Coil` in Transducer; known: None"),
+        (
+            ("transducer", "None"),
+            "unknown field `transducer` in Scene; known: title, notes, mass_g, mechanism,",
+        ),
         (("app", "(layout: Big)"), "app.layout: unknown choice `Big` in Layout; known: Look, Study, Map"),
     ] {
         let error = refused(&text(&[changes]));
