@@ -29,6 +29,12 @@ pub fn parse() -> Result<Options, ExitCode> {
             let _ = error.print();
             ExitCode::SUCCESS
         }
+        ErrorKind::InvalidUtf8 => {
+            let wrong = std::env::args_os().find(|own| own.to_str().is_none()).unwrap_or_default();
+            let wrong = wrong.to_string_lossy();
+            say(&format!("error: `{wrong}` is not valid UTF-8: rename the file, or go to its folder and name it from there"));
+            ExitCode::from(2)
+        }
         _ => {
             // The first lines name argument, value and remedy; usage and hints would bury them.
             let text = error.render().to_string();

@@ -19,8 +19,9 @@ Examples:
   interwell --headless accuracy nominal-cubic --method rk4 --step-s 1/60,1/600
 
 A scene is a .ron file or the name of a built-in one; `presets --write DIR` copies those out.
-Exit status: 0 done; 1 the run or the writing failed, or a case of `accuracy` falls short; 2 the arguments or the
-scene are wrong.";
+A scene is also the manifest that `sweep --out map.csv` writes beside its rows (map.csv.json), or - for standard input.
+Exit status: 0 done; 1 the run or the writing failed, a case of `accuracy` falls short, or a run of `simulate --strict`
+ended early; 2 the arguments or the scene are wrong.";
 
 /// Bistable mechanisms with hard travel limits: see and compute how stops start interwell motion.
 #[derive(Debug, Parser)]
@@ -277,6 +278,10 @@ pub struct SimulateOptions {
     /// Write impacts, rests, releases and crossings as CSV
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub events: Option<PathBuf>,
+
+    /// Fail with exit status 1 where the run ends before its duration; its files are written all the same
+    #[arg(long)]
+    pub strict: bool,
 
     /// Write statistics, outcome and energy ledger as JSON
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]

@@ -58,7 +58,11 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
         say(&format!("warning: {}: {warning}", document.name));
     }
     if let Some(reason) = early_end(simulation.summary.outcome) {
-        say(&format!("{}: {reason}", document.name));
+        let reason = format!("{}: {reason}", document.name);
+        if options.strict {
+            return Err(Failure::Failed(anyhow::anyhow!("{reason}")));
+        }
+        say(&reason);
     }
     Ok(())
 }

@@ -61,6 +61,7 @@ pub fn load(
     if let Some(tolerance) = &common.tolerance {
         document.assign("run.tolerance", tolerance, &format!("--tolerance {tolerance}"))?;
     }
+    let moved = document.settle_within();
     let warnings = match over {
         None => document.check()?,
         Some(over) => {
@@ -71,7 +72,7 @@ pub fn load(
             first_cell.check()?
         }
     };
-    Ok((document, warnings))
+    Ok((document, moved.into_iter().chain(warnings).collect()))
 }
 
 /// The files that a scene is made of: its own and those that it names.

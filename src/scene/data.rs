@@ -263,7 +263,7 @@ pub enum Excitation {
         lines: u64,
     },
     /// A recorded acceleration: CSV with columns `t_s,accel_m_per_s2`, linear between samples, zero after
-    /// its end.
+    /// its end; at most a million rows and 64 MB.
     Recorded {
         /// Path relative to the scene file, or the name of an embedded record.
         path: String,

@@ -11,6 +11,7 @@ use super::files::{FileError, Files, ReadError, read_from, read_text};
 use super::locate::Places;
 use super::manifest;
 use super::presets::{self, PRESETS};
+use super::ranges::number_text;
 use super::record;
 use super::text::{self, LARGEST_SCENE, clip, explain};
 
@@ -84,11 +85,10 @@ impl Document {
     /// Parses a scene; `name` is how messages call it. Ranges are left to [`check`](Self::check), so
     /// that an argument may still mend them.
     pub fn from_text(name: &str, text: &str, files: Files) -> Result<Self, SceneError> {
-        let mut scene = text::parse(text).map_err(|refusal| SceneError::Structure {
-            name: name.to_owned(),
-            place: refusal.place,
-            problem: refusal.problem,
-        })?;
+        let mut scene = match text::parse(text) {
+            Ok(scene) => scene,
+            Err(refusal) => return Err(refused(name, text, refusal, files)),
+        };
         if scene.title.is_empty() && Places::of(text).find("title").is_none() {
             let stem = Path::new(name).file_stem().unwrap_or_default();
             scene.title = stem.to_string_lossy().into_owned();
@@ -139,6 +139,26 @@ impl Document {
             _ => None,
         };
         table.into_iter().chain(record::paths(&self.scene.excitation)).collect()
+    }
+
+    /// Leaves out a settle time of the scene's text that lies beyond a duration which an argument set: it is then half of
+    /// that duration. What is to be said of it.
+    pub fn settle_within(&mut self) -> Option<String> {
+        let run = &mut self.scene.run;
+        let (settle, duration) = (run.settle_s?, run.duration_s);
+        let given = |field: &str| self.assigned.iter().find(|(own, _)| own == field);
+        let (_, argument) =
+            given("run.duration_s").filter(|_| given("run.settle_s").or(given("run")).is_none())?;
+        if !(settle > duration && duration > 0.0) {
+            return None;
+        }
+        run.settle_s = None;
+        Some(format!(
+            "{}: run.settle_s = {} lies beyond {argument}: the settled window begins at {} s, half of that",
+            self.name,
+            number_text(settle),
+            number_text(0.5 * duration)
+        ))
     }
 
     /// Where the files lie that the scene names.
@@ -251,6 +271,44 @@ impl Document {
             .or_else(|| written.clone().find(|(own, _)| covers(field, own)))
             .map(|(_, argument)| argument.as_str())
     }
+}
+
+/// The error of a text that is no scene. A name that nothing knows is taken out, so that others, and values out of their
+/// ranges, are said with it.
+fn refused(name: &str, text: &str, mut refusal: text::Refusal, files: Files) -> SceneError {
+    /// How many names are taken out.
+    const MOST_UNKNOWN: usize = 20;
+    let said = |refusal: &text::Refusal| {
+        let text::Refusal { place, problem, .. } = refusal;
+        format!("{name}:{}:{}: {problem}", place.line, place.column)
+    };
+    let (place, problem) = (refusal.place, refusal.problem.clone());
+    let (mut more, mut text) = (Vec::new(), text.strip_prefix('\u{feff}').unwrap_or(text).to_owned());
+    while let Some(rest) = refusal.without_unknown(&text).filter(|_| more.len() < MOST_UNKNOWN) {
+        text = rest;
+        match text::parse(&text) {
+            // What is missing now may be what the unknown name was meant to be.
+            Err(next) if next.unknown.is_none() => break,
+            Err(next) => {
+                more.push(said(&next));
+                refusal = next;
+            }
+            Ok(_) => {
+                let checked = Document::from_text(name, &text, files).and_then(|document| document.check());
+                more.extend(
+                    checked
+                        .err()
+                        .map(|error| error.to_string())
+                        .iter()
+                        .flat_map(|all| all.lines())
+                        .map(str::to_owned),
+                );
+                break;
+            }
+        }
+    }
+    more.truncate(MOST_FAULTS);
+    SceneError::Structure { name: name.to_owned(), place, problem, more }
 }
 
 /// Replaces a field from its text; the error is a sentence.
