@@ -59,7 +59,7 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     }
     if let Some(picture) = picture {
         let figure = accuracy_figure(&report.work_table(), env!("CARGO_PKG_VERSION"), picture.theme);
-        picture.write(plot, &figure)?;
+        picture.write(plot, figure)?;
     }
     let to_stdout = csv.as_ref().is_some_and(Sink::is_stdout);
     finish(sinks)?;

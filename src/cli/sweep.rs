@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use interwell::mechanics::{BuildError, Mechanism};
-use interwell::output::{Overlay, can_show, header, is_regular, manifest, rows, sweep_figure};
+use interwell::output::{Overlay, SweepPicture, can_show, header, is_regular, manifest, rows, sweep_figure};
 use interwell::scene::Document;
-use interwell::study::{Grid, Sweep, SweepEnd, Table, Task, first_interwell, release_line};
+use interwell::study::{Grid, Sweep, SweepEnd, Table, Task, first_interwell, is_orderly, release_line};
 
 use super::failure::{Failure, wrong_cell};
 use super::options::SweepOptions;
-use super::picture::{Picture, caption};
+use super::picture::{Picture, caption, ranges};
 use super::support::{MANIFEST, Watch, finish, inputs, load, open, unbuilt, warn, write_text};
 use super::{interrupt, say};
 
@@ -20,6 +20,7 @@ use super::{interrupt, say};
 pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
+    let axes = ranges(&options.ranges)?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let beside = manifest_path(common.out());
     if beside.is_some() {
@@ -30,7 +31,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let mechanism = first_mechanism(&document, &sweep)?;
     warn(&document, common, &warnings, mechanism.as_deref());
     if picture.is_some() {
-        can_show(sweep.grid())?;
+        can_show(sweep.grid(), &options.quantity, &sweep.empty_table())?;
     }
     let threads = common.jobs.map_or_else(cores, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -68,11 +69,11 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
         let grid = sweep.grid();
         let overlay = Overlay {
             release: mechanism.and_then(|own| release_line(&document.scene, &own, grid)),
-            first_interwell: first_interwell(grid, &rows),
+            first_interwell: first_interwell(grid, &rows).filter(|line| is_orderly(line, &rows)),
         };
-        let figure =
-            sweep_figure(&rows, grid, &overlay, &document.scene, &caption(&document), picture.theme)?;
-        picture.write(&mut sinks[1], &figure)?;
+        let (rows, scene, quantity) = (&rows, &document.scene, &*options.quantity);
+        let shown = SweepPicture { rows, grid, scene, quantity, overlay, ranges: axes };
+        picture.write(&mut sinks[1], sweep_figure(&shown, &caption(&document), picture.theme)?)?;
     }
     if sinks[2].is_some() {
         let data =

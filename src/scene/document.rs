@@ -141,6 +141,13 @@ impl Document {
         table.into_iter().chain(record::paths(&self.scene.excitation)).collect()
     }
 
+    /// What `--set` arguments changed, `FIELD=VALUE` each; of several for one field the last one.
+    pub fn changes(&self) -> impl Iterator<Item = &str> {
+        let later = |i: usize, field: &str| self.assigned[i + 1..].iter().any(|(own, _)| own == field);
+        let last = self.assigned.iter().enumerate().filter(move |(i, (field, _))| !later(*i, field));
+        last.filter_map(|(_, (_, argument))| argument.strip_prefix("--set "))
+    }
+
     /// Leaves out a settle time of the scene's text that lies beyond a duration which an argument set: it is then half of
     /// that duration. What is to be said of it.
     pub fn settle_within(&mut self) -> Option<String> {
