@@ -28,7 +28,7 @@ const PICTURE_POINTS: usize = 3001;
 pub fn run(options: &CurveOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
-    let axes = ranges(&options.ranges)?;
+    let axes = ranges(&options.ranges, "--plot-x")?;
     let contact_picture = Picture::of("--contact-plot", options.contact_plot.as_deref(), &options.plot)?;
     let rigid = restitution(&options.rigid)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;

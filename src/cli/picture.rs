@@ -70,10 +70,10 @@ pub fn caption(document: &Document) -> Caption {
     Caption::new(document, env!("CARGO_PKG_VERSION"))
 }
 
-/// The ranges of the axes that `options` ask for.
-pub fn ranges(options: &RangeOptions) -> Result<Ranges, Failure> {
+/// The ranges of the axes that `options` ask for; errors call the one to the right `across`.
+pub fn ranges(options: &RangeOptions, across: &'static str) -> Result<Ranges, Failure> {
     let of = |option, text: &Option<String>| text.as_deref().map(|text| range(option, text)).transpose();
-    Ok(Ranges { x: of("--plot-x", &options.plot_x)?, y: of("--plot-y", &options.plot_y)? })
+    Ok(Ranges { x: of(across, &options.plot_x)?, y: of("--plot-y", &options.plot_y)? })
 }
 
 /// A range `A:B` as given to `option`.

@@ -14,7 +14,7 @@ use super::{interrupt, say};
 pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
-    let axes = ranges(&options.ranges)?;
+    let axes = ranges(&options.ranges, "--plot-time")?;
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
         (None, Some(text)) => {
@@ -29,7 +29,7 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let times = sample_times(&document.scene, &model, &sampling)?;
     let window = axes.x.or_else(|| spanned(&sampling));
     if let Some((from, to)) = window.filter(|(from, to)| *from < 0.0 || *to > model.duration) {
-        let message = format!("--plot-x {from}:{to}: the run lasts from 0 to {} s", model.duration);
+        let message = format!("--plot-time {from}:{to}: the run lasts from 0 to {} s", model.duration);
         return Err(Failure::argument(message));
     }
     let events = options.events.as_deref().map(|path| ("--events", path));

@@ -20,7 +20,7 @@ use super::{interrupt, say};
 pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
-    let axes = ranges(&options.ranges)?;
+    let axes = ranges(&options.ranges, "--plot-x")?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let beside = manifest_path(common.out());
     if beside.is_some() {

@@ -52,6 +52,12 @@ pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
         let problem = "the file is empty; a scene begins with `(title: \"..\", mass_g: 15.2, ..`".to_owned();
         return Err(Refusal { place: start, problem, unknown: None });
     }
+    if text.trim_start().starts_with('{') {
+        let problem = "this is JSON; a scene begins with `(`. The manifest of a sweep is taken by the commands check, curve, \
+                       simulate, sweep and accuracy"
+            .to_owned();
+        return Err(Refusal { place: start, problem, unknown: None });
+    }
     if text.len() > LARGEST_SCENE {
         let problem = format!("{} bytes are more than a scene may have ({LARGEST_SCENE})", text.len());
         return Err(Refusal { place: start, problem, unknown: None });

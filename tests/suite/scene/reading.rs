@@ -176,7 +176,7 @@ fn structural_errors_have_a_place_and_the_known_names() {
         ),
         (("excitation", "Noise(seed: 1)"), "`rms_g` is missing in Noise"),
         (
-            ("excitation", "Recorded(path: \"a\", record: None)"),
+            ("excitation", "Recorded(path: \"walking.csv\", record: None)"),
             "unknown field `record` in Recorded; known: path",
         ),
         (
@@ -224,8 +224,8 @@ fn unknown_names_come_with_whatever_else_is_wrong() {
         "s.ron:3:20: unknown field `linear` in Cubic",
         "s.ron:4:24: unknown field `speed` in Run",
         "s.ron:2:34: mass_g = -1: must be",
-        "s.ron:5:17: stops.travel_limit_mm = 0",
-        "s.ron:5:37: stops.restitution = 2",
+        "s.ron:5:16: stops.travel_limit_mm = 0",
+        "s.ron:5:36: stops.restitution = 2",
     ]) {
         assert!(line.starts_with(wanted), "{line}\n  wants {wanted}");
     }
