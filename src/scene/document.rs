@@ -46,14 +46,21 @@ impl Document {
     /// What a command is given as its scene: what [`load`](Self::load) takes, the manifest of a sweep, or `-` for the text
     /// of a scene on standard input.
     pub fn of_argument(spec: &str) -> Result<Self, SceneError> {
-        if spec == "-" {
-            return match read_from(std::io::stdin(), LARGEST_SCENE) {
-                Ok(text) => Self::from_text(STANDARD_INPUT, &text, Files::beside(Path::new(""))),
-                Err(problem) => Err(SceneError::Unreadable { name: STANDARD_INPUT.to_owned(), problem }),
-            };
+        if let Some(document) = Self::preset(spec) {
+            return document;
         }
-        let path = Path::new(spec);
-        if manifest::is_json(path) { manifest::load(path, spec) } else { Self::load(spec) }
+        let (name, text, files) = if spec == "-" {
+            let unreadable = |problem| SceneError::Unreadable { name: STANDARD_INPUT.to_owned(), problem };
+            let text = read_from(std::io::stdin(), manifest::LARGEST).map_err(unreadable)?;
+            (STANDARD_INPUT.to_owned(), text, Files::beside(Path::new("")))
+        } else {
+            (clip(spec), read_scene(spec, manifest::LARGEST)?, Files::beside(Path::new(spec)))
+        };
+        if text::is_json(&text) {
+            manifest::read(&name, &text, files)
+        } else {
+            Self::from_text(&name, &text, files)
+        }
     }
 
     /// Reads a scene file, or the built-in scene of that name. A file that is called like a built-in
@@ -62,17 +69,7 @@ impl Document {
         if let Some(document) = Self::preset(spec) {
             return document;
         }
-        let text = match read_text(Path::new(spec), LARGEST_SCENE) {
-            Ok(text) => text,
-            Err(ReadError::Missing) => {
-                let spec = if spec.is_empty() { "\"\"".to_owned() } else { clip(spec) };
-                return Err(SceneError::NoSuchScene { spec, presets: presets::names() });
-            }
-            Err(ReadError::Unusable(problem)) => {
-                return Err(SceneError::Unreadable { name: clip(spec), problem });
-            }
-        };
-        Self::from_text(&clip(spec), &text, Files::beside(Path::new(spec)))
+        Self::from_text(&clip(spec), &read_scene(spec, LARGEST_SCENE)?, Files::beside(Path::new(spec)))
     }
 
     /// The built-in scene of that name. The inner result is an error only if the program was built
@@ -278,6 +275,17 @@ impl Document {
             .or_else(|| written.clone().find(|(own, _)| covers(field, own)))
             .map(|(_, argument)| argument.as_str())
     }
+}
+
+/// The text of the file at `spec`, of at most `largest` bytes.
+fn read_scene(spec: &str, largest: usize) -> Result<String, SceneError> {
+    read_text(Path::new(spec), largest).map_err(|error| match error {
+        ReadError::Missing => {
+            let spec = if spec.is_empty() { "\"\"".to_owned() } else { clip(spec) };
+            SceneError::NoSuchScene { spec, presets: presets::names() }
+        }
+        ReadError::Unusable(problem) => SceneError::Unreadable { name: clip(spec), problem },
+    })
 }
 
 /// The error of a text that is no scene. A name that nothing knows is taken out, so that others, and values out of their

@@ -1,22 +1,20 @@
 //! The manifest of a sweep as input: the scene that ran, with its grid as `sweep`, and the files that it read.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use serde::Deserialize;
 
 use super::document::Document;
 use super::error::SceneError;
-use super::files::{Files, LARGEST_TABLE, ReadError, read_text};
+use super::files::{Files, LARGEST_TABLE, read_text};
 use super::text::clip;
 
 /// What the manifests of this program say in their key `program`.
 pub const PROGRAM: &str = "interwell";
 
-/// The largest manifest that is read: two of the largest tables, escaped, and a grid.
-const LARGEST: usize = 4 * LARGEST_TABLE;
+/// The largest manifest that is read: it holds tables, and its grid.
+pub(super) const LARGEST: usize = 2 * LARGEST_TABLE;
 
 /// The keys that make a sweep run again; a manifest has more of them.
 #[derive(Deserialize)]
@@ -32,34 +30,20 @@ fn parse(text: &str) -> Result<Manifest, String> {
     if manifest.program == PROGRAM { Ok(manifest) } else { Err("another program wrote it".to_owned()) }
 }
 
-/// Whether the file at `path` begins as JSON does and no scene. A pipe is not looked into: it is read once.
-pub(super) fn is_json(path: &Path) -> bool {
-    const LOOKED_AT: u64 = 256;
-    let mut begin = Vec::new();
-    let read = path
-        .is_file()
-        .then(|| File::open(path).and_then(|file| file.take(LOOKED_AT).read_to_end(&mut begin)));
-    matches!(read, Some(Ok(_))) && begin.trim_ascii_start().starts_with(b"{")
-}
-
 /// Whether the file at `path` is a manifest of this program.
 pub fn is_manifest(path: &Path) -> bool {
     read_text(path, LARGEST).is_ok_and(|text| parse(&text).is_ok())
 }
 
-/// The scene of the manifest at `path`, which messages call `name`; the files that it names come from the manifest.
-pub(super) fn load(path: &Path, name: &str) -> Result<Document, SceneError> {
-    let unreadable = |problem| SceneError::Unreadable { name: clip(name), problem };
-    let text = read_text(path, LARGEST).map_err(|error| match error {
-        ReadError::Missing => unreadable("no such file".to_owned()),
-        ReadError::Unusable(problem) => unreadable(problem),
+/// The scene of a manifest's text, which messages call `name`. The files that it names come from the manifest, others from
+/// where `files` says.
+pub(super) fn read(name: &str, text: &str, files: Files) -> Result<Document, SceneError> {
+    let manifest = parse(text).map_err(|problem| {
+        let problem = clip(&problem);
+        let problem =
+            format!("is JSON, but no manifest of a sweep: {problem}; give a scene (.ron) or a manifest");
+        SceneError::Unreadable { name: name.to_owned(), problem }
     })?;
-    let manifest = parse(&text).map_err(|problem| {
-        unreadable(format!(
-            "is JSON, but no manifest of a sweep: {}; give a scene (.ron) or a manifest",
-            clip(&problem)
-        ))
-    })?;
-    let files = Files { held: manifest.files, ..Files::beside(path) };
-    Document::from_text(&format!("{} (scene_ron)", clip(name)), &manifest.scene_ron, files)
+    let files = Files { held: manifest.files, ..files };
+    Document::from_text(&format!("{name} (scene_ron)"), &manifest.scene_ron, files)
 }

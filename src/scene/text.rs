@@ -52,7 +52,7 @@ pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
         let problem = "the file is empty; a scene begins with `(title: \"..\", mass_g: 15.2, ..`".to_owned();
         return Err(Refusal { place: start, problem, unknown: None });
     }
-    if text.trim_start().starts_with('{') {
+    if is_json(text) {
         let problem = "this is JSON; a scene begins with `(`. The manifest of a sweep is taken by the commands check, curve, \
                        simulate, sweep and accuracy"
             .to_owned();
@@ -88,6 +88,11 @@ pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
             problem: field.map_or(problem.clone(), |field| format!("{}: {problem}", clip(&field))),
         }
     })
+}
+
+/// Whether a text begins as JSON does, and no scene.
+pub(super) fn is_json(text: &str) -> bool {
+    text.trim_start_matches('\u{feff}').trim_start().starts_with('{')
 }
 
 /// The parser's cursor may stand on the blanks before the token that it means.

@@ -46,7 +46,11 @@ impl Quantity {
         let greatest = values.iter().filter(|v| v.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
         let label = column.map_or_else(|| name.to_owned(), |own| own.label());
         let words = label.split_once(", ").map_or(label.as_str(), |own| own.0);
-        let words = if name == RMS { "RMS velocity" } else { words };
+        let words = match name {
+            RMS => "RMS velocity",
+            "max_abs_x_m" => "largest |x|",
+            _ => words,
+        };
         // Small lengths and speeds are short numbers in thousandths.
         let (scale, label) = match column.map(|own| own.unit()) {
             Some(unit @ ("m" | "m/s")) if greatest < 2.0 => (1e3, format!("{words}, m{unit}")),

@@ -139,6 +139,11 @@ impl Theme {
         self.wall.over(self.paper, 0.6)
     }
 
+    /// The colour of `share` from 0 to 1 for lines on the paper: a part of the map's scale that stands out from it.
+    pub fn step(&self, share: f64) -> Ink {
+        if self.ink.0 > self.paper.0 { viridis(0.3 + 0.7 * share) } else { viridis(0.85 * share) }
+    }
+
     /// Light or dark.
     pub fn of(dark: bool) -> &'static Self {
         if dark { &Self::DARK } else { &Self::LIGHT }

@@ -6,7 +6,7 @@ use super::frame::Frame;
 use super::map::{Overlay, map};
 use super::mark::{Caption, REGIMES, Sample, legend, marker, regime};
 use super::quantity::{Quantity, quantities};
-use super::style::{self, Theme, viridis};
+use super::style::{self, Theme};
 use crate::numeric::short;
 use crate::scene::{Excitation, Scene, Start};
 use crate::study::{Column, Grid, Table, Values};
@@ -157,7 +157,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     let each = if series.is_some() { distinct(of_series) } else { vec![f64::NAN] };
     let ink = |i: usize| match each.len() {
         1 => theme.soft,
-        n => viridis(0.9 * i as f64 / (n - 1) as f64),
+        n => theme.step(i as f64 / (n - 1) as f64),
     };
 
     let mut entries: Vec<(Sample, String)> = Vec::new();
@@ -179,8 +179,11 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     }
     let missing: Vec<f64> =
         (0..values.len()).filter(|i| !quantity.values[*i].is_finite()).map(|i| values[i]).collect();
+    // Many lines from edge to edge would be all that is seen.
+    let lines = missing.len() <= MOST_LINES;
     if !missing.is_empty() {
         let dotted = Sample::Line(theme.soft, style::LINE, Some(style::DOT));
+        let dotted = if lines { dotted } else { Sample::Ticks(theme.soft) };
         let why = if quantity.velocity { missing_words(words(rows, "outcome")) } else { "no value" };
         entries.push((dotted, why.to_owned()));
     }
@@ -195,7 +198,12 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);
     frame.grid(figure, theme);
     for at in &missing {
-        frame.vertical(figure, *at, style::LINE, theme.soft, Some(style::DOT));
+        if lines {
+            frame.vertical(figure, *at, style::LINE, theme.soft, Some(style::DOT));
+        } else {
+            let at = frame.across(*at);
+            figure.line(&[(at, BOTTOM - TICK), (at, BOTTOM)], style::FINE_LINE, theme.soft, frame.area);
+        }
     }
     // One seed has nothing between it and the next, nor has one regime.
     let joined = !(x == "seed" || x.ends_with(".seed") || quantity.regimes);
@@ -225,6 +233,10 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     }
     frame.axes(figure, theme);
 }
+
+/// The most values without a quantity that have a line each; of more each has a tick at the lower edge, so long.
+const MOST_LINES: usize = 20;
+const TICK: f64 = 18.0;
 
 /// So many times its half height apart, markers on a line are told from each other.
 const MARKER_ROOM: f64 = 5.0;

@@ -101,6 +101,8 @@ fn a_manifest_brings_the_files_that_its_scene_reads() {
     for command in ["check", "simulate", "curve"] {
         headless(command).arg(&manifest).assert().success();
     }
+    let text = std::fs::read_to_string(&manifest).unwrap();
+    headless("check -").write_stdin(text).assert().success();
     // A preset's table is there too.
     swept_again(
         "sweep paper-table --set run.duration_s=1 --set run.settle_s=None --over mass_g=10,15",
