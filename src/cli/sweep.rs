@@ -25,7 +25,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let beside = manifest_path(common.out());
     if beside.is_some() {
         // The rows and the manifest are of the same bytes, whatever becomes of the files meanwhile.
-        document.hold_files().map_err(Failure::argument)?;
+        document.hold_files();
     }
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
     let mechanism = first_mechanism(&document, &sweep)?;

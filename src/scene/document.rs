@@ -7,7 +7,7 @@ use super::check::{check, corners};
 use super::data::{Mechanism, Scene};
 use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 use super::fields::{Field, FieldPath, Slot, all_fields};
-use super::files::{FileError, Files, ReadError, read_from, read_text};
+use super::files::{Files, ReadError, read_from, read_text};
 use super::locate::Places;
 use super::manifest;
 use super::presets::{self, PRESETS};
@@ -171,10 +171,10 @@ impl Document {
     }
 
     /// Reads the files that the scene names, so that they are at hand whatever becomes of them; none but those are held.
-    pub fn hold_files(&mut self) -> Result<(), FileError> {
-        let read = |path: &str| Ok((path.to_owned(), self.files.read(path)?));
-        self.files.held = self.paths().into_iter().map(read).collect::<Result<_, _>>()?;
-        Ok(())
+    /// One that cannot be read is left to whoever needs it, and has a better place to say so.
+    pub fn hold_files(&mut self) {
+        let read = |path: &str| Some((path.to_owned(), self.files.read(path).ok()?));
+        self.files.held = self.paths().into_iter().filter_map(read).collect();
     }
 
     /// Checks the scene: all faults at once as an error, or the warnings, each with the file's name.

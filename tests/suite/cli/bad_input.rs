@@ -174,8 +174,14 @@ fn tables_that_are_no_curves() {
     let said = String::from_utf8_lossy(&said).into_owned();
     assert!(said.contains("mm") || said.contains("millimet"), "{said}");
 
-    let (_folder, path) = file("table.ron", scene.as_bytes());
-    let mut command = headless("curve");
-    command.arg(&path);
-    refused(command, &["curve.csv"]);
+    // A table that is not there, wherever the rows would go.
+    let (folder, path) = file("table.ron", scene.as_bytes());
+    for line in ["curve", "sweep --over mass_g=1,2", "simulate --out", "sweep --over mass_g=1,2 --out"] {
+        let mut command = headless(line);
+        if line.ends_with("--out") {
+            command.arg(folder.path().join("rows.csv"));
+        }
+        command.arg(&path);
+        refused(command, &["table.ron:1:", "mechanism.path", "curve.csv"]);
+    }
 }
