@@ -173,7 +173,7 @@ pub struct PlotOptions {
     #[arg(long, requires = "picture")]
     pub dark: bool,
 
-    /// With a picture: its size in pixels, 200 to 5000 each way, such as 2400x1500; it keeps its proportions of 8 to 5 (an
+    /// With a picture: its size in pixels, 200 to 4000 each way, such as 2400x1500; it keeps its proportions of 8 to 5 (an
     /// 85 mm column at 300 dpi is 1004 pixels wide) [default: 1600x1000]
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, requires = "picture")]
     pub plot_size: Option<String>,

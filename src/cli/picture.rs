@@ -86,10 +86,10 @@ fn range(option: &str, text: &str) -> Result<(f64, f64), Failure> {
 
 /// A size `WxH` in pixels.
 fn size(text: &str) -> Result<(u32, u32), Failure> {
-    let side = |text: &str| text.trim().parse::<u32>().ok().filter(|own| (200..=5000).contains(own));
+    let side = |text: &str| text.trim().parse::<u32>().ok().filter(|own| (200..=4000).contains(own));
     let sides = text.split_once(['x', 'X']).and_then(|(width, height)| side(width).zip(side(height)));
     sides.ok_or_else(|| {
-        let message = "write WxH in pixels, 200 to 5000 each, such as 2400x1500";
+        let message = "write WxH in pixels, 200 to 4000 each, such as 2400x1500";
         Failure::argument(format!("--plot-size {text}: {message}"))
     })
 }
