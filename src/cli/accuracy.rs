@@ -18,6 +18,12 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     if let Some(scene) = &options.scene {
         return scene_accuracy::run(scene, options);
     }
+    let common = &options.common;
+    if let Some(option) = common.given(true) {
+        return Err(Failure::argument(format!(
+            "{option} needs a SCENE, such as interwell --headless accuracy paper {option} .."
+        )));
+    }
     let picture = Picture::asked(&options.plot)?;
     let selection = if options.case.is_empty() { Selection::all() } else { Selection::of(&options.case)? };
     if options.list {
@@ -32,10 +38,10 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
             names.join(" or ")
         )));
     }
-    let out = options.out.as_deref().map(|path| ("--out", path));
+    let out = common.out.as_deref().map(|path| ("--out", path));
     let mut sinks = open(&[], [out, picture.map(|own| own.output())])?;
 
-    let bar = bar(selection.parts(), options.quiet);
+    let bar = bar(selection.parts(), common.quiet);
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let watch = Watch::start();
     let result = accuracy(&selection, &task);
@@ -53,12 +59,12 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     }
     if let Some(picture) = picture {
         let figure = accuracy_figure(&report.work_table(), env!("CARGO_PKG_VERSION"), picture.theme);
-        picture.write(plot, &figure)?;
+        picture.write(plot, figure)?;
     }
     let to_stdout = csv.as_ref().is_some_and(Sink::is_stdout);
     finish(sinks)?;
-    show(&shown(&report), to_stdout, options.quiet)?;
-    if !options.quiet {
+    show(&shown(&report), to_stdout, common.quiet)?;
+    if !common.quiet {
         say(&format!("{:.1} s", watch.wall_s()));
     }
     verdict(&report)

@@ -14,7 +14,7 @@ pub fn run(options: &CheckOptions) -> Result<(), Failure> {
     let paper = ["paper".to_owned()];
     let scenes = if options.scenes.is_empty() { &paper[..] } else { &options.scenes[..] };
     let names: Vec<PathBuf> = scenes.iter().map(PathBuf::from).collect();
-    let mut sinks = open(&names, [Some(("--out", &options.common.out))])?;
+    let mut sinks = open(&names, [Some(("--out", options.common.out()))])?;
     let mut wrong = Vec::new();
     for spec in scenes {
         match report(spec, &options.common) {

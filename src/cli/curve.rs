@@ -14,7 +14,7 @@ use interwell::study::{
 
 use super::failure::Failure;
 use super::options::CurveOptions;
-use super::picture::{Picture, caption};
+use super::picture::{Picture, caption, ranges};
 use super::support::{finish, inputs, load_with_mechanism, numbers, open, write_table, write_text};
 use super::{interrupt, say};
 
@@ -28,6 +28,7 @@ const PICTURE_POINTS: usize = 3001;
 pub fn run(options: &CurveOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
+    let axes = ranges(&options.ranges, "--plot-x")?;
     let contact_picture = Picture::of("--contact-plot", options.contact_plot.as_deref(), &options.plot)?;
     let rigid = restitution(&options.rigid)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
@@ -58,7 +59,7 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
     let mut sinks = open(
         &inputs(&options.scene, &document),
         [
-            Some(("--out", &common.out)),
+            Some(("--out", common.out())),
             landscape_path,
             picture.map(|own| own.output()),
             shapes_path,
@@ -82,8 +83,8 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
         // The picture shows the curve however few positions were asked for.
         let table = curve(&mechanism, even(PICTURE_POINTS))?;
         let stops = stop_positions(&document.scene);
-        let figure = curve_figure(&table, &mechanism, stops, &caption(&document), picture.theme);
-        picture.write(&mut sinks[2], &figure)?;
+        let figure = curve_figure(&table, &mechanism, stops, axes, &caption(&document), picture.theme);
+        picture.write(&mut sinks[2], figure)?;
     }
     if shapes_path.is_some() {
         let drawn = solved(&mechanism, &positions(SHAPES), &document.name, "--shapes")?;
@@ -93,7 +94,7 @@ pub fn run(options: &CurveOptions) -> Result<(), Failure> {
         write_table(&mut sinks[4], table)?;
         if let Some((picture, stop)) = contact_picture.zip(model.compliant) {
             let figure = contact_figure(table, &stop, model.mass, &caption(&document), picture.theme);
-            picture.write(&mut sinks[5], &figure)?;
+            picture.write(&mut sinks[5], figure)?;
         }
     }
     finish(sinks)
@@ -112,7 +113,7 @@ fn contact_table(
         Some(table) => Ok((table, model)),
         None => Err(Failure::argument(format!(
             "{option}: the stops of {} are not compliant; give it some, such as --set 'stops=Hertz(travel_limit_mm: 1.5, \
-             radius_mm: 5, young_gpa: 69, loss_s_per_m: 4.9)'",
+             radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)'",
             document.name
         ))),
     }

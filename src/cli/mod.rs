@@ -30,6 +30,12 @@ pub fn parse() -> Result<Options, ExitCode> {
             let _ = error.print();
             ExitCode::SUCCESS
         }
+        ErrorKind::InvalidUtf8 => {
+            let wrong = std::env::args_os().find(|own| own.to_str().is_none()).unwrap_or_default();
+            let wrong = wrong.to_string_lossy();
+            say(&format!("error: `{wrong}` is not valid UTF-8: rename the file, or go to its folder and name it from there"));
+            ExitCode::from(2)
+        }
         _ => {
             // The first lines name argument, value and remedy; usage and hints would bury them.
             let text = error.render().to_string();
@@ -48,7 +54,7 @@ pub fn run(
     options: Options,
     window: impl FnOnce(Option<&str>) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    let Options { headless, scene, command } = options;
+    let Options { headless, common, scene, command } = options;
     let commands = "presets, check, curve, simulate, sweep, threshold or accuracy";
     match (command, headless, scene) {
         (Some(_), _, Some(scene)) => {
@@ -59,22 +65,32 @@ pub fn run(
             let remedy = format!("`{name}` works without a window: write interwell --headless {name}");
             Err(Failure::argument(remedy))
         }
-        (Some(command), true, None) => match command {
-            Command::Presets(options) => presets::run(&options),
-            Command::Check(options) => check::run(&options),
-            Command::Curve(options) => curve::run(&options),
-            Command::Simulate(options) => simulate::run(&options),
-            Command::Sweep(options) => sweep::run(&options),
-            Command::Threshold(options) => threshold::run(&options),
-            Command::Accuracy(options) => accuracy::run(&options),
-        },
+        (Some(mut command), true, None) => {
+            command.common().put_before(common).map_err(|option| {
+                Failure::argument(format!("{option} is given before and after the command: give it once"))
+            })?;
+            match command {
+                Command::Presets(options) => presets::run(&options),
+                Command::Check(options) => check::run(&options),
+                Command::Curve(options) => curve::run(&options),
+                Command::Simulate(options) => simulate::run(&options),
+                Command::Sweep(options) => sweep::run(&options),
+                Command::Threshold(options) => threshold::run(&options),
+                Command::Accuracy(options) => accuracy::run(&options),
+            }
+        }
         (None, true, None) => Err(Failure::argument(format!(
             "--headless needs a command: {commands}, such as interwell --headless simulate paper; see interwell --help"
         ))),
         (None, true, Some(word)) => Err(Failure::argument(format!(
             "--headless needs a command before `{word}`: {commands}; see interwell --help"
         ))),
-        (None, false, scene) => window(scene.as_deref()),
+        (None, false, scene) => match common.given(false) {
+            Some(option) => Err(Failure::argument(format!(
+                "{option} belongs to a command: {commands}, such as interwell --headless simulate; the window takes a scene alone"
+            ))),
+            None => window(scene.as_deref()),
+        },
     }
 }
 

@@ -1,6 +1,6 @@
-//! What can be asked for on the command line? The text of `--help` is here.
+//! The arguments of the command line, and the text of `--help`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
@@ -19,8 +19,9 @@ Examples:
   interwell --headless accuracy nominal-cubic --method rk4 --step-s 1/60,1/600
 
 A scene is a .ron file or the name of a built-in one; `presets --write DIR` copies those out.
-Exit status: 0 done; 1 the run or the writing failed, or a case of `accuracy` falls short; 2 the arguments or the
-scene are wrong.";
+A scene is also the manifest that `sweep --out map.csv` writes beside its rows (map.csv.json), or - for standard input.
+Exit status: 0 done; 1 the run or the writing failed, a case of `accuracy` falls short, or a run of `simulate --strict`
+ended early; 2 the arguments or the scene are wrong.";
 
 /// Bistable mechanisms with hard travel limits: see and compute how stops start interwell motion.
 #[derive(Debug, Parser)]
@@ -37,6 +38,10 @@ pub struct Options {
     /// What to compute
     #[command(subcommand)]
     pub command: Option<Command>,
+
+    /// Common options before the command.
+    #[command(flatten)]
+    pub common: Common,
 }
 
 /// A command of `--headless`.
@@ -79,14 +84,28 @@ impl Command {
             Self::Accuracy(_) => "accuracy",
         }
     }
+
+    /// Its common options.
+    pub fn common(&mut self) -> &mut Common {
+        match self {
+            Self::Presets(PresetsOptions { common, .. })
+            | Self::Check(CheckOptions { common, .. })
+            | Self::Curve(CurveOptions { common, .. })
+            | Self::Simulate(SimulateOptions { common, .. })
+            | Self::Sweep(SweepOptions { common, .. })
+            | Self::Threshold(ThresholdOptions { common, .. })
+            | Self::Accuracy(AccuracyOptions { common, .. }) => common,
+        }
+    }
 }
 
-/// What every command takes.
+/// What every command takes, before its name or after it.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Common options")]
 pub struct Common {
-    /// Where the data goes; `-` is standard output
-    #[arg(long, value_name = "FILE", default_value = "-", allow_hyphen_values = true)]
-    pub out: PathBuf,
+    /// Where the data goes [default: -, standard output]
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub out: Option<PathBuf>,
 
     /// Change a field of the scene, such as stops.travel_limit_mm=2 or stops=None (repeatable)
     #[arg(long, value_name = "FIELD=VALUE", allow_hyphen_values = true)]
@@ -105,17 +124,86 @@ pub struct Common {
     pub quiet: bool,
 }
 
+impl Common {
+    /// Where the data goes.
+    pub fn out(&self) -> &Path {
+        self.out.as_deref().unwrap_or(Path::new("-"))
+    }
+
+    /// Puts what stood before the command in front of what stands after it; an error names an option that may be given
+    /// once and was given in both places.
+    ///
+    /// clap's own global arguments would forget a `--set` before the command where another one follows it.
+    pub fn put_before(&mut self, before: Self) -> Result<(), &'static str> {
+        fn one<T>(own: &mut Option<T>, before: Option<T>, name: &'static str) -> Result<(), &'static str> {
+            match (own.is_some(), before) {
+                (_, None) => Ok(()),
+                (true, Some(_)) => Err(name),
+                (false, before) => {
+                    *own = before;
+                    Ok(())
+                }
+            }
+        }
+        self.set.splice(0..0, before.set);
+        self.quiet |= before.quiet;
+        one(&mut self.out, before.out, "--out")?;
+        one(&mut self.tolerance, before.tolerance, "--tolerance")?;
+        one(&mut self.jobs, before.jobs, "--jobs")
+    }
+
+    /// The first of these that was given, for where it has no meaning: all of them, or those alone that change a scene or
+    /// how it is run.
+    pub fn given(&self, of_a_scene: bool) -> Option<&'static str> {
+        let given = [
+            (!self.set.is_empty(), "--set"),
+            (self.tolerance.is_some(), "--tolerance"),
+            (self.jobs.is_some(), "--jobs"),
+            (!of_a_scene && self.out.is_some(), "--out"),
+            (!of_a_scene && self.quiet, "--quiet"),
+        ];
+        given.into_iter().find(|own| own.0).map(|own| own.1)
+    }
+}
+
 /// What the commands take that can draw.
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("picture").multiple(true))]
 pub struct PlotOptions {
-    /// Draw a picture; the name ends in .png or .svg
+    /// Draw a picture; the name ends in .png or .svg. A run is drawn from samples of its own, over the times that --at spans
     #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub plot: Option<PathBuf>,
 
     /// With a picture: light on dark
     #[arg(long, requires = "picture")]
     pub dark: bool,
+
+    /// With a picture: its size in pixels, 200 to 4000 each way, such as 2400x1500; it keeps its proportions of 8 to 5 (an
+    /// 85 mm column at 300 dpi is 1004 pixels wide) [default: 1600x1000]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, requires = "picture")]
+    pub plot_size: Option<String>,
+
+    /// With a picture: without title, subtitle and footer, for a page that has a caption
+    #[arg(long, requires = "picture")]
+    pub no_title: bool,
+}
+
+/// What the commands take whose pictures have axes with ranges.
+#[derive(Debug, Args)]
+pub struct RangeOptions {
+    /// With --plot: range of the axis to the right in its unit; of a run the times in s
+    #[arg(
+        long,
+        value_name = "A:B",
+        visible_alias = "plot-time",
+        allow_hyphen_values = true,
+        requires = "plot"
+    )]
+    pub plot_x: Option<String>,
+
+    /// With --plot: range of the first axis upward in its unit, such as -2:2 for the displacement of a run in mm
+    #[arg(long, value_name = "A:B", allow_hyphen_values = true, requires = "plot")]
+    pub plot_y: Option<String>,
 }
 
 /// `presets`.
@@ -199,6 +287,10 @@ pub struct CurveOptions {
     #[command(flatten)]
     pub plot: PlotOptions,
 
+    /// Its axes.
+    #[command(flatten)]
+    pub ranges: RangeOptions,
+
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -228,6 +320,10 @@ pub struct SimulateOptions {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub events: Option<PathBuf>,
 
+    /// Fail with exit status 1 where the run ends before its duration; its files are written all the same
+    #[arg(long)]
+    pub strict: bool,
+
     /// Write statistics, outcome and energy ledger as JSON
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub summary: Option<PathBuf>,
@@ -235,6 +331,10 @@ pub struct SimulateOptions {
     /// The picture.
     #[command(flatten)]
     pub plot: PlotOptions,
+
+    /// Its axes.
+    #[command(flatten)]
+    pub ranges: RangeOptions,
 
     /// What every command takes.
     #[command(flatten)]
@@ -262,9 +362,17 @@ pub struct SweepOptions {
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
+    /// With --plot: the column that is shown, any one with numbers, or regime
+    #[arg(long, value_name = "COLUMN", requires = "plot", default_value = "rms_velocity_m_per_s")]
+    pub quantity: String,
+
     /// The picture.
     #[command(flatten)]
     pub plot: PlotOptions,
+
+    /// Its axes.
+    #[command(flatten)]
+    pub ranges: RangeOptions,
 
     /// What every command takes.
     #[command(flatten)]
@@ -312,14 +420,6 @@ pub struct AccuracyOptions {
     #[arg(value_name = "SCENE", conflicts_with_all = ["case", "list", "picture"])]
     pub scene: Option<String>,
 
-    /// With a scene: change a field of it (repeatable)
-    #[arg(long, value_name = "FIELD=VALUE", allow_hyphen_values = true, requires = "scene")]
-    pub set: Vec<String>,
-
-    /// With a scene: its tolerance, 1e-14 to 1e-3
-    #[arg(long, value_name = "T", allow_hyphen_values = true, requires = "scene")]
-    pub tolerance: Option<String>,
-
     /// With a scene: what fixed steps make of it, each in s or as a fraction such as 1/60; stops clamp and bounce
     #[arg(long, value_name = "S1,S2,..", allow_hyphen_values = true, requires = "scene")]
     pub step_s: Option<String>,
@@ -337,15 +437,11 @@ pub struct AccuracyOptions {
     #[arg(long)]
     pub list: bool,
 
-    /// Write everything as CSV; `-` is standard output, and the table then goes to standard error
-    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
-    pub out: Option<PathBuf>,
-
     /// The picture: error over time, of the problems p1, p2 and flexures.
     #[command(flatten)]
     pub plot: PlotOptions,
 
-    /// Say nothing on standard error but errors
-    #[arg(long)]
-    pub quiet: bool,
+    /// What every command takes; --out has everything as CSV, and where that is `-` the table goes to standard error.
+    #[command(flatten)]
+    pub common: Common,
 }

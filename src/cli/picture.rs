@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use interwell::output::{Caption, Figure, Format, Sink, Theme};
+use interwell::output::{Caption, Figure, Format, Ranges, Sink, Theme};
 use interwell::scene::Document;
 
 use super::failure::Failure;
-use super::options::PlotOptions;
+use super::options::{PlotOptions, RangeOptions};
+use super::support::numbers;
 
 /// A picture that was asked for.
 #[derive(Debug, Clone, Copy)]
@@ -17,6 +18,8 @@ pub struct Picture<'a> {
     pub theme: &'static Theme,
     option: &'static str,
     format: Format,
+    size: Option<(u32, u32)>,
+    titled: bool,
 }
 
 impl<'a> Picture<'a> {
@@ -34,7 +37,15 @@ impl<'a> Picture<'a> {
         let Some(path) = path else { return Ok(None) };
         let format = Format::of(path)
             .map_err(|problem| Failure::argument(format!("{option} {}: {problem}", path.display())))?;
-        Ok(Some(Self { path, theme: Theme::of(options.dark), option, format }))
+        let size = options.plot_size.as_deref().map(size).transpose()?;
+        Ok(Some(Self {
+            path,
+            theme: Theme::of(options.dark),
+            option,
+            format,
+            size,
+            titled: !options.no_title,
+        }))
     }
 
     /// What an output is opened by.
@@ -43,14 +54,42 @@ impl<'a> Picture<'a> {
     }
 
     /// Writes the picture.
-    pub fn write(&self, sink: &mut Option<Sink>, figure: &Figure) -> Result<(), Failure> {
+    pub fn write(&self, sink: &mut Option<Sink>, figure: Figure) -> Result<(), Failure> {
         let Some(sink) = sink else { return Ok(()) };
-        let bytes = self.format.bytes(figure).map_err(|error| Failure::Failed(error.into()))?;
+        let figure = if self.titled { figure } else { figure.without_title() };
+        let bytes = self
+            .format
+            .bytes(&Figure { size: self.size, ..figure })
+            .map_err(|error| Failure::Failed(error.into()))?;
         sink.put_bytes(&bytes).map_err(|error| Failure::writing(sink.name(), error))
     }
 }
 
 /// What stands over and under a picture of this scene.
 pub fn caption(document: &Document) -> Caption {
-    Caption::new(&document.scene, &document.name, env!("CARGO_PKG_VERSION"))
+    Caption::new(document, env!("CARGO_PKG_VERSION"))
+}
+
+/// The ranges of the axes that `options` ask for; errors call the one to the right `across`.
+pub fn ranges(options: &RangeOptions, across: &'static str) -> Result<Ranges, Failure> {
+    let of = |option, text: &Option<String>| text.as_deref().map(|text| range(option, text)).transpose();
+    Ok(Ranges { x: of(across, &options.plot_x)?, y: of("--plot-y", &options.plot_y)? })
+}
+
+/// A range `A:B` as given to `option`.
+fn range(option: &str, text: &str) -> Result<(f64, f64), Failure> {
+    match numbers(option, text, ':')?[..] {
+        [from, to] if from < to && from.is_finite() && to.is_finite() => Ok((from, to)),
+        _ => Err(Failure::argument(format!("{option} {text}: write A:B with A below B, such as 0:2"))),
+    }
+}
+
+/// A size `WxH` in pixels.
+fn size(text: &str) -> Result<(u32, u32), Failure> {
+    let side = |text: &str| text.trim().parse::<u32>().ok().filter(|own| (200..=4000).contains(own));
+    let sides = text.split_once(['x', 'X']).and_then(|(width, height)| side(width).zip(side(height)));
+    sides.ok_or_else(|| {
+        let message = "write WxH in pixels, 200 to 4000 each, such as 2400x1500";
+        Failure::argument(format!("--plot-size {text}: {message}"))
+    })
 }

@@ -12,7 +12,12 @@ use super::support::{finish, open, write_text};
 
 /// Lists the built-in scenes, a line each, or writes them into a folder and lists the files.
 pub fn run(options: &PresetsOptions) -> Result<(), Failure> {
-    let mut sinks = open(&[], [Some(("--out", &options.common.out))])?;
+    if let Some(option) = options.common.given(true) {
+        return Err(Failure::argument(format!(
+            "{option} changes a run, and presets runs nothing: leave it out"
+        )));
+    }
+    let mut sinks = open(&[], [Some(("--out", options.common.out()))])?;
     let text = match &options.write {
         Some(folder) => write(folder, options.force)?,
         None => {

@@ -8,22 +8,16 @@ use interwell::study::accuracy::scene::{Unfit, scene_table, step_name, step_size
 use super::accuracy::show;
 use super::failure::Failure;
 use super::interrupt;
-use super::options::{AccuracyOptions, Common};
+use super::options::AccuracyOptions;
 use super::support::{finish, inputs, load_with_mechanism, open, write_table};
 
 /// Looks at the run of the scene called `spec`.
 pub fn run(spec: &str, options: &AccuracyOptions) -> Result<(), Failure> {
-    let common = Common {
-        out: "-".into(),
-        set: options.set.clone(),
-        tolerance: options.tolerance.clone(),
-        jobs: None,
-        quiet: options.quiet,
-    };
+    let common = &options.common;
     let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
-    let (document, mechanism) = load_with_mechanism(spec, &common)?;
+    let (document, mechanism) = load_with_mechanism(spec, common)?;
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
-    let out = options.out.as_deref().map(|path| ("--out", path));
+    let out = common.out.as_deref().map(|path| ("--out", path));
     let mut sinks = open(&inputs(spec, &document), [out])?;
     let cancel = interrupt::listen();
 
@@ -57,7 +51,7 @@ pub fn run(spec: &str, options: &AccuracyOptions) -> Result<(), Failure> {
     }
     let to_stdout = csv.as_ref().is_some_and(Sink::is_stdout);
     finish(sinks)?;
-    show(&text, to_stdout, options.quiet)
+    show(&text, to_stdout, common.quiet)
 }
 
 fn is_wanted(scheme: Scheme, names: &[String]) -> bool {

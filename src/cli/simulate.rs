@@ -6,7 +6,7 @@ use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_tra
 
 use super::failure::Failure;
 use super::options::SimulateOptions;
-use super::picture::{Picture, caption};
+use super::picture::{Picture, caption, ranges};
 use super::support::{
     Watch, finish, inputs, load_with_mechanism, numbers, open, until_settled, write_table, write_text,
 };
@@ -16,6 +16,7 @@ use super::{interrupt, say};
 pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
+    let axes = ranges(&options.ranges, "--plot-time")?;
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
         (None, Some(text)) => {
@@ -29,9 +30,15 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
     let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
     let times = sample_times(&document.scene, &model, &sampling, until_settled)?;
+    let window = axes.x.or_else(|| spanned(&sampling));
+    let most = until_settled.unwrap_or(model.duration);
+    if let Some((from, to)) = window.filter(|(from, to)| *from < 0.0 || *to > most) {
+        let message = format!("--plot-time {from}:{to}: the run lasts from 0 to {most} s");
+        return Err(Failure::argument(message));
+    }
     let events = options.events.as_deref().map(|path| ("--events", path));
     let summary_path = options.summary.as_deref().map(|path| ("--summary", path));
-    let outputs = [Some(("--out", &*common.out)), events, summary_path, picture.map(|own| own.output())];
+    let outputs = [Some(("--out", common.out())), events, summary_path, picture.map(|own| own.output())];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
 
     let cancel = interrupt::listen();
@@ -40,7 +47,7 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let (simulation, trace) = match picture {
         None => (simulate(&model, &keep, Some(cancel)), None),
         Some(_) => {
-            let (simulation, trace) = simulate_with_trace(&model, &keep, Some(cancel));
+            let (simulation, trace) = simulate_with_trace(&model, &keep, window, Some(cancel));
             (simulation, Some(trace))
         }
     };
@@ -53,17 +60,29 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     write_text(about, &summary(&simulation.summary, &document.scene, &watch.origin(1)))?;
     if let Some((picture, trace)) = picture.zip(trace) {
         let (about, mechanism) = (caption(&document), &model.mechanism);
-        let figure = run_figure(&trace, &simulation.summary, mechanism, &about, picture.theme);
-        picture.write(plot, &figure)?;
+        let figure = run_figure(&trace, &simulation.summary, mechanism, axes, &about, picture.theme);
+        picture.write(plot, figure)?;
     }
     finish(sinks)?;
     if let Some(warning) = yield_warning(&model, &simulation.summary).filter(|_| !common.quiet) {
         say(&format!("warning: {}: {warning}", document.name));
     }
     if let Some(reason) = early_end(simulation.summary.outcome) {
-        say(&format!("{}: {reason}", document.name));
+        let reason = format!("{}: {reason}", document.name);
+        if options.strict {
+            return Err(Failure::Failed(anyhow::anyhow!("{reason}")));
+        }
+        say(&reason);
     }
     Ok(())
+}
+
+/// The times from the first to the last of those that are listed, where they are some.
+fn spanned(sampling: &Sampling) -> Option<(f64, f64)> {
+    let Sampling::At(times) = sampling else { return None };
+    let first = times.iter().copied().fold(f64::INFINITY, f64::min);
+    let last = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    (first < last).then_some((first, last))
 }
 
 /// Why a run ended before its duration; none where it did not.

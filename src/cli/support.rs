@@ -8,7 +8,7 @@ use cpu_time::ProcessTime;
 use interwell::dynamics::Model;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Origin, Sink, header, rows, same_target};
-use interwell::scene::{Document, SceneError};
+use interwell::scene::{Document, SceneError, is_manifest, is_scene_file};
 use interwell::study::Table;
 
 use super::failure::Failure;
@@ -58,13 +58,14 @@ pub fn load(
     common: &Common,
     over: Option<&[String]>,
 ) -> Result<(Document, Vec<String>), SceneError> {
-    let mut document = Document::load(spec)?;
+    let mut document = Document::of_argument(spec)?;
     for argument in &common.set {
         document.set(argument)?;
     }
     if let Some(tolerance) = &common.tolerance {
         document.assign("run.tolerance", tolerance, &format!("--tolerance {tolerance}"))?;
     }
+    let moved = document.settle_within();
     let warnings = match over {
         None => document.check()?,
         Some(over) => {
@@ -75,7 +76,7 @@ pub fn load(
             first_cell.check()?
         }
     };
-    Ok((document, warnings))
+    Ok((document, moved.into_iter().chain(warnings).collect()))
 }
 
 /// The files that a scene is made of: its own and those that it names.
@@ -160,8 +161,12 @@ pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> 
     Ok(Some(until))
 }
 
+/// What the manifest of a sweep is called among its outputs.
+pub const MANIFEST: &str = "the manifest of --out";
+
 /// Opens the outputs, each given with its option, before any work is done for them. None may be one of the
-/// `inputs` (a scene's file, or a table or record that it names), and no two the same.
+/// `inputs` (a scene's file, or a table or record that it names) or any other scene, the manifest replaces no file that
+/// is none, and no two are the same.
 pub fn open<const N: usize>(
     inputs: &[PathBuf],
     outputs: [Option<(&str, &Path)>; N],
@@ -171,11 +176,16 @@ pub fn open<const N: usize>(
     let mut sinks = [const { None::<Sink> }; N];
     for (i, output) in outputs.iter().enumerate() {
         let Some((option, path)) = output else { continue };
-        if place(path).is_some_and(|path| path.is_file() && inputs.contains(&path)) {
+        let would_overwrite = |what: &str| {
             let path = path.display();
-            return Err(Failure::argument(format!(
-                "{option} {path} would overwrite the scene or a file that it reads: name another file"
-            )));
+            Err(Failure::argument(format!("{option} {path} would overwrite {what}: name another file")))
+        };
+        if place(path).is_some_and(|path| path.is_file() && inputs.contains(&path)) {
+            return would_overwrite("the scene or a file that it reads");
+        } else if is_scene_file(path) {
+            return would_overwrite("a scene");
+        } else if *option == MANIFEST && path.is_file() && !is_manifest(path) {
+            return would_overwrite("a file that is no manifest of a sweep");
         }
         let sink = Sink::open(path)?;
         for (j, earlier) in sinks[..i].iter().enumerate() {

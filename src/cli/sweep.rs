@@ -6,24 +6,30 @@ use std::sync::Arc;
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use interwell::mechanics::{BuildError, Mechanism};
-use interwell::output::{Overlay, can_show, header, is_regular, manifest, rows, sweep_figure};
+use interwell::output::{Overlay, SweepPicture, can_show, header, is_regular, manifest, rows, sweep_figure};
 use interwell::scene::Document;
 use interwell::study::{
     Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, SummaryField, Sweep, SweepEnd, SweepOptions, Table, Task,
-    first_interwell, release_line,
+    first_interwell, is_orderly, release_line,
 };
 
 use super::failure::{Failure, wrong_cell};
 use super::options::{Common, SweepOptions as Arguments};
-use super::picture::{Picture, caption};
-use super::support::{Watch, finish, inputs, load, open, unbuilt, until_settled, warn, write_text};
+use super::picture::{Picture, caption, ranges};
+use super::support::{MANIFEST, Watch, finish, inputs, load, open, unbuilt, until_settled, warn, write_text};
 use super::{interrupt, say};
 
 /// Runs the grid and writes a row a cell.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
-    let (document, warnings) = load(&options.scene, common, Some(&options.over))?;
+    let axes = ranges(&options.ranges, "--plot-x")?;
+    let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
+    let beside = manifest_path(common.out());
+    if beside.is_some() {
+        // The rows and the manifest are of the same bytes, whatever becomes of the files meanwhile.
+        document.hold_files();
+    }
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
     let mechanism = first_mechanism(&document, &sweep)?;
     let columns = columns(&options.columns, sweep.grid())?;
@@ -36,16 +42,15 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let sweep = sweep.with(SweepOptions { columns: fields, until_settled });
     warn(&document, common, &warnings, mechanism.as_deref());
     if picture.is_some() {
-        can_show(sweep.grid())?;
+        can_show(sweep.grid(), &options.quantity, &sweep.empty_table())?;
     }
     let (threads, pool) = pool(common)?;
-    let beside = manifest_path(&common.out);
-    let beside = beside.as_deref().map(|path| ("the manifest of --out", path));
-    let outputs = [Some(("--out", &*common.out)), picture.map(|own| own.output()), beside];
+    let beside = beside.as_deref().map(|path| (MANIFEST, path));
+    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output()), beside];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
 
-    let bar = bar(sweep.grid().cells(), common.quiet, &common.out);
+    let bar = bar(sweep.grid().cells(), common.quiet, common.out());
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let watch = Watch::start();
     let result = (|| {
@@ -72,18 +77,18 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         let grid = sweep.grid();
         let overlay = Overlay {
             release: mechanism.and_then(|own| release_line(&document.scene, &own, grid)),
-            first_interwell: first_interwell(grid, &rows),
+            first_interwell: first_interwell(grid, &rows).filter(|line| is_orderly(line, &rows)),
         };
-        let figure =
-            sweep_figure(&rows, grid, &overlay, &document.scene, &caption(&document), picture.theme)?;
-        picture.write(&mut sinks[1], &figure)?;
+        let (rows, scene, quantity) = (&rows, &document.scene, &*options.quantity);
+        let shown = SweepPicture { rows, grid, scene, quantity, overlay, ranges: axes };
+        picture.write(&mut sinks[1], sweep_figure(&shown, &caption(&document), picture.theme)?)?;
     }
     if sinks[2].is_some() {
         let data =
-            common.out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+            common.out().file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let grid = sweep.grid();
         let origin = watch.origin(threads);
-        let text = manifest(&document.scene, &document.name, grid, &tally, &origin, &data);
+        let text = manifest(&document, grid, &tally, &origin, &data);
         write_text(&mut sinks[2], &text)?;
     }
     finish(sinks)?;

@@ -6,7 +6,7 @@ use interwell::study::{Grid, Onset, Scan, Task, threshold_table};
 use super::failure::Failure;
 use super::interrupt;
 use super::options::ThresholdOptions;
-use super::support::{finish, inputs, load_with_mechanism, open, warn, write_table};
+use super::support::{finish, inputs, load_with_mechanism, open, write_table};
 use super::sweep::{located, pool};
 
 /// Steps of a scan whose step was left out.
@@ -15,8 +15,7 @@ const STEPS: f64 = 200.0;
 /// Searches and writes the table.
 pub fn run(options: &ThresholdOptions) -> Result<(), Failure> {
     let common = &options.common;
-    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
-    warn(&document, common, &[], Some(&mechanism));
+    let (document, _) = load_with_mechanism(&options.scene, common)?;
     let scan = scan(options, &document)?;
     let grid = match options.over.as_slice() {
         [] => None,
@@ -30,7 +29,7 @@ pub fn run(options: &ThresholdOptions) -> Result<(), Failure> {
     }
     let onset = Onset::ALL.into_iter().find(|onset| onset.name() == options.of).unwrap_or(Onset::Crossing);
     let (_, pool) = pool(common)?;
-    let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", &*common.out))])?;
+    let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", common.out()))])?;
     let task = Task { tick: &|| (), cancel: interrupt::listen() };
     let found =
         threshold_table((&document.scene, &document.files), grid.as_ref(), (&scan, onset), &pool, &task);

@@ -1,4 +1,4 @@
-//! What does a compliant stop do to a mass that strikes it and nothing else?
+//! The impact of a mass on a compliant stop, and nothing else.
 //!
 //! A point contact by Hertz with the loss of Hunt and Crossley (1975, "Coefficient of restitution interpreted as
 //! damping in vibroimpact", eq. 9): the stop pushes back with k d^1.5 (1 + a d'), d the depth by which the mass has
@@ -89,6 +89,26 @@ impl Hertz {
     pub fn restitution(&self, speed: f64) -> f64 {
         let struck = self.loss * speed;
         if struck > 0.0 { -rebound(gamma(struck)) / struck } else { 1.0 }
+    }
+
+    /// Loss times impact speed at which [`restitution`](Self::restitution) is this, which depends on that product alone; 0 at
+    /// a restitution of 1, and none at 0 and outside 0 to 1.
+    ///
+    /// By halving of its logarithm, to some roundings: the restitution falls with it.
+    pub fn struck_for(restitution: f64) -> Option<f64> {
+        if restitution == 1.0 {
+            return Some(0.0);
+        } else if !(restitution > 0.0 && restitution < 1.0) {
+            return None;
+        }
+        // The restitution lies between 1 - (2/3) a v and 1/(a v).
+        let (mut low, mut high) = ((0.5 * (1.0 - restitution)).ln(), -restitution.ln());
+        let one = |struck: f64| Self { stiffness: 1.0, loss: struck, material: None }.restitution(1.0);
+        for _ in 0..80 {
+            let middle = 0.5 * (low + high);
+            *(if one(middle.exp()) > restitution { &mut low } else { &mut high }) = middle;
+        }
+        Some((0.5 * (low + high)).exp())
     }
 
     /// Largest depth in m of the impact of `mass` in kg at `speed` in m/s; without other forces.
@@ -263,6 +283,18 @@ mod tests {
         assert!((stop(2.427).restitution(1.0) - 0.36).abs() < 1e-4);
         assert!((stop(1.0).restitution(1e4) * 1e4 - 1.0).abs() < 1e-9);
         assert_eq!((stop(0.0).restitution(0.5), stop(3.0).restitution(0.0)), (1.0, 1.0));
+    }
+
+    #[test]
+    fn a_restitution_gives_the_loss_that_it_takes() {
+        // ln((1 + a v)/(1 - a v e)) = a v (1 + e)
+        assert!((Hertz::struck_for(0.36).unwrap() / 2.426_877_191_846 - 1.0).abs() < 1e-11);
+        for e in [1e-9, 1e-3, 0.1, 0.36, 0.7, 0.99, 1.0 - 1e-7] {
+            let found = Hertz::struck_for(e).unwrap();
+            assert!((stop(1.0).restitution(found) / e - 1.0).abs() < 1e-12, "{e}: {found}");
+        }
+        assert_eq!(Hertz::struck_for(1.0), Some(0.0));
+        assert!([0.0, -0.1, 1.1, f64::NAN].into_iter().all(|e| Hertz::struck_for(e).is_none()));
     }
 
     #[test]

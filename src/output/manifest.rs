@@ -1,11 +1,11 @@
-//! What made this file? The manifest beside a sweep's rows, and what a summary says of its origin.
+//! The manifest beside a sweep's rows, and what a summary says of its origin.
 
 use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
 use super::json::pretty;
-use crate::scene::Scene;
+use crate::scene::{Document, PROGRAM, Scene};
 use crate::study::{Grid, Tally};
 
 /// Where a result came from, besides its scene.
@@ -23,35 +23,31 @@ pub struct Origin {
     pub jobs: usize,
 }
 
-/// The manifest of a sweep as text: a scene file with `scene_ron` as its text, swept over the axes, gives the
-/// same rows again. `scene_ron` has every argument applied and the swept fields at their unswept values.
+/// The manifest of a sweep as text: itself, or a scene file with `scene_ron` as its text beside the `files`, is swept to
+/// the same rows again. `scene_ron` has every argument applied, the swept fields at their unswept values, and the grid
+/// that ran as its `sweep`; `files` are the texts of the tables and records that the scene reads, by their paths in it.
 ///
-/// `scene_name` is how messages call the scene, `data` the name of the file with the rows.
-pub fn manifest(
-    scene: &Scene,
-    scene_name: &str,
-    grid: &Grid,
-    tally: &Tally,
-    origin: &Origin,
-    data: &str,
-) -> String {
+/// `document` has its files held; `data` is the name of the file with the rows.
+pub fn manifest(document: &Document, grid: &Grid, tally: &Tally, origin: &Origin, data: &str) -> String {
     let axes: Vec<Value> = grid
         .axes()
         .iter()
         .zip(grid.columns())
         .map(|(axis, column)| json!({ "field": axis.field, "column": column, "values": axis.values }))
         .collect();
+    let sweep = grid.axes().iter().map(|axis| axis.to_scene(&document.scene)).collect();
+    let scene = &Scene { sweep, ..document.scene.clone() };
     let text = crate::scene::write(scene);
     let counts = |counts: &BTreeMap<&'static str, u64>| -> Value {
         counts.iter().map(|(word, n)| ((*word).to_owned(), json!(n))).collect::<Map<_, _>>().into()
     };
     pretty(&json!({
-        "program": "interwell",
+        "program": PROGRAM,
         "version": origin.version,
         "command": "sweep",
         "arguments": origin.arguments,
         "data": data,
-        "scene_name": scene_name,
+        "scene_name": document.name,
         "title": scene.title,
         "tolerance": scene.run.tolerance,
         "seed": seed(scene),
@@ -65,6 +61,7 @@ pub fn manifest(
         "cpu_s": origin.cpu_s,
         "scene": serde_json::to_value(scene).unwrap_or(Value::Null),
         "scene_ron": text,
+        "files": document.files.held,
     }))
 }
 

@@ -16,9 +16,9 @@ pub use json::{landscape, summary};
 pub use manifest::{Origin, manifest};
 pub use number::push_number;
 pub use plot::{
-    Axis, Caption, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, Theme,
-    UnknownFormat, accuracy_figure, can_show, contact_figure, curve_figure, run_figure, speed_unit,
-    sweep_about, sweep_figure, viridis,
+    Axis, Caption, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, RMS, Ranges,
+    SweepPicture, Theme, UnknownFormat, accuracy_figure, can_show, contact_figure, curve_figure, quantities,
+    run_figure, speed_unit, sweep_about, sweep_figure, viridis,
 };
 pub use sink::{OpenError, Sink, is_regular, same_target};
 pub use text::aligned;

@@ -1,4 +1,4 @@
-//! Where do the bytes go, and what is left there when something fails?
+//! Outputs: files that appear whole, devices, pipes and standard output.
 //!
 //! A regular file is written beside its final name and renamed when whole, so that neither an error
 //! nor Ctrl-C leaves a half file or harms the one that was there. What is not a regular file (a
@@ -26,12 +26,12 @@ pub enum OpenError {
     #[error("cannot write {}: it is a folder; name a file in it", .0.display())]
     IsFolder(PathBuf),
     /// The operating system refuses.
-    #[error("cannot write {}: {source}", path.display())]
+    #[error("cannot write {}: {problem}", path.display())]
     Refused {
         /// The file asked for.
         path: PathBuf,
-        /// What it says.
-        source: io::Error,
+        /// What it says; a part of the message, and no cause that is printed once more.
+        problem: io::Error,
     },
 }
 
@@ -72,7 +72,7 @@ impl Sink {
             let identity = Identity { stdout: true, path: None, inode: stdout_inode() };
             return Ok(Self::new("standard output".into(), Kind::Stdout, identity));
         }
-        let refused = |source| OpenError::Refused { path: path.to_owned(), source };
+        let refused = |problem| OpenError::Refused { path: path.to_owned(), problem };
         let name = path.display().to_string();
         let target = follow_links(path);
         let there = match fs::metadata(&target) {
@@ -162,7 +162,8 @@ impl Sink {
                 stdout.write_all(bytes).and_then(|()| stdout.flush())
             }
             Kind::Straight(file) => file.write_all(bytes),
-            Kind::Whole { part, .. } => part.write_all(bytes),
+            // Not through the temporary file itself, whose errors name it.
+            Kind::Whole { part, .. } => part.as_file_mut().write_all(bytes),
         };
         self.buffer.clear();
         match result {
@@ -233,11 +234,17 @@ fn create_part(folder: &Path, replaces: Option<&fs::Metadata>) -> io::Result<Nam
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let part = builder.tempfile_in(folder)?;
+    let part = builder.tempfile_in(folder).map_err(without_path)?;
     if let Some(there) = replaces {
         part.as_file().set_permissions(there.permissions())?;
     }
     Ok(part)
+}
+
+/// An error of tempfile without the name of the temporary file, which means nothing to a person.
+fn without_path(error: io::Error) -> io::Error {
+    let text = error.to_string();
+    io::Error::new(error.kind(), text.split(" at path \"").next().unwrap_or_default().to_owned())
 }
 
 #[cfg(unix)]

@@ -26,7 +26,6 @@ pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
     part("excitation", from.excitation == to.excitation, ron(&to.excitation));
     part("start", from.start == to.start, ron(&to.start));
     part("run", from.run == to.run, ron(&to.run));
-    part("transducer", from.transducer == to.transducer, ron(&to.transducer));
     all
 }
 

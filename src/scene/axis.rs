@@ -1,4 +1,4 @@
-//! Which values does a sweep take, and what are its columns called?
+//! The axes of a sweep: their values, and the names of their columns.
 
 use std::collections::HashSet;
 
@@ -22,6 +22,8 @@ pub struct Axis {
     pub field: String,
     /// The values, each within the field's range; at least one.
     pub values: Vec<f64>,
+    /// First value, last value and step that they were written out from, where they were.
+    steps: Option<[f64; 3]>,
     path: FieldPath,
 }
 
@@ -40,24 +42,39 @@ impl Axis {
             let text = text.trim();
             Decimal::parse(text).ok_or_else(|| format!("`{}` is not a finite decimal number", clip(text)))
         };
+        let mut steps = None;
         let values = if values.contains(':') {
             let parts: Vec<&str> = values.split(':').collect();
             let [from, to, step] = parts[..] else {
                 return Err(format!("`{}` is not FROM:TO:STEP, such as 0:2:0.02", clip(values)));
             };
-            write_out(Grid::new(read(from)?, read(to)?, read(step)?)?)?
+            let parts = [read(from)?, read(to)?, read(step)?];
+            steps = Some(parts.map(Decimal::value));
+            write_out(Grid::new(parts[0], parts[1], parts[2])?)?
         } else {
             let listed: Result<Vec<f64>, String> =
                 values.split(',').map(|text| Ok(read(text)?.value())).collect();
             listed?
         };
-        Self { field: field.to_owned(), values, path: FieldPath::new(field) }.within(spec)
+        Self { field: field.to_owned(), values, steps, path: FieldPath::new(field) }.within(spec)
     }
 
     /// Writes out an axis of a scene's own `sweep`, through the shortest decimals of its numbers. The
-    /// error is the part of the axis at fault (`field`, `from`, `to` or `step`) and a sentence.
+    /// error is the part of the axis at fault (`field`, `from`, `to`, `step` or `values`) and a sentence.
     pub fn from_scene(axis: &SweepAxis, scene: &Scene) -> Result<Self, (&'static str, String)> {
         let spec = numeric(scene, &axis.field).map_err(|problem| ("field", problem))?;
+        let own = |values, steps| Self {
+            field: axis.field.clone(),
+            values,
+            steps,
+            path: FieldPath::new(&axis.field),
+        };
+        if !axis.values.is_empty() {
+            if axis.values.len() > LARGEST_AXIS {
+                return Err(("values", too_long(axis.values.len())));
+            }
+            return own(axis.values.clone(), None).within(spec).map_err(|problem| ("values", problem));
+        }
         let read = |part, value| {
             let problem = || (part, format!("{} is not a finite number", number_text(value)));
             Decimal::shortest(value).ok_or_else(problem)
@@ -67,9 +84,27 @@ impl Axis {
         let part = if axis.step > 0.0 && below { "to" } else { "step" };
         let grid = Grid::new(parts.0, parts.1, parts.2).map_err(|problem| (part, problem.to_owned()))?;
         let values = write_out(grid).map_err(|problem| ("step", problem))?;
-        let own = Self { field: axis.field.clone(), values, path: FieldPath::new(&axis.field) };
         let part = if spec.range.contains(axis.from) { "to" } else { "from" };
-        own.within(spec).map_err(|problem| (part, problem))
+        own(values, Some([axis.from, axis.to, axis.step])).within(spec).map_err(|problem| (part, problem))
+    }
+
+    /// The axis as a scene's own `sweep` has it: [`from_scene`](Self::from_scene) gives the same values again, to the bit.
+    pub fn to_scene(&self, scene: &Scene) -> SweepAxis {
+        let even = self.steps.map(|[from, to, step]| SweepAxis {
+            field: self.field.clone(),
+            from,
+            to,
+            step,
+            values: Vec::new(),
+        });
+        // More digits than a double has may stand in an argument.
+        let same =
+            |axis: &SweepAxis| Self::from_scene(axis, scene).is_ok_and(|own| own.values == self.values);
+        even.filter(same).unwrap_or_else(|| SweepAxis {
+            field: self.field.clone(),
+            values: self.values.clone(),
+            ..SweepAxis::default()
+        })
     }
 
     /// Puts the axis's value number `index` into a scene that has the field; out of range, nothing
@@ -119,11 +154,12 @@ pub(super) fn unknown(kind: &str, field: &str, known: &[String]) -> String {
 fn write_out(grid: Grid) -> Result<Vec<f64>, String> {
     match usize::try_from(grid.count()) {
         Ok(count) if count <= LARGEST_AXIS => Ok((0..count as u128).map(|i| grid.at(i).value()).collect()),
-        _ => Err(format!(
-            "{} values are more than an axis may have ({LARGEST_AXIS}); give a larger step",
-            grid.count()
-        )),
+        _ => Err(too_long(grid.count())),
     }
+}
+
+fn too_long(count: impl std::fmt::Display) -> String {
+    format!("{count} values are more than an axis may have ({LARGEST_AXIS}); give a larger step")
 }
 
 /// Column names for swept fields: of each path the shortest ending that no other one shares and that

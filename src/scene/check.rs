@@ -299,6 +299,7 @@ fn sweep(scene: &Scene, checked: &mut Checked) {
                 "field" => format!("{:?}", axis.field),
                 "from" => number_text(axis.from),
                 "to" => number_text(axis.to),
+                "values" => format!("a list of {}", axis.values.len()),
                 _ => number_text(axis.step),
             };
             checked.fault(path + part, value, problem);

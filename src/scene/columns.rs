@@ -1,4 +1,4 @@
-//! Which numbers stand in two named columns of a CSV text?
+//! The numbers of two named columns of a CSV text.
 //!
 //! Comma separated, a header row with the wanted columns in any order among others, lines that begin with
 //! `#` are comments. Nothing is repaired silently: what cannot be meant is refused with its line and value.
@@ -59,7 +59,7 @@ pub enum ColumnsError {
         value: String,
     },
     /// More rows than are sensible.
-    #[error("has more than {0} rows; thin it out")]
+    #[error("has more than {0} rows, the most that are read: thin it out, or cut it to what the run needs")]
     TooMany(usize),
 }
 

@@ -19,7 +19,8 @@ use super::record::Record;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// One line that names the scene.
+    /// One line that names the scene; left out in a file, the file's name without its ending.
+    #[serde(default)]
     pub title: String,
     /// What to look for; free text. In a file a line break is a space, as wide as it may be indented,
     /// and an empty line begins a paragraph.
@@ -46,9 +47,6 @@ pub struct Scene {
     /// The grid that `sweep` runs over, slowest field first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sweep: Vec<SweepAxis>,
-    /// Electromagnetic transducer.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub transducer: Transducer,
     /// Hints for the window; the command line ignores them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub app: Option<AppHints>,
@@ -265,7 +263,7 @@ pub enum Excitation {
         lines: u64,
     },
     /// A recorded acceleration: CSV with columns `t_s,accel_m_per_s2`, linear between samples, zero after
-    /// its end.
+    /// its end; at most a million rows and 64 MB.
     Recorded {
         /// Path relative to the scene file, or the name of an embedded record.
         path: String,
@@ -310,9 +308,9 @@ pub struct Run {
     pub recurrence: bool,
 }
 
-/// One axis of a sweep.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// One axis of a sweep: even steps (`from`, `to`, `step`), or `values` in their place.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "WrittenAxis", into = "WrittenAxis")]
 pub struct SweepAxis {
     /// Dotted path of a numeric field, such as `stops.travel_limit_mm`.
     pub field: String,
@@ -322,15 +320,46 @@ pub struct SweepAxis {
     pub to: f64,
     /// Step, 1e-200 to 1e200.
     pub step: f64,
+    /// The values one by one, each -1e200 to 1e200; where there are any, the three numbers above have no meaning.
+    pub values: Vec<f64>,
 }
 
-/// Electromagnetic transducer.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum Transducer {
-    /// None.
-    #[default]
-    None,
+/// A [`SweepAxis`] as a file has it.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "SweepAxis", deny_unknown_fields)]
+struct WrittenAxis {
+    field: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    from: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    to: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    step: Option<f64>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    values: Vec<f64>,
+}
+
+impl From<SweepAxis> for WrittenAxis {
+    fn from(SweepAxis { field, from, to, step, values }: SweepAxis) -> Self {
+        let even = |number: f64| values.is_empty().then_some(number);
+        Self { field, from: even(from), to: even(to), step: even(step), values }
+    }
+}
+
+impl TryFrom<WrittenAxis> for SweepAxis {
+    type Error = &'static str;
+
+    fn try_from(WrittenAxis { field, from, to, step, values }: WrittenAxis) -> Result<Self, Self::Error> {
+        match (from, to, step) {
+            (Some(from), Some(to), Some(step)) if values.is_empty() => {
+                Ok(Self { field, from, to, step, values })
+            }
+            (None, None, None) if !values.is_empty() => Ok(Self { field, values, ..Self::default() }),
+            _ => Err(
+                "an axis of a sweep has `from`, `to` and `step`, or `values` with at least one number in their place",
+            ),
+        }
+    }
 }
 
 /// Hints for the window.

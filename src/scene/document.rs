@@ -7,9 +7,11 @@ use super::check::{check, corners};
 use super::data::{Mechanism, Scene};
 use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 use super::fields::{Field, FieldPath, Slot, all_fields};
-use super::files::{Files, ReadError, read_text};
+use super::files::{Files, ReadError, read_from, read_text};
 use super::locate::Places;
+use super::manifest;
 use super::presets::{self, PRESETS};
+use super::ranges::number_text;
 use super::record;
 use super::text::{self, LARGEST_SCENE, clip, explain};
 
@@ -19,6 +21,9 @@ const MOST_FAULTS: usize = 50;
 /// The most values that the axes of a sweep may have together. Three axes that pass it, of which none alone is too long,
 /// make more cells than any sweep may have; they are refused before they are all written out.
 const MOST_VALUES: usize = 2 * LARGEST_AXIS;
+
+/// How messages call a scene that came through a pipe.
+const STANDARD_INPUT: &str = "standard input";
 
 /// A scene, its text, and the arguments that changed it since.
 #[derive(Debug, Clone)]
@@ -38,23 +43,33 @@ pub struct Document {
 }
 
 impl Document {
+    /// What a command is given as its scene: what [`load`](Self::load) takes, the manifest of a sweep, or `-` for the text
+    /// of a scene on standard input.
+    pub fn of_argument(spec: &str) -> Result<Self, SceneError> {
+        if let Some(document) = Self::preset(spec) {
+            return document;
+        }
+        let (name, text, files) = if spec == "-" {
+            let unreadable = |problem| SceneError::Unreadable { name: STANDARD_INPUT.to_owned(), problem };
+            let text = read_from(std::io::stdin(), manifest::LARGEST).map_err(unreadable)?;
+            (STANDARD_INPUT.to_owned(), text, Files::beside(Path::new("")))
+        } else {
+            (clip(spec), read_scene(spec, manifest::LARGEST)?, Files::beside(Path::new(spec)))
+        };
+        if text::is_json(&text) {
+            manifest::read(&name, &text, files)
+        } else {
+            Self::from_text(&name, &text, files)
+        }
+    }
+
     /// Reads a scene file, or the built-in scene of that name. A file that is called like a built-in
     /// scene is reached by `./paper`.
     pub fn load(spec: &str) -> Result<Self, SceneError> {
         if let Some(document) = Self::preset(spec) {
             return document;
         }
-        let text = match read_text(Path::new(spec), LARGEST_SCENE) {
-            Ok(text) => text,
-            Err(ReadError::Missing) => {
-                let spec = if spec.is_empty() { "\"\"".to_owned() } else { clip(spec) };
-                return Err(SceneError::NoSuchScene { spec, presets: presets::names() });
-            }
-            Err(ReadError::Unusable(problem)) => {
-                return Err(SceneError::Unreadable { name: clip(spec), problem });
-            }
-        };
-        Self::from_text(&clip(spec), &text, Files::beside(Path::new(spec)))
+        Self::from_text(&clip(spec), &read_scene(spec, LARGEST_SCENE)?, Files::beside(Path::new(spec)))
     }
 
     /// The built-in scene of that name. The inner result is an error only if the program was built
@@ -67,11 +82,14 @@ impl Document {
     /// Parses a scene; `name` is how messages call it. Ranges are left to [`check`](Self::check), so
     /// that an argument may still mend them.
     pub fn from_text(name: &str, text: &str, files: Files) -> Result<Self, SceneError> {
-        let mut scene = text::parse(text).map_err(|refusal| SceneError::Structure {
-            name: name.to_owned(),
-            place: refusal.place,
-            problem: refusal.problem,
-        })?;
+        let mut scene = match text::parse(text) {
+            Ok(scene) => scene,
+            Err(refusal) => return Err(refused(name, text, refusal, files)),
+        };
+        if scene.title.is_empty() && Places::of(text).find("title").is_none() {
+            let stem = Path::new(name).file_stem().unwrap_or_default();
+            scene.title = stem.to_string_lossy().into_owned();
+        }
         let unread = record::attach(&mut scene.excitation, "excitation", &files);
         let (name, text) = (name.to_owned(), text.to_owned());
         Ok(Self { scene, name, text, files, assigned: Vec::new(), unread })
@@ -111,14 +129,52 @@ impl Document {
         }
     }
 
-    /// Where the files lie that the scene names: its table and its records.
-    pub fn named_files(&self) -> Vec<PathBuf> {
+    /// The files that the scene names, as it names them: its table and its records.
+    fn paths(&self) -> Vec<&str> {
         let table = match &self.scene.mechanism {
             Mechanism::Table { path, .. } => Some(path.as_str()),
             _ => None,
         };
-        let named = table.into_iter().chain(record::paths(&self.scene.excitation));
-        named.filter_map(|path| self.files.place(path)).collect()
+        table.into_iter().chain(record::paths(&self.scene.excitation)).collect()
+    }
+
+    /// What `--set` arguments changed, `FIELD=VALUE` each; of several for one field the last one.
+    pub fn changes(&self) -> impl Iterator<Item = &str> {
+        let later = |i: usize, field: &str| self.assigned[i + 1..].iter().any(|(own, _)| own == field);
+        let last = self.assigned.iter().enumerate().filter(move |(i, (field, _))| !later(*i, field));
+        last.filter_map(|(_, (_, argument))| argument.strip_prefix("--set "))
+    }
+
+    /// Leaves out a settle time of the scene's text that lies beyond a duration which an argument set: it is then half of
+    /// that duration. What is to be said of it.
+    pub fn settle_within(&mut self) -> Option<String> {
+        let run = &mut self.scene.run;
+        let (settle, duration) = (run.settle_s?, run.duration_s);
+        let given = |field: &str| self.assigned.iter().find(|(own, _)| own == field);
+        let (_, argument) =
+            given("run.duration_s").filter(|_| given("run.settle_s").or(given("run")).is_none())?;
+        if !(settle > duration && duration > 0.0) {
+            return None;
+        }
+        run.settle_s = None;
+        Some(format!(
+            "{}: run.settle_s = {} lies beyond {argument}: the settled window begins at {} s, half of that",
+            self.name,
+            number_text(settle),
+            number_text(0.5 * duration)
+        ))
+    }
+
+    /// Where the files lie that the scene names.
+    pub fn named_files(&self) -> Vec<PathBuf> {
+        self.paths().into_iter().filter_map(|path| self.files.place(path)).collect()
+    }
+
+    /// Reads the files that the scene names, so that they are at hand whatever becomes of them; none but those are held.
+    /// One that cannot be read is left to whoever needs it, and has a better place to say so.
+    pub fn hold_files(&mut self) {
+        let read = |path: &str| Some((path.to_owned(), self.files.read(path).ok()?));
+        self.files.held = self.paths().into_iter().filter_map(read).collect();
     }
 
     /// Checks the scene: all faults at once as an error, or the warnings, each with the file's name.
@@ -221,6 +277,55 @@ impl Document {
     }
 }
 
+/// The text of the file at `spec`, of at most `largest` bytes.
+fn read_scene(spec: &str, largest: usize) -> Result<String, SceneError> {
+    read_text(Path::new(spec), largest).map_err(|error| match error {
+        ReadError::Missing => {
+            let spec = if spec.is_empty() { "\"\"".to_owned() } else { clip(spec) };
+            SceneError::NoSuchScene { spec, presets: presets::names() }
+        }
+        ReadError::Unusable(problem) => SceneError::Unreadable { name: clip(spec), problem },
+    })
+}
+
+/// The error of a text that is no scene. A name that nothing knows is taken out, so that others, and values out of their
+/// ranges, are said with it.
+fn refused(name: &str, text: &str, mut refusal: text::Refusal, files: Files) -> SceneError {
+    /// How many names are taken out.
+    const MOST_UNKNOWN: usize = 20;
+    let said = |refusal: &text::Refusal| {
+        let text::Refusal { place, problem, .. } = refusal;
+        format!("{name}:{}:{}: {problem}", place.line, place.column)
+    };
+    let (place, problem) = (refusal.place, refusal.problem.clone());
+    let (mut more, mut text) = (Vec::new(), text.strip_prefix('\u{feff}').unwrap_or(text).to_owned());
+    while let Some(rest) = refusal.without_unknown(&text).filter(|_| more.len() < MOST_UNKNOWN) {
+        text = rest;
+        match text::parse(&text) {
+            // What is missing now may be what the unknown name was meant to be.
+            Err(next) if next.unknown.is_none() => break,
+            Err(next) => {
+                more.push(said(&next));
+                refusal = next;
+            }
+            Ok(_) => {
+                let checked = Document::from_text(name, &text, files).and_then(|document| document.check());
+                more.extend(
+                    checked
+                        .err()
+                        .map(|error| error.to_string())
+                        .iter()
+                        .flat_map(|all| all.lines())
+                        .map(str::to_owned),
+                );
+                break;
+            }
+        }
+    }
+    more.truncate(MOST_FAULTS);
+    SceneError::Structure { name: name.to_owned(), place, problem, more }
+}
+
 /// Replaces a field from its text; the error is a sentence.
 fn replace(found: Field<'_>, value: &str) -> Result<(), String> {
     let refused = |error: ron::error::SpannedError| format!("`{}`: {}", clip(value), explain(&error));
@@ -251,4 +356,10 @@ fn replace(found: Field<'_>, value: &str) -> Result<(), String> {
 /// A number as RON writes it or as Rust does: `4`, `.5`, `1e-9`, `-inf`.
 fn parse_number(text: &str) -> Option<f64> {
     text.parse().ok().or_else(|| text::options().from_str(text).ok())
+}
+
+/// Whether there is a scene at `path`: a file whose name ends in `.ron`, mistaken or not, or whose text is one.
+pub fn is_scene_file(path: &Path) -> bool {
+    let named = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
+    path.is_file() && (named || read_text(path, LARGEST_SCENE).is_ok_and(|text| text::parse(&text).is_ok()))
 }

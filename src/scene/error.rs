@@ -1,4 +1,4 @@
-//! What can be wrong with a scene, as a person should read it.
+//! What can be wrong with a scene, in words.
 
 use std::fmt;
 
@@ -57,7 +57,7 @@ pub enum SceneError {
         problem: String,
     },
     /// The text is not a scene.
-    #[error("{name}:{}:{}: {problem}", place.line, place.column)]
+    #[error("{name}:{}:{}: {problem}{}", place.line, place.column, more.iter().map(|line| format!("\n{line}")).collect::<String>())]
     Structure {
         /// The file.
         name: String,
@@ -65,6 +65,8 @@ pub enum SceneError {
         place: Place,
         /// Why, with the names that are known there.
         problem: String,
+        /// What else is wrong, a line each, where it is a name that nothing knows and the rest can be read without it.
+        more: Vec<String>,
     },
     /// Values that cannot be used, all of them.
     #[error("{}", Lines { name, faults, more: *more })]

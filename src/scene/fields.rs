@@ -94,6 +94,14 @@ fn whole(v: &mut impl Visitor, spec: &'static Spec, value: &mut u64) {
     v.field(Segment::Name(spec.name), false, Field::Number(spec, Slot::Whole(value)));
 }
 
+fn numbers(v: &mut impl Visitor, spec: &'static Spec, list: &mut Vec<f64>) {
+    within(v, Segment::Name(spec.name), list, |list, v| {
+        for (i, value) in list.iter_mut().enumerate() {
+            v.field(Segment::Index(i), false, Field::Number(spec, Slot::Required(value)));
+        }
+    });
+}
+
 fn leaf(v: &mut impl Visitor, name: &'static str, value: &mut dyn Assign) {
     v.field(Segment::Name(name), false, Field::Value(value));
 }
@@ -139,13 +147,16 @@ fn walk(scene: &mut Scene, v: &mut impl Visitor) {
         for (i, axis) in sweep.iter_mut().enumerate() {
             within(v, Segment::Index(i), axis, |axis, v| {
                 v.field(Segment::Name("field"), false, Field::Text(&mut axis.field));
-                number(v, &ranges::FROM, &mut axis.from);
-                number(v, &ranges::TO, &mut axis.to);
-                number(v, &ranges::STEP, &mut axis.step);
+                if axis.values.is_empty() {
+                    number(v, &ranges::FROM, &mut axis.from);
+                    number(v, &ranges::TO, &mut axis.to);
+                    number(v, &ranges::STEP, &mut axis.step);
+                } else {
+                    numbers(v, &ranges::VALUES, &mut axis.values);
+                }
             });
         }
     });
-    leaf(v, "transducer", &mut scene.transducer);
     within(v, Segment::Name("app"), &mut scene.app, |app, v| {
         let Some(app) = app else { return };
         leaf(v, "layout", &mut app.layout);
@@ -190,12 +201,7 @@ fn walk_mechanism<V: Visitor>(mechanism: &mut Mechanism, v: &mut V) {
             number(v, &ranges::BARRIER, barrier_mj);
         }
         Mechanism::Polynomial { coefficients_si } => {
-            within(v, Segment::Name(ranges::COEFFICIENTS.name), coefficients_si, |list, v| {
-                for (i, c) in list.iter_mut().enumerate() {
-                    let slot = Slot::Required(c);
-                    v.field(Segment::Index(i), false, Field::Number(&ranges::COEFFICIENTS, slot));
-                }
-            });
+            numbers(v, &ranges::COEFFICIENTS, coefficients_si);
         }
         Mechanism::Table { path, tolerance } => {
             v.field(Segment::Name("path"), false, Field::Text(path));

@@ -1,5 +1,6 @@
-//! Where are the files that a scene names, and what if they are not?
+//! The files that a scene names, and what is said where they cannot be read.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -16,6 +17,8 @@ pub const LARGEST_TABLE: usize = 64 << 20;
 pub struct Files {
     /// Folder that relative paths start from; none for a preset or a pasted scene.
     pub folder: Option<PathBuf>,
+    /// Texts that are at hand already, by the path that the scene names them by.
+    pub held: BTreeMap<String, String>,
 }
 
 /// Why a file that a scene names cannot be read. The messages name the file as it was looked for.
@@ -57,7 +60,7 @@ impl Files {
     /// The files of a scene file: relative paths start at its folder.
     pub fn beside(scene_file: &Path) -> Self {
         let folder = scene_file.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-        Self { folder: Some(folder) }
+        Self { folder: Some(folder), ..Self::default() }
     }
 
     /// Where a file that a scene names lies; none for an embedded one.
@@ -69,11 +72,14 @@ impl Files {
         }
     }
 
-    /// The text of a file that a scene names.
+    /// The text of a file that a scene names, held or read.
     ///
     /// An absolute path is read as it is. A relative one starts at the folder of the scene; where there is no
     /// folder, it is the name of an embedded table.
     pub fn read(&self, path: &str) -> Result<String, FileError> {
+        if let Some(text) = self.held.get(path) {
+            return Ok(text.clone());
+        }
         let embedded = || presets::TABLES.iter().find(|table| table.name == path);
         let names = || presets::TABLES.iter().map(|table| table.name).collect::<Vec<_>>().join(", ");
         let Some(tried) = self.place(path) else {
@@ -104,20 +110,25 @@ pub(super) fn read_text(path: &Path, largest: usize) -> Result<String, ReadError
     if path.is_dir() {
         return unusable("is a directory; a file is needed".to_owned());
     }
+    match File::open(path) {
+        Ok(file) => read_from(file, largest).map_err(ReadError::Unusable),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(ReadError::Missing),
+        Err(error) => unusable(format!("cannot be read: {error}")),
+    }
+}
+
+/// Reads at most `largest` bytes of UTF-8; the error is a clause.
+pub(super) fn read_from(from: impl Read, largest: usize) -> Result<String, String> {
     let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(largest as u64 + 1).read_to_end(&mut bytes));
-    if let Err(error) = read {
-        return match error.kind() {
-            std::io::ErrorKind::NotFound => Err(ReadError::Missing),
-            _ => unusable(format!("cannot be read: {error}")),
-        };
-    }
+    from.take(largest as u64 + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| format!("cannot be read: {error}"))?;
     if bytes.len() > largest {
-        return unusable(format!("is larger than {} MB, the most that is read", largest >> 20));
+        return Err(format!("is larger than {} MB, the most that is read", largest >> 20));
     }
-    String::from_utf8(bytes).or_else(|error| {
+    String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = 1 + error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count();
-        unusable(format!("is not text: byte {} (line {line}) is not valid UTF-8", valid + 1))
+        format!("is not text: byte {} (line {line}) is not valid UTF-8", valid + 1)
     })
 }

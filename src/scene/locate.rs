@@ -1,9 +1,11 @@
-//! On which line of a scene's text does a field stand?
+//! The fields of a scene's text and the places where they stand.
 //!
 //! serde keeps no positions, and a second parser would be a second truth: this scanner only follows
 //! brackets, strings, comments and `name:`, and never fails. On text that RON accepts it names every
 //! field by the same path as the walk in `fields`; on other text it names what it can, which is enough
 //! to say near which field a parser stopped. One pass, linear in the text.
+
+use std::ops::Range;
 
 /// A place in a text, both counted from 1, the column in characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,6 +30,8 @@ struct Named {
     around: Option<usize>,
     part: Part,
     place: Place,
+    /// Its bytes, name and value.
+    bytes: Range<usize>,
 }
 
 /// The last part of a path.
@@ -54,7 +58,7 @@ impl Places {
         scanner.value(None, 0);
         let mut places = Vec::with_capacity(scanner.found.len());
         let (mut place, mut passed) = (Place { line: 1, column: 1 }, 0);
-        for Found { around, part, at } in scanner.found {
+        for Found { around, part, at, end } in scanner.found {
             for byte in &text.as_bytes()[passed..at] {
                 match byte {
                     b'\n' => place = Place { line: place.line + 1, column: 1 },
@@ -64,7 +68,7 @@ impl Places {
                 }
             }
             passed = at;
-            places.push(Named { around, part, place });
+            places.push(Named { around, part, place, bytes: at..end });
         }
         Self(places)
     }
@@ -75,6 +79,12 @@ impl Places {
         let place =
             |parts: &[Part]| self.0.iter().find(|named| self.is_at(named, parts)).map(|own| own.place);
         (1..=parts.len()).rev().find_map(|length| place(&parts[..length]))
+    }
+
+    /// The bytes of the field called `name` that begins at a place, its value among them.
+    pub(super) fn bytes_at(&self, place: Place, name: &str) -> Option<Range<usize>> {
+        let named = |own: &&Named| own.place == place && matches!(&own.part, Part::Name(own) if own == name);
+        self.0.iter().find(named).map(|own| own.bytes.clone())
     }
 
     /// The path of the last field that begins at or before a place.
@@ -107,6 +117,7 @@ struct Found {
     around: Option<usize>,
     part: Part,
     at: usize,
+    end: usize,
 }
 
 struct Scanner<'t> {
@@ -261,9 +272,14 @@ impl Scanner<'_> {
             let mut own = around;
             if let Some(part) = part {
                 own = Some(self.found.len());
-                self.found.push(Found { around, part, at: begin });
+                self.found.push(Found { around, part, at: begin, end: begin });
             }
             self.value(own, depth + 1);
+            if own != around
+                && let Some(own) = own
+            {
+                self.found[own].end = self.at;
+            }
             index += 1;
             if self.at == begin {
                 self.at += 1;

@@ -107,7 +107,7 @@ specs! {
     RESTITUTION_RIGHT = "restitution_right", 0.0, 1.0, "0 keeps no speed at an impact, 1 keeps all of it";
     CONTACT_STIFFNESS = "stiffness_n_per_m1_5", MODULUS.0, MODULUS.1,
         "give the stiffness of the contact in N/m^1.5, such as 3.7e9, or leave it out and give radius_mm and young_gpa";
-    LOSS = "loss_s_per_m", 0.0, 1e30, "give the loss of the contact in s/m, such as 4.9; 0 is an elastic contact";
+    LOSS = "loss_s_per_m", 0.0, 1e30, "give the loss of the contact in s/m, such as 10.4; 0 is an elastic contact; check says which gives a restitution";
     RADIUS = "radius_mm", LENGTH.0, LENGTH.1, "give the radius of the crossed cylinders in mm, such as 5";
     CONTACT_YOUNG = "young_gpa", MODULUS.0, MODULUS.1, "give Young's modulus in GPa, such as 69 for aluminium";
     CONTACT_YIELD = "yield_gpa", MODULUS.0, MODULUS.1, "give the yield strength in GPa, such as 0.276";
@@ -134,6 +134,7 @@ specs! {
     FROM = "from", COEFFICIENT.0, COEFFICIENT.1, "give the first value of the axis";
     TO = "to", COEFFICIENT.0, COEFFICIENT.1, "give the last value of the axis";
     STEP = "step", 1e-200, 1e200, "an axis goes upwards in steps above 0";
+    VALUES = "values", COEFFICIENT.0, COEFFICIENT.1, "give the values of the axis, in the field's unit";
     SPEED = "speed", 1e-15, 1000.0, "1 is real time, 0.1 a tenth of it";
 }
 

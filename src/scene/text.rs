@@ -1,4 +1,4 @@
-//! How is a scene read from its text, and written back?
+//! Reading a scene from its text, and writing it back.
 //!
 //! RON with `implicit_some` on, so that `settle_s: 5` needs no `Some`. What the parser refuses is
 //! reported with its place, the field it stood in and, where a name is unknown, the known ones.
@@ -24,6 +24,24 @@ pub(super) fn options() -> ron::Options {
 pub(super) struct Refusal {
     pub place: Place,
     pub problem: String,
+    /// The name, where it is a field that nothing knows.
+    pub unknown: Option<String>,
+}
+
+impl Refusal {
+    /// The text without the unknown field that it was refused for, every other thing where it was: what else is wrong
+    /// can be said too.
+    pub(super) fn without_unknown(&self, text: &str) -> Option<String> {
+        /// A text so long is not looked through again and again.
+        const LONGEST: usize = 1 << 17;
+        let name = self.unknown.as_deref().filter(|_| text.len() <= LONGEST)?;
+        let bytes = Places::of(text).bytes_at(self.place, name)?;
+        let after = &text[bytes.end..];
+        let comma = after.len() - after.trim_start().strip_prefix(',').map_or(after.len(), str::len);
+        let end = bytes.end + comma;
+        let blank = text[bytes.start..end].chars().map(|c| if c == '\n' { '\n' } else { ' ' });
+        Some(text[..bytes.start].chars().chain(blank).chain(text[end..].chars()).collect())
+    }
 }
 
 /// Parses a scene; ranges are not looked at.
@@ -32,11 +50,17 @@ pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     if text.trim().is_empty() {
         let problem = "the file is empty; a scene begins with `(title: \"..\", mass_g: 15.2, ..`".to_owned();
-        return Err(Refusal { place: start, problem });
+        return Err(Refusal { place: start, problem, unknown: None });
+    }
+    if is_json(text) {
+        let problem = "this is JSON; a scene begins with `(`. The manifest of a sweep is taken by the commands check, curve, \
+                       simulate, sweep and accuracy"
+            .to_owned();
+        return Err(Refusal { place: start, problem, unknown: None });
     }
     if text.len() > LARGEST_SCENE {
         let problem = format!("{} bytes are more than a scene may have ({LARGEST_SCENE})", text.len());
-        return Err(Refusal { place: start, problem });
+        return Err(Refusal { place: start, problem, unknown: None });
     }
     options().from_str(text).map_err(|error| {
         let trailing = error.code == Ron::TrailingCharacters;
@@ -54,11 +78,21 @@ pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
             }
             _ => explain(&error),
         };
+        let unknown = match &error.code {
+            Ron::NoSuchStructField { found, .. } => Some(found.clone()),
+            _ => None,
+        };
         Refusal {
+            unknown,
             place,
             problem: field.map_or(problem.clone(), |field| format!("{}: {problem}", clip(&field))),
         }
     })
+}
+
+/// Whether a text begins as JSON does, and no scene.
+pub(super) fn is_json(text: &str) -> bool {
+    text.trim_start_matches('\u{feff}').trim_start().starts_with('{')
 }
 
 /// The parser's cursor may stand on the blanks before the token that it means.
@@ -92,7 +126,6 @@ fn choices(field: &str) -> Option<&'static [&'static str]> {
         "stops" | "stops_when_on" => of::<Stops>(),
         "excitation" => of::<Excitation>(),
         "start" => of::<Start>(),
-        "transducer" => of::<Transducer>(),
         "layout" => of::<Layout>(),
         _ => None,
     }

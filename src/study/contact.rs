@@ -1,9 +1,14 @@
-//! What does a compliant stop do at which impact speed, and does it yield?
+//! Compliant stops: one impact over the impact speed, yielding, and the speeds that a scene's impacts have.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
 
 use super::table::{Table, Values};
-use crate::dynamics::{Model, Summary};
+use crate::dynamics::{EventKind, Model, Outcome, Request, Summary};
 use crate::mechanics::Hertz;
 use crate::numeric::short;
+use crate::scene::Stops;
 
 /// Positions of the speed on a table: more than a picture needs.
 const SPEEDS: usize = 401;
@@ -62,6 +67,103 @@ pub fn yield_warning(model: &Model, summary: &Summary) -> Option<String> {
         short(summary.peak_contact_force.unwrap_or(f64::NAN)),
         gpa(material.yield_pressure()),
         gpa(material.yield_strength)
+    ))
+}
+
+/// How fast the stops of a scene are struck.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strikes {
+    /// Median speed in m/s of the first impacts.
+    pub speed: f64,
+    /// How many first impacts there are.
+    pub count: usize,
+    /// Whether they are those of the settled window; of the whole run, where it has none.
+    pub settled: bool,
+}
+
+/// The first impacts of flights in one run of `model`: those after a crossing, a release or an impact on the other stop. The
+/// rebounds that follow them, down to chatter, do not count. None where nothing is struck or the run is cancelled.
+pub fn strikes(model: &Model, cancel: &AtomicBool) -> Option<Strikes> {
+    let run = model.run(&Request { events: true, cancel: Some(cancel), ..Request::default() });
+    if matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
+        return None;
+    }
+    let mut last = None;
+    let mut first: Vec<(f64, f64)> = Vec::new();
+    for event in &run.events {
+        match event.kind {
+            EventKind::Impact | EventKind::Contact => {
+                if last != Some(event.side) && event.v_in != 0.0 {
+                    first.push((event.t, event.v_in.abs()));
+                }
+                last = Some(event.side);
+            }
+            EventKind::Crossing | EventKind::Release => last = None,
+            EventKind::Rest | EventKind::Separate => {}
+        }
+    }
+    let settled = first.iter().any(|(t, _)| *t >= model.settle());
+    let mut speeds: Vec<f64> =
+        first.into_iter().filter(|(t, _)| !settled || *t >= model.settle()).map(|(_, speed)| speed).collect();
+    speeds.sort_by(f64::total_cmp);
+    let speed = *speeds.get(speeds.len() / 2)?;
+    Some(Strikes { speed, count: speeds.len(), settled })
+}
+
+/// How long `check` runs a scene to see how fast its stops are struck.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Restitutions for which `check` says what loss a compliant stop needs.
+const WANTED: [f64; 4] = [0.8, 0.5, 0.36, 0.2];
+
+/// What the speed at which the stops of `model` are struck means for compliant stops, in one sentence: their restitution at
+/// that speed and the loss for others; of rigid stops, which `stops` describes, the loss with their restitution. None
+/// where nothing is struck, or where the run takes longer than a second.
+pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
+    if *stops == Stops::None {
+        return None;
+    }
+    let cancel = AtomicBool::new(false);
+    let Strikes { speed, count, settled } = std::thread::scope(|scope| {
+        let (done, wait) = channel::<()>();
+        let cancel = &cancel;
+        scope.spawn(move || {
+            if wait.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                cancel.store(true, Ordering::Relaxed);
+            }
+        });
+        let found = strikes(model, cancel);
+        drop(done);
+        found
+    })?;
+    let loss = |restitution: f64| Hertz::struck_for(restitution).map(|struck| short(struck / speed));
+    let window = if settled { "in the settled window" } else { "in the run, before its settled window" };
+    let what = match model.compliant {
+        Some(stop) => {
+            let wanted = WANTED.map(|e| format!("{e} takes {} s/m", loss(e).unwrap_or_default()));
+            format!("restitution {} there; {}", short(stop.restitution(speed)), wanted.join(", "))
+        }
+        None => {
+            let own = match *stops {
+                Stops::Rigid { restitution, .. } => [Some(restitution), None],
+                Stops::Uneven { left_mm, right_mm, restitution_left: left, restitution_right: right } => {
+                    [left_mm.and(left.or(right)), right_mm.and(right.or(left))]
+                }
+                Stops::None | Stops::Hertz { .. } => [None, None],
+            };
+            let mut own: Vec<f64> = own.into_iter().flatten().collect();
+            own.dedup();
+            let own = own.into_iter().map(|e| match loss(e) {
+                Some(loss) => format!("a restitution of {e} there takes loss_s_per_m: {loss}"),
+                None => format!("no loss gives a restitution of {e}"),
+            });
+            format!("compliant in their place (`Hertz`), {}", own.collect::<Vec<_>>().join(", "))
+        }
+    };
+    let flights = if count == 1 { "one flight".to_owned() } else { format!("{count} flights") };
+    Some(format!(
+        "stops are struck at {} m/s (median of the first impacts of {flights} {window}): {what}",
+        short(speed)
     ))
 }
 

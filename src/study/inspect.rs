@@ -1,8 +1,9 @@
-//! What is this scene, in words? What it models and leaves out, how good its force curve is, where it
-//! rests.
+//! A scene in words: what it models and leaves out, how good its force curve is, where it rests, how fast its stops are
+//! struck.
 
 use std::sync::Arc;
 
+use super::contact::strikes_in_words;
 use super::curve::small_amplitude_frequency;
 use crate::dynamics::Model;
 use crate::mechanics::flexure::{Accuracy, Geometry, Group};
@@ -24,6 +25,7 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     }
     lines.extend(damping(scene, &model));
     lines.extend(landscape(&mechanism.landscape, model.mass));
+    lines.extend(strikes_in_words(&model, &scene.stops));
     Ok(lines)
 }
 

@@ -1,4 +1,4 @@
-//! Which lines tell where interwell motion begins on a map of runs?
+//! Lines that tell where interwell motion begins on a map of runs.
 
 use super::grid::Grid;
 use super::table::{Table, Values};
@@ -69,6 +69,34 @@ pub fn first_interwell(grid: &Grid, rows: &Table) -> Option<Table> {
     }
     let table = Table::new().with(&grid.columns()[other], Values::Numbers(values));
     Some(table.with(&grid.columns()[own], Values::Numbers(least)))
+}
+
+/// The least share of the cells beyond a line of [`first_interwell`] that are interwell, for it to part a map in two.
+const ORDERLY: f64 = 0.8;
+
+/// Whether `line`, as [`first_interwell`] gives it of `rows`, parts what is interwell from what is not: where chance decides
+/// from cell to cell, the first of them tells nothing.
+pub fn is_orderly(line: &Table, rows: &Table) -> bool {
+    let names = || line.columns().iter().map(|column| column.name.as_str());
+    let both = |table: &Table| -> Option<Vec<(f64, f64)>> {
+        let mut columns = names().map(|name| table.numbers(name));
+        let (others, amplitudes) = (columns.next()??, columns.next()??);
+        Some(others.iter().copied().zip(amplitudes.iter().copied()).collect())
+    };
+    let (Some(line), Some(cells)) = (both(line), both(rows)) else { return false };
+    let Some(Values::Words(regimes)) = rows.column("regime").map(|column| &column.values) else {
+        return false;
+    };
+    let (mut beyond, mut interwell) = (0_u64, 0_u64);
+    for ((other, amplitude), regime) in cells.into_iter().zip(regimes) {
+        let first =
+            line.binary_search_by(|own| own.0.total_cmp(&other)).map_or(f64::NAN, |place| line[place].1);
+        if amplitude >= first {
+            beyond += 1;
+            interwell += u64::from(*regime == Regime::Interwell.name());
+        }
+    }
+    interwell as f64 >= ORDERLY * beyond as f64
 }
 
 fn axis<'a>(grid: &'a Grid, field: &str) -> Option<&'a Axis> {

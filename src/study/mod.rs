@@ -27,7 +27,7 @@ mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-pub use contact::{contact, yield_speed, yield_warning};
+pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
 pub use curve::{
     CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency,
     stop_positions,
@@ -38,7 +38,7 @@ pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_
 pub use grid::{Grid, GridError, MAX_CELLS};
 pub use inspect::inspect;
 pub use levels::{Levels, STRIDES};
-pub use map::{first_interwell, release_line};
+pub use map::{first_interwell, is_orderly, release_line};
 pub use models::Held;
 pub use passage::between;
 pub use settled::{Settled, Standing, settled, standing};

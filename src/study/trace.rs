@@ -1,4 +1,4 @@
-//! What is seen of one run? Its path sampled for the eye, with every jump of the velocity, and the spans at rest.
+//! What a picture shows of one run: its path sampled for the eye, with every jump of the velocity, and the spans at rest.
 //!
 //! A picture must be right however sparse the samples are that were asked for, so it has its own:
 //! the run is asked for both at once, and each gets its own back.
@@ -18,11 +18,13 @@ pub struct Trace {
     /// `from_s,to_s,side` of every span at rest on a stop.
     pub rests: Table,
     /// Time in s from which on the phase portrait is shown: the settled window, but no more than
-    /// some forcing periods of it.
+    /// some forcing periods of it; or a window that was asked for.
     pub portrait_from: f64,
     /// Time in s from which on the motion is shown over time: of a long run under a drive that repeats, its last
     /// forcing periods, since all of it would be a filled band.
     pub shown_from: f64,
+    /// Time in s up to which motion and phase portrait are shown.
+    pub shown_to: f64,
     /// Positions of the left and the right stop in m; NaN where there is none.
     pub stops: (f64, f64),
     /// Begin of the settled window in s.
@@ -50,10 +52,12 @@ const PORTRAIT: f64 = 24_000.0;
 /// The most rows in a phase portrait; more of them, as of a million impacts, only blacken it.
 const MOST_PORTRAIT: usize = 60_000;
 
-/// Runs `model` once and keeps, besides what `keep` says, what a picture needs.
+/// Runs `model` once and keeps, besides what `keep` says, what a picture needs; a `window` in s, which lies within the run,
+/// is all that is shown.
 pub fn simulate_with_trace(
     model: &Model,
     keep: &Keep,
+    window: Option<(f64, f64)>,
     cancel: Option<&std::sync::atomic::AtomicBool>,
 ) -> (Simulation, Trace) {
     let request = Request { cancel, until_settled: keep.until_settled, ..Request::default() };
@@ -62,8 +66,8 @@ pub fn simulate_with_trace(
         Some(_) => model.run(&request).summary.window,
         None => (model.settle, model.duration),
     };
-    let mut portrait_from = portrait_from(model, span);
-    let mut seen = picture_times(model, portrait_from, span.1);
+    let mut close = window.unwrap_or((portrait_from(model, span), span.1));
+    let mut seen = picture_times(model, close, span.1);
     let times = ascending(seen.iter().chain(&keep.times).copied().collect());
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
     let stop = |side: Option<f64>| side.unwrap_or(f64::NAN);
@@ -74,21 +78,29 @@ pub fn simulate_with_trace(
     let mut shown = in_order(&seen, &run.samples);
     if end < span.1 && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
         // It ended where hardly a sample had been asked for: the same run again, looked at more closely.
-        portrait_from = 0.0;
-        seen = picture_times(model, portrait_from, end);
+        close = window.filter(|(from, _)| *from < end).map_or((0.0, end), |(from, to)| (from, to.min(end)));
+        seen = picture_times(model, close, end);
         shown = model.run(&Request { sample_times: &seen, ..request }).samples;
     }
     let path = path(&shown, &run.events, stops);
     let rows = path.numbers("t_s").unwrap_or_default();
-    if let Some(t) = rows.len().checked_sub(MOST_PORTRAIT).map(|first| rows[first]) {
+    let (mut portrait_from, shown_to) = close;
+    let until = rows.partition_point(|t| *t <= shown_to);
+    if let Some(t) = until.checked_sub(MOST_PORTRAIT).map(|first| rows[first]) {
         portrait_from = portrait_from.max(t);
     }
+    let shown_from = match window {
+        Some(_) => close.0,
+        None if end < span.1 => 0.0,
+        None => shown_from(model, end),
+    };
     let trace = Trace {
         path,
         impacts: impacts(&run.events),
         rests: rests(&run.events, run.samples.first(), end),
         portrait_from,
-        shown_from: if end < span.1 { 0.0 } else { shown_from(model, end) },
+        shown_from,
+        shown_to,
         stops,
         settle: span.0,
         end,
@@ -120,16 +132,16 @@ fn ascending(mut times: Vec<f64>) -> Vec<f64> {
     times
 }
 
-/// Even times up to `duration`, and closer ones over the phase portrait, in ascending order.
-fn picture_times(model: &Model, portrait_from: f64, duration: f64) -> Vec<f64> {
+/// Even times up to `duration`, and closer ones from one time to another, in ascending order.
+fn picture_times(model: &Model, close: (f64, f64), duration: f64) -> Vec<f64> {
     let swing = std::f64::consts::TAU * model.scales.time;
     let fastest = model.forcing_period.map_or(swing, |period| period.min(swing));
     let count = (duration / fastest * PER_PERIOD).clamp(OVERVIEW.0, OVERVIEW.1).floor();
-    let even = |from: f64, count: f64| {
-        let time = move |i: u32| (from + (duration - from) * f64::from(i) / count).min(duration);
+    let even = |(from, to): (f64, f64), count: f64| {
+        let time = move |i: u32| (from + (to - from) * f64::from(i) / count).min(duration);
         (0..=count as u32).map(time)
     };
-    ascending(even(0.0, count).chain(even(portrait_from, PORTRAIT)).collect())
+    ascending(even((0.0, duration), count).chain(even(close, PORTRAIT)).collect())
 }
 
 /// Samples and impacts in order of time. A sample at an impact's instant is the state after it.

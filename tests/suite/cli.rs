@@ -5,6 +5,7 @@ mod bad_input;
 mod flexure_numbers;
 mod flexures;
 mod outputs;
+mod verdicts;
 
 use std::path::Path;
 
@@ -64,7 +65,7 @@ fn without_headless_it_says_what_to_write() {
     for command in ["presets", "check", "curve", "simulate", "sweep", "accuracy"] {
         refused(plain(command), &["--headless", command]);
     }
-    refused(plain("--headless"), &["presets, check, curve, simulate, sweep or accuracy"]);
+    refused(plain("--headless"), &["presets, check, curve, simulate, sweep, threshold or accuracy"]);
     refused(headless("swep"), &["`swep`", "sweep"]);
     refused(headless("sweep --bogus"), &["--bogus"]);
     refused(headless("check --plot a.png"), &["--plot"]);
@@ -238,6 +239,58 @@ fn a_run_that_ends_early_writes_what_it_has() {
 }
 
 #[test]
+fn the_last_line_says_that_a_run_ended_early_and_strict_fails() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "simulate --set stops=None --set excitation.amplitude_g=40 --out";
+    for (strict, code) in [("", 0), ("--strict", 1)] {
+        let path = folder.path().join(format!("run{strict}.csv"));
+        let mut command = headless(line);
+        let output = command.arg(&path).args(strict.split_whitespace()).output().unwrap();
+        assert_eq!(output.status.code(), Some(code));
+        let said = String::from_utf8(output.stderr).unwrap();
+        let last = said.lines().last().unwrap();
+        for word in
+            ["built-in paper", "ended early at t = 0.", "left_table", "left the range of the force curve"]
+        {
+            assert!(last.contains(word), "`{word}` is not in: {said}");
+        }
+        assert!(std::fs::read_to_string(&path).unwrap().lines().count() > 1);
+    }
+    headless("simulate --strict --out /dev/null --set run.duration_s=1 --set run.settle_s=0")
+        .assert()
+        .success();
+    refused(headless("sweep --strict"), &["--strict"]);
+}
+
+#[test]
+fn a_duration_that_is_set_takes_the_settle_time_along() {
+    for line in ["simulate", "check", "sweep --over mass_g=15"] {
+        let assert = headless(&format!("{line} --set run.duration_s=4")).assert().success();
+        let output = assert.get_output();
+        let said = [&output.stdout[..], &output.stderr[..]].concat();
+        let said = String::from_utf8_lossy(&said).into_owned();
+        assert!(said.contains("run.settle_s = 5 lies beyond --set run.duration_s=4"), "{line}: {said}");
+    }
+    let value: serde_json::Value =
+        serde_json::from_str(&stdout("simulate --set run.duration_s=4 --out /dev/null --summary - --quiet"))
+            .unwrap();
+    assert!(value["rms_velocity_m_per_s"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn a_scene_comes_through_a_pipe() {
+    let text =
+        "(mass_g: 1000, mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1), run: (duration_s: 1))";
+    for command in ["check -", "simulate - --at 0", "curve - --at-mm 0", "sweep - --over mass_g=1"] {
+        headless(command).write_stdin(text).assert().success();
+    }
+    headless("check -").write_stdin(text).assert().stdout(starts_with("standard input: standard input\n"));
+    let mut wrong = headless("check -");
+    wrong.write_stdin(text.replace("1000", "0"));
+    refused(wrong, &["standard input:1:2: mass_g = 0"]);
+}
+
+#[test]
 fn sweep_rows_and_columns() {
     let line = "sweep --over stops.travel_limit_mm=1:2:0.5 --over excitation.amplitude_g=0.58,0 --quiet";
     let text = stdout(line);
@@ -289,15 +342,44 @@ fn options_stand_anywhere_and_values_may_be_negative() {
     for line in
         ["--quiet curve --at-mm -1", "curve --at-mm=-1 paper --quiet", "curve --quiet --at-mm -1 paper"]
     {
-        if line.starts_with("curve") {
-            assert_eq!(stdout(line), right);
-        }
+        assert_eq!(stdout(line), right, "{line}");
     }
     let mut after = plain("curve --at-mm -1 --headless");
     after.assert().success().stdout(right);
     let shifted = "simulate elastic-box --set start.x_mm=-3 --at 0";
     headless(shifted).assert().success().stdout(contains("\n0,-0.003,").or(contains("\n0,-3e-3,")));
     headless("presets --out -").assert().success().stdout(starts_with("first-look"));
+}
+
+#[test]
+fn common_options_may_stand_before_the_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |line: &str| {
+        let path = folder.path().join("rows.csv");
+        let (before, after) = line.split_once(" | ").unwrap();
+        let mut command = headless(before);
+        command.arg("--out").arg(&path).args(after.split_whitespace());
+        command.assert().success().stdout("").stderr("");
+        std::fs::read_to_string(&path).unwrap()
+    };
+    let over =
+        "sweep nominal-cubic --over excitation.amplitude_g=0.5,1 --set run.duration_s=2 --set run.settle_s=1";
+    let right = rows(&format!("--quiet | {over} --set mass_g=12 --tolerance 1e-6 --jobs 2"));
+    // What stands before the command counts first: a later --set of the same field wins, and none is forgotten.
+    let line = format!("--set mass_g=12 --tolerance 1e-6 --quiet --jobs 2 --set run.settle_s=0.5 | {over}");
+    assert_eq!(rows(&line), right);
+    refused(headless("--jobs 2 curve --jobs 1"), &["--jobs", "before and after"]);
+    refused(headless("--out a curve --out b"), &["--out", "before and after"]);
+    refused(plain("--quiet"), &["--quiet", "command"]);
+    refused(plain("paper --set mass_g=1"), &["--set", "command"]);
+}
+
+#[test]
+fn presets_take_no_option_of_a_run() {
+    for line in ["presets --set a=b", "--tolerance 1e-6 presets", "presets --jobs 2"] {
+        refused(headless(line), &["presets"]);
+    }
+    headless("--quiet presets").assert().success();
 }
 
 #[test]

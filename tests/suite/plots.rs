@@ -1,5 +1,6 @@
-//! Do pictures and manifests say what was run, whatever was run?
+//! Pictures and manifests say what was run, whatever was run.
 
+mod asked;
 mod lines;
 mod manifests;
 

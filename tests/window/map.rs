@@ -13,7 +13,13 @@ const WIDE: [f32; 2] = [1280.0, 720.0];
 
 /// A small map, so that a test takes no longer than it must.
 fn axes(steps: (f64, f64)) -> [SweepAxis; 2] {
-    let axis = |field: &str, from, to, step| SweepAxis { field: field.to_owned(), from, to, step };
+    let axis = |field: &str, from, to, step| SweepAxis {
+        field: field.to_owned(),
+        from,
+        to,
+        step,
+        values: Vec::new(),
+    };
     [axis("stops.travel_limit_mm", 1.0, 3.0, steps.0), axis("excitation.amplitude_g", 0.5, 1.5, steps.1)]
 }
 

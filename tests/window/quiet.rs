@@ -24,7 +24,13 @@ const CALLED: Duration = Duration::from_millis(100);
 
 /// A map for which the shaking is no axis.
 fn axes(step: f64) -> [SweepAxis; 2] {
-    let axis = |field: &str, from, to, step| SweepAxis { field: field.to_owned(), from, to, step };
+    let axis = |field: &str, from, to, step| SweepAxis {
+        field: field.to_owned(),
+        from,
+        to,
+        step,
+        values: Vec::new(),
+    };
     [axis("stops.travel_limit_mm", 1.0, 3.0, step), axis("excitation.frequency_hz", 2.0, 4.0, step)]
 }
 

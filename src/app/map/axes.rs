@@ -68,10 +68,12 @@ pub fn fields(scene: &Scene, when_on: Stops) -> Vec<String> {
     FIELDS.iter().flat_map(of).collect()
 }
 
-/// The axes of a scene's map: its own two, else travel limit and amplitude, else the first two that it has.
+/// The axes of a scene's map: its own two where both have even steps, else travel limit and amplitude, else the first two that it has.
 pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Option<[SweepAxis; 2]> {
     let known = fields(scene, when_on);
     if let [a, b] = scene.sweep.as_slice()
+        && a.values.is_empty()
+        && b.values.is_empty()
         && [a, b]
             .iter()
             .all(|axis| FieldPath::new(&axis.field).get(&ground(scene, when_on, &scene.sweep)).is_some())
@@ -89,7 +91,7 @@ pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Opti
 /// An axis over a field, around its present value; `well_mm` is where the right-hand well lies.
 pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> SweepAxis {
     let with_stops =
-        ground(scene, when_on, &[SweepAxis { field: path.to_owned(), from: 0.0, to: 0.0, step: 1.0 }]);
+        ground(scene, when_on, &[SweepAxis { field: path.to_owned(), step: 1.0, ..SweepAxis::default() }]);
     let present = FieldPath::new(path).get(&with_stops).unwrap_or(1.0).abs();
     let name = path.rsplit('.').next().unwrap_or(path);
     let upward = |greatest: f64| {
@@ -114,7 +116,7 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
         name if name.starts_with("restitution") => (0.0, 1.0, 1.0 / STEPS),
         _ => upward(if present > 0.0 { 2.0 * present } else { 1.0 }),
     };
-    SweepAxis { field: path.to_owned(), from, to, step }
+    SweepAxis { field: path.to_owned(), from, to, step, values: Vec::new() }
 }
 
 /// What a person calls a field, and its unit, where it has one: `travel limit` and `mm`. `column` is its name in a table.

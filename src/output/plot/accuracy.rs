@@ -60,7 +60,7 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
         }
         frame.axes(&mut figure, theme);
         figure.text(Text {
-            words: (*problem).to_owned(),
+            words: super::figure::fitted(heading(problem), style::AXIS, true, width),
             at: (left, TOP - 16.0),
             size: style::AXIS,
             ink: theme.ink,
@@ -87,6 +87,11 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
     };
     Caption { title, footer }.draw(&mut figure, theme, &subtitle, LEFT);
     figure
+}
+
+/// The words over the frame of a problem.
+fn heading(problem: &str) -> &str {
+    PROBLEMS.iter().find(|own| own.name == problem).map_or(problem, |own| own.heading)
 }
 
 /// Marker and colour of the method that stands at this place: the own one first.

@@ -1,4 +1,4 @@
-//! Where does an axis begin and end, and which numbers stand at it?
+//! Axes: where one begins and ends, and the numbers at it.
 
 /// A range of values with its ticks.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,6 +11,15 @@ pub struct Axis {
     pub ticks: Vec<(f64, String)>,
     /// What the axis shows, with unit and power of ten.
     pub label: String,
+}
+
+/// The ranges of a picture's axes, where they were asked for: of the one to the right and of the (first) one upward.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ranges {
+    /// To the right.
+    pub x: Option<(f64, f64)>,
+    /// Upward.
+    pub y: Option<(f64, f64)>,
 }
 
 /// Values beyond this are drawn at it: no difference of two overflows.
@@ -58,6 +67,12 @@ impl Axis {
         let label =
             if power == 0 { label.to_owned() } else { format!("{label} (\u{d7}10{})", raised(power)) };
         Self { low, high, ticks, label }
+    }
+
+    /// The axis over a range that was asked for, where one was.
+    #[must_use]
+    pub fn or_given(self, range: Option<(f64, f64)>, count: usize, label: &str) -> Self {
+        range.map_or(self, |(low, high)| Self::between(low, high, count, label))
     }
 
     /// An axis of decimal logarithms that covers `values` (which are the numbers themselves, above 0) in whole decades,

@@ -1,6 +1,6 @@
 //! The picture of a mechanism: force and potential over displacement, with equilibria, kinks and stops.
 
-use super::axis::Axis;
+use super::axis::{Axis, Ranges};
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
@@ -15,11 +15,12 @@ const GUTTER: f64 = 110.0;
 const TICKS: usize = 5;
 
 /// The picture of the curve in `table` (as [`curve`](crate::study::curve) gives it), with stops at these
-/// positions in m, NaN where there is none.
+/// positions in m, NaN where there is none. `ranges` are those of displacement and force.
 pub fn curve_figure(
     table: &Table,
     mechanism: &Mechanism,
     stops: (f64, f64),
+    ranges: Ranges,
     caption: &Caption,
     theme: &Theme,
 ) -> Figure {
@@ -33,7 +34,8 @@ pub fn curve_figure(
     let potential_range = telling(&x, column("potential_j"), landscape);
     let (force, force_unit) = scaled(force_range, &[(1.0, "N"), (1e-3, "mN")]);
     let (potential, potential_unit) = scaled(potential_range, &[(1.0, "J"), (1e-3, "mJ"), (1e-6, "\u{b5}J")]);
-    let across = Axis::around(x.iter().copied(), 0.0, 9, "displacement, mm");
+    let label = "displacement, mm";
+    let across = Axis::around(x.iter().copied(), 0.0, 9, label).or_given(ranges.x, 9, label);
     let inside = |at: f64| at * 1e3 >= across.low && at * 1e3 <= across.high;
 
     let height = |(low, high): (f64, f64), scale: f64, least: f64, label: &str| {
@@ -41,7 +43,8 @@ pub fn curve_figure(
     };
     let upper = Area::new(LEFT, 175.0, RIGHT, 520.0);
     let lower = Area::new(LEFT, 550.0, RIGHT, 860.0);
-    let force_axis = height(force_range, force, 0.0, &format!("force to hold, {force_unit}"));
+    let force_label = format!("force to hold, {force_unit}");
+    let force_axis = height(force_range, force, 0.0, &force_label).or_given(ranges.y, TICKS, &force_label);
     let potential_axis =
         height(potential_range, potential, f64::NAN, &format!("potential, {potential_unit}"));
     let framed = |area, x, y| Frame { gutter: Some(GUTTER), ..Frame::new(area, x, y) };

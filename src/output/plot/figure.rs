@@ -1,10 +1,10 @@
-//! What is on a picture? A list of plain shapes, in the order in which they are painted.
+//! A picture as a list of plain shapes, in the order in which they are painted.
 //!
 //! The plots write down what they show; [`paint`](super::paint) turns that into pixels or SVG. So
 //! each plot is written once for both, and a test can read what a picture says.
 
 use super::font;
-use super::style::{Ink, SIZE};
+use super::style::{BETWEEN_CAPTIONS, Ink, SIZE};
 
 /// A place on the canvas: to the right and down from the upper left corner.
 pub type Point = (f64, f64);
@@ -33,6 +33,11 @@ impl Area {
         let (left, right) = (self.left.max(other.left), self.right.min(other.right));
         let (top, bottom) = (self.top.max(other.top), self.bottom.min(other.bottom));
         (left < right && top < bottom).then_some(Self { left, top, right, bottom })
+    }
+
+    /// Whether a place lies inside.
+    pub fn contains(self, (x, y): Point) -> bool {
+        (self.left..=self.right).contains(&x) && (self.top..=self.bottom).contains(&y)
     }
 
     /// The part of the segment from `a` to `b` that lies inside (Liang and Barsky 1984).
@@ -108,12 +113,31 @@ pub enum Shape {
 pub struct Figure {
     /// The shapes in the order in which they are painted.
     pub shapes: Vec<Shape>,
+    /// What of the canvas is painted.
+    pub shown: Area,
+    /// Width and height in pixels; left out, one for each unit of the canvas. What is shown keeps its proportions and
+    /// stands in their middle.
+    pub size: Option<(u32, u32)>,
 }
 
 impl Figure {
     /// A canvas of this colour.
     pub fn new(paper: Ink) -> Self {
-        Self { shapes: vec![Shape::Rect(Self::canvas(), paper)] }
+        let shown = Self::canvas();
+        Self { shapes: vec![Shape::Rect(shown, paper)], shown, size: None }
+    }
+
+    /// The picture without what stands over and under it, as for a page that has a caption of its own.
+    #[must_use]
+    pub fn without_title(mut self) -> Self {
+        (self.shown.top, self.shown.bottom) = BETWEEN_CAPTIONS;
+        let shown = self.shown;
+        self.shapes.retain_mut(|shape| match shape {
+            Shape::Text(text) => (shown.top..=shown.bottom).contains(&text.at.1),
+            Shape::Rect(area, _) => area.common(shown).inspect(|own| *area = *own).is_some(),
+            _ => true,
+        });
+        self
     }
 
     /// The whole canvas.
@@ -204,9 +228,8 @@ pub fn fitted(words: &str, size: f64, bold: bool, room: f64) -> String {
     }
 }
 
-fn on_canvas((x, y): Point) -> bool {
-    let canvas = Figure::canvas();
-    (canvas.left..=canvas.right).contains(&x) && (canvas.top..=canvas.bottom).contains(&y)
+fn on_canvas(at: Point) -> bool {
+    Figure::canvas().contains(at)
 }
 
 /// The parts of a line that lie inside.

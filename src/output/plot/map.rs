@@ -1,13 +1,13 @@
-//! The picture of a sweep over two fields: RMS velocity as colour, and where motion begins as lines.
+//! The picture of a sweep over two fields: a quantity as colour, and where motion begins as lines.
 
 use super::axis::Axis;
 use super::figure::{Align, Area, Figure, Text};
 use super::font;
 use super::frame::Frame;
-use super::mark::{Sample, cross, legend};
-use super::run::speed_unit;
+use super::mark::{REGIMES, Sample, cross, legend};
+use super::quantity::Quantity;
 use super::style::{self, Theme, viridis};
-use super::sweep::{BOTTOM, LEFT, RMS, TOP, label, missing_words, words};
+use super::sweep::{BOTTOM, LEFT, SweepPicture, TOP, label, missing_words, words};
 use crate::study::{Edges, Table, first_interwell_edge};
 
 /// The lines over a map, each where it makes sense.
@@ -24,35 +24,37 @@ pub struct Overlay {
 enum Cell {
     Missing,
     Rest,
-    Speed(f64),
+    Value(f64),
 }
 
-/// RMS velocity as colour over two fields.
-pub(super) fn map(figure: &mut Figure, rows: &Table, (x, y): (&str, &str), overlay: &Overlay, theme: &Theme) {
+/// The quantity as colour over two fields.
+pub(super) fn map(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &str), theme: &Theme) {
     const RIGHT: f64 = 1310.0;
+    let SweepPicture { rows, ranges, overlay, .. } = picture;
     let (xs, ys) = (rows.numbers(x).unwrap_or_default(), rows.numbers(y).unwrap_or_default());
     let (across, up) = (Edges::new(xs), Edges::new(ys));
-    let rms = rows.numbers(RMS).unwrap_or_default();
+    let quantity = Quantity::of(rows, picture.quantity);
     let regimes = words(rows, "regime");
     let mut cells = vec![Cell::Missing; across.values.len() * up.values.len()];
     for i in 0..rows.rows() {
         if let (Some(column), Some(row)) = (across.place(xs[i]), up.place(ys[i])) {
             cells[column * up.values.len() + row] = match regimes.get(i) {
-                _ if !rms[i].is_finite() => Cell::Missing,
-                Some(&"rest") => Cell::Rest,
-                _ => Cell::Speed(rms[i]),
+                _ if !quantity.values[i].is_finite() => Cell::Missing,
+                Some(&"rest") if quantity.velocity => Cell::Rest,
+                _ => Cell::Value(quantity.values[i]),
             };
         }
     }
-    let ends = (across.ends(), up.ends());
+    let axis = |ends: (f64, f64), given, count, name| {
+        let label = label(rows, name);
+        Axis::between(ends.0, ends.1, count, &label).or_given(given, count, &label)
+    };
     let frame = Frame::new(
         Area::new(LEFT, TOP, RIGHT, BOTTOM),
-        Axis::between(ends.0.0, ends.0.1, 8, &label(rows, x)),
-        Axis::between(ends.1.0, ends.1.1, 7, &label(rows, y)),
+        axis(across.ends(), ranges.x, 8, x),
+        axis(up.ends(), ranges.y, 7, y),
     );
-    let (scale, unit) = speed_unit(rms.iter().copied());
-    let greatest = rms.iter().filter(|v| v.is_finite()).fold(0.0_f64, |a, b| a.max(b * scale));
-    let bar = Axis::between(0.0, greatest, 6, &format!("RMS velocity, {unit}"));
+    let bar = quantity.axis(0.0, 6);
     for column in 0..across.values.len() {
         let own = &cells[column * up.values.len()..][..up.values.len()];
         let mut row = 0;
@@ -60,9 +62,10 @@ pub(super) fn map(figure: &mut Figure, rows: &Table, (x, y): (&str, &str), overl
             let (left, right) = (frame.across(across.edges[column]), frame.across(across.edges[column + 1]));
             let (low, high) = (frame.down(up.edges[row]), frame.down(up.edges[row + run.len()]));
             row += run.len();
-            let area = Area::new(left, high, right, low);
+            let Some(area) = Area::new(left, high, right, low).common(frame.area) else { continue };
             match run[0] {
-                Cell::Speed(speed) => figure.rect(area, viridis(bar.share(speed * scale))),
+                Cell::Value(place) if quantity.regimes => figure.rect(area, theme.regimes[place as usize]),
+                Cell::Value(value) => figure.rect(area, viridis(bar.share(value))),
                 Cell::Rest => {
                     figure.rect(area, theme.rest);
                     figure.hatch(area, style::HATCH, theme.rest_hatch);
@@ -75,16 +78,23 @@ pub(super) fn map(figure: &mut Figure, rows: &Table, (x, y): (&str, &str), overl
         }
     }
     let mut entries = Vec::new();
-    let missing = missing_words(words(rows, "outcome"));
+    if quantity.regimes {
+        let there = |place: &usize| cells.contains(&Cell::Value(*place as f64));
+        let names = REGIMES.iter().enumerate().filter(|(place, _)| there(place));
+        entries.extend(names.map(|(place, (name, _))| (Sample::Patch(theme.regimes[place], None), *name)));
+    }
     if cells.contains(&Cell::Rest) {
         entries.push((Sample::Patch(theme.rest, Some(theme.rest_hatch)), "at rest"));
     }
     if cells.contains(&Cell::Missing) {
-        entries.push((Sample::Crossed(theme.paper, theme.soft), missing));
+        let why = if quantity.velocity { missing_words(words(rows, "outcome")) } else { "no value" };
+        entries.push((Sample::Crossed(theme.paper, theme.soft), why));
     }
     entries.extend(over(figure, &frame, (x, y), &across, &up, overlay));
     frame.axes(figure, theme);
-    colour_bar(figure, bar, theme);
+    if !quantity.regimes {
+        colour_bar(figure, bar, theme);
+    }
     legend(figure, theme, &entries, LEFT, 1560.0, 146.0);
 }
 

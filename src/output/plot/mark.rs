@@ -1,9 +1,9 @@
-//! What stands at a point, and what explains it: markers, legends, the lines above and below a picture.
+//! Markers, legends, and the lines above and below a picture.
 
 use super::figure::{Align, Area, Figure, Point, Text, fitted};
 use super::font;
 use super::style::{self, Ink, Theme};
-use crate::scene::Scene;
+use crate::scene::Document;
 
 /// A shape that stands for something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -175,13 +175,16 @@ pub struct Caption {
 }
 
 impl Caption {
-    /// The caption of a picture of `scene`, which messages call `name`, made by this `version`.
-    pub fn new(scene: &Scene, name: &str, version: &str) -> Self {
-        let tolerance = format!("{:e}", scene.run.tolerance);
-        Self {
-            title: scene.title.clone(),
-            footer: format!("interwell {version} \u{b7} {name} \u{b7} tolerance {tolerance}"),
+    /// The caption of a picture of a document, made by this `version`: its title, where it came from and what arguments
+    /// changed.
+    pub fn new(document: &Document, version: &str) -> Self {
+        let (scene, name) = (&document.scene, &document.name);
+        let mut footer =
+            format!("interwell {version} \u{b7} {name} \u{b7} tolerance {:e}", scene.run.tolerance);
+        for change in document.changes() {
+            footer += &format!(" \u{b7} {change}");
         }
+        Self { title: scene.title.clone(), footer }
     }
 
     /// Draws title, subtitle and footer between `left` and the right edge.

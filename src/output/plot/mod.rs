@@ -13,6 +13,7 @@ mod frame;
 mod map;
 mod mark;
 mod paint;
+mod quantity;
 mod run;
 mod style;
 mod sweep;
@@ -20,16 +21,17 @@ mod sweep;
 use std::path::Path;
 
 pub use accuracy::accuracy_figure;
-pub use axis::Axis;
+pub use axis::{Axis, Ranges};
 pub use contact::contact_figure;
 pub use curve::curve_figure;
 pub use figure::Figure;
 pub use map::Overlay;
 pub use mark::Caption;
 pub use paint::PaintError;
+pub use quantity::{RMS, quantities};
 pub use run::{run_figure, speed_unit};
 pub use style::{Ink, Theme, viridis};
-pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_figure};
+pub use sweep::{MAX_PICTURE_CELLS, NoPicture, SweepPicture, can_show, sweep_about, sweep_figure};
 
 /// A kind of file that holds a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! How does a list of shapes become a PNG or an SVG?
+//! A list of shapes as PNG or SVG.
 //!
 //! plotters draws both. Its bitmaps have whole pixels and hardly smooth an edge, so the picture is
 //! drawn three times as large and averaged down; its SVG has whole coordinates too, so they are made
@@ -32,6 +32,8 @@ const SVG_UNITS: u32 = 8;
 struct Terms {
     /// Its coordinates in a unit of the canvas.
     scale: f64,
+    /// The place on the canvas that its origin shows.
+    origin: Point,
     /// What it calls the size of a text whose em is 1.
     text_size: f64,
     /// How far below the top of a text, in ems, it puts the baseline.
@@ -42,15 +44,27 @@ struct Terms {
 
 /// The picture as PNG.
 pub fn png(figure: &Figure) -> Result<Vec<u8>, PaintError> {
-    let (width, height) = (SIZE.0 * FINER, SIZE.1 * FINER);
-    let mut pixels = vec![0; (width * height * 3) as usize];
-    // ab_glyph's size is the line's height, and its text stands half a size below the given point.
-    let terms =
-        Terms { scale: FINER.into(), text_size: LINE_HEIGHT, baseline: 0.5 * LINE_HEIGHT, lines: false };
-    draw(figure, &mut BitMapBackend::with_buffer(&mut pixels, (width, height)), terms)?;
-    let pixels = averaged(&pixels);
+    let (wide, high) = (figure.shown.right - figure.shown.left, figure.shown.bottom - figure.shown.top);
+    let (width, height) = figure.size.unwrap_or((wide.round() as u32, high.round() as u32));
+    let share = (f64::from(width) / wide).min(f64::from(height) / high);
+    let spare = (f64::from(width) / share - wide, f64::from(height) / share - high);
+    let large = (width * FINER, height * FINER);
+    let mut pixels = vec![0; large.0 as usize * large.1 as usize * 3];
+    if let Some(Shape::Rect(_, Ink(red, green, blue))) = figure.shapes.first() {
+        pixels.chunks_exact_mut(3).for_each(|own| own.copy_from_slice(&[*red, *green, *blue]));
+    }
+    let terms = Terms {
+        scale: f64::from(FINER) * share,
+        origin: (figure.shown.left - 0.5 * spare.0, figure.shown.top - 0.5 * spare.1),
+        // ab_glyph's size is the line's height, and its text stands half a size below the given point.
+        text_size: LINE_HEIGHT,
+        baseline: 0.5 * LINE_HEIGHT,
+        lines: false,
+    };
+    draw(figure, &mut BitMapBackend::with_buffer(&mut pixels, large), terms)?;
+    let pixels = averaged(&pixels, width as usize);
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, SIZE.0, SIZE.1);
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Balanced);
@@ -62,31 +76,43 @@ pub fn png(figure: &Figure) -> Result<Vec<u8>, PaintError> {
 
 /// The picture as SVG.
 pub fn svg(figure: &Figure) -> Result<String, PaintError> {
-    let (width, height) = (SIZE.0 * SVG_UNITS, SIZE.1 * SVG_UNITS);
+    let Area { left, top, right, bottom } = figure.shown;
+    let units = |length: f64| (length * f64::from(SVG_UNITS)).round() as u32;
     let mut text = String::new();
-    // plotters' own conventions: font-size = size/1.24, and the baseline 0.76 em below the top.
-    let terms = Terms { scale: SVG_UNITS.into(), text_size: 1.24, baseline: 0.76, lines: true };
-    draw(figure, &mut SVGBackend::with_string(&mut text, (width, height)), terms)?;
+    let terms = Terms {
+        scale: SVG_UNITS.into(),
+        origin: (0.0, 0.0),
+        // plotters' own conventions: font-size = size/1.24, and the baseline 0.76 em below the top.
+        text_size: 1.24,
+        baseline: 0.76,
+        lines: true,
+    };
+    draw(figure, &mut SVGBackend::with_string(&mut text, (SIZE.0 * SVG_UNITS, SIZE.1 * SVG_UNITS)), terms)?;
     let body = text.split_once('>').map_or("", |(_, body)| body);
     // Without crisp edges the paper shines through between the cells of a map.
     let body = body.replace("<rect ", "<rect shape-rendering=\"crispEdges\" ");
+    let (width, height) =
+        figure.size.unwrap_or((units(right - left) / SVG_UNITS, units(bottom - top) / SVG_UNITS));
     Ok(format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {width} {height}\" \
-         stroke-linejoin=\"round\" stroke-linecap=\"round\">{body}",
-        SIZE.0, SIZE.1
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+         viewBox=\"{} {} {} {}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">{body}",
+        units(left),
+        units(top),
+        units(right - left),
+        units(bottom - top)
     ))
 }
 
 fn draw<B: DrawingBackend>(figure: &Figure, backend: &mut B, terms: Terms) -> Result<(), PaintError> {
     for shape in &figure.shapes {
         match shape {
-            Shape::Rect(area, ink) => rect(backend, *area, *ink, terms.scale)?,
+            Shape::Rect(area, ink) => rect(backend, *area, *ink, terms)?,
             Shape::Line(points, width, ink) => line(backend, points, *width, *ink, terms)?,
-            Shape::Polygon(points, ink) => polygon(backend, points, *ink, terms.scale)?,
+            Shape::Polygon(points, ink) => polygon(backend, points, *ink, terms)?,
             Shape::Disc(centre, radius, ink) => {
                 let radius = (radius * terms.scale).round().max(1.0) as u32;
                 let filled = style(*ink, 1);
-                backend.draw_circle(place(*centre, terms.scale), radius, &filled, true).map_err(failed)?;
+                backend.draw_circle(place(*centre, terms), radius, &filled, true).map_err(failed)?;
             }
             Shape::Text(text) => write(backend, text, terms)?,
         }
@@ -94,16 +120,16 @@ fn draw<B: DrawingBackend>(figure: &Figure, backend: &mut B, terms: Terms) -> Re
     backend.present().map_err(failed)
 }
 
-fn place(point: Point, scale: f64) -> (i32, i32) {
-    ((point.0 * scale).round() as i32, (point.1 * scale).round() as i32)
+fn place(point: Point, Terms { scale, origin, .. }: Terms) -> (i32, i32) {
+    (((point.0 - origin.0) * scale).round() as i32, ((point.1 - origin.1) * scale).round() as i32)
 }
 
 fn style(ink: Ink, width: u32) -> ShapeStyle {
     ShapeStyle { color: RGBColor(ink.0, ink.1, ink.2).to_rgba(), filled: true, stroke_width: width }
 }
 
-fn rect<B: DrawingBackend>(backend: &mut B, area: Area, ink: Ink, scale: f64) -> Result<(), PaintError> {
-    let (from, to) = (place((area.left, area.top), scale), place((area.right, area.bottom), scale));
+fn rect<B: DrawingBackend>(backend: &mut B, area: Area, ink: Ink, terms: Terms) -> Result<(), PaintError> {
+    let (from, to) = (place((area.left, area.top), terms), place((area.right, area.bottom), terms));
     backend.draw_rect(from, to, &style(ink, 1), true).map_err(failed)
 }
 
@@ -111,9 +137,9 @@ fn polygon<B: DrawingBackend>(
     backend: &mut B,
     points: &[Point],
     ink: Ink,
-    scale: f64,
+    terms: Terms,
 ) -> Result<(), PaintError> {
-    let corners: Vec<_> = points.iter().map(|point| place(*point, scale)).collect();
+    let corners: Vec<_> = points.iter().map(|point| place(*point, terms)).collect();
     backend.fill_polygon(corners, &style(ink, 1)).map_err(failed)
 }
 
@@ -127,7 +153,7 @@ fn line<B: DrawingBackend>(
     terms: Terms,
 ) -> Result<(), PaintError> {
     if terms.lines {
-        let path: Vec<_> = points.iter().map(|point| place(*point, terms.scale)).collect();
+        let path: Vec<_> = points.iter().map(|point| place(*point, terms)).collect();
         let width = (width * terms.scale).round().max(1.0) as u32;
         return backend.draw_path(path, &style(ink, width)).map_err(failed);
     }
@@ -140,13 +166,13 @@ fn line<B: DrawingBackend>(
             let (nx, ny) = (-dy / length * half, dx / length * half);
             let corners =
                 [(a.0 + nx, a.1 + ny), (b.0 + nx, b.1 + ny), (b.0 - nx, b.1 - ny), (a.0 - nx, a.1 - ny)];
-            polygon(backend, &corners, ink, terms.scale)?;
+            polygon(backend, &corners, ink, terms)?;
         }
     }
     let radius = half * terms.scale - 0.5;
     if radius >= 1.0 {
         for point in points {
-            let centre = place(*point, terms.scale);
+            let centre = place(*point, terms);
             backend.draw_circle(centre, radius.round() as u32, &style(ink, 1), true).map_err(failed)?;
         }
     }
@@ -165,14 +191,14 @@ fn write<B: DrawingBackend>(backend: &mut B, text: &Text, terms: Terms) -> Resul
     let style = TextStyle::from(font).color(&ink).pos(Pos::new(h_pos, VPos::Top));
     let up = terms.baseline * text.size;
     let top = if text.upright { (text.at.0 - up, text.at.1) } else { (text.at.0, text.at.1 - up) };
-    backend.draw_text(&text.words, &style, place(top, terms.scale)).map_err(failed)
+    backend.draw_text(&text.words, &style, place(top, terms)).map_err(failed)
 }
 
-/// Each pixel the mean of a square of the large bitmap.
-fn averaged(large: &[u8]) -> Vec<u8> {
-    let (width, finer) = (SIZE.0 as usize, FINER as usize);
+/// Each pixel the mean of a square of the large bitmap, in rows of `width`.
+fn averaged(large: &[u8], width: usize) -> Vec<u8> {
+    let finer = FINER as usize;
     let stride = width * finer * 3;
-    let mut small = Vec::with_capacity(width * SIZE.1 as usize * 3);
+    let mut small = Vec::with_capacity(large.len() / (finer * finer));
     for rows in large.chunks_exact(stride * finer) {
         for column in 0..width {
             for channel in 0..3 {

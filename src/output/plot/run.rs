@@ -1,6 +1,8 @@
 //! The picture of one run: displacement, velocity and base acceleration over time, and the phase portrait.
 
-use super::axis::Axis;
+use std::ops::Range;
+
+use super::axis::{Axis, Ranges};
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
 use super::frame::Frame;
@@ -17,11 +19,13 @@ const GUTTER: f64 = 102.0;
 const PORTRAIT: Area = Area { left: 1150.0, top: 175.0, right: 1565.0, bottom: 600.0 };
 const PANELS: [(f64, f64); 3] = [(175.0, 425.0), (447.0, 657.0), (679.0, 869.0)];
 
-/// The picture of a run from its trace and its summary.
+/// The picture of a run from its trace and its summary. The trace says which times it shows; `ranges` may give the axis of
+/// the displacement, in mm.
 pub fn run_figure(
     trace: &Trace,
     summary: &Summary,
     mechanism: &Mechanism,
+    ranges: Ranges,
     caption: &Caption,
     theme: &Theme,
 ) -> Figure {
@@ -37,6 +41,7 @@ pub fn run_figure(
         accel: column("base_accel_m_per_s2"),
         wells: stable.map(|equilibrium| equilibrium.x).collect(),
         speed: speed_unit(column("v_m_per_s").iter().copied()),
+        displacements: ranges.y,
     };
     let reach = seen.panels(&mut figure);
     seen.portrait(&mut figure);
@@ -73,9 +78,17 @@ struct Seen<'a> {
     wells: Vec<f64>,
     /// Factor from m/s and name of the unit of speed.
     speed: (f64, &'static str),
+    /// The axis of the displacement in mm, where it was asked for.
+    displacements: Option<(f64, f64)>,
 }
 
 impl Seen<'_> {
+    /// The rows from a time on up to where the picture ends.
+    fn rows(&self, from: f64) -> Range<usize> {
+        let end = self.t.partition_point(|t| *t <= self.trace.shown_to);
+        self.t.partition_point(|t| *t < from).min(end)..end
+    }
+
     /// The axis for these displacements. Stops count where the mass comes near them, so that a far one
     /// does not press the motion flat.
     fn displacement(&self, x: &[f64]) -> Axis {
@@ -87,7 +100,9 @@ impl Seen<'_> {
         let room = if low < high { NEAR * (high - low) } else { 3.0 * high.abs() };
         let stops = [self.trace.stops.0, self.trace.stops.1];
         let near = stops.into_iter().filter(|stop| (low - room..=high + room).contains(stop));
-        Axis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, 6, "displacement, mm")
+        let label = "displacement, mm";
+        let own = Axis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, 6, label);
+        own.or_given(self.displacements, 6, label)
     }
 
     fn velocity(&self, v: &[f64], count: usize) -> Axis {
@@ -98,17 +113,17 @@ impl Seen<'_> {
     /// Displacement, velocity and base acceleration over time; the axis of displacement.
     fn panels(&self, figure: &mut Figure) -> Axis {
         let Self { trace, theme, .. } = *self;
-        let time = Axis::between(trace.shown_from, trace.end, 6, "time, s");
-        let first = self.t.partition_point(|t| *t < trace.shown_from);
-        let in_g = self.accel.iter().map(|a| a / STANDARD_GRAVITY);
+        let time = Axis::between(trace.shown_from, trace.shown_to, 6, "time, s");
+        let shown = self.rows(trace.shown_from);
+        let in_g = self.accel[shown.clone()].iter().map(|a| a / STANDARD_GRAVITY);
         let g_axis = Axis::around(in_g.chain([0.0]), 0.1, 4, "base accel., g");
         let framed = |(top, bottom): (f64, f64), x, y| {
             let frame = Frame::new(Area::new(LEFT, top, MIDDLE, bottom), x, y);
             Frame { gutter: Some(GUTTER), ..frame }
         };
         let frames = [
-            framed(PANELS[0], time.clone().silent(), self.displacement(self.x)),
-            framed(PANELS[1], time.clone().silent(), self.velocity(self.v, 5)),
+            framed(PANELS[0], time.clone().silent(), self.displacement(&self.x[shown.clone()])),
+            framed(PANELS[1], time.clone().silent(), self.velocity(&self.v[shown.clone()], 5)),
             framed(PANELS[2], time, g_axis),
         ];
         for (frame, strength) in frames.iter().zip([1.0, 0.5, 0.5]) {
@@ -131,7 +146,7 @@ impl Seen<'_> {
             (self.accel, 1.0 / STANDARD_GRAVITY, theme.shaking),
         ];
         for (frame, (values, scale, ink)) in frames.iter().zip(lines) {
-            let pairs = self.t.iter().zip(values).skip(first).map(|(t, value)| (*t, value * scale));
+            let pairs = shown.clone().map(|i| (&self.t[i], &values[i])).map(|(t, value)| (*t, value * scale));
             frame.dense_line(figure, pairs.filter(|pair| pair.1.is_finite()), style::FINE_LINE, ink);
         }
         impacts(figure, &frames[0], trace, theme);
@@ -143,8 +158,8 @@ impl Seen<'_> {
     /// Velocity over displacement.
     fn portrait(&self, figure: &mut Figure) {
         let Self { trace, theme, .. } = *self;
-        let from = self.t.partition_point(|t| *t < trace.portrait_from);
-        let (x, v) = (&self.x[from..], &self.v[from..]);
+        let shown = self.rows(trace.portrait_from);
+        let (x, v) = (&self.x[shown.clone()], &self.v[shown]);
         let frame = Frame::new(PORTRAIT, self.displacement(x), self.velocity(v, 8));
         frame.grid(figure, theme);
         for (stop, left) in [(trace.stops.0, true), (trace.stops.1, false)] {
@@ -162,7 +177,12 @@ impl Seen<'_> {
             marker(figure, Marker::Disc, at, style::MARKER, theme.second, theme.ink);
         }
         frame.axes(figure, theme);
-        let words = format!("phase portrait from {} s on", short(trace.portrait_from));
+        let words = match short(trace.portrait_from) {
+            from if trace.shown_to < trace.end => {
+                format!("phase portrait, {from} to {} s", short(trace.shown_to))
+            }
+            from => format!("phase portrait from {from} s on"),
+        };
         note(figure, &words, (PORTRAIT.left, 152.0), style::TICK, theme.ink, false);
     }
 }
@@ -219,7 +239,8 @@ fn impacts(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
     let times = trace.impacts.numbers("t_s").unwrap_or_default();
     let sides = words(trace.impacts.column("side").map(|column| &column.values));
     let mut last = [f64::NEG_INFINITY; 2];
-    for (t, side) in times.iter().zip(sides).filter(|impact| *impact.0 >= trace.shown_from) {
+    let shown = trace.shown_from..=trace.shown_to;
+    for (t, side) in times.iter().zip(sides).filter(|impact| shown.contains(impact.0)) {
         let left = *side == "left";
         let at = frame.across(*t);
         if at - last[usize::from(left)] >= APART {

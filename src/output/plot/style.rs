@@ -1,4 +1,4 @@
-//! Which colours, widths and sizes do the pictures have? All of them, and nothing else.
+//! Colours, widths and sizes of the pictures: all of them, and nothing else.
 //!
 //! Colours are those of Okabe and Ito (2008, "Color Universal Design"), one meaning each; what differs by colour also
 //! differs by shape, hatching or dashes. Sizes are in units of a canvas of 1600 by 1000, chosen so that
@@ -20,6 +20,9 @@ impl Ink {
 
 /// Width and height of the canvas.
 pub const SIZE: (u32, u32) = (1600, 1000);
+
+/// Where on the canvas the subtitle has ended and the footer not begun.
+pub const BETWEEN_CAPTIONS: (f64, f64) = (116.0, 956.0);
 
 /// Text sizes: the height of an em.
 pub const TITLE: f64 = 40.0;
@@ -134,6 +137,11 @@ impl Theme {
     /// The hatching of a wall.
     pub fn wall_hatch(&self) -> Ink {
         self.wall.over(self.paper, 0.6)
+    }
+
+    /// The colour of `share` from 0 to 1 for lines on the paper: a part of the map's scale that stands out from it.
+    pub fn step(&self, share: f64) -> Ink {
+        if self.ink.0 > self.paper.0 { viridis(0.3 + 0.7 * share) } else { viridis(0.85 * share) }
     }
 
     /// Light or dark.

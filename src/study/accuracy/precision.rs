@@ -36,6 +36,8 @@ enum Error {
 pub struct Problem {
     /// The word that selects it.
     pub name: &'static str,
+    /// What is run, in a few words for a heading.
+    pub heading: &'static str,
     /// What is run.
     pub problem: &'static str,
     /// What the error is.
@@ -52,6 +54,7 @@ const IMPACTS_AND_RMS: &str = "the worse of the times of the impacts above 1 cm/
 pub const PROBLEMS: &[Problem] = &[
     Problem {
         name: "p1",
+        heading: "cubic well, no stops (p1)",
         problem: "nominal cubic well without stops, 1.1 g at 3 Hz from rest, 10 s",
         error: "final displacement over the well's distance",
         preset: "nominal-cubic",
@@ -60,6 +63,7 @@ pub const PROBLEMS: &[Problem] = &[
     },
     Problem {
         name: "p2",
+        heading: "cubic well, stops (p2)",
         problem: "nominal cubic well, stops at 4 mm, e = 0.36, 1.5 g at 3 Hz from rest, 10 s: 780 impacts, 60 rests",
         error: IMPACTS_AND_RMS,
         preset: "nominal-cubic",
@@ -68,6 +72,7 @@ pub const PROBLEMS: &[Problem] = &[
     },
     Problem {
         name: "flexures",
+        heading: "flexures, stops",
         problem: "the prototype's flexures (preset paper), stops at 1.5 mm, e = 0.36, 1 g at 3 Hz from rest, 10 s",
         error: IMPACTS_AND_RMS,
         preset: "paper",

@@ -5,9 +5,7 @@ use std::sync::Arc;
 use super::Stopped;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::mechanics::{ForceCurve, Mechanism as Built};
-use crate::scene::{
-    Damping, Document, Excitation, Files, Mechanism, Run, Scene, Start, Stops, Transducer, check,
-};
+use crate::scene::{Damping, Document, Excitation, Files, Mechanism, Run, Scene, Start, Stops, check};
 
 /// Every case runs at the tightest tolerance, so that what is left is rounding.
 pub(super) const TOLERANCE: f64 = 1e-14;
@@ -34,7 +32,6 @@ impl Setup {
                 start: Start::At { x_mm: x * 1e3, v_m_per_s: v },
                 run: Run { duration_s, settle_s: Some(0.0), tolerance: TOLERANCE, recurrence: false },
                 sweep: Vec::new(),
-                transducer: Transducer::None,
                 app: None,
             },
             curve: None,

@@ -51,7 +51,7 @@ fn speed_against_error_comes_with_a_picture() {
     let line = format!("accuracy --case p1 --plot {} --out {}", picture.display(), data.display());
     headless(&line).assert().success().stdout(contains("Dormand-Prince 5(4)").and(contains("least error")));
     let picture = std::fs::read_to_string(picture).unwrap();
-    for word in ["p1", "Taylor series", "RK4", "velocity Verlet", "CPU time, s"] {
+    for word in ["cubic well, no stops (p1)", "Taylor series", "RK4", "velocity Verlet", "CPU time, s"] {
         assert!(picture.contains(word), "{word}");
     }
     let csv = std::fs::read_to_string(data).unwrap();
@@ -59,6 +59,27 @@ fn speed_against_error_comes_with_a_picture() {
     let rows = |name: &str| methods.iter().filter(|own| *own == name).count();
     assert_eq!((rows("Taylor series"), rows("Dormand-Prince 5(4)"), rows("RK4")), (12, 12, 8));
     assert_eq!(column(&csv, "tolerance")[0], "1e-3");
+}
+
+#[test]
+fn with_stops_no_fixed_step_comes_below_what_the_readme_says() {
+    let readme = include_str!("../../../README.md");
+    let said = readme.split_once("none of the three comes below ").unwrap().1;
+    let least: f64 = said.split_once(". ").unwrap().0.parse().unwrap();
+    let csv = stdout("accuracy --case p2 --out - --quiet");
+    let (methods, errors) = (column(&csv, "method"), column(&csv, "error"));
+    let of = |name: &str| -> Vec<f64> {
+        let own = methods.iter().zip(&errors).filter(|(method, error)| *method == name && !error.is_empty());
+        own.map(|(_, error)| error.parse().unwrap()).collect()
+    };
+    for scheme in ["semi-implicit Euler", "velocity Verlet", "RK4"] {
+        assert!(
+            of(scheme).len() > 4 && of(scheme).iter().all(|error| *error > least),
+            "{scheme}: {:?}",
+            of(scheme)
+        );
+    }
+    assert!(of("Taylor series").iter().any(|error| *error < 1e-12));
 }
 
 #[test]

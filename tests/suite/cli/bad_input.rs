@@ -1,4 +1,4 @@
-//! Is every wrong input refused with a message that names it, and never a panic?
+//! Wrong input: refused with a message that names it, and never a panic.
 
 use std::fs;
 use std::path::PathBuf;
@@ -44,6 +44,37 @@ fn what_is_no_scene() {
     let folder = tempfile::tempdir().unwrap();
     refused(headless(&format!("check {}", folder.path().display())), &["director"]);
     refused(headless("check /no/such/scene.ron"), &["/no/such/scene.ron"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_path_that_is_no_text_is_named() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    for line in ["check", "simulate", "sweep"] {
+        let mut command = headless(line);
+        command.arg(OsStr::from_bytes(b"bad\xff.ron"));
+        refused(command, &["`bad\u{fffd}.ron`", "UTF-8"]);
+    }
+    // An output may be called so.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(OsStr::from_bytes(b"bad\xff.csv"));
+    headless("sweep --over mass_g=15 --quiet --out").arg(&path).assert().success();
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    let mut command = headless("sweep --over mass_g=15 --out /no/such");
+    command.arg("--plot").arg(OsStr::from_bytes(b"bad\xff.jpg"));
+    refused(command, &["bad\u{fffd}.jpg"]);
+}
+
+#[test]
+fn a_record_that_is_too_long_names_the_limit() {
+    let rows: String = (0..1_000_001).map(|i| format!("{i},0\n")).collect();
+    let scene = scene_with("excitation: Recorded(path: \"r.csv\")");
+    let (folder, path) = file("long.ron", scene.as_bytes());
+    fs::write(folder.path().join("r.csv"), format!("t_s,accel_m_per_s2\n{rows}")).unwrap();
+    let mut command = headless("check");
+    command.arg(&path);
+    refused(command, &["long.ron:1:", "r.csv", "more than 1000000 rows", "thin it out"]);
 }
 
 #[test]
@@ -143,8 +174,14 @@ fn tables_that_are_no_curves() {
     let said = String::from_utf8_lossy(&said).into_owned();
     assert!(said.contains("mm") || said.contains("millimet"), "{said}");
 
-    let (_folder, path) = file("table.ron", scene.as_bytes());
-    let mut command = headless("curve");
-    command.arg(&path);
-    refused(command, &["curve.csv"]);
+    // A table that is not there, wherever the rows would go.
+    let (folder, path) = file("table.ron", scene.as_bytes());
+    for line in ["curve", "sweep --over mass_g=1,2", "simulate --out", "sweep --over mass_g=1,2 --out"] {
+        let mut command = headless(line);
+        if line.ends_with("--out") {
+            command.arg(folder.path().join("rows.csv"));
+        }
+        command.arg(&path);
+        refused(command, &["table.ron:1:", "mechanism.path", "curve.csv"]);
+    }
 }

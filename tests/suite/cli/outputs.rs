@@ -1,4 +1,4 @@
-//! Do outputs appear whole or not at all, and do bad places cost no work?
+//! Outputs: whole or not at all, and refused before any work where they have no place.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -64,6 +64,30 @@ fn two_outputs_need_two_places() {
     refused(command, &["overwrite"]);
 }
 
+#[test]
+fn no_output_replaces_a_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    headless("presets --write").arg(folder.path()).assert().success();
+    let (named, hidden) = (folder.path().join("duffing.ron"), folder.path().join("duffing.csv"));
+    fs::copy(&named, &hidden).unwrap();
+    let broken = folder.path().join("broken.RON");
+    fs::write(&broken, "(title: ").unwrap();
+    for scene in [&named, &hidden, &broken] {
+        let before = fs::read(scene).unwrap();
+        for line in [QUICK, "curve", "check", "sweep --over mass_g=15,16", "presets"] {
+            let mut command = headless(line);
+            command.arg("--out").arg(scene);
+            refused(command, &["--out", "overwrite a scene"]);
+        }
+        let mut command = headless(QUICK);
+        command.arg("--summary").arg(scene);
+        refused(command, &["--summary", "overwrite a scene"]);
+        assert_eq!(fs::read(scene).unwrap(), before);
+    }
+    // A file that is not there yet may be called so, and one that holds no scene is written as ever.
+    headless(QUICK).arg("--out").arg(folder.path().join("new.ron")).assert().success();
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_device_and_a_read_only_place_fail() {
@@ -73,8 +97,11 @@ fn a_full_device_and_a_read_only_place_fail() {
         full.assert().code(1).stderr(contains("/dev/full"));
     }
     headless(&format!("{QUICK} --out /dev/null --summary /dev/full")).assert().code(1);
-    // No one, not even root, makes a file in /proc.
-    headless(&format!("{QUICK} --out /proc/run.csv")).assert().code(1).stderr(contains("/proc/run.csv"));
+    // No one, not even root, makes a file in /proc; the system's words come once, and no name but the one asked for.
+    let assert = headless(&format!("{QUICK} --out /proc/run.csv")).assert().code(1);
+    let said = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+    assert!(said.starts_with("error: cannot write /proc/run.csv: ") && !said.contains(".part"), "{said}");
+    assert_eq!((said.lines().count(), said.matches("os error").count()), (1, 1), "{said}");
 }
 
 #[cfg(unix)]

@@ -58,6 +58,41 @@ fn check_says_what_an_impact_does_and_what_resting_costs() {
 }
 
 #[test]
+fn check_says_the_loss_at_the_speed_that_occurs() {
+    let line = |arguments: &str| -> Option<String> {
+        let text = stdout(&format!("check {arguments}"));
+        text.lines().find(|line| line.contains("struck at")).map(|line| line.trim().to_owned())
+    };
+    let number = |text: &str, before: &str| -> f64 {
+        let after = text.split_once(before).unwrap_or_else(|| panic!("`{before}` is not in: {text}")).1;
+        let end = after.find(|c: char| !(c.is_ascii_digit() || ".e-".contains(c))).unwrap_or(after.len());
+        after[..end].trim_end_matches(['.', ',']).parse().unwrap()
+    };
+    // A rigid stop's restitution at the speed of its impacts: a v = 2.427.
+    let rigid = line("paper").unwrap();
+    let (speed, loss) = (number(&rigid, "struck at "), number(&rigid, "0.36 there takes loss_s_per_m: "));
+    assert!((speed - 0.233).abs() < 1e-3 && (loss * speed - 2.427).abs() < 2e-3, "{rigid}");
+    // The README's stop is that one: struck as fast, with that restitution.
+    let readme = include_str!("../../../README.md");
+    let stops = readme.split_once("`stops: Hertz(").unwrap().1.split_once(")`").unwrap().0.replace(' ', "");
+    let own = line(&format!("paper --set stops=Hertz({stops})")).unwrap();
+    assert!((number(&own, "restitution ") - 0.36).abs() < 2e-3, "{own}");
+    assert!((number(&own, "struck at ") / speed - 1.0).abs() < 0.01, "{own}");
+    for (wanted, product) in [("0.8 takes ", 0.3734), ("0.5 takes ", 1.4334), ("0.36 takes ", 2.427)] {
+        let found = number(&own, wanted) * number(&own, "struck at ");
+        assert!((found / product - 1.0).abs() < 2e-3, "{wanted}: {found}, {own}");
+    }
+    // Nothing strikes, nothing is said; no loss takes all speed.
+    assert_eq!(line("paper --set excitation=None"), None);
+    assert_eq!(line("paper-unconstrained"), None);
+    assert!(line("paper --set stops.restitution=0").unwrap().contains("no loss gives a restitution of 0"));
+    assert!(line("paper --set stops.restitution=1").unwrap().contains("1 there takes loss_s_per_m: 0"));
+    let uneven = "uneven-stops --set stops=Uneven(left_mm:1.5,right_mm:1.7,restitution_left:0.3,restitution_right:0.5)";
+    let uneven = line(uneven).unwrap();
+    assert!(uneven.contains("of 0.3 there takes") && uneven.contains("of 0.5 there takes"), "{uneven}");
+}
+
+#[test]
 fn a_run_warns_where_aluminium_would_yield() {
     let run = |extra: &str| {
         let out = headless(&format!(

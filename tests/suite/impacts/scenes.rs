@@ -5,7 +5,7 @@ use std::sync::Arc;
 use interwell::dynamics::{Model, Request, Run, STANDARD_GRAVITY};
 use interwell::mechanics::{ForceCurve, Mechanism as Built};
 use interwell::scene::{
-    Damping, Excitation, Files, Mechanism, Run as RunSettings, Scene, Start, Stops, Transducer, check,
+    Damping, Excitation, Files, Mechanism, Run as RunSettings, Scene, Start, Stops, check,
 };
 
 /// A scene of 1 kg without damping, stops and drive.
@@ -21,7 +21,6 @@ pub fn scene(mechanism: Mechanism, start: Start, duration_s: f64) -> Scene {
         start,
         run: RunSettings { duration_s, settle_s: Some(0.0), tolerance: 1e-12, recurrence: false },
         sweep: vec![],
-        transducer: Transducer::None,
         app: None,
     }
 }

@@ -6,9 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{Model, Outcome, Request, Run as Ran};
-use interwell::scene::{
-    Damping, Excitation, FieldPath, Mechanism, Run, Scene, Start, Stops, Transducer, check,
-};
+use interwell::scene::{Damping, Excitation, FieldPath, Mechanism, Run, Scene, Start, Stops, check};
 use proptest::prelude::*;
 
 use super::harness::hold;
@@ -121,7 +119,6 @@ fn scene() -> impl Strategy<Value = Scene> {
             start,
             run: Run { duration_s, settle_s: Some(0.0), tolerance, recurrence: false },
             sweep: vec![],
-            transducer: Transducer::None,
             app: None,
         },
     )
@@ -195,7 +192,6 @@ fn a_damping_ratio_without_a_finite_coefficient_is_refused() {
         start: Start::At { x_mm: 0.0, v_m_per_s: 0.0 },
         run,
         sweep: vec![],
-        transducer: Transducer::None,
         app: None,
         mechanism,
     };

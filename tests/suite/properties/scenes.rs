@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use interwell::dynamics::Model;
-use interwell::scene::{Damping, Excitation, Mechanism, Record, Run, Scene, Start, Stops, Transducer, check};
+use interwell::scene::{Damping, Excitation, Mechanism, Record, Run, Scene, Start, Stops, check};
 use proptest::prelude::*;
 use proptest::strategy::Union;
 
@@ -236,7 +236,6 @@ pub fn scene_with(
                     ..run
                 },
                 sweep: vec![],
-                transducer: Transducer::None,
                 app: None,
             }
         },

@@ -111,6 +111,34 @@ fn every_relation_between_fields_is_checked() {
 }
 
 #[test]
+fn a_settle_time_moves_with_a_duration_that_is_set() {
+    let settle = |own: &str, arguments: &[&str]| {
+        let mut document = document(&[("run", own)]);
+        arguments.iter().for_each(|argument| document.set(argument).unwrap());
+        let said = document.settle_within();
+        (document.check().is_ok(), document.scene.run.settle_s, said)
+    };
+    let (valid, moved, said) = settle("(duration_s: 10, settle_s: 5)", &["run.duration_s=4"]);
+    assert!(valid && moved.is_none());
+    let said = said.unwrap();
+    assert!(
+        ["settle_s = 5", "--set run.duration_s=4", "2 s"].iter().all(|word| said.contains(word)),
+        "{said}"
+    );
+    // It lies within; it was itself set; nothing was.
+    for (own, arguments, valid) in [
+        ("(duration_s: 10, settle_s: 5)", &["run.duration_s=6"][..], true),
+        ("(duration_s: 10, settle_s: 5)", &["run.duration_s=4", "run.settle_s=5"][..], false),
+        ("(duration_s: 10)", &["run=(duration_s: 4, settle_s: 5)"][..], false),
+        ("(duration_s: 4, settle_s: 5)", &[][..], false),
+        ("(duration_s: 10, settle_s: 5)", &["run.duration_s=-1"][..], false),
+    ] {
+        let found = settle(own, arguments);
+        assert_eq!((found.0, found.2), (valid, None), "{own} {arguments:?}");
+    }
+}
+
+#[test]
 fn what_is_valid_but_hardly_meant_is_a_warning() {
     for (changes, expected) in [
         (("damping", "Ratio(2.3)"), "s.ron: damping.xi = 2.3: above 1"),

@@ -104,8 +104,11 @@ fn scene() -> impl Strategy<Value = Scene> {
             speed,
             stops_when_on: stops.filter(|stops| *stops != Stops::None),
         });
-    let axis = (any::<String>(), number(), number(), number())
-        .prop_map(|(field, from, to, step)| SweepAxis { field, from, to, step });
+    let steps = (any::<String>(), number(), number(), number())
+        .prop_map(|(field, from, to, step)| SweepAxis { field, from, to, step, values: Vec::new() });
+    let listed = (any::<String>(), proptest::collection::vec(number(), 1..5))
+        .prop_map(|(field, values)| SweepAxis { field, values, ..SweepAxis::default() });
+    let axis = prop_oneof![steps, listed];
     let rest = (
         (number(), proptest::option::of(number()), number(), any::<bool>()),
         proptest::option::of(app),
@@ -128,7 +131,6 @@ fn scene() -> impl Strategy<Value = Scene> {
                 start: Start::At { x_mm: mass_g, v_m_per_s: tolerance },
                 run: Run { duration_s, settle_s, tolerance, recurrence },
                 sweep,
-                transducer: Transducer::None,
                 app,
             }
         },

@@ -18,7 +18,6 @@ fn the_smallest_scene_has_the_documented_defaults() {
         start: Start::Rest,
         run: Run { duration_s: 10.0, settle_s: None, tolerance: 1e-9, recurrence: true },
         sweep: vec![],
-        transducer: Transducer::None,
         app: None,
     };
     assert_eq!(scene, expected);
@@ -133,7 +132,6 @@ fn run_sweep_and_window_hints_read_and_write() {
         ("stops", "Rigid(travel_limit_mm: 2, restitution: 0.5)"),
         ("run", "(duration_s: 10, settle_s: 10, tolerance: 1e-14, recurrence: false)"),
         ("sweep", "[(field: \"stops.travel_limit_mm\", from: 0.5, to: 7, step: 0.25)]"),
-        ("transducer", "None"),
         ("app", "(layout: Look, speed: 0.1, stops_when_on: Rigid(travel_limit_mm: 1.5, restitution: 0.36))"),
     ]);
     document.check().unwrap();
@@ -178,7 +176,7 @@ fn structural_errors_have_a_place_and_the_known_names() {
         ),
         (("excitation", "Noise(seed: 1)"), "`rms_g` is missing in Noise"),
         (
-            ("excitation", "Recorded(path: \"a\", record: None)"),
+            ("excitation", "Recorded(path: \"walking.csv\", record: None)"),
             "unknown field `record` in Recorded; known: path",
         ),
         (
@@ -201,7 +199,10 @@ fn structural_errors_have_a_place_and_the_known_names() {
             "s.ron:5:16: mass_g: expected a name, found `2` (a decimal is written with a point)",
         ),
         (("mass_g", "15 title: \"t\""), "expected a comma before this"),
-        (("transducer", "Coil(theta: 1)"), "unknown choice `Coil` in Transducer; known: None"),
+        (
+            ("transducer", "None"),
+            "unknown field `transducer` in Scene; known: title, notes, mass_g, mechanism,",
+        ),
         (("app", "(layout: Big)"), "app.layout: unknown choice `Big` in Layout; known: Look, Study, Map"),
     ] {
         let error = refused(&text(&[changes]));
@@ -210,6 +211,71 @@ fn structural_errors_have_a_place_and_the_known_names() {
     }
     assert!(refused("(title: \"t\")").contains("`mass_g` is missing in Scene"));
     assert!(refused(&(text(&[]) + "x")).contains("s.ron:7:1: "), "{}", refused(&(text(&[]) + "x")));
+}
+
+#[test]
+fn unknown_names_come_with_whatever_else_is_wrong() {
+    let text = "(\n  colour: (red: [1, 2], \"é\": 3), mass_g: -1,\n  mechanism: Cubic(linear: 1, linear_n_per_m: -40, \
+        cubic_n_per_m3: 8e5),\n  run: (duration_s: 1, speed: 3),\n  stops: Rigid(travel_limit_mm: 0, restitution: 2),\n)";
+    let error = refused(text);
+    let lines: Vec<&str> = error.lines().collect();
+    for (line, wanted) in lines.iter().zip([
+        "s.ron:2:3: unknown field `colour` in Scene",
+        "s.ron:3:20: unknown field `linear` in Cubic",
+        "s.ron:4:24: unknown field `speed` in Run",
+        "s.ron:2:34: mass_g = -1: must be",
+        "s.ron:5:16: stops.travel_limit_mm = 0",
+        "s.ron:5:36: stops.restitution = 2",
+    ]) {
+        assert!(line.starts_with(wanted), "{line}\n  wants {wanted}");
+    }
+    assert_eq!(lines.len(), 6, "{error}");
+    // What cannot be read at all ends it.
+    let error = refused(&text.replace("speed: 3", "speed: 3))"));
+    assert_eq!(error.lines().count(), 3, "{error}");
+    let many: String = (0..1000).map(|i| format!("a{i}: {i},")).collect();
+    assert!(refused(&format!("({many})")).lines().count() <= 51);
+}
+
+#[test]
+fn a_title_left_out_is_the_name_of_the_file() {
+    let untitled = |name: &str, more: &str| {
+        let text = format!(
+            "({more} mass_g: 1, mechanism: Cubic(linear_n_per_m: 1, cubic_n_per_m3: 0), run: (duration_s: 1))"
+        );
+        Document::from_text(name, &text, Files::default()).unwrap().scene
+    };
+    for (name, title) in [("a/two stops.ron", "two stops"), ("plain", "plain"), ("a.b.ron", "a.b")] {
+        let scene = untitled(name, "");
+        assert_eq!(scene.title, title);
+        reads_back(&scene);
+    }
+    assert_eq!(untitled("a.ron", "title: \"\",").title, "");
+}
+
+#[test]
+fn an_axis_has_steps_or_values() {
+    let sweep = |axis: &str| text(&[("sweep", &format!("[(field: \"mass_g\", {axis})]"))]);
+    let read = |axis: &str| Document::from_text("s.ron", &sweep(axis), Files::default()).unwrap();
+    let document = read("values: [3, 0.5, 3]");
+    document.check().unwrap();
+    reads_back(&document.scene);
+    assert_eq!(document.axes::<&str>(&[]).unwrap()[0].values, [3.0, 0.5, 3.0]);
+    for axis in [
+        "from: 1",
+        "from: 1, to: 2",
+        "values: []",
+        "from: 1, to: 2, step: 1, values: [1]",
+        "values: [1], step: 1",
+    ] {
+        let error = refused(&sweep(axis));
+        assert!(error.contains("`values`") && error.lines().count() == 1, "{axis}: {error}");
+    }
+    let error = read("values: [1, -3]").check().unwrap_err().to_string();
+    assert!(error.contains("sweep.0.values") && error.contains("-3"), "{error}");
+    let mut document = read("values: [1, 2]");
+    document.set("sweep.0.values.1=5").unwrap();
+    assert_eq!(document.scene.sweep[0].values, [1.0, 5.0]);
 }
 
 #[test]

@@ -78,7 +78,6 @@ fn whole_values_are_set_as_ron() {
         ("app.layout=Map", "app.layout"),
         ("app.stops_when_on=None", "app.stops_when_on"),
         ("app=None", "app"),
-        ("transducer=None", "transducer"),
     ] {
         document.set(argument).unwrap_or_else(|error| panic!("{error}"));
         assert!(all_fields(&document.scene).iter().any(|field| field == path), "{argument}");

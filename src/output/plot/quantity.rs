@@ -1,0 +1,74 @@
+//! What the picture of a sweep shows: one column of its rows, in units for the eye.
+
+use super::axis::Axis;
+use super::mark::REGIMES;
+use crate::study::{Grid, Table, Values};
+
+/// The column that is shown where none is named.
+pub const RMS: &str = "rms_velocity_m_per_s";
+
+/// The one column of words that can be shown.
+const REGIME: &str = "regime";
+
+/// A column to show.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Quantity {
+    /// Its values, a row each; NaN where there is none.
+    pub values: Vec<f64>,
+    /// What stands at its axis.
+    pub label: String,
+    /// Whether the values are places in [`REGIMES`].
+    pub regimes: bool,
+    /// Whether it is the velocity, which is 0 at rest.
+    pub velocity: bool,
+}
+
+/// The columns of `table` that can be shown, which are those of numbers and counts that are not swept, and the regime.
+pub fn quantities<'a>(table: &'a Table, grid: &'a Grid) -> impl Iterator<Item = &'a str> {
+    let shown = |name: &str, values: &Values| !matches!(values, Values::Words(_)) || name == REGIME;
+    let columns = table.columns().iter().filter(move |own| shown(&own.name, &own.values));
+    columns.map(|own| own.name.as_str()).filter(|name| !grid.columns().iter().any(|own| own == name))
+}
+
+impl Quantity {
+    /// The column called `name` of `rows`; no values where there is none.
+    pub fn of(rows: &Table, name: &str) -> Self {
+        let column = rows.column(name);
+        let values: Vec<f64> = match column.map(|own| &own.values) {
+            Some(Values::Numbers(values)) => values.clone(),
+            Some(Values::Counts(values)) => values.iter().map(|n| n.map_or(f64::NAN, |n| n as f64)).collect(),
+            Some(Values::Words(words)) => {
+                let place = |word: &&str| REGIMES.iter().position(|(own, _)| own == word);
+                words.iter().map(|word| place(word).map_or(f64::NAN, |place| place as f64)).collect()
+            }
+            None => Vec::new(),
+        };
+        let greatest = values.iter().filter(|v| v.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
+        let label = column.map_or_else(|| name.to_owned(), |own| own.label());
+        let words = label.split_once(", ").map_or(label.as_str(), |own| own.0);
+        let words = match name {
+            RMS => "RMS velocity",
+            "max_abs_x_m" => "largest |x|",
+            _ => words,
+        };
+        // Small lengths and speeds are short numbers in thousandths.
+        let (scale, label) = match column.map(|own| own.unit()) {
+            Some(unit @ ("m" | "m/s")) if greatest < 2.0 => (1e3, format!("{words}, m{unit}")),
+            Some(unit) if !unit.is_empty() => (1.0, format!("{words}, {unit}")),
+            _ => (1.0, words.to_owned()),
+        };
+        let values = values.into_iter().map(|value| value * scale).collect();
+        Self { values, label, regimes: name == REGIME, velocity: name == RMS }
+    }
+
+    /// Its axis: from 0, or from below where there are negative values, with `margin` of the range as room; the names of
+    /// the regimes where it has those.
+    pub fn axis(&self, margin: f64, count: usize) -> Axis {
+        if self.regimes {
+            let ticks =
+                REGIMES.iter().enumerate().map(|(i, (name, _))| (i as f64, (*name).to_owned())).collect();
+            return Axis { low: -0.5, high: REGIMES.len() as f64 - 0.5, ticks, label: self.label.clone() };
+        }
+        Axis::around(self.values.iter().copied().chain([0.0]), margin, count, &self.label)
+    }
+}

@@ -1,0 +1,49 @@
+//! The manifest of a sweep as input: the scene that ran, with its grid as `sweep`, and the files that it read.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::document::Document;
+use super::error::SceneError;
+use super::files::{Files, LARGEST_TABLE, read_text};
+use super::text::clip;
+
+/// What the manifests of this program say in their key `program`.
+pub const PROGRAM: &str = "interwell";
+
+/// The largest manifest that is read: it holds tables, and its grid.
+pub(super) const LARGEST: usize = 2 * LARGEST_TABLE;
+
+/// The keys that make a sweep run again; a manifest has more of them.
+#[derive(Deserialize)]
+struct Manifest {
+    program: String,
+    scene_ron: String,
+    #[serde(default)]
+    files: BTreeMap<String, String>,
+}
+
+fn parse(text: &str) -> Result<Manifest, String> {
+    let manifest: Manifest = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    if manifest.program == PROGRAM { Ok(manifest) } else { Err("another program wrote it".to_owned()) }
+}
+
+/// Whether the file at `path` is a manifest of this program.
+pub fn is_manifest(path: &Path) -> bool {
+    read_text(path, LARGEST).is_ok_and(|text| parse(&text).is_ok())
+}
+
+/// The scene of a manifest's text, which messages call `name`. The files that it names come from the manifest, others from
+/// where `files` says.
+pub(super) fn read(name: &str, text: &str, files: Files) -> Result<Document, SceneError> {
+    let manifest = parse(text).map_err(|problem| {
+        let problem = clip(&problem);
+        let problem =
+            format!("is JSON, but no manifest of a sweep: {problem}; give a scene (.ron) or a manifest");
+        SceneError::Unreadable { name: name.to_owned(), problem }
+    })?;
+    let files = Files { held: manifest.files, ..files };
+    Document::from_text(&format!("{name} (scene_ron)"), &manifest.scene_ron, files)
+}

@@ -1,0 +1,111 @@
+//! Columns, waiting for motions to settle, and thresholds, as the command line gives them.
+
+use super::{column, headless, refused, stdout};
+
+#[test]
+fn twenty_amplitudes_settle() {
+    let line = "sweep paper-unconstrained --over excitation.amplitude_g=1.16:1.35:0.01 --until-settled 300 \
+        --columns regime,period,settled,settles_at_s --quiet";
+    let csv = stdout(line);
+    assert_eq!(csv.lines().next().unwrap(), "amplitude_g,regime,period,settled,settles_at_s");
+    assert_eq!(column(&csv, "regime"), ["interwell"; 20]);
+    assert_eq!(column(&csv, "settled"), ["true"; 20]);
+    // Most repeat in every period. Beside that motion there are others, and the wild beginning chooses among them.
+    let once = column(&csv, "period").iter().filter(|period| *period == "1").count();
+    assert!(once >= 14, "{csv}");
+    // the same bytes for any number of threads
+    assert_eq!(stdout(&format!("{line} --jobs 1")), stdout(&format!("{line} --jobs 3")));
+}
+
+#[test]
+fn columns_are_chosen_by_name() {
+    let sweep = "sweep paper --over excitation.amplitude_g=0.5,1 --quiet --columns ";
+    let csv = stdout(&format!("{sweep}side,mean_x_m,outcome,min_x_m"));
+    assert_eq!(csv.lines().next().unwrap(), "amplitude_g,side,mean_x_m,outcome,min_x_m");
+    assert_eq!(column(&csv, "side"), ["right", "both"]);
+    assert_eq!(column(&csv, "min_x_m"), ["0.0015", "-0.0015"]);
+    assert_eq!(column(&csv, "mean_x_m")[0], "0.0015");
+    // all of them begin with those that there always are
+    let all = stdout(&format!("{sweep}all"));
+    let header = all.lines().next().unwrap();
+    let standard = stdout("sweep paper --over excitation.amplitude_g=0.5,1 --quiet");
+    assert!(
+        header.starts_with(standard.lines().next().unwrap()) && header.contains(",settles_at_s"),
+        "{header}"
+    );
+    refused(
+        headless(&format!("{sweep}regime,speed")),
+        &["--columns speed", "rms_velocity_m_per_s", "settled"],
+    );
+    refused(headless(&format!("{sweep}regime,regime")), &["named twice"]);
+}
+
+#[test]
+fn waiting_needs_something_to_wait_for() {
+    for (line, words) in [
+        ("simulate paper --until-settled soon", &["--until-settled soon", "300"][..]),
+        ("simulate paper --until-settled 5", &["already lasts 10 s"]),
+        ("simulate paper --until-settled 1e12", &["at most 1e9 s"]),
+        ("simulate paper-ramp --until-settled 400", &["does not repeat", "Sine"]),
+        ("simulate paper --set excitation=None --until-settled 400", &["does not repeat"]),
+        ("sweep random-shaking --over mass_g=15,16 --until-settled 400", &["does not repeat"]),
+        ("simulate paper --set run.settle_s=9.5 --until-settled 400", &["less than two forcing periods"]),
+    ] {
+        refused(headless(line), words);
+    }
+    // samples reach to the end of the run, wherever that is
+    let csv =
+        stdout("simulate first-look --set excitation.amplitude_g=1.3 --until-settled 300 --dt 1 --quiet");
+    let last: f64 = column(&csv, "t_s").last().unwrap().parse().unwrap();
+    assert!((21.0..=300.0).contains(&last), "{last}");
+}
+
+#[test]
+fn thresholds_are_tables() {
+    // in closed form: mass times amplitude is the force at the stop
+    let csv = stdout("threshold paper --of release --over stops.travel_limit_mm=1,1.5,4");
+    assert_eq!(csv.lines().next().unwrap(), "travel_limit_mm,of,value,windows");
+    let curve = column(&stdout("curve paper --at-mm 1,1.5,4"), "force_n");
+    for (value, force) in column(&csv, "value").iter().zip(curve) {
+        let (value, force): (f64, f64) = (value.parse().unwrap(), force.parse().unwrap());
+        assert!((value + force / 15.2e-3 / 9.80665).abs() < 1e-12, "{value} {force}");
+    }
+    // crossing takes more, and the run just below it does not cross
+    let csv = stdout("threshold paper --over stops.travel_limit_mm=1,1.5,4 --resolution 0.001");
+    assert_eq!(column(&csv, "of"), ["crossing"; 3]);
+    let least: Vec<f64> = column(&csv, "value").iter().map(|value| value.parse().unwrap()).collect();
+    for (mm, own) in [1.0, 1.5, 4.0].into_iter().zip(&least) {
+        let runs = format!(
+            "sweep paper --set stops.travel_limit_mm={mm} --over excitation.amplitude_g={},{} --until-settled 100 --quiet",
+            own - 0.001,
+            own
+        );
+        let crossings = column(&stdout(&runs), "crossings");
+        assert!(crossings[0] == "0" && crossings[1] != "0", "{mm} mm, {own} g: {crossings:?}");
+    }
+    // whatever the scene's own amplitude is
+    assert_eq!(stdout("threshold paper --set excitation.amplitude_g=0.1"), stdout("threshold paper"));
+    // none in the range, and another field
+    assert_eq!(
+        stdout("threshold paper --field excitation.amplitude_g=0:0.5"),
+        "of,value,windows\ncrossing,,\n"
+    );
+    let csv = stdout("threshold paper --field stops.travel_limit_mm=1:3:0.1 --of interwell");
+    assert_eq!(column(&csv, "windows"), ["1"], "it ends where the stops hold the mass too hard: {csv}");
+}
+
+#[test]
+fn a_threshold_that_cannot_be_searched_is_refused() {
+    for (line, words) in [
+        ("threshold paper --field excitation.amplitude_g=2:0", &["--field", "TO must be above FROM"][..]),
+        ("threshold paper --field excitation.amplitude_g", &["--field", "FROM:TO"]),
+        ("threshold paper --field excitation.amplitude=0:2", &["excitation.amplitude_g"]),
+        ("threshold paper --field excitation.amplitude_g=-1e999:2", &["--field"]),
+        ("threshold paper --of motion", &["release", "crossing", "interwell"]),
+        ("threshold paper --resolution 0", &["--resolution 0", "above 0"]),
+        ("threshold paper --over excitation.amplitude_g=1,2", &["the threshold is over it"]),
+        ("threshold paper --field stops.restitution=0:2:0.5", &["stops.restitution", "0 to 1"]),
+    ] {
+        refused(headless(line), words);
+    }
+}

@@ -1,0 +1,153 @@
+//! What of a picture can be chosen: quantity, ranges, times, size, title.
+
+use super::super::cli::{headless, refused};
+use super::{SMALL_MAP, pixels, plot, says, texts, with_plot};
+
+const SHORT: &str = "--set run.settle_s=None --set run.duration_s=1";
+
+#[test]
+fn the_footer_says_what_arguments_changed() {
+    let texts = says(
+        "simulate --set mass_g=14 --set stops.travel_limit_mm=2 --set mass_g=16 --tolerance 1e-6",
+        &["built-in paper \u{b7} tolerance 1e-6 \u{b7} stops.travel_limit_mm=2 \u{b7} mass_g=16"],
+    );
+    assert!(!texts.iter().any(|text| text.contains("mass_g=14")), "{texts:?}");
+    says("curve --set stops=None", &["\u{b7} stops=None"]);
+}
+
+#[test]
+fn any_column_of_numbers_can_be_shown_and_the_regime() {
+    says(
+        &format!("{SMALL_MAP} --quantity max_abs_x_m"),
+        &["largest |x|, mm", "travel limit, mm", "first interwell cell"],
+    );
+    let impacts = says(&format!("{SMALL_MAP} --quantity impacts"), &["impacts"]);
+    // No velocity, so a mass at rest is a number like any other.
+    assert!(!impacts.iter().any(|text| text.contains("RMS") || text == "at rest"), "{impacts:?}");
+    let regimes = says(&format!("{SMALL_MAP} --quantity regime"), &["rest", "interwell"]);
+    assert!(!regimes.iter().any(|text| text == "regime" || text.contains("RMS")), "{regimes:?}");
+    let line = format!("sweep {SHORT} --over excitation.amplitude_g=0,1,2");
+    says(&format!("{line} --quantity crossings"), &["crossings", "amplitude, g"]);
+    says(&format!("{line} --quantity regime"), &["regime", "irregular"]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    for (name, words) in [
+        ("speed", &["--quantity speed", "rms_velocity_m_per_s", "regime"][..]),
+        ("outcome", &["outcome"]),
+        ("amplitude_g", &["amplitude_g"]),
+    ] {
+        refused(with_plot(&format!("{line} --quantity {name}"), &path), words);
+    }
+    refused(headless(&format!("{line} --quantity impacts")), &["--plot"]);
+    assert!(!path.exists());
+}
+
+#[test]
+fn a_field_of_few_values_is_drawn_as_lines() {
+    let lines =
+        format!("sweep {SHORT} --over stops.travel_limit_mm=1,2,3 --over excitation.amplitude_g=0:2:0.2");
+    let along =
+        says(&lines, &["travel limit 1 mm", "2 mm", "3 mm", "amplitude, g", "RMS velocity, mm/s", "rest"]);
+    assert!(!along.iter().any(|text| text == "travel limit, mm" || text == "at rest"), "{along:?}");
+    // Whichever stands first.
+    says(
+        &format!("sweep {SHORT} --over excitation.amplitude_g=0:2:0.2 --over stops.travel_limit_mm=2,1"),
+        &["travel limit 1 mm", "2 mm", "amplitude, g"],
+    );
+    says(SMALL_MAP, &["travel limit, mm"]);
+}
+
+/// Lines of the colour in which a sweep over one field is drawn.
+fn joined(line: &str) -> usize {
+    let folder = tempfile::tempdir().unwrap();
+    let svg = std::fs::read_to_string(plot(line, folder.path(), "a.svg")).unwrap();
+    svg.lines().filter(|own| own.starts_with("<polyline") && own.contains("stroke=\"#5A5A5A\"")).count()
+}
+
+#[test]
+fn seeds_are_not_joined() {
+    let line = "sweep random-shaking --set run.duration_s=2 --set run.settle_s=None --over";
+    assert_eq!(joined(&format!("{line} excitation.seed=1,2,3")), 0);
+    assert_eq!(joined(&format!("{line} excitation.rms_g=0.1,0.5,1")), 1);
+}
+
+#[test]
+fn a_first_cell_that_parts_nothing_is_not_drawn() {
+    let line = "sweep paper-unconstrained --set run.duration_s=6 --set run.settle_s=3 --tolerance 1e-6 \
+                --over excitation.frequency_hz=1:13:2 --over excitation.amplitude_g=0.5:3:0.125";
+    let texts = says(line, &["frequency, Hz"]);
+    assert!(!texts.iter().any(|text| text.contains("first interwell")), "{texts:?}");
+}
+
+#[test]
+fn a_picture_has_the_size_that_was_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    for (size, wanted) in [
+        ("--plot-size 800x500", (800, 500)),
+        ("--plot-size 601X900 --no-title", (601, 900)),
+        ("--no-title", (1600, 840)),
+    ] {
+        let line = format!("simulate {SHORT} {size}");
+        let (width, height, _) = pixels(&plot(&line, folder.path(), "a.png"));
+        assert_eq!((width, height), wanted);
+        let svg = std::fs::read_to_string(plot(&line, folder.path(), "a.svg")).unwrap();
+        assert!(svg.contains(&format!("width=\"{width}\" height=\"{height}\"")), "{}", &svg[..200]);
+    }
+    // Half the size is the same picture, point by point the mean.
+    let whole = pixels(&plot("curve", folder.path(), "b.png")).2;
+    let half = pixels(&plot("curve --plot-size 800x500", folder.path(), "c.png")).2;
+    let dark = |pixels: &[u8]| pixels.iter().filter(|own| **own < 128).count() as f64 / pixels.len() as f64;
+    assert!((dark(&half) / dark(&whole) - 1.0).abs() < 0.2, "{} {}", dark(&half), dark(&whole));
+    let bare = texts(&plot("curve --no-title", folder.path(), "d.svg"));
+    assert!(
+        !bare.iter().any(|text| text.contains("Prototype")
+            || text.contains("interwell")
+            || text.contains("wells at"))
+    );
+    assert!(
+        bare.iter().any(|text| text == "displacement, mm") && bare.iter().any(|text| text == "stop"),
+        "{bare:?}"
+    );
+    let path = folder.path().join("e.png");
+    for bad in ["800", "0x0", "800x99", "9000x500", "-1x500", "800x500x2"] {
+        refused(with_plot(&format!("curve --plot-size {bad}"), &path), &["--plot-size", bad, "WxH"]);
+    }
+    refused(headless("curve --no-title"), &["--plot"]);
+}
+
+#[test]
+fn axes_have_the_ranges_that_were_asked_for() {
+    let texts = says("curve --plot-x 0:4 --plot-y -1:1", &["0.5", "1.0", "4"]);
+    assert!(!texts.iter().any(|text| text == "5" || text == "\u{2212}5"), "{texts:?}");
+    let texts = says(&format!("{SMALL_MAP} --plot-x 2:3 --plot-y 0.5:1"), &["2.2", "3.0", "0.6", "1.0"]);
+    assert!(!texts.iter().any(|text| text == "7" || text == "2.0 "), "{texts:?}");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("e.png");
+    for bad in ["1", "2:1", "1:1", "nan:1", "0:inf", "a:b"] {
+        refused(with_plot(&format!("curve --plot-x {bad}"), &path), &["--plot-x", bad]);
+    }
+    refused(headless("curve --plot-x 0:1"), &["--plot"]);
+}
+
+#[test]
+fn a_run_is_drawn_over_the_times_that_were_asked_for() {
+    let line = "simulate --set run.settle_s=None --set run.duration_s=4";
+    says(
+        &format!("{line} --plot-time 1:2 --plot-y -4:4"),
+        &["1.0", "1.2", "2.0", "phase portrait, 1 to 2 s", "\u{2212}4"],
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let bytes = |line: &str| std::fs::read(plot(line, folder.path(), "a.png")).unwrap();
+    let window = bytes(&format!("{line} --plot-time 1:2"));
+    assert!(window != bytes(line));
+    // The times that are listed span it; the steps of --dt are those of the rows.
+    assert!(window == bytes(&format!("{line} --at 1.5,2,1")));
+    assert!(window == bytes(&format!("{line} --plot-time 1:2 --dt 0.5")));
+    let path = folder.path().join("e.png");
+    for bad in ["3:5", "-1:2"] {
+        refused(with_plot(&format!("{line} --plot-time {bad}"), &path), &["--plot-time", bad, "4 s"]);
+    }
+    // A run that ends before its window shows what there is.
+    let early = "simulate --set stops=None --set start=At(x_mm:7,v_m_per_s:900) --plot-time 1:2";
+    says(early, &["ended early"]);
+}
