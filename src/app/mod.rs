@@ -5,7 +5,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`document`] | the scene, its file, undo |
+//! | [`document`], `bring` | the scene, its file and the files that it names, undo |
 //! | [`export`], [`leave`] | what leaves the window, and what is asked before a scene does |
 //! | [`task`] | background tasks as values |
 //! | [`player`] | the clock and the live motion with its past |
@@ -22,6 +22,7 @@
 pub mod accuracy;
 mod advanced;
 mod announce;
+mod bring;
 pub mod controls;
 pub mod document;
 pub mod export;
@@ -89,6 +90,7 @@ pub fn run(spec: Option<&str>) -> Result<(), AppError> {
         let mut window = Window::open(spec.as_deref(), settings, wake)?;
         if let Some(storage) = creation.storage {
             window.recent = eframe::get_value(storage, window::RECENT).unwrap_or_default();
+            window.restore_size(eframe::get_value(storage, window::SIZE));
             window.set_own_arrangement(eframe::get_value(storage, window::OWN_KEY));
         }
         window.remember_file();

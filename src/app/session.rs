@@ -74,6 +74,8 @@ pub struct Session {
     refused: Option<String>,
     /// Live time in s of the last change.
     changed_at: f64,
+    /// The motion is no longer the run of the scene from its start: something was changed on its way.
+    continued: bool,
     /// The stops that come back when they are switched on.
     remembered_stops: Stops,
     wake: Wake,
@@ -114,6 +116,7 @@ impl Session {
             built: scene,
             mechanism,
             changed_at: 0.0,
+            continued: false,
             remembered_stops,
             wake,
         };
@@ -214,6 +217,7 @@ impl Session {
         if let Ok(model) = Model::build(self.scene(), Arc::clone(&self.mechanism)) {
             self.model = Arc::new(model);
             self.player.change(&self.model);
+            self.continued = true;
             self.ask_settled();
         }
     }
@@ -262,13 +266,13 @@ impl Session {
     /// The motion from its start again.
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
-        self.changed_at = 0.0;
+        (self.changed_at, self.continued) = (0.0, false);
         self.ask_settled();
     }
 
     /// The mass has been moved by hand: what it settles to is asked anew.
     pub fn moved_by_hand(&mut self) {
-        self.changed_at = self.player.watch().time();
+        (self.changed_at, self.continued) = (self.player.watch().time(), true);
         self.ask_settled();
     }
 
@@ -302,7 +306,7 @@ impl Session {
                 self.fault = None;
                 self.model = Arc::new(model);
                 self.player.change(&self.model);
-                self.changed_at = self.player.watch().time();
+                (self.changed_at, self.continued) = (self.player.watch().time(), true);
                 self.thresholds.clear();
                 self.stops_that_cross.clear();
                 self.ask_settled();
@@ -347,6 +351,18 @@ impl Session {
     /// The scene before the last gesture, for the card.
     pub fn before_card(&self) -> Option<&Card> {
         self.before.as_ref()
+    }
+
+    /// The time in s at which the run that is watched ends: as long after the last change as the scene says, or after the
+    /// start where the shaking is a function of the time since then.
+    pub fn end_of_run(&self) -> f64 {
+        let begins_here = self.player.watch().from_here().is_some();
+        self.model.duration + if begins_here { self.changed_at } else { 0.0 }
+    }
+
+    /// Whether something was changed on the motion's way, so that it is no run of the scene from its start.
+    pub fn is_continued(&self) -> bool {
+        self.continued
     }
 
     /// Live time in s of the last change: of the scene, or of the mass by hand.

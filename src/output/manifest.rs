@@ -41,7 +41,8 @@ pub fn manifest(
         .zip(grid.columns())
         .map(|(axis, column)| json!({ "field": axis.field, "column": column, "values": axis.values }))
         .collect();
-    let text = crate::scene::write(scene);
+    // null where it cannot be written, and never an empty scene
+    let text = crate::scene::write(scene).ok();
     let counts = |counts: &BTreeMap<&'static str, u64>| -> Value {
         counts.iter().map(|(word, n)| ((*word).to_owned(), json!(n))).collect::<Map<_, _>>().into()
     };

@@ -288,13 +288,13 @@ fn holds(screen: &Screen, seen: &mut Scene) {
     let (player, state) = (&session.player, session.player.state());
     let numbers =
         [state.t, state.x, state.v, state.base_accel, player.time(), player.speed, session.changed_at()];
-    assert!(numbers.iter().all(|number| number.is_finite()), "{state:?}\n{}", session.editor.text());
+    assert!(numbers.iter().all(|number| number.is_finite()), "{state:?}\n{:?}", session.editor.text());
     let ledger = player.watch().ledger();
     let energies = [ledger.work_j, ledger.by_hand_j, ledger.damping_j, ledger.impact_j, ledger.stored_j];
-    assert!(energies.iter().all(|joule| joule.is_finite()), "{ledger:?}\n{}", session.editor.text());
+    assert!(energies.iter().all(|joule| joule.is_finite()), "{ledger:?}\n{:?}", session.editor.text());
     let runnable = &session.editor.runnable().scene;
     if runnable != seen {
-        let text = session.editor.text();
+        let text = session.editor.text().unwrap();
         let again = Editor::from_text(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
         assert_eq!(again.scene(), runnable, "{text}");
         runnable.clone_into(seen);

@@ -17,10 +17,6 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
     ground.show(ui, |ui| {
         ui.set_min_size(ui.available_size());
-        if context.covered {
-            ui.label("Covered: what do you expect? Press C to see.");
-            return;
-        }
         let now = context.session.now_card();
         let before = context.session.before_card().cloned();
         let columns = ui.available_width() / 3.0 - 12.0;
