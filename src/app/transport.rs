@@ -13,6 +13,7 @@ use super::session::Session;
 use super::style::Style;
 use super::views::arrows;
 use super::widgets::{Icon, icon_button_ui};
+use super::words::{explained, meaning};
 
 /// How far ahead in s of the motion an event is looked for.
 pub const EVENT_AHEAD: f64 = 5.0;
@@ -183,8 +184,13 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) ->
     if let Some(t) = wanted {
         session.player.seek(t);
     }
-    let hover = "What has been seen: drag to look at it again. A line is an impact, a triangle a release, a diamond a crossing.";
-    response.on_hover_text(if covered { "What has been seen: drag to look at it again." } else { hover });
+    let mut hover = "What has been seen: drag, or move with the arrow keys, to look at it again.".to_owned();
+    if !covered {
+        for (sign, name) in [("A line", "impact"), ("A triangle", "release"), ("A diamond", "crossing")] {
+            hover += &format!("\n{sign} stands for {name}: {}", meaning(name).unwrap_or_default());
+        }
+    }
+    response.on_hover_text(hover);
     wanted.is_some()
 }
 
@@ -212,7 +218,8 @@ fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> 
                 back = ui.small_button(text).on_hover_text(hover).clicked();
             }
         });
-        ui.add(egui::Label::new(RichText::new(note).small().color(style.faint())).truncate());
+        let label = ui.add(egui::Label::new(RichText::new(&note).small().color(style.faint())).truncate());
+        explained(label, &note);
     });
     if back {
         session.player.to_present();

@@ -116,6 +116,15 @@ impl Window {
         Self::on(Editor::open(spec.unwrap_or(first))?, settings, wake)
     }
 
+    /// The same; where the scene cannot be opened, on the first preset, with a message that says why.
+    pub fn start(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+        Self::open(spec, settings, Arc::clone(&wake)).or_else(|error| {
+            let mut window = Self::open(None, settings, wake)?;
+            window.say("This scene cannot be opened", error.to_string());
+            Ok(window)
+        })
+    }
+
     fn on(editor: Editor, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
         let session = Session::new(editor, Arc::clone(&wake))?;
         let layout = session.scene().app.as_ref().and_then(|app| app.layout).unwrap_or(Layout::Look);
@@ -344,6 +353,11 @@ impl Window {
         self.place = Place::restored(size);
     }
 
+    /// The size in points at the zoom 1 that is to be kept.
+    pub fn size(&self) -> Option<[f32; 2]> {
+        self.place.size()
+    }
+
     /// What the traces share.
     pub fn timeline(&self) -> &views::Timeline {
         &self.memory.timeline
@@ -383,7 +397,7 @@ impl eframe::App for Window {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, eframe::APP_KEY, &self.settings);
         eframe::set_value(storage, RECENT, &self.recent);
-        if let Some(size) = self.place.size() {
+        if let Some(size) = self.size() {
             eframe::set_value(storage, SIZE, &size);
         }
         if let Some(own) = &self.own {

@@ -163,7 +163,7 @@ fn a_motion_that_was_changed_on_its_way_is_reproduced() {
         harness.state_mut().carry_out(&ctx, Command::CopyCommand);
         harness.step();
         let line = copied(&harness).unwrap();
-        assert!(line.contains("--set start"), "{line}");
+        assert!(line.contains("start"), "{line}");
         assert!(harness.state().told().is_some_and(|text| text.ends_with("present state on")));
         // the frame after the copy has gone on already
         let session = &mut harness.state_mut().session;
