@@ -23,7 +23,7 @@ const GROUPS: [(&str, &[(&str, &str)]); 4] = [
         "Hands",
         &[
             ("G", "take hold of the mass"),
-            ("Left, Right", "move what has the focus: the held mass by 0.1 mm, a slider or a stop by a step"),
+            ("Left, Right", "move what has the focus by a step, the held mass by 0.1 mm"),
             ("Shift", "with these, ten steps"),
             ("Enter", "let go of the mass"),
             ("Tab, Space", "to the next control, press it"),

@@ -24,11 +24,16 @@ const BUTTON: f32 = 32.0;
 /// Room in points for the time with what happens then, and for a way back from the past.
 const TIME: f32 = 250.0;
 
+/// Share of the room that the time has at most, where the window is narrow, and least room.
+const TIME_SHARE: f32 = 0.42;
+const LEAST_TIME: f32 = 120.0;
+
 /// Height in points of the legend below the bar, and of a transport that has room for it.
 const LEGEND: f32 = 15.0;
 const HIGH: f32 = 46.0;
 
-/// Height in points of the time and the line below it.
+/// Heights in points of the time, and of it with the line below.
+const ONE_LINE: f32 = 20.0;
 const TWO_LINES: f32 = 36.0;
 
 /// Share of the bar by which an arrow key moves, with Shift ten of them.
@@ -151,7 +156,8 @@ fn legend(painter: &Painter, style: &Style, row: Rect) {
 /// The remembered past as a bar with a sign for every event; dragging, or with the keyboard's focus the arrow keys, look
 /// at it.
 fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
-    let width = (ui.available_width() - TIME).max(40.0);
+    let time = (TIME_SHARE * ui.available_width()).clamp(LEAST_TIME, TIME);
+    let width = (ui.available_width() - time).max(40.0);
     let explains = !covered && ui.available_height() >= HIGH;
     let height = if explains { BUTTON + LEGEND } else { BUTTON };
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::drag());
@@ -208,7 +214,8 @@ fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> 
     let mut back = false;
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        ui.add_space(((ui.available_height() - TWO_LINES) * 0.5).max(0.0));
+        let height = if note.is_empty() { ONE_LINE } else { TWO_LINES };
+        ui.add_space(((ui.available_height() - height) * 0.5).max(0.0));
         ui.horizontal(|ui| {
             ui.label(time);
             if is_past {
@@ -218,8 +225,10 @@ fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> 
                 back = ui.small_button(text).on_hover_text(hover).clicked();
             }
         });
-        let label = ui.add(egui::Label::new(RichText::new(&note).small().color(style.faint())).truncate());
-        explained(label, &note);
+        if !note.is_empty() {
+            let text = RichText::new(&note).small().color(style.faint());
+            explained(ui.add(egui::Label::new(text).truncate()), &note);
+        }
     });
     if back {
         session.player.to_present();

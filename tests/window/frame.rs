@@ -310,22 +310,20 @@ fn the_window_fits_the_screen_and_keeps_its_size() {
     let open = |settings| Window::open(Some("paper"), settings, std::sync::Arc::new(|| ())).unwrap();
     let ctx = egui::Context::default();
     interwell::app::window::prepare(&ctx);
+    let frames = |window: &mut Window, inner, outer| -> Vec<ViewportCommand> {
+        (0..6).flat_map(|_| asked_of_the_screen(window, &ctx, inner, outer)).collect()
+    };
     // with its frame it is larger than the screen
     let mut window = open(Settings::default());
-    let own = asked_of_the_screen(&mut window, &ctx, WIDE, [1280.0, 750.0]);
-    assert_eq!(own, [ViewportCommand::Maximized(true)]);
+    assert_eq!(frames(&mut window, WIDE, [1280.0, 750.0]), [ViewportCommand::Maximized(true)]);
     assert_eq!(window.size(), Some(WIDE));
-    assert!(asked_of_the_screen(&mut window, &ctx, WIDE, [1280.0, 750.0]).is_empty());
+    assert!(frames(&mut window, WIDE, [1280.0, 750.0]).is_empty());
     // a projected one comes back at the size that it had in pixels
     let mut window = open(Settings { projector: true, ..Settings::default() });
     window.restore_size(Some([1200.0, 660.0]));
     let small = [1200.0 / 2.25, 660.0 / 2.25];
-    let mut all = Vec::new();
-    for _ in 0..3 {
-        all.extend(asked_of_the_screen(&mut window, &ctx, small, small));
-    }
-    assert_eq!(all, [ViewportCommand::InnerSize(vec2(800.0, 440.0))]);
-    asked_of_the_screen(&mut window, &ctx, [800.0, 440.0], [800.0, 440.0]);
+    assert_eq!(frames(&mut window, small, small), [ViewportCommand::InnerSize(vec2(800.0, 440.0))]);
+    frames(&mut window, [800.0, 440.0], [800.0, 440.0]);
     assert_eq!(window.size(), Some([1200.0, 660.0]));
 }
 

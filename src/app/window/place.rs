@@ -5,12 +5,19 @@
 
 use eframe::egui::{Context, Vec2, ViewportCommand, vec2};
 
+/// Frames after which sizes are those of the present zoom, and until which the screen tells how large the window's own
+/// frame is.
+const SETTLED: u32 = 3;
+const FRAMED: u32 = 90;
+
 /// Where the window is on its way to its size.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Place {
     /// The size that it is to have, until it was asked for.
     wanted: Option<Vec2>,
-    /// It has been seen to fit the screen, or has been made to.
+    /// Frames with the zoom that is wanted.
+    frames: u32,
+    /// It was larger than the screen, and is no longer asked to fit.
     fitted: bool,
     /// The last size that is worth keeping.
     size: Option<Vec2>,
@@ -30,8 +37,9 @@ impl Place {
 
     /// To be called in every frame with the zoom that is wanted.
     pub fn follow(&mut self, ctx: &Context, zoom: f32) {
-        // a zoom acts from the next frame on
-        if (ctx.zoom_factor() - zoom).abs() > 1e-3 {
+        self.frames = if (ctx.zoom_factor() - zoom).abs() < 1e-3 { self.frames.saturating_add(1) } else { 0 };
+        if self.frames < SETTLED {
+            ctx.request_repaint();
             return;
         }
         let (inner, outer, screen, whole) = ctx.input(|input| {
@@ -43,14 +51,15 @@ impl Place {
         if let Some(wanted) = self.wanted.take() {
             if (inner * zoom - wanted).abs().max_elem() > 1.0 {
                 ctx.send_viewport_cmd(ViewportCommand::InnerSize(wanted / zoom));
+                self.frames = 0;
             }
             return;
         }
         // with its frame it may be larger than the screen, whose edge then cuts the lowest bar
-        if let Some(screen) = screen.filter(|_| !self.fitted) {
+        if let Some(screen) = screen.filter(|_| !self.fitted && self.frames < FRAMED) {
             let outer = outer.map_or(inner, |rect| rect.size()).max(inner);
-            self.fitted = true;
             if outer.x > screen.x + 1.0 || outer.y > screen.y + 1.0 {
+                self.fitted = true;
                 ctx.send_viewport_cmd(ViewportCommand::Maximized(true));
             }
         }
