@@ -241,7 +241,11 @@ fn motion_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, session: &Session) {
     item(ui, asked, "To the end of the run", Some(plain(Key::End)), true, Command::RunToEnd);
     ui.separator();
     for (i, ((_, name), key)) in SPEEDS.into_iter().zip(SPEED_KEYS).enumerate() {
-        let text = if name.contains("time") { name.to_owned() } else { format!("{name} of real time") };
+        let text = match name {
+            "real time" => name.to_owned(),
+            _ if name.ends_with("times") => format!("{name} real time"),
+            _ => format!("{name} of real time"),
+        };
         item(ui, asked, &text, Some(plain(key)), true, Command::Speed(i));
     }
 }

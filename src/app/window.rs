@@ -89,9 +89,9 @@ pub struct Window {
     /// The changes may go: the window closes without another question.
     leaving: bool,
     /// What became of what is written elsewhere than in this thread: what was written, or the error.
-    written: (Sender<Result<String, String>>, Receiver<Result<String, String>>),
+    written: (Sender<files::Written>, Receiver<files::Written>),
     /// A whole run that is computed and written.
-    run: Latest<Result<String, String>>,
+    run: Latest<files::Written>,
     /// The size of the window on the screen.
     place: Place,
     /// The title that the window has.

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Key, Modifiers, Rect, ViewportCommand, accesskit::Role, pos2, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use egui_kittest::kittest::Queryable as _;
 use interwell::app::menu::Command;
 use interwell::app::settings::Settings;
 use interwell::app::views::View;
@@ -169,6 +169,45 @@ fn more_stands_beside_the_views() {
     }
     press(&mut harness, Key::Escape);
     assert!(harness.query_by_role_and_label(Role::Slider, "preload").is_none());
+}
+
+#[test]
+fn words_say_what_they_mean() {
+    let mut harness = window("paper", WIDE, Settings::default());
+    harness.state_mut().session.player.set_playing(false);
+    let labels = [
+        ("reach", "largest distance from the middle"),
+        ("crosses from", "least shaking at this frequency"),
+        ("RMS velocity", "root of the mean square"),
+        ("interwell", "It crosses from well to well"),
+    ];
+    let mut places: Vec<(egui::Pos2, &str)> =
+        labels.map(|(label, words)| (harness.get_by_label(label).rect().center(), words)).to_vec();
+    // the words of the drawing stand at its edges
+    let drawing = harness.get_by_label("Mechanism").rect().left_bottom();
+    let foot = harness.get_by_label("Well").rect().top();
+    places.push((pos2(drawing.x + 40.0, foot - 36.0), "bows sideways between its two ends"));
+    places.push((pos2(drawing.x + 150.0, drawing.y + 14.0), "times wider than long the drawing is"));
+    for (at, words) in places {
+        harness.hover_at(at);
+        harness.run_steps(90);
+        assert!(harness.query_by_label_contains(words).is_some(), "{words}");
+        harness.hover_at(pos2(5.0, 5.0));
+        harness.run_steps(30);
+    }
+}
+
+#[test]
+fn the_mechanism_has_its_share_of_the_height() {
+    for key in [Key::Num1, Key::Num2] {
+        let mut harness = window("paper", WIDE, Settings::default());
+        harness.key_press_modifiers(Modifiers::COMMAND, key);
+        harness.run_steps(3);
+        let top = |name| harness.get_by_label(name).rect().top();
+        // the bar below the views is 60 points high
+        let share = (top("Well") - top("Mechanism")) / (WIDE[1] - 60.0 - top("Mechanism"));
+        assert!((0.39..0.42).contains(&share), "{share}");
+    }
 }
 
 #[test]

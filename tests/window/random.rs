@@ -41,7 +41,7 @@ const SIZES: [[f32; 2]; 8] = [
     [70.0, 50.0],
 ];
 
-const KEYS: [Key; 24] = [
+const KEYS: [Key; 28] = [
     Key::Space,
     Key::Period,
     Key::Home,
@@ -61,6 +61,10 @@ const KEYS: [Key; 24] = [
     Key::Num3,
     Key::Num4,
     Key::Num5,
+    Key::Num7,
+    Key::R,
+    Key::X,
+    Key::End,
     Key::Tab,
     Key::Enter,
     Key::Escape,
@@ -254,7 +258,15 @@ impl Hand {
             17 => Command::Cover,
             18 => Command::CopyCommand,
             19 => Command::CopyMapCommand,
-            20 => self.pick(&[Command::Save, Command::SaveAs, Command::SaveMap, Command::SavePicture]),
+            20 => self.pick(&[
+                Command::Notes,
+                Command::NextTab,
+                Command::SaveRun,
+                Command::Save,
+                Command::SaveAs,
+                Command::SaveMap,
+                Command::SavePicture,
+            ]),
             21 => self.pick(&[Command::About, Command::Shortcuts, Command::Quit]),
             22 if screen.window.session.player.is_playing() => Command::Step,
             _ => Command::PlayPause,

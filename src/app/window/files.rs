@@ -34,6 +34,9 @@ pub(super) enum Chosen {
     NoDialog(Wanted, PathBuf),
 }
 
+/// What was written, in words, or why it was not.
+pub(super) type Written = Result<String, String>;
+
 /// A dialog that is gone sooner than this in ms was never seen by anyone.
 const UNSEEN: u128 = 300;
 
@@ -301,7 +304,7 @@ impl Window {
     }
 
     /// Says what was written, or why it was not.
-    fn tell_written(&mut self, written: Result<String, String>) {
+    fn tell_written(&mut self, written: Written) {
         match written {
             Ok(text) => self.tell(text),
             Err(error) => self.say("Not written", error),
@@ -425,7 +428,7 @@ impl Window {
 }
 
 /// Writes a text; what was written, in words.
-fn put(path: &Path, text: &str) -> Result<String, String> {
+fn put(path: &Path, text: &str) -> Written {
     export::write(path, text.as_bytes()).map(|()| format!("Saved {}", file_name(path)))
 }
 
