@@ -46,6 +46,7 @@ mod release;
 mod status_line;
 mod told;
 mod typed;
+mod writing;
 
 use files::Chosen;
 use place::Place;
@@ -89,9 +90,9 @@ pub struct Window {
     /// The changes may go: the window closes without another question.
     leaving: bool,
     /// What became of what is written elsewhere than in this thread: what was written, or the error.
-    written: (Sender<files::Written>, Receiver<files::Written>),
+    written: (Sender<writing::Written>, Receiver<writing::Written>),
     /// A whole run that is computed and written.
-    run: Latest<files::Written>,
+    run: Latest<writing::Written>,
     /// The size of the window on the screen.
     place: Place,
     /// The title that the window has.
@@ -274,30 +275,6 @@ impl Window {
         self.message_ui(ui);
         self.told_ui(ui);
         focus_ui(&ctx, &style);
-    }
-
-    /// Whether something over the window waits for an answer: no key acts behind it.
-    fn waits_for_answer(&self) -> bool {
-        self.message.is_some()
-            || self.asked.is_some()
-            || self.over_comments.is_some()
-            || self.typed.is_some()
-            || self.shortcuts
-    }
-
-    /// Does what the keyboard asks for. On the way to a goal every key gives it up, and does nothing else.
-    fn keys(&mut self, ctx: &egui::Context) {
-        let is_pressed = |event: &egui::Event| matches!(event, egui::Event::Key { pressed: true, .. });
-        if self.session.player.goal().is_some() {
-            if ctx.input(|input| input.events.iter().any(is_pressed)) {
-                ctx.input_mut(|input| input.events.retain(|event| !is_pressed(event)));
-                self.session.player.give_up();
-            }
-            return;
-        }
-        for command in menu::keys(ctx, self.settings, self.filled.is_some()) {
-            self.carry_out(ctx, command);
-        }
     }
 
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {

@@ -8,7 +8,7 @@ use crate::app::export::{self, Runs};
 use crate::app::hint;
 use crate::app::layouts::{Arrangement, Room, Tiling};
 use crate::app::leave::Next;
-use crate::app::menu::Command;
+use crate::app::menu::{self, Command};
 use crate::app::player::{Goal, SPEEDS};
 use crate::app::transport::EVENT_AHEAD;
 use crate::app::views::{Memory, View};
@@ -22,6 +22,30 @@ use super::files::Wanted;
 const PERIODS_AHEAD: f64 = 300.0;
 
 impl Window {
+    /// Whether something over the window waits for an answer: no key acts behind it.
+    pub(super) fn waits_for_answer(&self) -> bool {
+        self.message.is_some()
+            || self.asked.is_some()
+            || self.over_comments.is_some()
+            || self.typed.is_some()
+            || self.shortcuts
+    }
+
+    /// Does what the keyboard asks for. On the way to a goal every key gives it up, and does nothing else.
+    pub(super) fn keys(&mut self, ctx: &egui::Context) {
+        let is_pressed = |event: &egui::Event| matches!(event, egui::Event::Key { pressed: true, .. });
+        if self.session.player.goal().is_some() {
+            if ctx.input(|input| input.events.iter().any(is_pressed)) {
+                ctx.input_mut(|input| input.events.retain(|event| !is_pressed(event)));
+                self.session.player.give_up();
+            }
+            return;
+        }
+        for command in menu::keys(ctx, self.settings, self.filled.is_some()) {
+            self.carry_out(ctx, command);
+        }
+    }
+
     /// Does what was asked for.
     pub fn carry_out(&mut self, ctx: &egui::Context, command: Command) {
         match command {
