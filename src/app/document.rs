@@ -167,7 +167,7 @@ impl Editor {
         self.edit_once(|scene| *scene = saved)
     }
 
-    /// Writes the scene to a file, which is then its own, and the files that it names beside it: see [`bring`]. Returns
+    /// Writes the scene to a file, which is then its own, and the files that it names beside it. Returns
     /// the names of those that were written.
     pub fn save_to(&mut self, path: &Path) -> Result<Vec<String>, String> {
         self.end_gesture();

@@ -1,7 +1,7 @@
 //! What leaves the window: the motion as CSV, the window as a picture, the command line that shows the same.
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use eframe::egui::ColorImage;
 
@@ -32,11 +32,15 @@ pub fn motion_csv(player: &Player) -> String {
     header(&table) + &rows(&table, 0..table.rows())
 }
 
-/// The run of a scene from its start to its end, as `simulate` writes it.
-pub fn run_csv(scene: &Scene, model: &Model, cancel: &AtomicBool) -> Result<String, String> {
-    let times = sample_times(scene, model, &Sampling::Default).map_err(|error| error.to_string())?;
+/// The run of a scene from its start to its end, as `simulate` writes it; none where it was cancelled.
+pub fn run_csv(scene: &Scene, model: &Model, cancel: &AtomicBool) -> Option<Result<String, String>> {
+    let times = match sample_times(scene, model, &Sampling::Default) {
+        Ok(times) => times,
+        Err(error) => return Some(Err(error.to_string())),
+    };
     let table = simulate(model, &Keep { times, events: false }, Some(cancel)).samples;
-    Ok(header(&table) + &rows(&table, 0..table.rows()))
+    let whole = !cancel.load(Ordering::Relaxed);
+    whole.then(|| Ok(header(&table) + &rows(&table, 0..table.rows())))
 }
 
 /// The events that are remembered, in the columns of `simulate --events`.

@@ -192,18 +192,20 @@ pub fn menu_ui(
             item(ui, &mut asked, "About", None, true, Command::About);
         });
         ui.add_space(16.0);
-        let dirty = if session.editor.is_dirty() { " *" } else { "" };
-        let title = egui::RichText::new(format!("{}{dirty}", session.scene().title)).strong();
-        let title = ui.add(Button::new(title).frame_when_inactive(false).truncate());
-        if title.on_hover_text("What this scene is about").clicked() {
-            asked.push(Command::Notes);
-        }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let hover =
-                "Scene and views as they were opened, from time 0 (Home). The scene comes back with undo.";
+                "Scene and views as they were opened or last saved, from time 0 (Home). The scene comes back with undo.";
             if ui.button("Back to start").on_hover_text(hover).clicked() {
                 asked.push(Command::BackToStart);
             }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let dirty = if session.editor.is_dirty() { " *" } else { "" };
+                let title = egui::RichText::new(format!("{}{dirty}", session.scene().title)).strong();
+                let title = ui.add(Button::new(title).frame_when_inactive(false).truncate());
+                if title.on_hover_text("What this scene is about").clicked() {
+                    asked.push(Command::Notes);
+                }
+            });
         });
     });
     asked

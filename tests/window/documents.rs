@@ -322,13 +322,17 @@ fn home_goes_back_to_what_was_saved() {
 
 #[test]
 fn a_scene_takes_its_files_along() {
+    ["paper-table", "walking"].into_iter().for_each(takes_its_files_along);
+}
+
+fn takes_its_files_along(preset: &str) {
     let folder = tempfile::tempdir().unwrap();
     let (one, two) = (folder.path().join("one"), folder.path().join("two"));
     for place in [one.join("data"), two.clone()] {
         std::fs::create_dir_all(place).unwrap();
     }
     // a table beside the scene, and another file of that name where it is saved to
-    let mut harness = window("paper-table", WIDE, Settings::default());
+    let mut harness = window(preset, WIDE, Settings::default());
     let ctx = harness.ctx.clone();
     harness.state_mut().save_to(&ctx, &one.join("own.ron"));
     let named = |harness: &Harness<'static, Window>| {

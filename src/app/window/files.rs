@@ -103,6 +103,7 @@ impl Window {
                     written: std::mem::replace(&mut self.written, channel()),
                     run: std::mem::take(&mut self.run),
                     covered: self.covered,
+                    told: self.told.take(),
                     applied: self.applied,
                     ..window
                 };

@@ -66,7 +66,7 @@ impl Window {
             return self.say("The run was not written", fault.to_owned());
         }
         self.run.ask(&self.wake, move |cancel| {
-            let text = export::run_csv(&scene, &model, cancel);
+            let text = export::run_csv(&scene, &model, cancel)?;
             Some(text.and_then(|text| put(&path, &text)))
         });
         self.tell("Computing the run");
