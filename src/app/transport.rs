@@ -25,12 +25,15 @@ const BUTTON: f32 = 32.0;
 const TIME: f32 = 250.0;
 
 /// Share of the room that the time has at most, where the window is narrow, and least room.
-const TIME_SHARE: f32 = 0.42;
-const LEAST_TIME: f32 = 120.0;
+const TIME_SHARE: f32 = 0.65;
+const LEAST_TIME: f32 = 150.0;
 
 /// Height in points of the legend below the bar, and of a transport that has room for it.
 const LEGEND: f32 = 15.0;
 const HIGH: f32 = 46.0;
+
+/// Width in points that the way back from the past takes in full.
+const BACK: f32 = 130.0;
 
 /// Heights in points of the time, and of it with the line below.
 const ONE_LINE: f32 = 20.0;
@@ -219,7 +222,8 @@ fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> 
         ui.horizontal(|ui| {
             ui.label(time);
             if is_past {
-                let text = RichText::new("past: go to now").small();
+                let text = if ui.available_width() < BACK { "to now" } else { "past: go to now" };
+                let text = RichText::new(text).small();
                 let hover =
                     "The past is shown, with the shaking and the stops that were then. A click goes back to now.";
                 back = ui.small_button(text).on_hover_text(hover).clicked();

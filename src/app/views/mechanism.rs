@@ -87,7 +87,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
     changed
 }
 
-/// What the parts are called, each once: a flexure at its clamp, the mass on its inner side over the arrow, a stop at its
+/// What the parts are called, each once: a flexure at its clamp, the mass on the side to which the flexure does not bow, a stop at its
 /// foot on the outer side.
 fn names(
     painter: &egui::Painter,
@@ -105,10 +105,12 @@ fn names(
     };
     let zero = context.span.screen_from_world(0.0, rect);
     put(pos2(zero - 8.0, top + 5.0), Align2::RIGHT_TOP, "flexure");
-    let (at, align) = if body.center().x > rect.center().x {
-        (body.left_top() - vec2(6.0, 0.0), Align2::RIGHT_CENTER)
+    // over the stops, whose room it may need
+    let y = walls.0.min(body.top()) - 4.0;
+    let (at, align) = if bows_right(context) {
+        (pos2(body.left() - 2.0, y), Align2::RIGHT_BOTTOM)
     } else {
-        (body.right_top() + vec2(6.0, 0.0), Align2::LEFT_CENTER)
+        (pos2(body.right() + 2.0, y), Align2::LEFT_BOTTOM)
     };
     put(at, align, "mass");
     let (left, right) = context.session.shown().stop_positions();
@@ -118,6 +120,15 @@ fn names(
         let align = if way < 0.0 { Align2::RIGHT_BOTTOM } else { Align2::LEFT_BOTTOM };
         put(pos2(x, walls.1), align, "stop");
     }
+}
+
+/// Whether the flexure over the mass bows to the right; a sketched one does.
+fn bows_right(context: &ViewContext<'_>) -> bool {
+    let bent = context.memory.bent.as_ref().filter(|_| context.session.shown().mechanism.flexures.is_some());
+    let Some(line) = bent.and_then(|bent| bent.lines.get(1)) else { return true };
+    let across = |i: usize| line.points.get(i).map_or(0.0, |point| point[2]);
+    let last = line.points.len().saturating_sub(1);
+    across(last / 2) >= 0.5 * (across(0) + across(last))
 }
 
 /// What a word of the drawing means, while the pointer rests on it.
