@@ -20,7 +20,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Opens the window; a scene that cannot be opened is said here and there, and leaves its exit status in `refused`.
+/// Opens the window; a scene that cannot be opened is said here and there, and leaves its exit status in
+/// `refused`.
 #[cfg(feature = "app")]
 fn window(scene: Option<&str>, refused: &Cell<Option<ExitCode>>) -> Result<(), cli::Failure> {
     use interwell::app::{AppError, CannotRun, run};

@@ -6,9 +6,9 @@ use crate::scene::{FileError, Files, Scene, named_paths};
 
 use super::export;
 
-/// Puts the table and the records of `scene` into the folder of `target` and names them as they are called there.
-/// A file that is there already is used where it holds the same, and never written over. Returns the names of the
-/// files that were written, and says on an error why one could not be.
+/// Puts the table and the records of `scene` into the folder of `target` and names them as they are called
+/// there. A file that is there already is used where it holds the same, and never written over. Returns the
+/// names of the files that were written, and says on an error why one could not be.
 pub fn bring(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<String>, String> {
     let mut written = Vec::new();
     if files.folder.as_deref().is_some_and(|own| is_same(own, folder_of(target))) {
@@ -33,8 +33,8 @@ pub fn bring(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<Stri
     Ok(written)
 }
 
-/// Has what a scene of the past names lie where it lay, once the scene was saved elsewhere: `now` is the scene that was
-/// saved, and `was` the same one before.
+/// Has what a scene of the past names lie where it lay, once the scene was saved elsewhere: `now` is the
+/// scene that was saved, and `was` the same one before.
 pub fn follow(scene: &mut Scene, files: &Files, (was, now): (&mut Scene, &mut Scene)) {
     let renamed: Vec<_> = named_paths(was).into_iter().zip(named_paths(now)).collect();
     for path in named_paths(scene) {

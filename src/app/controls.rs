@@ -34,7 +34,8 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, style: &Style, more: &mut b
     changed
 }
 
-/// Shaking and stops as one row, where room is short; the rest opens beside the views. Whether something changed.
+/// Shaking and stops as one row, where room is short; the rest opens beside the views. Whether something
+/// changed.
 pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) -> bool {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         let hover = "Restitution, preload, frequency, damping and mass.";

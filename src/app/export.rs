@@ -77,12 +77,13 @@ pub enum Runs {
     Whole,
     /// The motion on the screen, from its present state on.
     FromNow,
-    /// The scene from its start, where the motion on the screen was changed on its way and no scene says how it goes on.
+    /// The scene from its start, where the motion on the screen was changed on its way and no scene says how
+    /// it goes on.
     Another,
 }
 
-/// The command that runs what is on the screen without a window, and what it does; none for a scene that neither has a
-/// file nor is built in, until it is saved.
+/// The command that runs what is on the screen without a window, and what it does; none for a scene that
+/// neither has a file nor is built in, until it is saved.
 pub fn command_line(session: &Session) -> Option<(String, Runs)> {
     let editor = &session.editor;
     let mut line = format!("interwell --headless simulate {}", quoted(&editor.origin()?));

@@ -10,7 +10,8 @@ use crate::scene::Layout;
 use super::style::{BODY, COMPACT_BELOW, LARGE_FROM};
 use super::views::{View, ViewContext, view_ui};
 
-/// Shares of the window in the layout Look: left of 1030 points 590, of 584 points of height 340 on the right.
+/// Shares of the window in the layout Look: left of 1030 points 590, of 584 points of height 340 on the
+/// right.
 const LEFT_SHARE: f32 = 590.0 / 1030.0;
 const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
 
@@ -20,7 +21,8 @@ const MAP_SHARE: f32 = 640.0 / 1030.0;
 /// Share of the height that the mechanism has over the well.
 const MECHANISM_SHARE: f32 = 0.4;
 
-/// Share of the width that the first column of the layout Study has, and that one of two views has where room is short.
+/// Share of the width that the first column of the layout Study has, and that one of two views has where room
+/// is short.
 const STUDY_COLUMN: f32 = 0.34;
 const COMPACT_SHARE: f32 = 0.5;
 
@@ -125,7 +127,8 @@ impl Tiling {
         }
     }
 
-    /// Brings the next of the tabs that share a place to the front: where `view` is, or the first place that has several.
+    /// Brings the next of the tabs that share a place to the front: where `view` is, or the first place that
+    /// has several.
     pub fn next_tab(&mut self, view: Option<View>) {
         let tiles = &self.tree.tiles;
         let next = view.into_iter().chain(View::ALL).find_map(|view| {
@@ -143,7 +146,8 @@ impl Tiling {
         }
     }
 
-    /// The container that holds views of the same kind. Where room is short the mechanism stands among the others.
+    /// The container that holds views of the same kind. Where room is short the mechanism stands among the
+    /// others.
     fn place_for(&self, view: View) -> Option<TileId> {
         let tiles = &self.tree.tiles;
         let apart = |own: &View| self.room == Room::Compact && *own == View::Mechanism;
@@ -220,7 +224,8 @@ fn study_tree(large: bool) -> Tree<View> {
     Tree::new(egui::Id::unique("wide"), root, tiles)
 }
 
-/// Two groups of tabs: the well and what else has the displacement along it, and the mechanism before what has not.
+/// Two groups of tabs: the well and what else has the displacement along it, and the mechanism before what
+/// has not.
 fn compact_tree(views: &[View]) -> Tree<View> {
     let mut tiles = Tiles::default();
     let is_first = |view: &&View| view.is_along_x() && **view != View::Mechanism;

@@ -66,8 +66,8 @@ pub enum AppError {
     NoWindow(String),
 }
 
-/// Opens the window on a scene, and comes back when it is closed. What is wrong with the scene is handed to `refused`
-/// before a window is there; the window then says it too, and opens on the first preset.
+/// Opens the window on a scene, and comes back when it is closed. What is wrong with the scene is handed to
+/// `refused` before a window is there; the window then says it too, and opens on the first preset.
 pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), AppError> {
     let tried = Window::open(spec, Settings::default(), Arc::new(|| ())).map(drop);
     if !has_display() {

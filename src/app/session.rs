@@ -353,8 +353,8 @@ impl Session {
         self.before.as_ref()
     }
 
-    /// The time in s at which the run that is watched ends: as long after the last change as the scene says, or after the
-    /// start where the shaking is a function of the time since then.
+    /// The time in s at which the run that is watched ends: as long after the last change as the scene says,
+    /// or after the start where the shaking is a function of the time since then.
     pub fn end_of_run(&self) -> f64 {
         let begins_here = self.player.watch().from_here().is_some();
         self.model.duration + if begins_here { self.changed_at } else { 0.0 }

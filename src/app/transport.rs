@@ -123,8 +123,8 @@ fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Even
     shown
 }
 
-/// What stands for an event at a place on the bar: a line for an impact, a triangle for a release, a diamond for a
-/// crossing.
+/// What stands for an event at a place on the bar: a line for an impact, a triangle for a release, a diamond
+/// for a crossing.
 fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
     let convex = |points: &[(f32, f32)], color: Color32| {
         let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();
@@ -156,8 +156,8 @@ fn legend(painter: &Painter, style: &Style, row: Rect) {
     }
 }
 
-/// The remembered past as a bar with a sign for every event; dragging, or with the keyboard's focus the arrow keys, look
-/// at it.
+/// The remembered past as a bar with a sign for every event; dragging, or with the keyboard's focus the arrow
+/// keys, look at it.
 fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
     let time = (TIME_SHARE * ui.available_width()).clamp(LEAST_TIME, TIME);
     let width = (ui.available_width() - time).max(40.0);
@@ -225,7 +225,7 @@ fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> 
                 let text = if ui.available_width() < BACK { "to now" } else { "past: go to now" };
                 let text = RichText::new(text).small();
                 let hover =
-                    "The past is shown, with the shaking and the stops that were then. A click goes back to now.";
+                    "The past is shown, with the shaking and the stops of then. A click goes back to now.";
                 back = ui.small_button(text).on_hover_text(hover).clicked();
             }
         });

@@ -1,37 +1,34 @@
-//! Words of the window that need a sentence, and that sentence: what a label says while the pointer rests on it.
+//! Words of the window that need a sentence, and that sentence: what a label says under the pointer.
 
 /// Words in small letters, and what they mean.
 const MEANINGS: [(&str, &str); 19] = [
     (
         "bulge",
-        "How far the buckled flexure bows sideways between its two ends. It is largest with the mass in the middle and \
-         shrinks towards the wells.",
+        "How far the buckled flexure bows sideways between its two ends. It is largest with the mass in \
+         the middle and shrinks towards the wells.",
     ),
     (
         "taut",
-        "The buckled flexure is pulled straight: it has no bow left to give, and the force rises steeply from here on.",
+        "The buckled flexure is pulled straight: it has no bow left to give, and the force rises steeply \
+         from here on.",
     ),
-    (
-        "sideways",
-        "How many times wider than long the drawing is. The mass travels some millimetres between flexures of some \
-         centimetres: at true scale one would hardly see it.",
-    ),
+    ("sideways", "How many times more the drawing is stretched across the flexures than along them."),
     ("true scale", "Lengths along and across the flexures are drawn alike."),
     (
         "schematic",
-        "Places along x are true; the shape of the flexures is only a sketch, as the scene gives no flexures.",
+        "Places along x are true; the shape of the flexures is only a sketch, as the scene gives no \
+         flexures.",
     ),
     (
         "push",
-        "The force that the mass feels because the base accelerates, as in a bus that brakes; in multiples of its weight.",
+        "The force that the mass feels because the base accelerates, as in a bus that brakes; in \
+         multiples of its weight.",
     ),
-    (
-        "base",
-        "How far the base itself swings, at a scale of its own: far more than the mass moves in the mechanism.",
-    ),
+    ("base", "How far the base itself swings, at a scale of its own."),
     (
         "reach",
-        "The largest distance from the middle that the mass gets to once its motion has settled, to either side.",
+        "The largest distance from the middle that the mass gets to once its motion has settled, to \
+         either side.",
     ),
     (
         "crosses from",
@@ -39,37 +36,36 @@ const MEANINGS: [(&str, &str); 19] = [
     ),
     (
         "release",
-        "The push, for a moment, is larger than what the mechanism presses the mass on its stop with: the mass comes off.",
+        "The push, for a moment, is larger than what the mechanism presses the mass on its stop with: the \
+         mass comes off.",
     ),
     ("impact", "The mass strikes a stop and rebounds; what it loses of its speed goes into the stop."),
     ("crossing", "The mass passes the top of the barrier between the two wells, in either direction."),
-    (
-        "intrawell",
-        "It stays in one well: the push never carries it over the barrier, and it swings about one of the two places \
-         where it could rest.",
-    ),
+    ("intrawell", "It stays on its side: the push never carries it over the barrier."),
     (
         "interwell",
         "It crosses from well to well, and its crossings repeat after one or a few periods of the shaking.",
     ),
     (
         "irregular",
-        "It crosses, and its crossings did not repeat while it was watched: chaos, or a motion that had not settled yet.",
+        "It crosses, and its crossings did not repeat while it was watched: chaos, or a motion that had \
+         not settled yet.",
     ),
     ("hopping", "It leaves its stop and falls back on the same one, without crossing."),
     (
         "rms velocity",
-        "The root of the mean square of the velocity relative to the base, of the settled motion. The mean power that \
-         damping takes grows with its square.",
+        "The root of the mean square of the velocity relative to the base, of the settled motion. The \
+         mean power that damping takes grows with its square.",
     ),
     (
         "settling",
-        "After a change the motion needs some periods until it repeats; what the window says is about the time after that.",
+        "After a change the motion needs some periods until it repeats; what the window says is about the \
+         time after that.",
     ),
     (
         "chaotic",
-        "Two motions that begin almost alike part quickly, so that rounding errors grow too: a single path is right only \
-         up to some time, while averages hold for longer.",
+        "Two motions that begin almost alike part quickly, so that rounding errors grow too: a single \
+         path is right only up to some time, while averages hold for longer.",
     ),
 ];
 

@@ -187,7 +187,7 @@ fn words_say_what_they_mean() {
     let drawing = harness.get_by_label("Mechanism").rect().left_bottom();
     let foot = harness.get_by_label("Well").rect().top();
     places.push((pos2(drawing.x + 40.0, foot - 36.0), "bows sideways between its two ends"));
-    places.push((pos2(drawing.x + 150.0, drawing.y + 14.0), "times wider than long the drawing is"));
+    places.push((pos2(drawing.x + 150.0, drawing.y + 14.0), "stretched across the flexures"));
     for (at, words) in places {
         harness.hover_at(at);
         harness.run_steps(90);

@@ -6,8 +6,8 @@ use crate::scene::arguments;
 
 use super::{Question, over};
 
-/// The command, quoted for a shell; none for a scene that neither has a file nor is built in, until it is saved. What has
-/// been changed since it was opened or saved, or is the map's own, is said by `--set`.
+/// The command, quoted for a shell; none for a scene that neither has a file nor is built in, until it is
+/// saved. What has been changed since it was opened or saved, or is the map's own, is said by `--set`.
 pub fn command(question: &Question, editor: &Editor) -> Option<String> {
     let spec = editor.origin()?;
     let mut from = editor.saved().clone();

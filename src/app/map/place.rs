@@ -86,7 +86,8 @@ impl Session {
         })
     }
 
-    /// The command line that makes the map, for a shell; none without a map, and for a scene that has no name yet.
+    /// The command line that makes the map, for a shell; none without a map, and for a scene that has no name
+    /// yet.
     pub fn map_command(&self) -> Option<String> {
         self.map.map().and_then(|map| command::command(&map.question, &self.editor))
     }

@@ -1,7 +1,8 @@
-//! Going on to what is wanted next, as fast as it can be computed: the end of the run, the next release or crossing.
+//! Going on to what is wanted next, as fast as it can be computed: the end of the run, the next release or
+//! crossing.
 //!
-//! It takes as many frames as it takes. In each the motion is advanced in short stretches until the frame's share of time
-//! is used up, so that the window answers meanwhile.
+//! It takes as many frames as it takes. In each the motion is advanced in short stretches until the frame's
+//! share of time is used up, so that the window answers meanwhile.
 
 use std::time::{Duration, Instant};
 
@@ -9,8 +10,8 @@ use crate::dynamics::{Event, EventKind};
 
 use super::Player;
 
-/// Time on the screen that one frame computes, and the stretch of the motion between two looks at the clock, in multiples
-/// of its pace.
+/// Time on the screen that one frame computes, and the stretch of the motion between two looks at the clock,
+/// in multiples of its pace.
 const SHARE: Duration = Duration::from_millis(12);
 const STRETCH: f64 = 2.0;
 

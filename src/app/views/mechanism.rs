@@ -87,8 +87,8 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
     changed
 }
 
-/// What the parts are called, each once: a flexure at its clamp, the mass on the side to which the flexure does not bow, a stop at its
-/// foot on the outer side.
+/// What the parts are called, each once: a flexure at its clamp, the mass on the side to which the flexure
+/// does not bow, a stop at its foot on the outer side.
 fn names(
     painter: &egui::Painter,
     context: &ViewContext<'_>,

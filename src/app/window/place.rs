@@ -1,12 +1,13 @@
 //! The size of the window on the screen, from one start of the program to the next.
 //!
-//! What eframe keeps is in points of the zoom of then, and is read before a zoom is set: a window of the projector mode
-//! would come back smaller with every start. The size is therefore kept here, in points of the zoom 1.
+//! What eframe keeps is in points of the zoom of then, and is read before a zoom is set: a window of the
+//! projector mode would come back smaller with every start. The size is therefore kept here, in points of the
+//! zoom 1.
 
 use eframe::egui::{Context, Vec2, ViewportCommand, vec2};
 
-/// Frames after which sizes are those of the present zoom, and until which the screen tells how large the window's own
-/// frame is.
+/// Frames after which sizes are those of the present zoom, and until which the screen tells how large the
+/// window's own frame is.
 const SETTLED: u32 = 3;
 const FRAMED: u32 = 90;
 
