@@ -2,6 +2,7 @@
 
 mod cli;
 
+use std::cell::Cell;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -9,8 +10,9 @@ fn main() -> ExitCode {
         Ok(options) => options,
         Err(exit) => return exit,
     };
-    match cli::run(options, window) {
-        Ok(()) => ExitCode::SUCCESS,
+    let refused = Cell::new(None);
+    match cli::run(options, |scene| window(scene, &refused)) {
+        Ok(()) => refused.take().unwrap_or(ExitCode::SUCCESS),
         Err(failure) => {
             cli::say(&format!("error: {failure}"));
             failure.exit_code()
@@ -18,17 +20,28 @@ fn main() -> ExitCode {
     }
 }
 
+/// Opens the window; a scene that cannot be opened is said here and there, and leaves its exit status in
+/// `refused`.
 #[cfg(feature = "app")]
-fn window(scene: Option<&str>) -> Result<(), cli::Failure> {
+fn window(scene: Option<&str>, refused: &Cell<Option<ExitCode>>) -> Result<(), cli::Failure> {
     use interwell::app::{AppError, CannotRun, run};
-    run(scene).map_err(|error| match error {
-        AppError::Scene(CannotRun::Wrong(error)) => error.into(),
-        AppError::Scene(CannotRun::Unsolved(_)) | AppError::NoWindow(_) => cli::Failure::Failed(error.into()),
+    let failure = |error: CannotRun| match error {
+        CannotRun::Wrong(error) => cli::Failure::from(error),
+        CannotRun::Unsolved(_) => cli::Failure::Failed(error.into()),
+    };
+    let say = |error| {
+        let failure = failure(error);
+        cli::say(&format!("error: {failure}"));
+        refused.set(Some(failure.exit_code()));
+    };
+    run(scene, say).map_err(|error| match error {
+        AppError::Scene(error) => failure(error),
+        AppError::NoWindow(_) => cli::Failure::Failed(error.into()),
     })
 }
 
 #[cfg(not(feature = "app"))]
-fn window(_: Option<&str>) -> Result<(), cli::Failure> {
+fn window(_: Option<&str>, _: &Cell<Option<ExitCode>>) -> Result<(), cli::Failure> {
     Err(cli::Failure::argument(
         "this build has no window: use interwell --headless with presets, check, curve, simulate, sweep, threshold or accuracy; \
          see interwell --help",

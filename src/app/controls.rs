@@ -34,36 +34,37 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, style: &Style, more: &mut b
     changed
 }
 
-/// Shaking and stops as one row, where room is short. Whether something changed.
-pub fn row_ui(ui: &mut Ui, session: &mut Session, style: &Style, more: &mut bool) -> bool {
-    ui.horizontal(|ui| {
-        let width = ((ui.available_width() - 520.0) * 0.5).clamp(60.0, 260.0);
-        heading_ui(ui, "Shaking");
-        let mut changed = shaking_ui(ui, session, width);
-        ui.separator();
-        changed |= stops_switch_ui(ui, session);
-        changed |= limit_ui(ui, session, width);
+/// Shaking and stops as one row, where room is short; the rest opens beside the views. Whether something
+/// changed.
+pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) -> bool {
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         let hover = "Restitution, preload, frequency, damping and mass.";
         let button = ui.selectable_label(*more, "More").on_hover_text(hover);
         let escaped = *more && ui.input(|input| input.key_pressed(egui::Key::Escape));
         if button.clicked() || escaped {
             *more = !*more;
         }
-        if *more {
-            let place = egui::Area::new(egui::Id::unique("more")).fixed_pos(button.rect.right_bottom());
-            place.pivot(egui::Align2::RIGHT_TOP).order(egui::Order::Foreground).show(ui.ctx(), |ui| {
-                egui::Frame::popup(ui.style()).show(ui, |ui| {
-                    ui.set_width(280.0);
-                    let room = (ui.ctx().content_rect().bottom() - button.rect.bottom() - 24.0).max(120.0);
-                    egui::ScrollArea::vertical().max_height(room).show(ui, |ui| {
-                        changed |= more_ui(ui, session, style, 150.0);
-                    });
-                });
-            });
-        }
-        changed
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            let sides = match session.scene().stops {
+                Stops::Uneven { left_mm, right_mm, .. } => left_mm.iter().chain(&right_mm).count(),
+                _ => 1,
+            };
+            let names = 330.0 + 110.0 * sides as f32;
+            let width = ((ui.available_width() - names) / (1 + sides) as f32).clamp(30.0, 260.0);
+            heading_ui(ui, "Shaking");
+            let mut changed = shaking_ui(ui, session, width);
+            ui.separator();
+            changed |= stops_switch_ui(ui, session);
+            changed | limit_ui(ui, session, width)
+        })
+        .inner
     })
     .inner
+}
+
+/// What is changed less often, as a column beside the views. Whether something changed.
+pub fn more_column_ui(ui: &mut Ui, session: &mut Session, style: &Style) -> bool {
+    egui::ScrollArea::vertical().show(ui, |ui| more_ui(ui, session, style, 150.0)).inner
 }
 
 fn heading_ui(ui: &mut Ui, text: &str) {

@@ -3,19 +3,15 @@
 //! Undo is a stack of scenes: a scene is plain, comparable data of a few hundred bytes, and one gesture (a drag, a
 //! click, a number typed) is one step.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::scene::{
-    Document, Excitation, Files, Mechanism, Scene, SceneError, Start, Stops, TABLES, numeric_fields, write,
-};
+use crate::scene::{Document, Files, Scene, SceneError, Source, Start, Stops, numeric_fields, write};
 
+use super::bring::{bring, follow};
 use super::export;
 
 /// The most steps back that are kept.
 const MOST_STEPS: usize = 500;
-
-/// How a document calls a built-in scene, before its name.
-const BUILT_IN: &str = "built-in ";
 
 /// How messages call a scene that came as text.
 const PASTED: &str = "the pasted scene";
@@ -25,12 +21,8 @@ const PASTED: &str = "the pasted scene";
 pub struct Editor {
     /// The document; its scene is what is edited.
     document: Document,
-    /// The file, for a scene that has one.
-    path: Option<PathBuf>,
     /// The scene as it was opened or last saved.
     saved: Scene,
-    /// The scene as it was opened.
-    opened: Scene,
     undo: Vec<Scene>,
     redo: Vec<Scene>,
     /// The scene at the begin of the gesture under way.
@@ -38,63 +30,45 @@ pub struct Editor {
 }
 
 impl Editor {
-    /// An editor on a scene; `path` is its file, where it has one.
-    pub fn new(document: Document, path: Option<PathBuf>) -> Self {
-        let scene = document.scene.clone();
-        Self {
-            document,
-            path,
-            saved: scene.clone(),
-            opened: scene,
-            undo: Vec::new(),
-            redo: Vec::new(),
-            gesture: None,
-        }
+    /// An editor on a scene.
+    pub fn new(document: Document) -> Self {
+        let saved = document.scene.clone();
+        Self { document, saved, undo: Vec::new(), redo: Vec::new(), gesture: None }
     }
 
     /// Opens a scene file or a built-in scene.
     pub fn open(spec: &str) -> Result<Self, SceneError> {
-        let document = Document::load(spec)?;
-        let own_file = !document.name.starts_with(BUILT_IN);
-        Ok(Self::new(document, own_file.then(|| PathBuf::from(spec))))
+        Document::load(spec).map(Self::new)
     }
 
     /// An editor on a scene as text, which has no file.
     pub fn from_text(text: &str) -> Result<Self, SceneError> {
-        let document = Document::from_text(PASTED, text, Files::default())?;
-        Ok(Self::new(document, None))
+        Document::from_text(PASTED, text, Files::default()).map(Self::new)
     }
 
     /// What the command line calls the scene that was opened or last saved; none for one that has no such name.
     pub fn origin(&self) -> Option<String> {
-        match &self.path {
-            Some(path) => Some(path.to_string_lossy().into_owned()),
-            None => self.document.name.strip_prefix(BUILT_IN).map(str::to_owned),
+        match &self.document.source {
+            Source::File(path) => Some(path.to_string_lossy().into_owned()),
+            Source::BuiltIn(name) => Some((*name).to_owned()),
+            Source::Text => None,
         }
-    }
-
-    /// The scene as it was opened or last saved.
-    pub fn saved_scene(&self) -> &Scene {
-        &self.saved
     }
 
     /// The document as it can be run and written: without axes of its sweep that name a field which the scene does not
     /// have at the moment, such as the travel limit while the stops are off. The scene keeps them for when it has.
     pub fn runnable(&self) -> Document {
-        let mut document = self.document.clone();
-        let fields = numeric_fields(&document.scene);
-        document.scene.sweep.retain(|axis| fields.contains(&axis.field));
-        document
+        runnable(&self.document)
     }
 
     /// The scene as text.
-    pub fn text(&self) -> String {
-        write(&self.runnable().scene)
+    pub fn text(&self) -> Result<String, String> {
+        text_of(&self.runnable().scene)
     }
 
     /// Whether the file that the scene came from has comments, which are no part of a scene.
     pub fn has_comments(&self) -> bool {
-        self.path.is_some() && super::leave::has_comments(&self.document.text)
+        self.path().is_some() && super::leave::has_comments(&self.document.text)
     }
 
     /// The scene.
@@ -114,7 +88,10 @@ impl Editor {
 
     /// The file that the scene is saved to.
     pub fn path(&self) -> Option<&Path> {
-        self.path.as_deref()
+        match &self.document.source {
+            Source::File(path) => Some(path),
+            Source::BuiltIn(_) | Source::Text => None,
+        }
     }
 
     /// Whether there is something to save.
@@ -184,49 +161,47 @@ impl Editor {
         true
     }
 
-    /// Back to the scene as it was opened; that, too, can be undone. Whether anything changed.
+    /// Back to the scene as it was opened or last saved; that, too, can be undone. Whether anything changed.
     pub fn back_to_start(&mut self) -> bool {
-        let opened = self.opened.clone();
-        self.edit_once(|scene| *scene = opened)
+        let saved = self.saved.clone();
+        self.edit_once(|scene| *scene = saved)
     }
 
-    /// Writes the scene to a file, which is then its own. Embedded tables that it names are put beside the file, where
-    /// it looks for them from then on; one that is there already stays.
-    pub fn save_to(&mut self, path: &Path) -> Result<(), String> {
+    /// Writes the scene to a file, which is then its own, and the files that it names beside it. Returns
+    /// the names of those that were written.
+    pub fn save_to(&mut self, path: &Path) -> Result<Vec<String>, String> {
         self.end_gesture();
-        let text = self.text();
-        if self.document.files.folder.is_none() {
-            let mut names = Vec::new();
-            if let Mechanism::Table { path, .. } = &self.document.scene.mechanism {
-                names.push(path.as_str());
-            }
-            records(&self.document.scene.excitation, &mut names);
-            for table in TABLES.iter().filter(|table| names.contains(&table.name)) {
-                let beside = path.with_file_name(table.name);
-                if !beside.exists() {
-                    export::write(&beside, table.text.as_bytes())?;
-                }
-            }
+        let mut document = self.document.clone();
+        let brought = bring(&mut document.scene, &document.files, path)?;
+        document.text = text_of(&runnable(&document).scene)?;
+        export::write(path, document.text.as_bytes())?;
+        (document.name, document.source) = (path.display().to_string(), Source::File(path.to_owned()));
+        let before = std::mem::replace(&mut document.files, Files::beside(path));
+        let mut now = document.scene.clone();
+        for scene in self.undo.iter_mut().chain(&mut self.redo) {
+            follow(scene, &before, (&mut self.document.scene, &mut now));
         }
-        export::write(path, text.as_bytes())?;
-        self.path = Some(path.to_owned());
-        (self.document.text, self.document.name) = (text, path.display().to_string());
-        self.saved = self.document.scene.clone();
-        Ok(())
+        self.saved = document.scene.clone();
+        self.document = document;
+        Ok(brought)
     }
 }
 
-/// The records that an excitation names.
-fn records<'a>(excitation: &'a Excitation, names: &mut Vec<&'a str>) {
-    match excitation {
-        Excitation::Recorded { path, .. } => names.push(path),
-        Excitation::Sum(terms) => terms.iter().for_each(|term| records(term, names)),
-        _ => {}
-    }
+/// See [`Editor::runnable`].
+fn runnable(document: &Document) -> Document {
+    let mut document = document.clone();
+    let fields = numeric_fields(&document.scene);
+    document.scene.sweep.retain(|axis| fields.contains(&axis.field));
+    document
+}
+
+/// A scene as text that reads back.
+fn text_of(scene: &Scene) -> Result<String, String> {
+    write(scene).map_err(|error| format!("the scene cannot be written as text: {error}"))
 }
 
 /// A start beyond a stop is no start: a stop that is moved over it carries it along.
-fn keep_start_inside(scene: &mut Scene) {
+pub(super) fn keep_start_inside(scene: &mut Scene) {
     let (left, right) = match scene.stops {
         Stops::None => return,
         Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
@@ -336,7 +311,7 @@ mod tests {
     #[test]
     fn as_text_and_back_it_is_the_same() {
         let editor = editor();
-        let again = Editor::from_text(&editor.text()).unwrap();
+        let again = Editor::from_text(&editor.text().unwrap()).unwrap();
         assert_eq!((again.scene(), again.origin()), (editor.scene(), None));
         assert!(!again.has_comments() && Editor::from_text("no scene").is_err());
     }

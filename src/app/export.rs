@@ -1,14 +1,19 @@
 //! What leaves the window: the motion as CSV, the window as a picture, the command line that shows the same.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use eframe::egui::ColorImage;
 
+use crate::dynamics::Model;
 use crate::output::{Sink, header, rows};
-use crate::scene::assignments;
-use crate::study::{CURVE_POINTS, OutsideCurve, curve, default_positions, events_table, samples_table};
+use crate::scene::{Scene, arguments};
+use crate::study::{
+    CURVE_POINTS, Keep, OutsideCurve, Sampling, continued_scene, curve, default_positions, events_table,
+    sample_times, samples_table, simulate,
+};
 
-use super::document::Editor;
+use super::document::keep_start_inside;
 use super::player::Player;
 use super::session::Session;
 
@@ -25,6 +30,17 @@ pub fn motion_csv(player: &Player) -> String {
     let samples: Vec<_> = player.watch().samples().iter().copied().collect();
     let table = samples_table(&samples);
     header(&table) + &rows(&table, 0..table.rows())
+}
+
+/// The run of a scene from its start to its end, as `simulate` writes it; none where it was cancelled.
+pub fn run_csv(scene: &Scene, model: &Model, cancel: &AtomicBool) -> Option<Result<String, String>> {
+    let times = match sample_times(scene, model, &Sampling::Default, None) {
+        Ok(times) => times,
+        Err(error) => return Some(Err(error.to_string())),
+    };
+    let table = simulate(model, &Keep { times, events: false, until_settled: None }, Some(cancel)).samples;
+    let whole = !cancel.load(Ordering::Relaxed);
+    whole.then(|| Ok(header(&table) + &rows(&table, 0..table.rows())))
 }
 
 /// The events that are remembered, in the columns of `simulate --events`.
@@ -54,18 +70,40 @@ pub fn png(image: &ColorImage) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The command that runs this scene without a window, from its start; none for a scene that neither has a file nor is
-/// built in, until it is saved.
-pub fn command_line(editor: &Editor) -> Option<String> {
+/// What a copied command does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Runs {
+    /// The motion on the screen, from its start.
+    Whole,
+    /// The motion on the screen, from its present state on.
+    FromNow,
+    /// The scene from its start, where the motion on the screen was changed on its way and no scene says how
+    /// it goes on.
+    Another,
+}
+
+/// The command that runs what is on the screen without a window, and what it does; none for a scene that
+/// neither has a file nor is built in, until it is saved.
+pub fn command_line(session: &Session) -> Option<(String, Runs)> {
+    let editor = &session.editor;
     let mut line = format!("interwell --headless simulate {}", quoted(&editor.origin()?));
-    for argument in assignments(editor.saved_scene(), editor.scene()) {
+    let here = || continued_scene(editor.scene(), &session.player.watch().from_here()?);
+    let (scene, runs) = match (session.is_continued(), session.fault()) {
+        (true, None) => {
+            here().map_or((editor.scene().clone(), Runs::Another), |scene| (scene, Runs::FromNow))
+        }
+        _ => (editor.scene().clone(), Runs::Whole),
+    };
+    let mut scene = scene;
+    keep_start_inside(&mut scene);
+    for argument in arguments(editor.saved(), &scene) {
         line += &format!(" --set {}", quoted(&argument));
     }
-    Some(line)
+    Some((line, runs))
 }
 
 /// A word as a shell takes it.
-fn quoted(word: &str) -> String {
+pub(super) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-/=+:,".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()
@@ -76,18 +114,22 @@ fn quoted(word: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::document::Editor;
     use super::*;
 
     #[test]
     fn the_command_says_what_was_changed() {
-        let mut editor = Editor::open("first-look").unwrap();
-        assert_eq!(command_line(&editor).unwrap(), "interwell --headless simulate first-look");
-        editor.edit_once(|scene| scene.stops = scene.app.as_ref().unwrap().stops_when_on.unwrap());
-        assert_eq!(
-            command_line(&editor).unwrap(),
-            "interwell --headless simulate first-look --set 'stops=Rigid(travel_limit_mm:1.5,restitution:0.36)'"
-        );
+        let editor = Editor::open("first-look").unwrap();
+        let mut session = Session::new(editor, std::sync::Arc::new(|| ())).unwrap();
+        let (line, runs) = command_line(&session).unwrap();
+        assert_eq!((line.as_str(), runs), ("interwell --headless simulate first-look", Runs::Whole));
+        session.edit_once(|scene| scene.stops = scene.app.as_ref().unwrap().stops_when_on.unwrap());
+        session.poll();
+        session.restart();
+        let own = "interwell --headless simulate first-look --set 'stops=Rigid(travel_limit_mm:1.5,restitution:0.36)'";
+        assert_eq!(command_line(&session).unwrap(), (own.to_owned(), Runs::Whole));
         assert_eq!(quoted("it's"), r"'it'\''s'");
+        assert_eq!(quoted("excitation.amplitude_g=0:2:0.02"), "excitation.amplitude_g=0:2:0.02");
     }
 
     #[test]

@@ -10,18 +10,21 @@ use crate::scene::Layout;
 use super::style::{BODY, COMPACT_BELOW, LARGE_FROM};
 use super::views::{View, ViewContext, view_ui};
 
-/// Shares of the window in the layout Look: left of 1030 points 590, of 584 points of height 220 on the left and 340
-/// on the right.
+/// Shares of the window in the layout Look: left of 1030 points 590, of 584 points of height 340 on the
+/// right.
 const LEFT_SHARE: f32 = 590.0 / 1030.0;
-const MECHANISM_SHARE: f32 = 220.0 / 584.0;
 const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
 
 /// Share of the width that the map has in the layout Map.
 const MAP_SHARE: f32 = 640.0 / 1030.0;
 
-/// Shares of the layout Study: columns, and the mechanism over the well.
+/// Share of the height that the mechanism has over the well.
+const MECHANISM_SHARE: f32 = 0.4;
+
+/// Share of the width that the first column of the layout Study has, and that one of two views has where room
+/// is short.
 const STUDY_COLUMN: f32 = 0.34;
-const STUDY_MECHANISM: f32 = 0.34;
+const COMPACT_SHARE: f32 = 0.5;
 
 /// How much room there is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,10 +127,31 @@ impl Tiling {
         }
     }
 
-    /// The container that holds views of the same kind.
+    /// Brings the next of the tabs that share a place to the front: where `view` is, or the first place that
+    /// has several.
+    pub fn next_tab(&mut self, view: Option<View>) {
+        let tiles = &self.tree.tiles;
+        let next = view.into_iter().chain(View::ALL).find_map(|view| {
+            let place = tiles.parent_of(tiles.find_pane(&view)?)?;
+            let Some(Tile::Container(Container::Tabs(tabs))) = tiles.get(place) else { return None };
+            let shown: Vec<TileId> =
+                tabs.children.iter().copied().filter(|id| tiles.is_visible(*id)).collect();
+            let active = shown.iter().position(|id| Some(*id) == tabs.active)?;
+            (shown.len() > 1).then(|| (place, shown[(active + 1) % shown.len()]))
+        });
+        if let Some((place, tab)) = next
+            && let Some(Tile::Container(Container::Tabs(tabs))) = self.tree.tiles.get_mut(place)
+        {
+            tabs.set_active(tab);
+        }
+    }
+
+    /// The container that holds views of the same kind. Where room is short the mechanism stands among the
+    /// others.
     fn place_for(&self, view: View) -> Option<TileId> {
         let tiles = &self.tree.tiles;
-        let alike = |own: &View| own.is_along_x() == view.is_along_x();
+        let apart = |own: &View| self.room == Room::Compact && *own == View::Mechanism;
+        let alike = |own: &View| (own.is_along_x() && !apart(own)) == (view.is_along_x() && !apart(&view));
         let neighbour = View::ALL.iter().filter(|own| alike(own)).find_map(|own| tiles.find_pane(own))?;
         let mut place = tiles.parent_of(neighbour)?;
         while self.room != Room::Compact
@@ -187,7 +211,7 @@ fn study_tree(large: bool) -> Tree<View> {
     let (mechanism, well) = (pane(View::Mechanism), pane(View::Well));
     let (phase, force) = (pane(View::PhasePortrait), pane(View::ForceCurve));
     let (displacement, energy, card) = (pane(View::Displacement), pane(View::Energy), pane(View::BeforeNow));
-    let left = pair(&mut tiles, LinearDir::Vertical, mechanism, well, STUDY_MECHANISM);
+    let left = pair(&mut tiles, LinearDir::Vertical, mechanism, well, MECHANISM_SHARE);
     let middle = tiles.insert_vertical_tile(vec![phase, force]);
     let right = if large {
         tiles.insert_vertical_tile(vec![displacement, energy, card])
@@ -200,10 +224,12 @@ fn study_tree(large: bool) -> Tree<View> {
     Tree::new(egui::Id::unique("wide"), root, tiles)
 }
 
-/// Two groups of tabs: what has the displacement along it, and what has not.
+/// Two groups of tabs: the well and what else has the displacement along it, and the mechanism before what
+/// has not.
 fn compact_tree(views: &[View]) -> Tree<View> {
     let mut tiles = Tiles::default();
-    let (along, others): (Vec<View>, Vec<View>) = views.iter().partition(|view| view.is_along_x());
+    let is_first = |view: &&View| view.is_along_x() && **view != View::Mechanism;
+    let (along, others): (Vec<View>, Vec<View>) = views.iter().partition(is_first);
     let mut groups: Vec<TileId> = Vec::new();
     for group in [along, others] {
         let panes: Vec<TileId> = group.into_iter().map(|view| tiles.insert_pane(view)).collect();
@@ -212,7 +238,7 @@ fn compact_tree(views: &[View]) -> Tree<View> {
         }
     }
     let root = match groups[..] {
-        [left, right] => pair(&mut tiles, LinearDir::Horizontal, left, right, LEFT_SHARE),
+        [left, right] => pair(&mut tiles, LinearDir::Horizontal, left, right, COMPACT_SHARE),
         _ => tiles.insert_horizontal_tile(groups),
     };
     Tree::new(egui::Id::unique("compact"), root, tiles)

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::widgets::dialog;
+use super::widgets::{dialog, dialog_width};
 
 /// What is to come once the present scene may go.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -56,7 +56,7 @@ pub fn comments_ui(ui: &Ui, path: &str) -> Option<Answer> {
 /// Two ways on, and Cancel, which is `Some(None)`.
 fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, ways: [&str; 2]) -> Option<Option<usize>> {
     let answer = dialog(ui.ctx(), id).show(ui.ctx(), |ui: &mut Ui| {
-        ui.set_max_width(460.0);
+        ui.set_max_width(dialog_width(ui, 460.0));
         ui.heading(heading);
         ui.add_space(6.0);
         ui.label(text);
@@ -82,21 +82,44 @@ fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, ways: [&str; 2]) -> O
     if answer.inner.is_none() && answer.should_close() { Some(None) } else { answer.inner }
 }
 
-/// Whether a scene's text has comments: `//` or `/*` outside of its strings.
+/// Whether a scene's text has comments: `//` or `/*` outside of its strings, raw ones included.
 pub fn has_comments(text: &str) -> bool {
-    let mut rest = text.chars().peekable();
-    let mut in_string = false;
-    while let Some(c) = rest.next() {
-        match (in_string, c) {
-            (true, '\\') => {
-                rest.next();
-            }
-            (_, '"') => in_string = !in_string,
-            (false, '/') if matches!(rest.peek(), Some('/' | '*')) => return true,
+    let mut rest = text;
+    while let Some(at) = rest.find(['"', '/']) {
+        let (before, found) = rest.split_at(at);
+        if found.starts_with("//") || found.starts_with("/*") {
+            return true;
+        }
+        rest = &found[1..];
+        if found.starts_with('/') {
+            continue;
+        }
+        let hashes = before.len() - before.trim_end_matches('#').len();
+        let opening = before[..before.len() - hashes].strip_suffix('r');
+        let is_raw = opening.is_some_and(|own| !own.ends_with(|c: char| c.is_alphanumeric() || c == '_'));
+        let end = if is_raw {
+            let close = format!("\"{}", "#".repeat(hashes));
+            rest.find(&close).map(|at| at + close.len())
+        } else {
+            end_of_string(rest)
+        };
+        let Some(end) = end else { return false };
+        rest = &rest[end..];
+    }
+    false
+}
+
+/// Behind the quote that ends a string, whose text follows.
+fn end_of_string(text: &str) -> Option<usize> {
+    let mut chars = text.char_indices();
+    while let Some((at, c)) = chars.next() {
+        match c {
+            '\\' => drop(chars.next()),
+            '"' => return Some(at + 1),
             _ => {}
         }
     }
-    false
+    None
 }
 
 #[cfg(test)]
@@ -108,5 +131,15 @@ mod tests {
         assert!(has_comments("( // what\n)") && has_comments("(/* what */)"));
         assert!(!has_comments("(notes: \"http://a \\\" // b\", mass_g: 1)"));
         assert!(has_comments("(notes: \"a\\\\\") // b"));
+    }
+
+    #[test]
+    fn raw_strings_end_where_they_say() {
+        assert!(!has_comments(r#"(notes: r"C:\" , title: "http://a")"#));
+        assert!(!has_comments("(notes: r#\"she said \"no\" // not a comment\"#, mass_g: 1)"));
+        assert!(has_comments(r#"(notes: r"C:\" /* here */)"#));
+        assert!(has_comments("(notes: r##\"a \"# b\"## // here\n)"));
+        // a name that ends in r is no raw string
+        assert!(has_comments("(r: \"a\\\"b\", // here\n)"));
     }
 }

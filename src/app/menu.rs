@@ -8,6 +8,7 @@ use crate::scene::{Document, Layout, PRESETS};
 
 use super::layouts::{Room, Tiling};
 use super::map::Map;
+use super::player::SPEEDS;
 use super::session::Session;
 use super::settings::Settings;
 use super::views::View;
@@ -25,8 +26,10 @@ pub enum Command {
     Save,
     /// Choose a file and save the scene to it.
     SaveAs,
-    /// Write the motion as CSV.
+    /// Write the motion that was seen as CSV.
     SaveMotion,
+    /// Write the whole run of the scene as CSV.
+    SaveRun,
     /// Write the events as CSV.
     SaveEvents,
     /// Write the force curve as CSV.
@@ -59,6 +62,12 @@ pub enum Command {
     PreviousEvent,
     /// To the event after.
     NextEvent,
+    /// To the next release from a stop, as fast as it can be computed.
+    NextRelease,
+    /// To the next crossing.
+    NextCrossing,
+    /// To the end of the run.
+    RunToEnd,
     /// One of the speeds.
     Speed(usize),
     /// Arrange the views.
@@ -69,6 +78,8 @@ pub enum Command {
     KeepOwn,
     /// Show or hide a view.
     Show(View, bool),
+    /// The next of the views that share a place as tabs.
+    NextTab,
     /// One view over the whole window, or no longer.
     Fill,
     /// Cover the results, or no longer.
@@ -81,6 +92,8 @@ pub enum Command {
     Grab,
     /// What it would take to cross, or no longer.
     Ways,
+    /// The notes of the scene.
+    Notes,
     /// The list of keys.
     Shortcuts,
     /// About the program.
@@ -99,6 +112,12 @@ const SAVE_AS: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(
 const COPY_COMMAND: KeyboardShortcut =
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C);
 const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+
+const NEXT_TAB: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Tab);
+
+/// The keys of the speeds, the slowest first.
+const SPEED_KEYS: [Key; SPEEDS.len()] =
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
 
 /// Draws the bar and says what was asked for.
 pub fn menu_ui(
@@ -139,7 +158,8 @@ pub fn menu_ui(
             item(ui, &mut asked, "Save", Some(command(Key::S)), save, Command::Save);
             item(ui, &mut asked, "Save as...", Some(SAVE_AS), true, Command::SaveAs);
             ui.separator();
-            item(ui, &mut asked, "Save the motion as CSV...", None, true, Command::SaveMotion);
+            item(ui, &mut asked, "Save the motion seen as CSV...", None, true, Command::SaveMotion);
+            item(ui, &mut asked, "Save the whole run as CSV...", None, true, Command::SaveRun);
             item(ui, &mut asked, "Save the events as CSV...", None, true, Command::SaveEvents);
             item(ui, &mut asked, "Save the force curve as CSV...", None, true, Command::SaveCurve);
             item(ui, &mut asked, "Save a picture of the window...", None, true, Command::SavePicture);
@@ -164,19 +184,28 @@ pub fn menu_ui(
         ui.menu_button("View", |ui| {
             scroll_ui(ui, |ui| view_menu_ui(ui, &mut asked, tiling, settings));
         });
+        ui.menu_button("Motion", |ui| motion_menu_ui(ui, &mut asked, session));
         ui.menu_button("Help", |ui| {
+            let notes = !session.scene().notes.trim().is_empty();
+            item(ui, &mut asked, "About this scene", None, notes, Command::Notes);
             item(ui, &mut asked, "Keys", Some(plain(Key::F1)), true, Command::Shortcuts);
             item(ui, &mut asked, "About", None, true, Command::About);
         });
         ui.add_space(16.0);
-        let dirty = if session.editor.is_dirty() { " *" } else { "" };
-        ui.strong(format!("{}{dirty}", session.scene().title));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let hover =
-                "Scene and views as they were opened, from time 0 (Home). The scene comes back with undo.";
+                "Scene and views as opened or last saved, from time 0 (Home). The scene comes back with undo.";
             if ui.button("Back to start").on_hover_text(hover).clicked() {
                 asked.push(Command::BackToStart);
             }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let dirty = if session.editor.is_dirty() { " *" } else { "" };
+                let title = egui::RichText::new(format!("{}{dirty}", session.scene().title)).strong();
+                let title = ui.add(Button::new(title).frame_when_inactive(false).truncate());
+                if title.on_hover_text("What this scene is about").clicked() {
+                    asked.push(Command::Notes);
+                }
+            });
         });
     });
     asked
@@ -197,6 +226,29 @@ fn item(
     if ui.add_enabled(enabled, button).clicked() {
         asked.push(what);
         ui.close();
+    }
+}
+
+fn motion_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, session: &Session) {
+    let model = session.model();
+    let stops = model.stop_positions() != (None, None);
+    let barrier = model.mechanism.landscape.barrier.is_some();
+    item(ui, asked, "Play, pause", Some(plain(Key::Space)), true, Command::PlayPause);
+    item(ui, asked, "A single step", Some(plain(Key::Period)), true, Command::Step);
+    item(ui, asked, "To the event before", Some(plain(Key::PageUp)), true, Command::PreviousEvent);
+    item(ui, asked, "To the event after", Some(plain(Key::PageDown)), true, Command::NextEvent);
+    ui.separator();
+    item(ui, asked, "To the next release", Some(plain(Key::R)), stops, Command::NextRelease);
+    item(ui, asked, "To the next crossing", Some(plain(Key::X)), barrier, Command::NextCrossing);
+    item(ui, asked, "To the end of the run", Some(plain(Key::End)), true, Command::RunToEnd);
+    ui.separator();
+    for (i, ((_, name), key)) in SPEEDS.into_iter().zip(SPEED_KEYS).enumerate() {
+        let text = match name {
+            "real time" => name.to_owned(),
+            _ if name.ends_with("times") => format!("{name} real time"),
+            _ => format!("{name} of real time"),
+        };
+        item(ui, asked, &text, Some(plain(key)), true, Command::Speed(i));
     }
 }
 
@@ -223,6 +275,7 @@ fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings
         }
     }
     ui.separator();
+    item(ui, asked, "The next tab", Some(NEXT_TAB), true, Command::NextTab);
     item(ui, asked, "One view over the window", Some(plain(Key::Z)), true, Command::Fill);
     item(ui, asked, "Cover the results", Some(plain(Key::C)), true, Command::Cover);
     item(ui, asked, "What it would take", Some(plain(Key::H)), true, Command::Ways);
@@ -243,9 +296,11 @@ static TITLES: LazyLock<Vec<String>> = LazyLock::new(|| {
     PRESETS.iter().map(|preset| title(preset.name)).collect()
 });
 
-/// What the keyboard asks for; nothing while a number is being typed.
-pub fn keys(ctx: &egui::Context, settings: Settings) -> Vec<Command> {
-    let typing = ctx.text_edit_focused();
+/// What the keyboard asks for; nothing while something is typed. To be called only where no dialog is open.
+pub fn keys(ctx: &egui::Context, settings: Settings, filled: bool) -> Vec<Command> {
+    if ctx.text_edit_focused() {
+        return Vec::new();
+    }
     let mut asked = Vec::new();
     let mut on = |keys: KeyboardShortcut, what: Command| {
         if ctx.input_mut(|input| input.consume_shortcut(&keys)) {
@@ -269,11 +324,19 @@ pub fn keys(ctx: &egui::Context, settings: Settings) -> Vec<Command> {
     on(plain(Key::F11), Command::FullScreen);
     on(plain(Key::PageUp), Command::PreviousEvent);
     on(plain(Key::PageDown), Command::NextEvent);
-    if typing {
-        return asked;
-    }
+    on(NEXT_TAB, Command::NextTab);
     on(plain(Key::Home), Command::BackToStart);
-    on(plain(Key::Space), Command::PlayPause);
+    on(plain(Key::End), Command::RunToEnd);
+    on(plain(Key::R), Command::NextRelease);
+    on(plain(Key::X), Command::NextCrossing);
+    // what has the keyboard's focus is pressed by it
+    let focused = ctx.memory(egui::Memory::focused).and_then(|id| ctx.read_response(id));
+    if !focused.is_some_and(|response| response.sense.senses_click()) {
+        on(plain(Key::Space), Command::PlayPause);
+    }
+    if filled && !egui::Popup::is_any_open(ctx) {
+        on(plain(Key::Escape), Command::Fill);
+    }
     on(plain(Key::Period), Command::Step);
     on(plain(Key::Z), Command::Fill);
     on(plain(Key::C), Command::Cover);
@@ -281,7 +344,7 @@ pub fn keys(ctx: &egui::Context, settings: Settings) -> Vec<Command> {
     on(plain(Key::H), Command::Ways);
     on(plain(Key::P), Command::Set(Settings { projector: !settings.projector, ..settings }));
     on(plain(Key::D), Command::Set(Settings { dark: !settings.dark, ..settings }));
-    for (i, key) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5].into_iter().enumerate() {
+    for (i, key) in SPEED_KEYS.into_iter().enumerate() {
         on(plain(key), Command::Speed(i));
     }
     asked

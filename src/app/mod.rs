@@ -5,7 +5,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`document`] | the scene, its file, undo |
+//! | [`document`], `bring` | the scene, its file and the files that it names, undo |
 //! | [`export`], [`leave`] | what leaves the window, and what is asked before a scene does |
 //! | [`task`] | background tasks as values |
 //! | [`player`] | the clock and the live motion with its past |
@@ -14,7 +14,7 @@
 //! | `controls`, `geometry`, `advanced` | the hands on the scene, on its flexures, and on what is changed seldom |
 //! | [`map`] | the map of the scene, made while it is looked at |
 //! | [`status`], `announce` | the sentence that says what the mass does, and when it is spoken |
-//! | [`style`] | every colour and width |
+//! | [`style`], `words` | every colour and width, and what words mean |
 //! | [`views`] | what is seen, a file each |
 //! | [`layouts`] | where the views stand |
 //! | [`window`] | panels, menus, keys: the `eframe::App` |
@@ -22,6 +22,7 @@
 pub mod accuracy;
 mod advanced;
 mod announce;
+mod bring;
 pub mod controls;
 pub mod document;
 pub mod export;
@@ -42,6 +43,7 @@ pub mod transport;
 pub mod views;
 mod widgets;
 pub mod window;
+mod words;
 
 use std::sync::Arc;
 
@@ -64,13 +66,15 @@ pub enum AppError {
     NoWindow(String),
 }
 
-/// Opens the window on a scene, and comes back when it is closed.
-pub fn run(spec: Option<&str>) -> Result<(), AppError> {
-    // What is wrong with the scene is said before a window is there.
-    Window::open(spec, Settings::default(), Arc::new(|| ()))?;
+/// Opens the window on a scene, and comes back when it is closed. What is wrong with the scene is handed to
+/// `refused` before a window is there; the window then says it too, and opens on the first preset.
+pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), AppError> {
+    let tried = Window::open(spec, Settings::default(), Arc::new(|| ())).map(drop);
     if !has_display() {
+        tried?;
         return Err(AppError::NoWindow("neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()));
     }
+    tried.unwrap_or_else(refused);
     let viewport = egui::ViewportBuilder::default()
         .with_title("interwell")
         .with_app_id("interwell")
@@ -86,9 +90,10 @@ pub fn run(spec: Option<&str>) -> Result<(), AppError> {
             .unwrap_or_default();
         let ctx = creation.egui_ctx.clone();
         let wake = Arc::new(move || ctx.request_repaint());
-        let mut window = Window::open(spec.as_deref(), settings, wake)?;
+        let mut window = Window::start(spec.as_deref(), settings, wake)?;
         if let Some(storage) = creation.storage {
             window.recent = eframe::get_value(storage, window::RECENT).unwrap_or_default();
+            window.restore_size(eframe::get_value(storage, window::SIZE));
             window.set_own_arrangement(eframe::get_value(storage, window::OWN_KEY));
         }
         window.remember_file();

@@ -3,22 +3,34 @@
 //! The motion is live: playing advances it, and a change acts from its present state. Its past is remembered and can be
 //! looked at; playing from there goes through it once more and then on.
 
+mod goal;
+
 use std::sync::Arc;
 
-use crate::dynamics::{Model, Outcome, Sample};
+use crate::dynamics::{Event, EventKind, Model, Outcome, Sample};
 use crate::study::Watch;
 
-/// Speeds relative to real time, and how they are called; the keys 1 to 5.
-pub const SPEEDS: [(f64, &str); 5] =
-    [(1e-3, "1/1000"), (1e-2, "1/100"), (0.1, "1/10"), (0.5, "1/2"), (1.0, "real time")];
+pub use goal::{Goal, Reached};
+
+/// Speeds relative to real time, and how they are called; the keys 1 to 7.
+pub const SPEEDS: [(f64, &str); 7] = [
+    (1e-3, "1/1000"),
+    (1e-2, "1/100"),
+    (0.1, "1/10"),
+    (0.5, "1/2"),
+    (1.0, "real time"),
+    (10.0, "10 times"),
+    (100.0, "100 times"),
+];
 
 /// Time on the screen in s that a period of the motion should take.
 const PERIOD_ON_SCREEN: f64 = 3.0;
 
-/// The speed that suits a motion whose [`pace`](Model::pace) is so many seconds.
+/// The speed up to real time that suits a motion whose [`pace`](Model::pace) is so many seconds.
 pub fn fitting_speed(pace: f64) -> f64 {
     let off = |speed: f64| (pace / speed / PERIOD_ON_SCREEN).ln().abs();
-    SPEEDS.iter().map(|own| own.0).min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(1.0)
+    let speeds = SPEEDS.iter().map(|own| own.0).filter(|speed| *speed <= 1.0);
+    speeds.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(1.0)
 }
 
 /// Longest stretch of real time in s that one frame plays: after a pause of the window it goes on where it was.
@@ -38,6 +50,9 @@ pub struct Player {
     past: Option<f64>,
     /// Whether the mass is held by hand, which holds the clock.
     held: bool,
+    /// Where it goes as fast as it can, and how the last such way ended.
+    goal: Option<Goal>,
+    reached: Option<Reached>,
     /// Whether a view of this frame shows where the energy went.
     wants_ledgers: bool,
 }
@@ -45,29 +60,41 @@ pub struct Player {
 impl Player {
     /// Begins at the model's own start, playing.
     pub fn new(model: &Model, speed: f64) -> Self {
-        Self { watch: Watch::new(model), speed, playing: true, past: None, held: false, wants_ledgers: false }
+        Self {
+            watch: Watch::new(model),
+            speed,
+            playing: true,
+            past: None,
+            held: false,
+            goal: None,
+            reached: None,
+            wants_ledgers: false,
+        }
     }
 
     /// Whether time goes on.
     pub fn is_playing(&self) -> bool {
-        self.playing && !self.held && (self.past.is_some() || self.watch.ended().is_none())
+        let plays = self.playing && (self.past.is_some() || self.watch.ended().is_none());
+        !self.held && (plays || self.goal.is_some())
     }
 
-    /// Plays or pauses.
+    /// Plays or pauses; a goal is given up.
     pub fn set_playing(&mut self, playing: bool) {
-        self.playing = playing;
+        (self.playing, self.goal) = (playing, None);
     }
 
     /// Plays on by `seconds` of real time.
     pub fn tick(&mut self, seconds: f64) {
-        if self.is_playing() {
+        if let Some(goal) = self.goal {
+            self.follow(goal);
+        } else if self.is_playing() {
             self.go(seconds.clamp(0.0, LONGEST_FRAME) * self.speed);
         }
     }
 
     /// A single step, paused.
     pub fn step(&mut self) {
-        self.playing = false;
+        self.set_playing(false);
         self.go(STEP * self.speed);
     }
 
@@ -86,7 +113,7 @@ impl Player {
         let keeps_ledgers = self.watch.keeps_ledgers();
         self.watch = Watch::new(model);
         self.watch.keep_ledgers(keeps_ledgers);
-        (self.past, self.held) = (None, false);
+        (self.past, self.held, self.goal) = (None, false, None);
     }
 
     /// Asks that ledgers be kept at the ends of forcing periods; to be asked anew in every frame.
@@ -101,19 +128,19 @@ impl Player {
 
     /// From now on the mass moves as `model` says.
     pub fn change(&mut self, model: &Model) {
-        self.past = None;
+        (self.past, self.goal) = (None, None);
         self.watch.change(model);
     }
 
     /// Holds the mass at `x` in m; the clock stands.
     pub fn hold(&mut self, x: f64) {
-        (self.past, self.held) = (None, true);
+        (self.past, self.held, self.goal) = (None, true, None);
         self.watch.place(x, 0.0);
     }
 
     /// Puts the mass to `x` in m with velocity `v` in m/s, from where the motion goes on.
     pub fn place(&mut self, x: f64, v: f64) {
-        (self.past, self.held) = (None, false);
+        (self.past, self.held, self.goal) = (None, false, None);
         self.watch.place(x, v);
     }
 
@@ -129,6 +156,7 @@ impl Player {
 
     /// Looks at the time `t` in s, as far as it is remembered.
     pub fn seek(&mut self, t: f64) {
+        self.goal = None;
         let t = t.max(self.watch.begin());
         self.past = (t < self.watch.time()).then_some(t);
     }
@@ -136,7 +164,7 @@ impl Player {
     /// Goes to the next or the previous event and pauses there; what has not happened yet is played up to it, as
     /// far as `most` seconds ahead. Whether there was one.
     pub fn seek_event(&mut self, later: bool, most: f64) -> bool {
-        self.playing = false;
+        self.set_playing(false);
         let t = self.time();
         if let Some(event) = self.watch.neighbour(t, later) {
             self.seek(event.t);
@@ -159,6 +187,19 @@ impl Player {
             }
         }
         false
+    }
+
+    /// The event at which the motion stands: what a step between events has come to.
+    pub fn event(&self) -> Option<&Event> {
+        let t = self.time();
+        if self.is_playing() || self.held {
+            return None;
+        }
+        let events = self.watch.events();
+        let first = events.partition_point(|event| event.t < t);
+        let here = events.range(first..).take_while(|event| event.t == t);
+        // a rebound that comes to rest at once is an impact
+        here.min_by_key(|event| event.kind == EventKind::Rest)
     }
 
     /// The time that is shown in s.

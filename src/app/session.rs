@@ -74,6 +74,8 @@ pub struct Session {
     by_hand: bool,
     /// Live time in s at which the run begins that is asked what the motion settles to.
     asked_from: f64,
+    /// The motion is no longer the run of the scene from its start: something was changed on its way.
+    continued: bool,
     /// The stops that come back when they are switched on.
     remembered_stops: Stops,
     wake: Wake,
@@ -116,6 +118,7 @@ impl Session {
             changed_at: 0.0,
             by_hand: false,
             asked_from: 0.0,
+            continued: false,
             remembered_stops,
             wake,
         };
@@ -216,6 +219,7 @@ impl Session {
         if let Ok(model) = Model::build(self.scene(), Arc::clone(&self.mechanism)) {
             self.model = Arc::new(model);
             self.player.change(&self.model);
+            self.continued = true;
             self.ask_settled();
         }
     }
@@ -264,15 +268,13 @@ impl Session {
     /// The motion from its start again.
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
-        self.changed_at = 0.0;
-        self.by_hand = false;
+        (self.changed_at, self.continued, self.by_hand) = (0.0, false, false);
         self.ask_settled();
     }
 
     /// The mass has been moved by hand: what it settles to is asked anew.
     pub fn moved_by_hand(&mut self) {
-        self.changed_at = self.player.watch().time();
-        self.by_hand = true;
+        (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, true);
         self.ask_settled();
     }
 
@@ -311,8 +313,7 @@ impl Session {
                 self.fault = None;
                 self.model = Arc::new(model);
                 self.player.change(&self.model);
-                self.changed_at = self.player.watch().time();
-                self.by_hand = false;
+                (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, false);
                 if !differ_in_amplitude_alone(&before, &self.built) {
                     self.thresholds.clear();
                 }
@@ -359,6 +360,18 @@ impl Session {
     /// The scene before the last gesture, for the card.
     pub fn before_card(&self) -> Option<&Card> {
         self.before.as_ref()
+    }
+
+    /// The time in s at which the run that is watched ends: as long after the last change as the scene says,
+    /// or after the start where the shaking is a function of the time since then.
+    pub fn end_of_run(&self) -> f64 {
+        let begins_here = self.player.watch().from_here().is_some();
+        self.model.duration + if begins_here { self.changed_at } else { 0.0 }
+    }
+
+    /// Whether something was changed on the motion's way, so that it is no run of the scene from its start.
+    pub fn is_continued(&self) -> bool {
+        self.continued
     }
 
     /// Live time in s of the last change: of the scene, or of the mass by hand.

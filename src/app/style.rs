@@ -75,6 +75,11 @@ impl Style {
         self.pick(Color32::from_gray(95), Color32::from_gray(165))
     }
 
+    /// Edges of what can be pressed: three times as light or dark as the ground at least.
+    pub fn edge(&self) -> Color32 {
+        self.pick(Color32::from_gray(135), Color32::from_gray(118))
+    }
+
     /// Grid lines.
     pub fn grid(&self) -> Color32 {
         self.pick(Color32::from_gray(225), Color32::from_gray(52))
@@ -298,6 +303,8 @@ pub fn install(ctx: &egui::Context) {
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.visuals.override_text_color = Some(ink.ink());
         style.visuals.slider_trailing_fill = true;
+        // what can be pressed or ticked has an edge that is seen on every ground
+        style.visuals.widgets.inactive.bg_stroke = Stroke::new(1.0, ink.edge());
         // what has the keyboard's focus has this frame, too
         style.visuals.widgets.active.bg_stroke = ink.focus_stroke();
     });

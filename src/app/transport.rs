@@ -2,14 +2,18 @@
 
 use std::collections::VecDeque;
 
-use eframe::egui::{self, ComboBox, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+use eframe::egui::{
+    self, Align2, Color32, ComboBox, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2,
+};
 
 use crate::dynamics::{Event, EventKind};
 
-use super::player::SPEEDS;
+use super::player::{Goal, SPEEDS};
 use super::session::Session;
 use super::style::Style;
+use super::views::arrows;
 use super::widgets::{Icon, icon_button_ui};
+use super::words::{explained, meaning};
 
 /// How far ahead in s of the motion an event is looked for.
 pub const EVENT_AHEAD: f64 = 5.0;
@@ -17,8 +21,26 @@ pub const EVENT_AHEAD: f64 = 5.0;
 /// Size of a button in points.
 const BUTTON: f32 = 32.0;
 
-/// Room in points for the time, and for a way back from the past.
-const TIME: f32 = 196.0;
+/// Room in points for the time with what happens then, and for a way back from the past.
+const TIME: f32 = 250.0;
+
+/// Share of the room that the time has at most, where the window is narrow, and least room.
+const TIME_SHARE: f32 = 0.65;
+const LEAST_TIME: f32 = 150.0;
+
+/// Height in points of the legend below the bar, and of a transport that has room for it.
+const LEGEND: f32 = 15.0;
+const HIGH: f32 = 46.0;
+
+/// Width in points that the way back from the past takes in full.
+const BACK: f32 = 130.0;
+
+/// Heights in points of the time, and of it with the line below.
+const ONE_LINE: f32 = 20.0;
+const TWO_LINES: f32 = 36.0;
+
+/// Share of the bar by which an arrow key moves, with Shift ten of them.
+const KEY_SHARE: f64 = 0.002;
 
 /// Least distance in points between two ticks of events, of a few.
 const TICK: f32 = 5.0;
@@ -26,8 +48,8 @@ const TICK: f32 = 5.0;
 /// The most events that are looked at for one tick.
 const MOST_EVENTS: usize = 64;
 
-/// Draws the transport. Whether something changed.
-pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style) -> bool {
+/// Draws the transport; where results are covered, without what happened when. Whether something changed.
+pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
     ui.horizontal_centered(|ui| {
         let mut changed = false;
         if icon_button_ui(ui, Icon::Restart, BUTTON, "restart", "From the start again").clicked() {
@@ -56,7 +78,8 @@ pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style) -> bool {
             changed = true;
         }
         changed |= speed_ui(ui, session);
-        changed | scrub_ui(ui, session, style)
+        changed |= scrub_ui(ui, session, style, covered);
+        changed | time_ui(ui, session, style, covered)
     })
     .inner
 }
@@ -72,7 +95,7 @@ fn speed_ui(ui: &mut Ui, session: &mut Session) -> bool {
             changed |= ui.selectable_value(&mut session.player.speed, value, text).changed();
         }
     });
-    let response = combo.response.on_hover_text("Speed of the motion on the screen (keys 1 to 5)");
+    let response = combo.response.on_hover_text("Speed of the motion on the screen (keys 1 to 7)");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "speed"));
     changed
 }
@@ -100,47 +123,135 @@ fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Even
     shown
 }
 
-/// The remembered past as a bar with a tick for every event; dragging looks at it.
-fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style) -> bool {
-    let width = (ui.available_width() - TIME).max(40.0);
-    let (rect, response) = ui.allocate_exact_size(vec2(width, BUTTON), Sense::click_and_drag());
+/// What stands for an event at a place on the bar: a line for an impact, a triangle for a release, a diamond
+/// for a crossing.
+fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
+    let convex = |points: &[(f32, f32)], color: Color32| {
+        let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();
+        Shape::convex_polygon(points, color, Stroke::NONE)
+    };
+    match kind {
+        EventKind::Crossing => {
+            let color = style.kind(super::status::Kind::Interwell);
+            convex(&[(0.0, -10.0), (3.5, -6.0), (0.0, -2.0), (-3.5, -6.0)], color)
+        }
+        EventKind::Release | EventKind::Separate => {
+            convex(&[(0.0, -9.0), (3.5, -2.5), (-3.5, -2.5)], style.stop())
+        }
+        EventKind::Impact | EventKind::Contact | EventKind::Rest => {
+            Shape::line_segment([at - vec2(0.0, 7.0), at], Stroke::new(1.0, style.faint()))
+        }
+    }
+}
+
+/// What the signs mean, in a row.
+fn legend(painter: &Painter, style: &Style, row: Rect) {
+    let mut x = row.left() + 10.0;
+    let signs =
+        [(EventKind::Impact, "impact"), (EventKind::Release, "release"), (EventKind::Crossing, "crossing")];
+    for (kind, name) in signs {
+        painter.add(sign(kind, pos2(x, row.center().y + 5.0), style));
+        let at = pos2(x + 8.0, row.center().y);
+        x = painter.text(at, Align2::LEFT_CENTER, name, style.small(), style.faint()).right() + 18.0;
+    }
+}
+
+/// The remembered past as a bar with a sign for every event; dragging, or with the keyboard's focus the arrow
+/// keys, look at it.
+fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
+    let time = (TIME_SHARE * ui.available_width()).clamp(LEAST_TIME, TIME);
+    let width = (ui.available_width() - time).max(40.0);
+    let explains = !covered && ui.available_height() >= HIGH;
+    let height = if explains { BUTTON + LEGEND } else { BUTTON };
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::slider(true, session.player.time(), "time"));
     let watch = session.player.watch();
     let (begin, end) = (watch.begin(), watch.time());
     let span = (end - begin).max(1e-9);
-    let bar = Rect::from_center_size(rect.center(), vec2(rect.width() - 12.0, 5.0));
+    let middle = rect.top() + 0.5 * BUTTON;
+    let bar = Rect::from_center_size(pos2(rect.center().x, middle), vec2(rect.width() - 12.0, 5.0));
     let screen_from_time = |t: f64| bar.left() + ((t - begin) / span) as f32 * bar.width();
     let painter = ui.painter();
     painter.rect_filled(bar, 2.0, style.grid());
-    for event in ticks(watch.events(), begin, end, f64::from(TICK / bar.width()) * span) {
-        let (color, height) = match event.kind {
-            EventKind::Crossing => (style.kind(super::status::Kind::Interwell), 9.0),
-            EventKind::Release => (style.stop(), 7.0),
-            _ => (style.faint(), 5.0),
-        };
-        let x = screen_from_time(event.t);
-        painter.vline(x, bar.top() - height..=bar.top(), Stroke::new(1.0, color));
+    if !covered {
+        for event in ticks(watch.events(), begin, end, f64::from(TICK / bar.width()) * span) {
+            painter.add(sign(event.kind, pos2(screen_from_time(event.t), bar.top()), style));
+        }
+    }
+    if explains {
+        legend(painter, style, rect.with_min_y(rect.bottom() - LEGEND));
     }
     let now = pos2(screen_from_time(session.player.time()), bar.center().y);
     painter.circle(now, 7.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
-    let mut changed = false;
+    let by_key = if response.has_focus() { arrows(ui, response.id) } else { 0.0 };
+    let mut wanted = None;
     if let Some(pointer) = response.interact_pointer_pos() {
-        let t = begin + f64::from((pointer.x - bar.left()) / bar.width()) * span;
-        session.player.seek(t);
-        changed = true;
+        wanted = Some(begin + f64::from((pointer.x - bar.left()) / bar.width()) * span);
+    } else if by_key != 0.0 {
+        wanted = Some(session.player.time() + by_key * KEY_SHARE * span);
     }
-    response.on_hover_text("What has been seen: drag to look at it again. Ticks are events.");
-    ui.label(format!("{:.3} s", session.player.time()));
-    if session.player.is_past() {
-        let text = RichText::new("past: go to now").small();
-        let hover =
-            "The past is shown, with the shaking and the stops that were then. A click goes back to now.";
-        if ui.button(text).on_hover_text(hover).clicked() {
-            session.player.to_present();
-            changed = true;
+    if let Some(t) = wanted {
+        session.player.seek(t);
+    }
+    let mut hover = "What has been seen: drag, or move with the arrow keys, to look at it again.".to_owned();
+    if !covered {
+        for (sign, name) in [("A line", "impact"), ("A triangle", "release"), ("A diamond", "crossing")] {
+            hover += &format!("\n{sign} stands for {name}: {}", meaning(name).unwrap_or_default());
         }
     }
-    changed
+    response.on_hover_text(hover);
+    wanted.is_some()
+}
+
+/// The time that is shown, and below it what happens then or what is looked for; the way back from the past.
+fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
+    let player = &session.player;
+    let note = match player.goal() {
+        Some(Goal::Time(_)) => "going on; any key stops".to_owned(),
+        Some(Goal::First(kind, _)) => format!("looking for a {}; any key stops", kind.name()),
+        None if covered => String::new(),
+        None => player.event().map_or_else(String::new, words),
+    };
+    let time = format!("{:.3} s", player.time());
+    let is_past = player.is_past();
+    let mut back = false;
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let height = if note.is_empty() { ONE_LINE } else { TWO_LINES };
+        ui.add_space(((ui.available_height() - height) * 0.5).max(0.0));
+        ui.horizontal(|ui| {
+            ui.label(time);
+            if is_past {
+                let text = if ui.available_width() < BACK { "to now" } else { "past: go to now" };
+                let text = RichText::new(text).small();
+                let hover =
+                    "The past is shown, with the shaking and the stops of then. A click goes back to now.";
+                back = ui.small_button(text).on_hover_text(hover).clicked();
+            }
+        });
+        if !note.is_empty() {
+            let text = RichText::new(&note).small().color(style.faint());
+            explained(ui.add(egui::Label::new(text).truncate()), &note);
+        }
+    });
+    if back {
+        session.player.to_present();
+    }
+    back
+}
+
+/// What happened, in words: which side, how fast.
+fn words(event: &Event) -> String {
+    let side = event.side.name();
+    let speed = |v: f64| super::status::speed(v.abs());
+    match event.kind {
+        EventKind::Impact => format!("impact, {side}, {} to {} mm/s", speed(event.v_in), speed(event.v_out)),
+        EventKind::Contact => format!("contact, {side}, {} mm/s", speed(event.v_in)),
+        EventKind::Separate => format!("release, {side}, {} mm/s", speed(event.v_out)),
+        EventKind::Rest => format!("comes to rest, {side}"),
+        EventKind::Release => format!("release, {side}"),
+        EventKind::Crossing => format!("crossing to the {side}, {} mm/s", speed(event.v_out)),
+    }
 }
 
 #[cfg(test)]

@@ -90,6 +90,11 @@ pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
     egui::Modal::new(egui::Id::unique(id)).frame(frame)
 }
 
+/// Width in points of a dialog that wants `most`, where the window has room for it.
+pub fn dialog_width(ui: &Ui, most: f32) -> f32 {
+    (ui.ctx().content_rect().width() - 60.0).clamp(60.0, most)
+}
+
 /// A hover text that stands beside what it explains, where the window has a column of controls: below it would cover the
 /// next one.
 pub fn hover_beside(response: Response, text: &str) -> Response {
@@ -117,8 +122,10 @@ pub enum Icon {
     PreviousEvent,
     /// To the event after.
     NextEvent,
-    /// A square with four corners: one view over the whole window.
+    /// A square: one view over the whole window.
     Fill,
+    /// Four squares: all views again.
+    Restore,
 }
 
 /// A button with an icon; `name` is what a screen reader and the tests call it.
@@ -166,6 +173,12 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
             vec![triangle(part(0.5, 1.0), false), diamond(rect.left() + rect.width() * 0.2)]
         }
         Icon::NextEvent => vec![triangle(part(0.0, 0.5), true), diamond(rect.right() - rect.width() * 0.2)],
+        Icon::Restore => [rect.left_top(), rect.right_top(), rect.left_bottom(), rect.right_bottom()]
+            .map(|corner| {
+                let part = Rect::from_two_pos(corner, rect.center() + (corner - rect.center()) * 0.24);
+                Shape::rect_stroke(part, 0.0, Stroke::new(1.5, color), egui::StrokeKind::Inside)
+            })
+            .to_vec(),
         Icon::Fill => {
             vec![Shape::rect_stroke(rect, 0.0, Stroke::new(1.5, color), egui::StrokeKind::Inside)]
         }

@@ -16,30 +16,44 @@ use super::document::Editor;
 use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::Next;
 use super::menu::{self, Command};
-use super::player::SPEEDS;
 use super::session::{CannotRun, Session};
 use super::settings::Settings;
 use super::style::{self, PROJECTOR_ZOOM, Style};
 use super::task::{Latest, Wake};
-use super::transport::{self, EVENT_AHEAD};
+use super::transport;
 use super::views::{self, Memory, View, ViewContext};
-use super::widgets::{Icon, dialog, icon_button_ui};
-use super::{controls, export, hint, shortcuts};
+use super::widgets::{Icon, icon_button_ui};
+use super::{controls, hint, shortcuts};
 
 /// Where the scenes opened last are kept between two starts of the program.
 pub const RECENT: &str = "recent";
 
+/// Height in points of the controls as a row, and width of the column that opens beside the views.
+const ROW: f32 = 28.0;
+const MORE: f32 = 276.0;
+
+/// Where the window's size in points is kept, at the zoom 1.
+pub const SIZE: &str = "size";
+
 /// Where a person's own arrangement is kept.
 pub const OWN_KEY: &str = "arrangement";
 
+mod commands;
 mod files;
+mod notes;
+mod place;
 mod release;
 mod status_line;
+mod told;
 mod typed;
+mod writing;
 
-use files::{Chosen, Wanted};
+use files::Chosen;
+use place::Place;
 use release::Later;
 use status_line::{covered_ui, status_ui};
+use told::Told;
+pub(super) use told::close_ui;
 use typed::Typed;
 
 /// Everything that the window shows.
@@ -56,8 +70,10 @@ pub struct Window {
     more: bool,
     filled: Option<View>,
     covered: bool,
-    /// A message that waits to be read: an error of a file, or what this program is.
+    /// A message that waits to be read: an error of a file, the notes of the scene, or what this program is.
     message: Option<(String, String)>,
+    /// A short message that goes by itself.
+    told: Option<Told>,
     /// Scene files that were opened or saved, the latest first.
     pub recent: Vec<String>,
     /// What waits for an answer about unsaved changes.
@@ -73,8 +89,12 @@ pub struct Window {
     announcer: Announcer,
     /// The changes may go: the window closes without another question.
     leaving: bool,
-    /// Errors of what is written elsewhere than in this thread.
-    errors: (Sender<String>, Receiver<String>),
+    /// What became of what is written elsewhere than in this thread: what was written, or the error.
+    written: (Sender<writing::Written>, Receiver<writing::Written>),
+    /// A whole run that is computed and written.
+    run: Latest<writing::Written>,
+    /// The size of the window on the screen.
+    place: Place,
     /// The title that the window has.
     titled: String,
     dialog: Latest<Chosen>,
@@ -97,6 +117,15 @@ impl Window {
         Self::on(Editor::open(spec.unwrap_or(first))?, settings, wake)
     }
 
+    /// The same; where the scene cannot be opened, on the first preset, with a message that says why.
+    pub fn start(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+        Self::open(spec, settings, Arc::clone(&wake)).or_else(|error| {
+            let mut window = Self::open(None, settings, wake)?;
+            window.say("This scene cannot be opened", error.to_string());
+            Ok(window)
+        })
+    }
+
     fn on(editor: Editor, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
         let session = Session::new(editor, Arc::clone(&wake))?;
         let layout = session.scene().app.as_ref().and_then(|app| app.layout).unwrap_or(Layout::Look);
@@ -112,6 +141,7 @@ impl Window {
             filled: None,
             covered: false,
             message: None,
+            told: None,
             recent: Vec::new(),
             asked: None,
             after_save: None,
@@ -120,7 +150,9 @@ impl Window {
             shortcuts: false,
             ways: false,
             announcer: Announcer::default(),
-            errors: channel(),
+            written: channel(),
+            run: Latest::default(),
+            place: Place::default(),
             titled: String::new(),
             dialog: Latest::default(),
             dialogs: true,
@@ -149,6 +181,7 @@ impl Window {
             }
             self.applied = Some(self.settings);
         }
+        self.place.follow(ctx, if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 });
         self.take_choice(ctx);
         self.take_in(ctx);
         // a view that is gone cannot let go of the mass itself
@@ -161,6 +194,7 @@ impl Window {
         self.session.poll();
         let seconds = ctx.input(|input| f64::from(input.stable_dt));
         self.session.player.tick(seconds);
+        self.tell_reached();
         if self.session.player.is_playing() {
             ctx.request_repaint();
         }
@@ -169,8 +203,8 @@ impl Window {
     /// Draws it all.
     pub fn ui(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
-        for command in menu::keys(&ctx, self.settings) {
-            self.carry_out(&ctx, command);
+        if !self.waits_for_answer() {
+            self.keys(&ctx);
         }
         let style = Style::of(&ctx, self.settings.projector);
         let room = Room::of(ctx.content_rect().size());
@@ -194,18 +228,28 @@ impl Window {
             }
         });
         Panel::bottom("transport").frame(feet).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
-            transport::transport_ui(ui, &mut self.session, &style);
+            transport::transport_ui(ui, &mut self.session, &style, self.covered);
         });
         if compact {
             Panel::top("controls row").frame(line).show(ui, |ui| {
-                controls::row_ui(ui, &mut self.session, &style, &mut self.more);
+                ui.set_height(ROW);
+                controls::row_ui(ui, &mut self.session, &mut self.more);
             });
+            if self.more {
+                Panel::right("more").frame(line).resizable(false).exact_size(MORE).show(ui, |ui| {
+                    controls::more_column_ui(ui, &mut self.session, &style);
+                });
+            }
         } else {
             let width = if ctx.content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
             let column = frame(12, 10);
             Panel::left("controls").frame(column).resizable(false).exact_size(width).show(ui, |ui| {
+                let bottom = ui.max_rect().bottom();
                 egui::ScrollArea::vertical().show(ui, |ui| {
                     controls::column_ui(ui, &mut self.session, &style, &mut self.more);
+                    if !self.covered && notes::notes_ui(ui, self.session.scene(), bottom) {
+                        asked.push(Command::Notes);
+                    }
                 });
             });
         }
@@ -213,7 +257,7 @@ impl Window {
         if self.ways && !self.covered {
             let ways = self.session.ways();
             Panel::top("ways").frame(line).show(ui, |ui| ui.label(ways));
-        } else if hinted {
+        } else if hinted && !self.covered {
             Panel::top("hint").frame(line).show(ui, |ui| self.hint.ui(ui, &self.session));
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
@@ -229,6 +273,8 @@ impl Window {
             self.shortcuts = shortcuts::shortcuts_ui(ui);
         }
         self.message_ui(ui);
+        self.told_ui(ui);
+        focus_ui(&ctx, &style);
     }
 
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {
@@ -259,133 +305,14 @@ impl Window {
             ui.add_space(8.0);
             ui.heading(view.name()).on_hover_text(view.about());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                close = icon_button_ui(ui, Icon::Fill, 24.0, "all views", "All views again (Z)").clicked();
+                close = icon_button_ui(ui, Icon::Restore, 24.0, "all views", "All views again (Z or Esc)")
+                    .clicked();
             });
         });
         views::view_ui(ui, view, &mut context);
         if close {
             self.filled = None;
         }
-    }
-
-    fn message_ui(&mut self, ui: &Ui) {
-        let Some((title, text)) = &self.message else { return };
-        let answer = dialog(ui.ctx(), "message").show(ui.ctx(), |ui| {
-            ui.set_max_width(560.0);
-            ui.heading(title);
-            ui.add_space(6.0);
-            egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| ui.label(text));
-            ui.add_space(8.0);
-            ui.button("Close").clicked()
-        });
-        if answer.inner || answer.should_close() {
-            self.message = None;
-        }
-    }
-
-    /// Does what was asked for.
-    pub fn carry_out(&mut self, ctx: &egui::Context, command: Command) {
-        match command {
-            Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
-            Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
-            Command::Open => self.leave_for(ctx, Next::Choose),
-            Command::Save => match self.session.editor.path().map(PathBuf::from) {
-                Some(path) => self.save_to(ctx, &path),
-                None => self.choose(Wanted::Save),
-            },
-            Command::SaveAs => self.choose(Wanted::Save),
-            Command::SaveMotion => self.choose(Wanted::Csv),
-            Command::SaveEvents => self.choose(Wanted::Events),
-            Command::SaveCurve => self.choose(Wanted::Curve),
-            Command::SavePicture => self.choose(Wanted::Picture),
-            Command::CopyScene => ctx.copy_text(self.session.editor.text()),
-            Command::PasteScene => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
-            Command::CopyCommand => match export::command_line(&self.session.editor) {
-                Some(line) => ctx.copy_text(line),
-                None => self.say(
-                    "There is no command line yet",
-                    "A pasted scene has no name that the command line could open: save it first.".to_owned(),
-                ),
-            },
-            Command::SaveMap => self.choose(Wanted::Map),
-            Command::CopyMapCommand => {
-                if let Some(command) = self.session.map_command() {
-                    ctx.copy_text(command);
-                }
-            }
-            Command::Quit => self.leave_for(ctx, Next::Quit),
-            Command::Undo => {
-                self.session.undo();
-            }
-            Command::Redo => {
-                self.session.redo();
-            }
-            Command::BackToStart => {
-                self.session.back_to_start();
-                (self.filled, self.covered) = (None, false);
-                self.memory = Memory::default();
-                self.hint = hint::Hint::for_scene(&self.session);
-                self.arrange(self.tiling.room());
-            }
-            Command::PlayPause => {
-                let playing = self.session.player.is_playing();
-                self.session.player.set_playing(!playing);
-            }
-            Command::Step => self.session.player.step(),
-            Command::PreviousEvent => {
-                self.session.player.seek_event(false, EVENT_AHEAD);
-            }
-            Command::NextEvent => {
-                self.session.player.seek_event(true, EVENT_AHEAD);
-            }
-            Command::Speed(index) => {
-                if let Some(speed) = SPEEDS.get(index) {
-                    self.session.player.speed = speed.0;
-                }
-            }
-            Command::Arrange(layout) => {
-                self.arrangement = Arrangement::Layout(layout);
-                self.arrange(self.tiling.room());
-            }
-            Command::ArrangeOwn => {
-                // the first time it is what is there
-                if self.own.is_none() {
-                    self.own = self.tiling.kept().cloned();
-                }
-                self.arrangement = Arrangement::Own;
-                self.arrange(self.tiling.room());
-            }
-            Command::KeepOwn => {
-                self.own = self.tiling.kept().cloned().or(self.own.take());
-                self.arrangement = Arrangement::Own;
-            }
-            Command::Show(view, shown) => self.tiling.show(view, shown),
-            // the view under the pointer
-            Command::Fill => {
-                let wanted = self.memory.hovered.unwrap_or(View::Well);
-                self.filled = if self.filled.is_some() { None } else { Some(wanted) };
-            }
-            Command::Cover => self.covered = !self.covered,
-            Command::FullScreen => {
-                let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
-                ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!full));
-            }
-            Command::Set(settings) => self.settings = settings,
-            Command::Grab => self.memory.grab = true,
-            Command::Ways => self.ways = !self.ways,
-            Command::Shortcuts => self.shortcuts = !self.shortcuts,
-            Command::About => self.message = Some(about()),
-        }
-    }
-
-    /// Puts the views where the arrangement has them.
-    fn arrange(&mut self, room: Room) {
-        self.filled = None;
-        self.tiling = match (self.arrangement, &self.own) {
-            (Arrangement::Own, Some(own)) => Tiling::own(own, room),
-            (Arrangement::Own, None) => Tiling::new(Layout::Look, room),
-            (Arrangement::Layout(layout), _) => Tiling::new(layout, room),
-        };
     }
 
     /// A person's own arrangement of the views, where there is one.
@@ -396,6 +323,16 @@ impl Window {
     /// Takes over an arrangement that was kept.
     pub fn set_own_arrangement(&mut self, own: Option<Tree<View>>) {
         self.own = own;
+    }
+
+    /// Has the window be of a size that was kept: none at the first start.
+    pub fn restore_size(&mut self, size: Option<[f32; 2]>) {
+        self.place = Place::restored(size);
+    }
+
+    /// The size in points at the zoom 1 that is to be kept.
+    pub fn size(&self) -> Option<[f32; 2]> {
+        self.place.size()
     }
 
     /// What the traces share.
@@ -409,13 +346,14 @@ impl Window {
     }
 }
 
-fn about() -> (String, String) {
-    let text = format!(
-        "Version {}. Bistable mechanisms with travel limits: what they do when they are shaken.\n\n\
-         Every number comes from a run of the integrator; the motion on the screen is such a run, continued.",
-        env!("CARGO_PKG_VERSION")
-    );
-    ("interwell".to_owned(), text)
+/// A ring around what has the keyboard's focus, whatever it is: nothing has it unseen.
+fn focus_ui(ctx: &egui::Context, style: &Style) {
+    let focused = ctx.memory(egui::Memory::focused).and_then(|id| ctx.read_response(id));
+    if let Some(response) = focused.filter(|_| !ctx.text_edit_focused()) {
+        let painter = ctx.layer_painter(response.layer_id).with_clip_rect(ctx.content_rect());
+        let rect = response.rect.expand(2.0);
+        painter.rect_stroke(rect, 4.0, style.focus_stroke(), egui::StrokeKind::Inside);
+    }
 }
 
 impl eframe::App for Window {
@@ -436,6 +374,9 @@ impl eframe::App for Window {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, eframe::APP_KEY, &self.settings);
         eframe::set_value(storage, RECENT, &self.recent);
+        if let Some(size) = self.size() {
+            eframe::set_value(storage, SIZE, &size);
+        }
         if let Some(own) = &self.own {
             eframe::set_value(storage, OWN_KEY, own);
         }

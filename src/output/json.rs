@@ -109,7 +109,5 @@ pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
 
 /// Numbers are in serde_json's shortest form; one that is not finite became `null` on its way in.
 pub(super) fn pretty(value: &Value) -> String {
-    let mut text = serde_json::to_string_pretty(value).unwrap_or_default();
-    text.push('\n');
-    text
+    format!("{value:#}\n")
 }

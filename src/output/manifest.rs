@@ -37,7 +37,8 @@ pub fn manifest(document: &Document, grid: &Grid, tally: &Tally, origin: &Origin
         .collect();
     let sweep = grid.axes().iter().map(|axis| axis.to_scene(&document.scene)).collect();
     let scene = &Scene { sweep, ..document.scene.clone() };
-    let text = crate::scene::write(scene);
+    // null where it cannot be written, and never an empty scene
+    let text = crate::scene::write(scene).ok();
     let counts = |counts: &BTreeMap<&'static str, u64>| -> Value {
         counts.iter().map(|(word, n)| ((*word).to_owned(), json!(n))).collect::<Map<_, _>>().into()
     };

@@ -59,7 +59,7 @@ fn numbers(from: &Scene, to: &Scene, part: &str) -> Option<Vec<String>> {
 
 /// A value as RON on one line.
 fn ron(value: &impl Serialize) -> String {
-    let text = text::options().to_string(value).unwrap_or_default();
+    let text = text::options().without_recursion_limit().to_string(value).unwrap_or_default();
     // RON would write the choice `None` so as to tell it from an absent option.
     text.strip_prefix("r#").map_or(text.clone(), str::to_owned)
 }

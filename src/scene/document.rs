@@ -24,12 +24,24 @@ const MOST_VALUES: usize = 2 * LARGEST_AXIS;
 
 /// How messages call a scene that came through a pipe.
 const STANDARD_INPUT: &str = "standard input";
+/// Where a scene came from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Source {
+    /// The built-in scene of this name.
+    BuiltIn(&'static str),
+    /// A scene file.
+    File(PathBuf),
+    /// Text that has no name of its own.
+    Text,
+}
 
 /// A scene, its text, and the arguments that changed it since.
 #[derive(Debug, Clone)]
 pub struct Document {
     /// The scene, with every argument applied.
     pub scene: Scene,
+    /// Where it came from.
+    pub source: Source,
     /// How messages call it: the path as given, or `built-in NAME`.
     pub name: String,
     /// The text that it was read from.
@@ -69,14 +81,17 @@ impl Document {
         if let Some(document) = Self::preset(spec) {
             return document;
         }
-        Self::from_text(&clip(spec), &read_scene(spec, LARGEST_SCENE)?, Files::beside(Path::new(spec)))
+        let read =
+            Self::from_text(&clip(spec), &read_scene(spec, LARGEST_SCENE)?, Files::beside(Path::new(spec)))?;
+        Ok(Self { source: Source::File(PathBuf::from(spec)), ..read })
     }
 
     /// The built-in scene of that name. The inner result is an error only if the program was built
     /// with a wrong preset, which its tests exclude.
     fn preset(name: &str) -> Option<Result<Self, SceneError>> {
         let preset = PRESETS.iter().find(|preset| preset.name == name)?;
-        Some(Self::from_text(&format!("built-in {name}"), preset.text, Files::default()))
+        let read = Self::from_text(&format!("built-in {name}"), preset.text, Files::default());
+        Some(read.map(|read| Self { source: Source::BuiltIn(preset.name), ..read }))
     }
 
     /// Parses a scene; `name` is how messages call it. Ranges are left to [`check`](Self::check), so
@@ -92,7 +107,7 @@ impl Document {
         }
         let unread = record::attach(&mut scene.excitation, "excitation", &files);
         let (name, text) = (name.to_owned(), text.to_owned());
-        Ok(Self { scene, name, text, files, assigned: Vec::new(), unread })
+        Ok(Self { scene, source: Source::Text, name, text, files, assigned: Vec::new(), unread })
     }
 
     /// Applies `FIELD=VALUE` as given to `--set`: a number, or any value in RON
@@ -324,6 +339,15 @@ fn refused(name: &str, text: &str, mut refusal: text::Refusal, files: Files) -> 
     }
     more.truncate(MOST_FAULTS);
     SceneError::Structure { name: name.to_owned(), place, problem, more }
+}
+
+/// The paths of the files that a scene names, as written: its table and its records.
+pub fn named_paths(scene: &mut Scene) -> Vec<&mut String> {
+    let table = match &mut scene.mechanism {
+        Mechanism::Table { path, .. } => Some(path),
+        _ => None,
+    };
+    table.into_iter().chain(record::paths_mut(&mut scene.excitation)).collect()
 }
 
 /// Replaces a field from its text; the error is a sentence.

@@ -145,3 +145,12 @@ pub(super) fn paths(excitation: &Excitation) -> Vec<&str> {
         _ => Vec::new(),
     }
 }
+
+/// The same, to be changed.
+pub(super) fn paths_mut(excitation: &mut Excitation) -> Vec<&mut String> {
+    match excitation {
+        Excitation::Recorded { path, .. } => vec![path],
+        Excitation::Sum(terms) => terms.iter_mut().flat_map(paths_mut).collect(),
+        _ => Vec::new(),
+    }
+}

@@ -179,8 +179,8 @@ pub(super) fn clip(text: &str) -> String {
 }
 
 /// The scene as RON text that parses back to the same scene.
-pub fn write(scene: &Scene) -> String {
+pub fn write(scene: &Scene) -> Result<String, ron::Error> {
     let config = ron::ser::PrettyConfig::new().escape_strings(false).new_line("\n").compact_arrays(false);
-    // Writing into a string fails only beyond the recursion limit, which a parsed scene respects.
-    options().without_recursion_limit().to_string_pretty(scene, config).unwrap_or_default() + "\n"
+    let text = options().without_recursion_limit().to_string_pretty(scene, config)?;
+    Ok(text + "\n")
 }

@@ -6,6 +6,7 @@
 
 pub mod accuracy;
 mod contact;
+mod continued;
 mod curve;
 mod edges;
 mod fields;
@@ -28,6 +29,7 @@ mod watch;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
+pub use continued::continued_scene;
 pub use curve::{
     CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency,
     stop_positions,

@@ -38,7 +38,7 @@ fn faults(changes: &[(&str, &str)]) -> String {
 }
 
 fn reads_back(scene: &Scene) {
-    let written = write(scene);
+    let written = write(scene).unwrap();
     let again = Document::from_text("again", &written, Files::default());
     assert_eq!(&again.unwrap_or_else(|error| panic!("{error}\n{written}")).scene, scene, "{written}");
 }

@@ -68,7 +68,7 @@ fn a_sweep_over_what_is_switched_off_waits() {
     own.switch_stops(false);
     assert!(own.fault().is_none(), "{:?}", own.fault());
     // what is written can be opened
-    let text = own.editor.text();
+    let text = own.editor.text().unwrap();
     assert!(interwell::app::document::Editor::from_text(&text).unwrap().document().check().is_ok());
     own.switch_stops(true);
     assert!(own.fault().is_none() && own.scene().sweep == axes);

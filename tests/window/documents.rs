@@ -111,7 +111,7 @@ fn comments_go_only_when_it_has_been_said() {
 }
 
 fn harness_text() -> String {
-    interwell::app::document::Editor::open("first-look").unwrap().text()
+    interwell::app::document::Editor::open("first-look").unwrap().text().unwrap()
 }
 
 #[test]
@@ -136,10 +136,67 @@ fn scenes_go_through_the_clipboard() {
 fn the_command_line_says_what_is_shown() {
     let mut harness = opened();
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
+    harness.step();
+    harness.state_mut().session.restart();
     let ctx = harness.ctx.clone();
     harness.state_mut().carry_out(&ctx, Command::CopyCommand);
     harness.step();
     assert_eq!(copied(&harness).unwrap(), "interwell --headless simulate first-look --set mass_g=16");
+    assert!(harness.state().told().is_some_and(|text| text.starts_with("Copied: ")));
+}
+
+/// The words of a copied command as its arguments.
+fn arguments(line: &str) -> Vec<String> {
+    let words = line.strip_prefix("interwell ").unwrap().split(' ');
+    words.map(|word| word.trim_matches('\'').to_owned()).collect()
+}
+
+#[test]
+fn a_motion_that_was_changed_on_its_way_is_reproduced() {
+    for preset in ["first-look", "uneven-stops", "bouncing-ball"] {
+        let mut harness = window(preset, WIDE, Settings::default());
+        harness.state_mut().session.player.speed = 1.0;
+        harness.run_steps(50);
+        harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
+        harness.run_steps(30);
+        let ctx = harness.ctx.clone();
+        harness.state_mut().carry_out(&ctx, Command::CopyCommand);
+        harness.step();
+        let line = copied(&harness).unwrap();
+        assert!(line.contains("start"), "{line}");
+        assert!(harness.state().told().is_some_and(|text| text.ends_with("present state on")));
+        // the frame after the copy has gone on already
+        let session = &mut harness.state_mut().session;
+        let here = interwell::app::export::command_line(session).unwrap().0;
+        let output =
+            assert_cmd::Command::cargo_bin("interwell").unwrap().args(arguments(&here)).output().unwrap();
+        assert!(output.status.success(), "{here}: {}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let mut lines = text.lines();
+        let x = lines.next().unwrap().split(',').position(|name| name == "x_m").unwrap();
+        let rows: Vec<Vec<&str>> = lines.take(120).map(|line| line.split(',').collect()).collect();
+        let begin = session.player.watch().time();
+        let number = |text: &str| text.parse::<f64>().unwrap();
+        for row in &rows {
+            session.player.seek(f64::INFINITY);
+            session.player.go_to(interwell::app::player::Goal::Time(begin + number(row[0])));
+            while session.player.goal().is_some() {
+                session.player.tick(0.0);
+            }
+            let (own, theirs) = (session.player.state().x, number(row[x]));
+            assert!((own - theirs).abs() < 1e-7, "{here}: {own} {theirs} at {}", row[0]);
+        }
+    }
+}
+
+#[test]
+fn a_motion_that_no_scene_continues_is_said_to_be_another() {
+    let mut harness = window("paper-ramp", WIDE, Settings::default());
+    harness.run_steps(5);
+    harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
+    harness.run_steps(5);
+    ask(&mut harness, Command::CopyCommand);
+    assert!(harness.state().told().is_some_and(|text| text.ends_with("and is another")));
 }
 
 #[test]
@@ -194,4 +251,160 @@ fn a_wrong_scene_leaves_the_old_one() {
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
     harness.step();
     assert_eq!(titled(&harness).as_deref(), Some("* First look - interwell"));
+}
+
+#[test]
+fn no_key_acts_behind_a_dialog_or_in_a_field() {
+    let mut harness = opened();
+    let seen = |harness: &Harness<'static, Window>| {
+        let window = harness.state();
+        (window.settings, window.session.player.speed, window.session.player.is_playing())
+    };
+    let before = seen(&harness);
+    let type_all = |harness: &mut Harness<'static, Window>| {
+        for key in [Key::P, Key::D, Key::C, Key::Num1, Key::Space, Key::Period, Key::Home, Key::PageUp] {
+            harness.key_press(key);
+            harness.run_steps(2);
+        }
+    };
+    // unsaved changes: the focus is on a button, which Space would press
+    harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
+    ask(&mut harness, Command::Quit);
+    harness.get_by_label("Cancel").focus();
+    harness.run_steps(2);
+    for key in [Key::P, Key::D, Key::C, Key::Num1, Key::Period, Key::Home, Key::PageUp] {
+        harness.key_press(key);
+        harness.run_steps(2);
+    }
+    harness.event(Event::Paste(harness_text()));
+    harness.run_steps(2);
+    assert_eq!(seen(&harness), before);
+    assert_eq!(harness.state().session.scene().mass_g, 16.0);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    // a path that cannot be, entered, and typed on
+    harness.state_mut().type_path();
+    harness.run_steps(3);
+    harness.event(Event::Text("/nowhere/at/all".into()));
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    harness.get_by_label("There is no such file.");
+    type_all(&mut harness);
+    assert_eq!(seen(&harness), before);
+    // and the field has the keyboard still
+    harness.key_press(Key::End);
+    harness.event(Event::Text("xyz".into()));
+    harness.run_steps(2);
+    assert!(harness.query_all_by_value("/nowhere/at/allxyz").next().is_some());
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    harness.key_press(Key::Num1);
+    harness.run_steps(2);
+    assert_eq!(harness.state().session.player.speed, 1e-3);
+}
+
+#[test]
+fn home_goes_back_to_what_was_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("own.ron");
+    let mut harness = opened();
+    let ctx = harness.ctx.clone();
+    harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
+    harness.state_mut().save_to(&ctx, &path);
+    harness.run_steps(2);
+    assert_eq!(harness.state().told(), Some("Saved own.ron"));
+    harness.state_mut().session.edit_once(|scene| scene.mass_g = 17.0);
+    harness.key_press(Key::Home);
+    harness.run_steps(3);
+    assert_eq!(harness.state().session.scene().mass_g, 16.0);
+    assert!(!harness.state().session.editor.is_dirty());
+}
+
+#[test]
+fn a_scene_takes_its_files_along() {
+    ["paper-table", "walking"].into_iter().for_each(takes_its_files_along);
+}
+
+fn takes_its_files_along(preset: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let (one, two) = (folder.path().join("one"), folder.path().join("two"));
+    for place in [one.join("data"), two.clone()] {
+        std::fs::create_dir_all(place).unwrap();
+    }
+    // a table beside the scene, and another file of that name where it is saved to
+    let mut harness = window(preset, WIDE, Settings::default());
+    let ctx = harness.ctx.clone();
+    harness.state_mut().save_to(&ctx, &one.join("own.ron"));
+    let named = |harness: &Harness<'static, Window>| {
+        harness.state().session.editor.document().named_files()[0].clone()
+    };
+    let table = named(&harness);
+    let text = std::fs::read_to_string(&table).unwrap();
+    std::fs::write(two.join(table.file_name().unwrap()), "another\n").unwrap();
+    harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
+    harness.state_mut().save_to(&ctx, &two.join("own.ron"));
+    harness.run_steps(2);
+    assert!(harness.state().message().is_none());
+    let moved = named(&harness);
+    assert_eq!((moved.parent(), std::fs::read_to_string(&moved).unwrap()), (Some(two.as_path()), text));
+    let name = moved.file_name().unwrap().to_str().unwrap().to_owned();
+    assert!(harness.state().told().is_some_and(|told| told.contains(&name)), "{name}");
+    // it opens there, also where the first folder is gone, and so does what undo brings back
+    std::fs::remove_dir_all(&one).unwrap();
+    harness.state_mut().session.undo();
+    harness.run_steps(2);
+    assert_eq!(harness.state().session.fault(), None);
+    harness.state_mut().open_another(two.join("own.ron").to_str().unwrap());
+    assert!(harness.state().message().is_none());
+    assert_eq!(harness.state().session.scene().mass_g, 16.0);
+}
+
+#[test]
+fn a_pasted_scene_has_no_command_for_its_map() {
+    let mut harness = opened();
+    harness.event(Event::Paste(harness_text().replace("First look", "Pasted")));
+    harness.run_steps(3);
+    ask(&mut harness, Command::Arrange(interwell::scene::Layout::Map));
+    ask(&mut harness, Command::CopyMapCommand);
+    assert!(harness.state().message().is_some_and(|text| text.contains("save it first")));
+    assert_eq!(copied(&harness), None);
+}
+
+#[test]
+fn the_whole_run_is_written_as_the_command_line_writes_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    let mut harness = opened();
+    harness.state_mut().write_run(path.clone());
+    harness.state_mut().wait_for_run(crate::support::LONG);
+    assert_eq!(harness.state().told(), Some("Saved run.csv"));
+    let command = ["--headless", "simulate", "first-look"];
+    let output = assert_cmd::Command::cargo_bin("interwell").unwrap().args(command).output().unwrap();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), String::from_utf8(output.stdout).unwrap());
+}
+
+#[test]
+fn a_file_may_be_called_like_a_built_in_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("built-in paper.ron");
+    std::fs::write(&path, harness_text()).unwrap();
+    let editor = interwell::app::document::Editor::open(path.to_str().unwrap()).unwrap();
+    assert_eq!((editor.path(), editor.origin().as_deref()), (Some(path.as_path()), path.to_str()));
+    // also by a path that begins so
+    let document =
+        interwell::scene::Document::from_text("built-in paper", &harness_text(), Default::default());
+    let editor = interwell::app::document::Editor::new(document.unwrap());
+    assert_eq!((editor.path(), editor.origin()), (None, None));
+}
+
+#[test]
+fn enter_closes_a_message() {
+    let mut harness = opened();
+    harness.get_by_role_and_label(egui::accesskit::Role::Slider, "amplitude").focus();
+    harness.run_steps(2);
+    ask(&mut harness, Command::About);
+    assert!(harness.state().message().is_some());
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert!(harness.state().message().is_none());
 }

@@ -5,6 +5,7 @@ mod advanced;
 mod documents;
 mod first_minute;
 mod flexures;
+mod frame;
 mod guidance;
 mod keyboard;
 mod map;

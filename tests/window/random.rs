@@ -41,7 +41,7 @@ const SIZES: [[f32; 2]; 8] = [
     [70.0, 50.0],
 ];
 
-const KEYS: [Key; 24] = [
+const KEYS: [Key; 28] = [
     Key::Space,
     Key::Period,
     Key::Home,
@@ -61,6 +61,10 @@ const KEYS: [Key; 24] = [
     Key::Num3,
     Key::Num4,
     Key::Num5,
+    Key::Num7,
+    Key::R,
+    Key::X,
+    Key::End,
     Key::Tab,
     Key::Enter,
     Key::Escape,
@@ -254,7 +258,15 @@ impl Hand {
             17 => Command::Cover,
             18 => Command::CopyCommand,
             19 => Command::CopyMapCommand,
-            20 => self.pick(&[Command::Save, Command::SaveAs, Command::SaveMap, Command::SavePicture]),
+            20 => self.pick(&[
+                Command::Notes,
+                Command::NextTab,
+                Command::SaveRun,
+                Command::Save,
+                Command::SaveAs,
+                Command::SaveMap,
+                Command::SavePicture,
+            ]),
             21 => self.pick(&[Command::About, Command::Shortcuts, Command::Quit]),
             22 if screen.window.session.player.is_playing() => Command::Step,
             _ => Command::PlayPause,
@@ -288,13 +300,13 @@ fn holds(screen: &Screen, seen: &mut Scene) {
     let (player, state) = (&session.player, session.player.state());
     let numbers =
         [state.t, state.x, state.v, state.base_accel, player.time(), player.speed, session.changed_at()];
-    assert!(numbers.iter().all(|number| number.is_finite()), "{state:?}\n{}", session.editor.text());
+    assert!(numbers.iter().all(|number| number.is_finite()), "{state:?}\n{:?}", session.editor.text());
     let ledger = player.watch().ledger();
     let energies = [ledger.work_j, ledger.by_hand_j, ledger.damping_j, ledger.impact_j, ledger.stored_j];
-    assert!(energies.iter().all(|joule| joule.is_finite()), "{ledger:?}\n{}", session.editor.text());
+    assert!(energies.iter().all(|joule| joule.is_finite()), "{ledger:?}\n{:?}", session.editor.text());
     let runnable = &session.editor.runnable().scene;
     if runnable != seen {
-        let text = session.editor.text();
+        let text = session.editor.text().unwrap();
         let again = Editor::from_text(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
         assert_eq!(again.scene(), runnable, "{text}");
         runnable.clone_into(seen);

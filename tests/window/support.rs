@@ -43,7 +43,7 @@ pub fn session(preset: &str, changes: &[&str]) -> Session {
     for change in changes {
         document.set(change).unwrap();
     }
-    let mut session = Session::new(Editor::new(document, None), Arc::new(|| ())).unwrap();
+    let mut session = Session::new(Editor::new(document), Arc::new(|| ())).unwrap();
     session.wait(LONG);
     session
 }

@@ -86,9 +86,10 @@ impl Session {
         })
     }
 
-    /// The command line that makes the map, for a shell.
+    /// The command line that makes the map, for a shell; none without a map, and for a scene that has no name
+    /// yet.
     pub fn map_command(&self) -> Option<String> {
-        self.map.map().map(|map| command::command(&map.question, &self.editor))
+        self.map.map().and_then(|map| command::command(&map.question, &self.editor))
     }
 
     /// Waits until the map that was asked for is whole, at most so long. Whether it is.

@@ -5,6 +5,7 @@ use eframe::egui::{self, Grid, RichText, Sense, Ui, Vec2};
 use crate::app::session::Card;
 use crate::app::status::{Kind, grams, mm, speed};
 use crate::app::widgets::kind_shapes;
+use crate::app::words::explained;
 use crate::dynamics::Regime;
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Settled;
@@ -17,10 +18,6 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
     ground.show(ui, |ui| {
         ui.set_min_size(ui.available_size());
-        if context.covered {
-            ui.label("Covered: what do you expect? Press C to see.");
-            return;
-        }
         let now = context.session.now_card();
         let before = context.session.before_card().cloned();
         let columns = ui.available_width() / 3.0 - 12.0;
@@ -32,7 +29,7 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
                 ui.label(RichText::new("now").heading());
                 ui.end_row();
                 let row = |ui: &mut Ui, name: &str, text: &dyn Fn(&Card) -> String| {
-                    ui.label(RichText::new(name).color(style.faint()));
+                    explained(ui.label(RichText::new(name).color(style.faint())), name);
                     ui.label(before.as_ref().map_or_else(dash, text));
                     ui.label(RichText::new(text(&now)).heading());
                     ui.end_row();
@@ -127,6 +124,6 @@ fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Settled>) 
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(16.0), Sense::hover());
         ui.painter().extend(kind_shapes(kind, rect.center(), 5.0, context.style.kind(kind)));
-        ui.label(name);
+        explained(ui.label(name), name);
     });
 }

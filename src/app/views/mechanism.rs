@@ -8,16 +8,20 @@
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::style::{BALL, RING_SECONDS};
+use crate::app::words::explained;
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
 use super::ViewContext;
 use super::flexures::{CLAMP, Place, Scale, bulge_words, clamp, state_at};
-use super::labels::ago;
-use super::stops::stops_beside_ui;
+use super::labels::{ago, haloed};
+use super::stops::{WALL, stops_beside_ui};
 use super::well::mass_ui;
 
 /// Points of a drawn flexure.
 const FLEXURE_POINTS: usize = 24;
+
+/// The least size in points of a drawing whose parts are named.
+const NAMED: egui::Vec2 = vec2(280.0, 140.0);
 
 /// Length in points of an arrow's head.
 const ARROW_HEAD: f32 = 12.0;
@@ -60,13 +64,13 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
         clamp(&painter, &style, Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y), above);
     }
     let place = Place { top, bottom, half };
-    let (middle, words) = match bent_ui(&painter, context, rect, place, state.x) {
+    let (middle, words) = match bent_ui(ui, &painter, context, rect, place, state.x) {
         Some(drawn) => drawn,
         None => {
             let middle = 0.5 * (top + bottom);
             let x = context.span.screen_from_world(state.x, rect);
             flexures(&painter, context, rect, (x, middle, half), (top, bottom));
-            (middle, "schematic, seen from the base".to_owned())
+            (middle, "schematic".to_owned())
         }
     };
     let x = context.span.screen_from_world(state.x, rect);
@@ -78,12 +82,64 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
     changed |= mass_ui(ui, context, pos2(x, middle), rect);
     rings(ui, context, rect, middle);
     push_arrow(&painter, context, body, state.base_accel, rect);
-    words_ui(&painter, context, rect, &words, state.base_accel);
+    names(&painter, context, rect, (top, heights), body);
+    words_ui(ui, &painter, context, rect, &words, state.base_accel);
     changed
+}
+
+/// What the parts are called, each once: a flexure at its clamp, the mass on the side to which the flexure
+/// does not bow, a stop at its foot on the outer side.
+fn names(
+    painter: &egui::Painter,
+    context: &ViewContext<'_>,
+    rect: Rect,
+    (top, walls): (f32, (f32, f32)),
+    body: Rect,
+) {
+    if rect.width() < NAMED.x || rect.height() < NAMED.y {
+        return;
+    }
+    let style = context.style;
+    let put = |at: Pos2, align: Align2, name: &str| {
+        haloed(painter, &style, (at, align), name, (style.small(), style.faint()));
+    };
+    let zero = context.span.screen_from_world(0.0, rect);
+    put(pos2(zero - 8.0, top + 5.0), Align2::RIGHT_TOP, "flexure");
+    // over the stops, whose room it may need
+    let y = walls.0.min(body.top()) - 4.0;
+    let (at, align) = if bows_right(context) {
+        (pos2(body.left() - 2.0, y), Align2::RIGHT_BOTTOM)
+    } else {
+        (pos2(body.right() + 2.0, y), Align2::LEFT_BOTTOM)
+    };
+    put(at, align, "mass");
+    let (left, right) = context.session.shown().stop_positions();
+    let stop = left.map(|x| (x, -1.0)).or(right.map(|x| (x, 1.0)));
+    if let Some((x, way)) = stop {
+        let x = context.span.screen_from_world(x, rect) + way * (BALL + WALL + 5.0);
+        let align = if way < 0.0 { Align2::RIGHT_BOTTOM } else { Align2::LEFT_BOTTOM };
+        put(pos2(x, walls.1), align, "stop");
+    }
+}
+
+/// Whether the flexure over the mass bows to the right; a sketched one does.
+fn bows_right(context: &ViewContext<'_>) -> bool {
+    let bent = context.memory.bent.as_ref().filter(|_| context.session.shown().mechanism.flexures.is_some());
+    let Some(line) = bent.and_then(|bent| bent.lines.get(1)) else { return true };
+    let across = |i: usize| line.points.get(i).map_or(0.0, |point| point[2]);
+    let last = line.points.len().saturating_sub(1);
+    across(last / 2) >= 0.5 * (across(0) + across(last))
+}
+
+/// What a word of the drawing means, while the pointer rests on it.
+fn explain(ui: &Ui, place: Rect, word: &str) {
+    let id = ui.scope_id().with(("word", word.split(' ').next()));
+    explained(ui.interact(place, id, Sense::hover()), word);
 }
 
 /// The flexures as they are bent, where there are such: the middle of the body, and what is said of the drawing.
 fn bent_ui(
+    ui: &Ui,
     painter: &egui::Painter,
     context: &mut ViewContext<'_>,
     rect: Rect,
@@ -106,8 +162,9 @@ fn bent_ui(
     let words = bulge_words(&bent);
     // beside the feet of the flexures, where these never are
     let at = pos2(rect.left() + 12.0, place.bottom - 5.0);
-    painter.text(at, Align2::LEFT_BOTTOM, words, style.body(), style.ink());
-    let words = format!("seen from the base, {}", scale.words(context.span, rect));
+    let place = painter.text(at, Align2::LEFT_BOTTOM, &words, style.body(), style.ink());
+    explain(ui, place, &words);
+    let words = scale.words(context.span, rect);
     Some((scale.middle(&bent), words))
 }
 
@@ -172,24 +229,34 @@ fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, ba
 }
 
 /// The row over the drawing, where nothing moves: when, what is seen, how hard it is pushed, and how the base moves.
-fn words_ui(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, words: &str, base_accel: f64) {
+fn words_ui(
+    ui: &Ui,
+    painter: &egui::Painter,
+    context: &ViewContext<'_>,
+    rect: Rect,
+    words: &str,
+    base_accel: f64,
+) {
     let style = context.style;
     let mut at = rect.left_top() + vec2(10.0, 4.0);
     let mut put = |text: String, color: Color32| {
-        at.x = painter.text(at, Align2::LEFT_TOP, text, style.small(), color).right() + 14.0;
+        let place = painter.text(at, Align2::LEFT_TOP, &text, style.small(), color);
+        explain(ui, place, &text);
+        at.x = place.right() + 14.0;
     };
     if let Some(ago) = ago(context.session) {
         put(ago, style.ink());
     }
+    put("seen from the base".to_owned(), style.faint());
     put(words.to_owned(), style.faint());
     if context.session.shown().is_shaken() {
         put(format!("push {:.2} g", (base_accel / STANDARD_GRAVITY).abs()), style.base());
     }
-    inset(painter, context, Rect::from_min_max(pos2(at.x, rect.top()), rect.max), base_accel);
+    inset(ui, painter, context, Rect::from_min_max(pos2(at.x, rect.top()), rect.max), base_accel);
 }
 
 /// The base's own motion at its own scale, for a sine, whose displacement is -a/(2 pi f)^2.
-fn inset(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, base_accel: f64) {
+fn inset(ui: &Ui, painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, base_accel: f64) {
     let Some((amplitude, rate)) = context.session.shown().single_sine() else { return };
     let (swing, place) = (amplitude / (rate * rate), -base_accel / (rate * rate));
     if !(swing > 0.0 && swing.is_finite()) || rect.width() < INSET {
@@ -203,7 +270,8 @@ fn inset(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, base_ac
     painter.rect_filled(Rect::from_center_size(at, vec2(14.0, 9.0)), 2.0, style.base());
     let text = format!("base: ±{:.1} mm", swing * 1e3);
     let left = track - vec2(half + 14.0, 0.0);
-    painter.text(left, Align2::RIGHT_CENTER, text, style.small(), style.base());
+    let place = painter.text(left, Align2::RIGHT_CENTER, &text, style.small(), style.base());
+    explain(ui, place, &text);
 }
 
 /// Impacts since the last frame begin a ring, one at a time a side; rings under way are drawn.

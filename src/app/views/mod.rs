@@ -31,6 +31,7 @@ use super::style::Style;
 pub use map::Quantity as MapQuantity;
 pub use span::Span;
 pub use trace::{Quantity, Timeline};
+pub(super) use well::arrows;
 
 /// What can be seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -170,7 +171,7 @@ pub struct ViewContext<'a> {
     pub memory: &'a mut Memory,
     /// No rings at impacts.
     pub reduce_motion: bool,
-    /// Results are covered: predict first.
+    /// The motion and all results are covered: predict first.
     pub covered: bool,
     /// One view fills the window, and shares its axes with none.
     pub filled: bool,
@@ -209,17 +210,20 @@ pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| drawn_ui(ui, view, context)).inner
 }
 
-/// The ground of a view of results and, where these are covered, what is said in their place. Whether they are.
-fn is_covered_ui(ui: &mut Ui, context: &ViewContext<'_>) -> bool {
-    ui.painter().rect_filled(ui.max_rect(), 0.0, context.style.ground());
-    if context.covered {
-        ui.add_space(10.0);
-        ui.label("  Covered: what do you expect? Press C to see.");
-    }
-    context.covered
+/// What stands in the place of a view while the motion and all results are covered.
+fn covered_ui(ui: &mut Ui, style: &Style) {
+    let rect = ui.max_rect();
+    ui.painter().rect_filled(rect, 0.0, style.ground());
+    ui.scope_builder(UiBuilder::new().max_rect(rect.shrink(12.0)), |ui| {
+        ui.label("Covered");
+    });
 }
 
 fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
+    if context.covered {
+        covered_ui(ui, &context.style);
+        return false;
+    }
     match view {
         View::Mechanism => mechanism::mechanism_ui(ui, context),
         View::Well => well::well_ui(ui, context),

@@ -142,7 +142,7 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
 }
 
 /// Steps to the right that the arrow keys ask of what has the focus; they then do not move the focus itself.
-pub(super) fn arrows(ui: &Ui, id: egui::Id) -> f64 {
+pub(in crate::app) fn arrows(ui: &Ui, id: egui::Id) -> f64 {
     let filter = egui::EventFilter { horizontal_arrows: true, ..egui::EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
     ui.input(|input| {

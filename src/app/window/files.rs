@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::mpsc::channel;
 
 use eframe::egui::{self, Ui};
 
 use super::super::document::Editor;
-use super::super::export;
 use super::super::leave::{self, Answer, Next};
-use super::super::map::Map;
 use super::super::menu::Command;
 use super::super::session::CannotRun;
 use super::super::style::STATUS;
@@ -24,6 +23,7 @@ pub(super) enum Chosen {
     Open(PathBuf),
     Save(PathBuf),
     Csv(PathBuf),
+    Run(PathBuf),
     Events(PathBuf),
     Curve(PathBuf),
     Map(PathBuf),
@@ -41,6 +41,7 @@ pub(super) enum Wanted {
     Open,
     Save,
     Csv,
+    Run,
     Events,
     Curve,
     Map,
@@ -53,7 +54,8 @@ impl Wanted {
         match self {
             Self::Open => "Open which scene?",
             Self::Save => "Save the scene to which file?",
-            Self::Csv => "Save the motion to which file?",
+            Self::Csv => "Save the motion that was seen to which file?",
+            Self::Run => "Save the whole run to which file?",
             Self::Events => "Save the events to which file?",
             Self::Curve => "Save the force curve to which file?",
             Self::Map => "Save the map to which file?",
@@ -72,6 +74,7 @@ impl Wanted {
             Self::Open => Chosen::Open(path),
             Self::Save => Chosen::Save(path),
             Self::Csv => Chosen::Csv(path),
+            Self::Run => Chosen::Run(path),
             Self::Events => Chosen::Events(path),
             Self::Curve => Chosen::Curve(path),
             Self::Map => Chosen::Map(path),
@@ -96,6 +99,11 @@ impl Window {
                     recent: std::mem::take(&mut self.recent),
                     own: self.own.take(),
                     titled: std::mem::take(&mut self.titled),
+                    place: std::mem::take(&mut self.place),
+                    written: std::mem::replace(&mut self.written, channel()),
+                    run: std::mem::take(&mut self.run),
+                    covered: self.covered,
+                    told: self.told.take(),
                     applied: self.applied,
                     ..window
                 };
@@ -158,6 +166,7 @@ impl Window {
             Chosen::Open(path) => self.open_another(&path.to_string_lossy()),
             Chosen::Save(path) => self.save_to(ctx, &path),
             Chosen::Csv(path) => self.write_motion(&path),
+            Chosen::Run(path) => self.write_run(path),
             Chosen::Events(path) => self.write_events(&path),
             Chosen::Curve(path) => self.write_curve(&path),
             Chosen::Map(path) => self.write_map(&path),
@@ -182,7 +191,7 @@ impl Window {
             [one] => self.leave_for(ctx, Next::Open(one.to_string_lossy().into_owned())),
             _ => self.say("One scene at a time", "Drop a single scene file (.ron) on the window.".to_owned()),
         }
-        if self.asked.is_none() && !ctx.text_edit_focused() {
+        if !self.waits_for_answer() && !ctx.text_edit_focused() {
             let (mut copied, mut pasted) = (false, None);
             ctx.input(|input| {
                 for event in &input.events {
@@ -194,14 +203,20 @@ impl Window {
                 }
             });
             if copied {
-                ctx.copy_text(self.session.editor.text());
+                self.copy_scene(ctx);
             }
             if let Some(text) = pasted {
                 self.leave_for(ctx, Next::Text(text));
             }
         }
-        while let Ok(error) = self.errors.1.try_recv() {
-            self.say("Not written", error);
+        if self.run.poll()
+            && let Some(written) = self.run.current().cloned()
+        {
+            self.run.clear();
+            self.tell_written(written);
+        }
+        while let Ok(written) = self.written.1.try_recv() {
+            self.tell_written(written);
         }
         let dirty = if self.session.editor.is_dirty() { "* " } else { "" };
         let title = format!("{dirty}{} - interwell", self.session.scene().title);
@@ -256,73 +271,14 @@ impl Window {
         }
     }
 
-    /// Saves to a file; one that was written by hand with comments only once it is said that they go.
-    pub fn save_to(&mut self, ctx: &egui::Context, path: &Path) {
-        let own = self.session.editor.path() == Some(path);
-        if own && self.session.editor.has_comments() {
-            self.over_comments = Some(path.to_owned());
-        } else {
-            self.write_scene(ctx, path);
-        }
-    }
-
-    fn write_scene(&mut self, ctx: &egui::Context, path: &Path) {
-        let next = self.after_save.take();
-        match self.session.editor.save_to(path) {
-            Ok(()) => {
-                self.remember_file();
-                if let Some(next) = next {
-                    self.go_on(ctx, next);
-                }
-            }
-            Err(error) => self.say("The scene was not saved", error),
-        }
-    }
-
-    /// Writes the motion that is remembered as CSV.
-    pub fn write_motion(&mut self, path: &Path) {
-        if let Err(error) = export::write(path, export::motion_csv(&self.session.player).as_bytes()) {
-            self.say("The motion was not written", error);
-        }
-    }
-
-    /// Writes the events that are remembered as CSV.
-    pub fn write_events(&mut self, path: &Path) {
-        if let Err(error) = export::write(path, export::events_csv(&self.session.player).as_bytes()) {
-            self.say("The events were not written", error);
-        }
-    }
-
-    /// Writes the force curve as CSV.
-    pub fn write_curve(&mut self, path: &Path) {
-        let text = export::curve_csv(&self.session).map_err(|error| error.to_string());
-        if let Err(error) = text.and_then(|text| export::write(path, text.as_bytes())) {
-            self.say("The force curve was not written", error);
-        }
-    }
-
-    /// Writes the map as the rows of a sweep.
-    fn write_map(&mut self, path: &Path) {
-        let Some(text) = self.session.map.map().and_then(Map::csv) else { return };
-        if let Err(error) = export::write(path, text.as_bytes()) {
-            self.say("The map was not written", error);
-        }
-    }
-
-    /// Has the window's picture written once it has been drawn.
-    fn write_picture(&mut self, ctx: &egui::Context, path: PathBuf) {
-        let (errors, wake) = (self.errors.0.clone(), Arc::clone(&self.wake));
-        ctx.request_screenshot(move |image| {
-            if let Err(error) = export::png(&image).and_then(|bytes| export::write(&path, &bytes)) {
-                errors.send(error).ok();
-                wake();
-            }
-        });
-    }
-
     /// From now on no file is asked for: a dialog is answered at once, by none.
     pub fn without_dialogs(&mut self) {
         self.dialogs = false;
+    }
+
+    /// Asks for the path of a scene to open, as where the desktop has no dialog.
+    pub fn type_path(&mut self) {
+        self.typed = Some(Typed::new(Wanted::Open, Path::new("")));
     }
 
     /// Asks for a file, without the window waiting for the answer.
@@ -333,6 +289,7 @@ impl Window {
         let (kind, ending) = match wanted {
             Wanted::Open | Wanted::Save => ("scene", "ron"),
             Wanted::Csv => ("motion", "csv"),
+            Wanted::Run => ("run", "csv"),
             Wanted::Events => ("events", "csv"),
             Wanted::Curve => ("curve", "csv"),
             Wanted::Map => ("map", "csv"),

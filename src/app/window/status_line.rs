@@ -6,6 +6,7 @@ use crate::app::announce::Announcer;
 use crate::app::session::Session;
 use crate::app::style::{BODY, STATUS, STATUS_COMPACT, Style};
 use crate::app::widgets::kind_shapes;
+use crate::app::words::meaning;
 
 /// Widest and highest in points of a line beside the sentence, and the size of its letters.
 const BESIDE: f32 = 236.0;
@@ -42,7 +43,8 @@ pub fn status_ui(
                 let size = fitted(ui, &text, size);
                 let label = ui.add(egui::Label::new(RichText::new(text).size(size)).wrap());
                 if label.hovered() {
-                    label.on_hover_text(session.ways());
+                    let kind = meaning(&sentence.text).map_or_else(String::new, |text| format!("{text}\n\n"));
+                    label.on_hover_text(kind + &session.ways());
                 }
             });
         });
@@ -60,6 +62,7 @@ fn beside_ui(ui: &mut Ui, session: &Session, style: &Style, settling: Option<Str
     ui.allocate_ui_with_layout(Vec2::new(BESIDE, height), egui::Layout::top_down(egui::Align::Max), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut line = |text: String, hover: &str| {
+            let hover = meaning(&text).map_or_else(|| hover.to_owned(), |own| format!("{own}\n\n{hover}"));
             let text = RichText::new(text).size(SMALL_LINE).color(style.faint());
             ui.add(egui::Label::new(text).extend()).on_hover_text(hover);
         };
@@ -67,7 +70,7 @@ fn beside_ui(ui: &mut Ui, session: &Session, style: &Style, settling: Option<Str
             line(short, &long);
         }
         if let Some(settling) = settling {
-            line(settling, "How far the motion has settled since your last change");
+            line(settling, "Periods gone since your last change.");
         }
     });
 }

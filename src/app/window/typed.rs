@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Key, RichText, TextEdit, Ui};
 
-use crate::app::widgets::dialog;
+use crate::app::widgets::{dialog, dialog_width};
 
 use super::files::Wanted;
 
@@ -56,7 +56,7 @@ impl Typed {
     /// Draws the question; the answer once there is one.
     pub fn ui(&mut self, ui: &Ui) -> Option<Ended> {
         let answer = dialog(ui.ctx(), "path").show(ui.ctx(), |ui| {
-            ui.set_width(520.0_f32.min(ui.ctx().content_rect().width() - 60.0));
+            ui.set_width(dialog_width(ui, 520.0));
             ui.heading(self.wanted.question());
             ui.label("This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one).");
             ui.add_space(4.0);
@@ -70,6 +70,9 @@ impl Typed {
             let (taken, remark) = self.remark();
             ui.label(RichText::new(remark.unwrap_or(" ")).small());
             let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+            if entered && !taken {
+                field.request_focus();
+            }
             ui.horizontal(|ui| {
                 let done = ui.add_enabled(taken, egui::Button::new(self.wanted.verb())).clicked();
                 let cancelled = ui.button("Cancel").clicked();

@@ -109,7 +109,7 @@ pub fn text(scene: &Scene) -> String {
             _ => {}
         }
     }
-    let mut text = write(scene);
+    let mut text = write(scene).unwrap();
     records(&scene.excitation, &mut text);
     if let Some((path, table)) = table_text(&scene.mechanism) {
         text += &format!("\n# {path}\n{table}");

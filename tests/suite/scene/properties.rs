@@ -173,7 +173,7 @@ proptest! {
     #[test]
     fn any_scene_reads_back_as_written(scene in scene()) {
         reads_back(&scene);
-        let document = Document::from_text("s.ron", &write(&scene), Files::default()).unwrap();
+        let document = Document::from_text("s.ron", &write(&scene).unwrap(), Files::default()).unwrap();
         let places = Places::of(&document.text);
         for field in all_fields(&scene) {
             if FieldPath::new(&field).get(&scene).is_some() {

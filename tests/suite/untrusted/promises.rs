@@ -13,7 +13,7 @@ use interwell::dynamics::{Model, Outcome, Request};
 use interwell::mechanics::{BuildError, Mechanism, Table, fit, force_scale};
 use interwell::scene::{
     self, Document, Excitation, FieldPath, Files, LARGEST_AXIS, MOST_ROWS, Record, Start, arguments,
-    assignments, read_columns, write,
+    read_columns, write,
 };
 use interwell::study::{Grid, MAX_CELLS};
 
@@ -119,10 +119,10 @@ pub fn recorded(bytes: &[u8]) {
 pub fn set(bytes: &[u8]) {
     let Some((mut document, given)) = preset_and_arguments(bytes) else { return };
     for argument in given {
-        let before = write(&document.scene);
+        let before = write(&document.scene).unwrap();
         if let Err(error) = document.set(argument) {
             in_words(error, "--set ");
-            assert_eq!(write(&document.scene), before, "changed by a refused `{argument}`");
+            assert_eq!(write(&document.scene).unwrap(), before, "changed by a refused `{argument}`");
         } else if let Some((field, value)) = argument.split_once('=')
             && let (Some(own), Ok(value)) =
                 (FieldPath::new(field.trim()).get(&document.scene), value.trim().parse::<f64>())
@@ -220,13 +220,13 @@ fn in_words(message: impl Display, about: &str) {
 /// What was read is written as a text that reads as the same.
 #[track_caller]
 fn reads_back(own: &scene::Scene) {
-    let written = write(own);
+    let written = write(own).unwrap();
     let again = match Document::from_text("written", &written, Files::default()) {
         Ok(again) => again.scene,
         Err(error) => panic!("{error}\n{written}"),
     };
     // NaN is read, and refused by the check; it is unequal to itself.
-    assert_eq!(write(&again), written);
+    assert_eq!(write(&again).unwrap(), written);
     if *own == own.clone() {
         assert_eq!(again, *own, "{written}");
     }
@@ -235,14 +235,12 @@ fn reads_back(own: &scene::Scene) {
 /// The arguments that the program offers for a scene make it from another one.
 #[track_caller]
 fn can_be_set(own: &scene::Scene) {
-    for offered in [arguments, assignments] {
-        let mut made = Document::load("nominal-cubic").unwrap();
-        for argument in offered(&made.scene, own) {
-            made.set(&argument).unwrap_or_else(|error| panic!("{error}"));
-        }
-        let left = offered(&made.scene, own);
-        assert!(left.is_empty(), "{left:?}");
+    let mut made = Document::load("nominal-cubic").unwrap();
+    for argument in arguments(&made.scene, own) {
+        made.set(&argument).unwrap_or_else(|error| panic!("{error}"));
     }
+    let left = arguments(&made.scene, own);
+    assert!(left.is_empty(), "{left:?}");
 }
 
 /// Makes the mechanism of a checked document, and runs it.

@@ -8,7 +8,7 @@ mod steps;
 
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
-use super::{ViewContext, is_covered_ui};
+use super::ViewContext;
 
 /// Room in points from which both parts are shown.
 const BOTH: (f32, f32) = (760.0, 250.0);
@@ -37,9 +37,7 @@ impl Page {
 
 /// Draws it. Whether something changed.
 pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
-    if is_covered_ui(ui, context) {
-        return false;
-    }
+    ui.painter().rect_filled(ui.max_rect(), 0.0, context.style.ground());
     context.session.want_accuracy();
     let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
     if area.width() < 160.0 || area.height() < 100.0 {

@@ -13,7 +13,7 @@ use crate::app::style::Style;
 use crate::dynamics::{Regime, Summary};
 use crate::output::sweep_about;
 
-use super::{ViewContext, is_covered_ui};
+use super::ViewContext;
 use frame::Frame;
 use picture::{Picture, bar, lines};
 use quantity::{Scale, kind, kind_name};
@@ -23,9 +23,7 @@ pub use quantity::Quantity;
 /// Draws it. Whether something changed.
 pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let style = context.style;
-    if is_covered_ui(ui, context) {
-        return false;
-    }
+    ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
     let time = ui.input(|input| input.time);
     if context.session.want_map(time) {
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));

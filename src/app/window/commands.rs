@@ -1,0 +1,222 @@
+//! What menus, keys and buttons ask for, done.
+
+use std::path::PathBuf;
+
+use eframe::egui;
+
+use crate::app::export::{self, Runs};
+use crate::app::hint;
+use crate::app::layouts::{Arrangement, Room, Tiling};
+use crate::app::leave::Next;
+use crate::app::menu::{self, Command};
+use crate::app::player::{Goal, SPEEDS};
+use crate::app::transport::EVENT_AHEAD;
+use crate::app::views::{Memory, View};
+use crate::dynamics::EventKind;
+use crate::scene::Layout;
+
+use super::Window;
+use super::files::Wanted;
+
+/// How many periods of the motion an event is looked for.
+const PERIODS_AHEAD: f64 = 300.0;
+
+impl Window {
+    /// Whether something over the window waits for an answer: no key acts behind it.
+    pub(super) fn waits_for_answer(&self) -> bool {
+        self.message.is_some()
+            || self.asked.is_some()
+            || self.over_comments.is_some()
+            || self.typed.is_some()
+            || self.shortcuts
+    }
+
+    /// Does what the keyboard asks for. On the way to a goal every key gives it up, and does nothing else.
+    pub(super) fn keys(&mut self, ctx: &egui::Context) {
+        let is_pressed = |event: &egui::Event| matches!(event, egui::Event::Key { pressed: true, .. });
+        if self.session.player.goal().is_some() {
+            if ctx.input(|input| input.events.iter().any(is_pressed)) {
+                ctx.input_mut(|input| input.events.retain(|event| !is_pressed(event)));
+                self.session.player.give_up();
+            }
+            return;
+        }
+        for command in menu::keys(ctx, self.settings, self.filled.is_some()) {
+            self.carry_out(ctx, command);
+        }
+    }
+
+    /// Does what was asked for.
+    pub fn carry_out(&mut self, ctx: &egui::Context, command: Command) {
+        match command {
+            Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
+            Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
+            Command::Open => self.leave_for(ctx, Next::Choose),
+            Command::Save => match self.session.editor.path().map(PathBuf::from) {
+                Some(path) => self.save_to(ctx, &path),
+                None => self.choose(Wanted::Save),
+            },
+            Command::SaveAs => self.choose(Wanted::Save),
+            Command::SaveMotion => self.choose(Wanted::Csv),
+            Command::SaveRun => self.choose(Wanted::Run),
+            Command::SaveEvents => self.choose(Wanted::Events),
+            Command::SaveCurve => self.choose(Wanted::Curve),
+            Command::SavePicture => self.choose(Wanted::Picture),
+            Command::CopyScene => self.copy_scene(ctx),
+            Command::PasteScene => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
+            Command::CopyCommand => match export::command_line(&self.session) {
+                Some((line, runs)) => {
+                    ctx.copy_text(line);
+                    self.tell(match runs {
+                        Runs::Whole => "Copied: the command line of this motion, from its start",
+                        Runs::FromNow => "Copied: the command line of this motion, from its present state on",
+                        Runs::Another => {
+                            "Copied: the command line of the scene from its start. This motion was changed on \
+                             its way and is another"
+                        }
+                    });
+                }
+                None => self.say_nameless(),
+            },
+            Command::SaveMap => self.choose(Wanted::Map),
+            Command::CopyMapCommand => match self.session.map_command() {
+                Some(line) => {
+                    ctx.copy_text(line);
+                    self.tell("Copied: the command line of the map");
+                }
+                None if self.session.map.map().is_some() => self.say_nameless(),
+                None => {}
+            },
+            Command::Quit => self.leave_for(ctx, Next::Quit),
+            Command::Undo => {
+                self.session.undo();
+            }
+            Command::Redo => {
+                self.session.redo();
+            }
+            Command::BackToStart => {
+                self.session.back_to_start();
+                self.filled = None;
+                self.memory = Memory::default();
+                self.hint = hint::Hint::for_scene(&self.session);
+                self.arrange(self.tiling.room());
+            }
+            Command::PlayPause => {
+                let playing = self.session.player.is_playing();
+                self.session.player.set_playing(!playing);
+            }
+            Command::Step => self.session.player.step(),
+            Command::PreviousEvent => {
+                self.session.player.seek_event(false, EVENT_AHEAD);
+            }
+            Command::NextEvent => {
+                self.session.player.seek_event(true, EVENT_AHEAD);
+            }
+            Command::NextRelease => self.go_to_first(EventKind::Release),
+            Command::NextCrossing => self.go_to_first(EventKind::Crossing),
+            Command::RunToEnd => match self.session.end_of_run() {
+                end if end > self.session.player.time() => self.session.player.go_to(Goal::Time(end)),
+                end => self.tell(format!("The run ends at {end:.2} s, which is behind")),
+            },
+            Command::Speed(index) => {
+                if let Some(speed) = SPEEDS.get(index) {
+                    self.session.player.speed = speed.0;
+                }
+            }
+            Command::Arrange(layout) => {
+                self.arrangement = Arrangement::Layout(layout);
+                self.arrange(self.tiling.room());
+            }
+            Command::ArrangeOwn => {
+                // the first time it is what is there
+                if self.own.is_none() {
+                    self.own = self.tiling.kept().cloned();
+                }
+                self.arrangement = Arrangement::Own;
+                self.arrange(self.tiling.room());
+            }
+            Command::KeepOwn => {
+                self.own = self.tiling.kept().cloned().or(self.own.take());
+                self.arrangement = Arrangement::Own;
+            }
+            Command::Show(view, shown) => self.tiling.show(view, shown),
+            Command::NextTab => self.tiling.next_tab(self.memory.hovered),
+            // the view under the pointer
+            Command::Fill => {
+                let wanted = self.memory.hovered.unwrap_or(View::Well);
+                self.filled = if self.filled.is_some() { None } else { Some(wanted) };
+            }
+            Command::Cover => self.covered = !self.covered,
+            Command::FullScreen => {
+                let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
+                ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!full));
+            }
+            Command::Set(settings) => self.settings = settings,
+            Command::Grab => self.memory.grab = true,
+            Command::Ways => self.ways = !self.ways,
+            Command::Notes => self.message = Some(self.notes()),
+            Command::Shortcuts => self.shortcuts = true,
+            Command::About => self.message = Some(about()),
+        }
+    }
+
+    /// Goes on to the first event of a kind, as far ahead as the run is long, and some periods at least.
+    fn go_to_first(&mut self, kind: EventKind) {
+        let model = self.session.model();
+        let (name, can_be) = match kind {
+            EventKind::Crossing => ("crossing", model.mechanism.landscape.barrier.is_some()),
+            _ => ("release", model.stop_positions() != (None, None)),
+        };
+        if !can_be {
+            let why = if name == "crossing" { "there is no barrier" } else { "there are no stops" };
+            return self.tell(format!("No {name} can come: {why}"));
+        }
+        let ahead = model.duration.max(PERIODS_AHEAD * model.pace());
+        let until = self.session.player.watch().time() + ahead;
+        self.session.player.go_to(Goal::First(kind, until));
+    }
+
+    /// The notes of the scene as a message.
+    fn notes(&self) -> (String, String) {
+        let scene = self.session.scene();
+        let notes = scene.notes.trim();
+        let notes = if notes.is_empty() { "This scene has no notes." } else { notes };
+        (scene.title.clone(), notes.to_owned())
+    }
+
+    fn say_nameless(&mut self) {
+        self.say(
+            "There is no command line yet",
+            "A pasted scene has no name that the command line could open: save it first.".to_owned(),
+        );
+    }
+
+    pub(super) fn copy_scene(&mut self, ctx: &egui::Context) {
+        match self.session.editor.text() {
+            Ok(text) => {
+                ctx.copy_text(text);
+                self.tell("Copied: the scene as text");
+            }
+            Err(error) => self.say("The scene was not copied", error),
+        }
+    }
+
+    /// Puts the views where the arrangement has them.
+    pub(super) fn arrange(&mut self, room: Room) {
+        self.filled = None;
+        self.tiling = match (self.arrangement, &self.own) {
+            (Arrangement::Own, Some(own)) => Tiling::own(own, room),
+            (Arrangement::Own, None) => Tiling::new(Layout::Look, room),
+            (Arrangement::Layout(layout), _) => Tiling::new(layout, room),
+        };
+    }
+}
+
+fn about() -> (String, String) {
+    let text = format!(
+        "Version {}. Bistable mechanisms with travel limits: what they do when they are shaken.\n\n\
+         Every number comes from a run of the integrator; the motion on the screen is such a run, continued.",
+        env!("CARGO_PKG_VERSION")
+    );
+    ("interwell".to_owned(), text)
+}

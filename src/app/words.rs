@@ -1,0 +1,114 @@
+//! Words of the window that need a sentence, and that sentence: what a label says under the pointer.
+
+/// Words in small letters, and what they mean.
+const MEANINGS: [(&str, &str); 19] = [
+    (
+        "bulge",
+        "How far the buckled flexure bows sideways between its two ends. It is largest with the mass in \
+         the middle and shrinks towards the wells.",
+    ),
+    (
+        "taut",
+        "The buckled flexure is pulled straight: it has no bow left to give, and the force rises steeply \
+         from here on.",
+    ),
+    ("sideways", "How many times more the drawing is stretched across the flexures than along them."),
+    ("true scale", "Lengths along and across the flexures are drawn alike."),
+    (
+        "schematic",
+        "Places along x are true; the shape of the flexures is only a sketch, as the scene gives no \
+         flexures.",
+    ),
+    (
+        "push",
+        "The force that the mass feels because the base accelerates, as in a bus that brakes; in \
+         multiples of its weight.",
+    ),
+    ("base", "How far the base itself swings, at a scale of its own."),
+    (
+        "reach",
+        "The largest distance from the middle that the mass gets to once its motion has settled, to \
+         either side.",
+    ),
+    (
+        "crosses from",
+        "The least shaking at this frequency whose settled motion, begun at rest, crosses the barrier.",
+    ),
+    (
+        "release",
+        "The push, for a moment, is larger than what the mechanism presses the mass on its stop with: the \
+         mass comes off.",
+    ),
+    ("impact", "The mass strikes a stop and rebounds; what it loses of its speed goes into the stop."),
+    ("crossing", "The mass passes the top of the barrier between the two wells, in either direction."),
+    ("intrawell", "It stays on its side: the push never carries it over the barrier."),
+    (
+        "interwell",
+        "It crosses from well to well, and its crossings repeat after one or a few periods of the shaking.",
+    ),
+    (
+        "irregular",
+        "It crosses, and its crossings did not repeat while it was watched: chaos, or a motion that had \
+         not settled yet.",
+    ),
+    ("hopping", "It leaves its stop and falls back on the same one, without crossing."),
+    (
+        "rms velocity",
+        "The root of the mean square of the velocity relative to the base, of the settled motion. The \
+         mean power that damping takes grows with its square.",
+    ),
+    (
+        "settling",
+        "After a change the motion needs some periods until it repeats; what the window says is about the \
+         time after that.",
+    ),
+    (
+        "chaotic",
+        "Two motions that begin almost alike part quickly, so that rounding errors grow too: a single \
+         path is right only up to some time, while averages hold for longer.",
+    ),
+];
+
+/// What a label means, by its first words: whatever follows, such as a number, does not count.
+pub fn meaning(label: &str) -> Option<&'static str> {
+    let label = label.to_lowercase();
+    let begins = |word: &str| {
+        label.strip_prefix(word).is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric()))
+    };
+    MEANINGS.iter().find(|(word, _)| begins(word)).map(|own| own.1)
+}
+
+/// A label's response that shows what its words mean.
+pub fn explained(response: eframe::egui::Response, label: &str) -> eframe::egui::Response {
+    match meaning(label) {
+        Some(text) => response.on_hover_text(text),
+        None => response,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_are_known_by_their_first_words() {
+        let all = [
+            "bulge 5.2 mm",
+            "taut: no bulge left",
+            "sideways 16×",
+            "reach",
+            "crosses from",
+            "Release",
+            "Intrawell: stays in the right-hand well",
+            "interwell",
+            "RMS velocity",
+            "settling: 2 of 5 periods",
+            "Chaotic: trust it up to about 4.0 s",
+        ];
+        for label in all {
+            let text = meaning(label).unwrap_or_else(|| panic!("{label}"));
+            assert!(text.ends_with('.') && text.matches(". ").count() <= 1, "{text}");
+        }
+        assert_eq!((meaning("basement"), meaning("")), (None, None));
+    }
+}

@@ -1,0 +1,46 @@
+//! The scene whose run from its own start is a motion that is under way.
+
+use crate::dynamics::Model;
+use crate::scene::{Excitation, Scene, Start};
+
+/// `scene` with the start and the phases of `here`, the model of a motion that goes on from its present state
+/// ([`Watch::from_here`](super::Watch::from_here)). None where no scene says that: a noise begins as its seed
+/// says, and a compliant stop that is pressed in is no start.
+pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
+    let (x, v) = here.start;
+    if !here.drive.noises.is_empty() || here.compliant.is_some() && here.pressed_depth(x).is_some() {
+        return None;
+    }
+    let mut scene = scene.clone();
+    scene.start = Start::At { x_mm: millimetres(x), v_m_per_s: v };
+    let mut turns = here.drive.tones.iter().map(|tone| {
+        let half = if tone.amplitude < 0.0 { 0.5 } else { 0.0 };
+        (tone.phase + if tone.quarter { 0.25 } else { 0.0 }, half)
+    });
+    put_phases(&mut scene.excitation, &mut turns).then_some(scene)
+}
+
+/// Gives every sine of an excitation its phase, from turns and what the sign of its amplitude adds; false
+/// where it has another part that has one.
+fn put_phases(excitation: &mut Excitation, turns: &mut impl Iterator<Item = (f64, f64)>) -> bool {
+    match excitation {
+        Excitation::None | Excitation::Constant { .. } => true,
+        Excitation::Sine { amplitude_g, phase_deg, .. } => {
+            let Some((turn, half)) = turns.next() else { return false };
+            let half = if *amplitude_g < 0.0 { 0.5 - half } else { half };
+            *phase_deg = 360.0 * (turn + half);
+            true
+        }
+        Excitation::Sum(terms) => terms.iter_mut().all(|term| put_phases(term, turns)),
+        Excitation::AmplitudeRamp { .. }
+        | Excitation::Chirp { .. }
+        | Excitation::Noise { .. }
+        | Excitation::Recorded { .. } => false,
+    }
+}
+
+/// The number of millimetres that is read back as `x` in m, where there is one.
+fn millimetres(x: f64) -> f64 {
+    let mm = x * 1e3;
+    [mm, mm.next_up(), mm.next_down()].into_iter().find(|mm| mm / 1e3 == x).unwrap_or(mm)
+}
