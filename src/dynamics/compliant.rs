@@ -109,6 +109,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.depth = Depth { root: T::zero(), turned: false };
         self.contact = Contact::Pressing(end);
         self.touch = None;
+        self.work.add_impacts(1);
         self.record.touch(&self.at, side(end), self.v, true);
     }
 
@@ -150,7 +151,6 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
         }
         self.steps += 1;
-        self.contact_steps += 1;
         let displacement = path.scaled(whole);
         let bound = displacement[1..path.known()].iter().fold(T::zero(), |sum, c| sum + c.abs());
         let view = StepView {
@@ -234,6 +234,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         };
         self.drive.seed(&self.clock, &self.at, self.segment, path.seeded(), &mut self.roll);
         self.evaluations += 1;
+        self.work.add(self.costs.contact);
         let mut levels = FEWEST_LEVELS.min(D::ZERO_FROM);
         path.expand(&entry, order, levels, &arena.force, damping);
         // As far as the speed of the step's start would bring it in the longest time.
@@ -258,6 +259,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 let neglected = path.neglected_drive(self.drive, &mut self.roll, duration);
                 if neglected > T::of(self.settings.tolerance) * speed {
                     // A drive as fast as the contact: all its terms.
+                    self.work.add(self.costs.contact);
                     levels = order;
                     path.extend_drive(levels, self.drive, &mut self.roll);
                     path.expand(&entry, order, levels, &arena.force, damping);
@@ -281,6 +283,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             if residual.error.abs() * length <= allowed || residual.error.abs() <= rounding {
                 return Some(Step { whole, length, duration, reached, arrival });
             }
+            self.work.add(self.costs.check);
             whole = length * T::of(0.5);
         }
         None

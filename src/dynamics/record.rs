@@ -31,6 +31,8 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) covered: CompensatedSum<T>,
     pub(super) work_moved: f64,
     pub(super) peak_kinetic: f64,
+    /// Lowest and highest displacement at the ends of steps over the whole run, where there is a ledger.
+    pub(super) places: (f64, f64),
     pub(super) barrier: Option<T>,
     /// -1, 0 (on it since the start) or 1.
     pub(super) barrier_side: i8,
@@ -83,6 +85,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             covered: CompensatedSum::new(),
             work_moved: 0.0,
             peak_kinetic: 0.5 * (start.1 * start.1).to_f64(),
+            places: (start.0.to_f64(), start.0.to_f64()),
             barrier,
             barrier_side: side,
             log_of_crossings: CrossingLog::new(periods),
@@ -131,6 +134,8 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             self.whole.work.add(-av);
             self.work_moved += av.to_f64().abs();
             self.peak_kinetic = self.peak_kinetic.max(0.5 * (step.v * step.v).to_f64());
+            let x = step.x.to_f64();
+            self.places = (self.places.0.min(x), self.places.1.max(x));
             if full {
                 self.settled.squared_velocity.add(squared);
                 self.settled.work.add(-av);

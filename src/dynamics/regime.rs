@@ -15,7 +15,7 @@ const STATE_MATCH: f64 = 1e-3;
 
 /// Most crossings and stroboscopic states that are kept to tell the regime; a window of more is judged by
 /// its first ones.
-const KEPT: usize = 1 << 16;
+pub(super) const KEPT: usize = 1 << 16;
 
 /// The state at a whole number of forcing periods after the window's start. SI.
 #[derive(Debug, Clone, Copy)]

@@ -1,7 +1,7 @@
 //! Relative to what are errors small? One length, one speed, one time for a scene.
 //!
-//! The rule, from mechanism, drive and start alone, never from the stops (a stop that is never reached must
-//! not change a bit) and covariant under a change of units:
+//! The rule, covariant under a change of units; from mechanism, drive and start alone, since a stop that is never reached
+//! must not change a bit:
 //!
 //! - rate w: the square root of the largest stiffness magnitude over mass among the wells' inner sides and
 //!   the barrier (one well: at it; none: at the start); without stiffness the drive's fastest tone;
@@ -14,6 +14,10 @@
 //!   the drive of amplitude over w and the larger of w and the part's own rate (a fast part moves the mass that
 //!   far, by its first kick);
 //! - speed L w, time 1/w.
+//!
+//! Two stops that leave the mass less than a hundredth of L bound it more than all that: the mass is soon at one of them,
+//! or it rests. L then falls with that room, and is the room itself where it is a ten-thousandth of L; w rises to the rate
+//! at which drive and start speed move the mass as far.
 
 /// Length in m, speed in m/s, time in s; all above 0 and finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +34,9 @@ pub struct Scales {
 
 /// The longest step in units of the time scale.
 const LONGEST_STEP: f64 = 8.0;
+
+/// How many times as large as the room between the stops the length is at most.
+const FAR: f64 = 100.0;
 
 /// What the rule looks at. All SI, magnitudes.
 #[derive(Debug, Clone, Default)]
@@ -48,6 +55,8 @@ pub(crate) struct Landmarks {
     pub drive: Vec<(f64, f64)>,
     /// Duration of the run in s.
     pub duration: f64,
+    /// Half of what two stops leave the mass, m; none where a side is open.
+    pub room: Option<f64>,
 }
 
 impl Scales {
@@ -81,6 +90,18 @@ impl Scales {
         let length = if usable(length) { length } else { 1.0 };
         let rate = if usable(rate) { rate } else { 1.0 };
         let longest_step = if rated { LONGEST_STEP / rate } else { l.duration };
+        let (length, rate) = match l.room.filter(|room| usable(*room) && length > FAR * room) {
+            None => (length, rate),
+            Some(room) => {
+                let within = room.max(FAR * room * (FAR * room / length));
+                let driven: f64 = match rated {
+                    true => l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum(),
+                    false => acceleration / (rate * rate),
+                };
+                let faster = (driven / within).sqrt().max(l.start_speed / rate / within);
+                (within, rate * faster.max(1.0))
+            }
+        };
         Self { length, speed: length * rate, time: 1.0 / rate, longest_step }
     }
 
@@ -104,6 +125,7 @@ mod tests {
             start_acceleration: 12.0,
             drive: vec![(9.8, 18.8), (0.5, 0.0)],
             duration: 10.0,
+            room: None,
         };
         let (l, t) = (1e6, 1e-7);
         let scaled = Landmarks {
@@ -114,8 +136,9 @@ mod tests {
             start_acceleration: base.start_acceleration * l / (t * t),
             drive: base.drive.iter().map(|(a, w)| (a * l / (t * t), w / t)).collect(),
             duration: base.duration * t,
+            room: None,
         };
-        for drop in 0..16 {
+        for drop in 0..32 {
             let thin = |mut m: Landmarks| {
                 if drop & 1 > 0 {
                     m.stiffness_over_mass = 0.0;
@@ -133,7 +156,10 @@ mod tests {
                 }
                 m
             };
-            let (a, b) = (Scales::new(&thin(base.clone())), Scales::new(&thin(scaled.clone())));
+            let tight =
+                |m: Landmarks, unit: f64| Landmarks { room: (drop & 16 > 0).then_some(1e-5 * unit), ..m };
+            let (a, b) = (tight(thin(base.clone()), 1.0), tight(thin(scaled.clone()), l));
+            let (a, b) = (Scales::new(&a), Scales::new(&b));
             assert!(a.length > 0.0 && a.speed.is_finite() && a.time > 0.0, "{drop} {a:?}");
             if a.length != 1.0 {
                 assert!((b.length / a.length / l - 1.0).abs() < 1e-12, "{drop}");

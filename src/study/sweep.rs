@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use super::Task;
 use super::grid::Grid;
 use super::table::{Table, Values};
-use crate::dynamics::{Model, Outcome, Summary};
+use crate::dynamics::{Model, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
 
@@ -95,7 +95,7 @@ pub struct Tally {
 
 impl Tally {
     fn count(&mut self, cell: &Cell) {
-        self.ended_early += u64::from(cell.summary.is_some_and(|row| row.outcome != Outcome::Done));
+        self.ended_early += u64::from(cell.summary.is_some_and(|row| row.outcome.ended_at().is_some()));
         self.not_converged += u64::from(cell.outcome == NOT_CONVERGED);
         self.yielding += u64::from(cell.summary.is_some_and(|row| row.contact_yields));
         *self.outcomes.entry(cell.outcome).or_default() += 1;
