@@ -66,6 +66,7 @@ fn rounding(model: &Model, Reach { low, high, .. }: Reach, steps: u64) -> f64 {
     let curve = &model.mechanism.curve;
     let largest = |of: &dyn Fn(f64) -> f64| of(low).abs().max(of(high).abs());
     let terms = largest(&|x| curve.stiffness(x) * x) * (high - low) + largest(&|x| curve.force(x) * x);
-    let many = (steps as f64 / MANY_STEPS).max(1.0);
+    // They err to either side.
+    let many = (steps as f64 / MANY_STEPS).max(1.0).sqrt();
     PLACES * f64::EPSILON * terms * many
 }

@@ -32,6 +32,11 @@ const NUDGE: f64 = 1.0;
 /// that, and errors of the scene's size would be all that is seen of it. Far below, they are not seen at all.
 const LEAST_SPEED: f64 = 1e-4;
 
+/// The tolerance of a step in contact relative to that of free flight. A contact takes a dozen steps, which all err to one
+/// side, and an elastic mass makes thousands of contacts: its energy then drifts by thousandths of the tolerance in each.
+/// It costs one step in ten.
+const CONTACT_SHARE: f64 = 0.1;
+
 /// Where a step of contact ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Reached {
@@ -244,10 +249,11 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let stored = self.equation.compliant?.stored(entry.root);
         let energetic = (entry.speed * entry.speed + stored + stored).sqrt();
         let speed = self.settings.speed.smaller(energetic.larger(self.settings.speed * T::of(LEAST_SPEED)));
-        let settings = (fast_log2(speed.to_f64()), self.settings.tolerance_log2);
+        let tolerance = self.settings.tolerance * CONTACT_SHARE;
+        let settings = (fast_log2(speed.to_f64()), self.settings.tolerance_log2 + CONTACT_SHARE.log2());
         let mut whole = T::of(path.natural_step(settings.0, settings.1, cap));
         let border = self.drive.segment_end(self.segment);
-        let allowed = T::of(RESIDUAL * order as f64 * self.settings.tolerance) * speed;
+        let allowed = T::of(RESIDUAL * order as f64 * tolerance) * speed;
         for _ in 0..MOST_HALVINGS {
             if !(whole > T::zero()) {
                 return None;
@@ -257,7 +263,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             let mut duration = path.time(length);
             if levels < D::ZERO_FROM && levels < order {
                 let neglected = path.neglected_drive(self.drive, &mut self.roll, duration);
-                if neglected > T::of(self.settings.tolerance) * speed {
+                if neglected > T::of(tolerance) * speed {
                     // A drive as fast as the contact: all its terms.
                     self.work.add(self.costs.contact);
                     levels = order;

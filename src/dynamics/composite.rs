@@ -278,6 +278,13 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         self.common_cycles.unwrap_or(1)
     }
 
+    /// As the first coefficient, in the same order of sums.
+    fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
+        let tones = self.tones.iter().map(|tone| tone.amplitude_at(clock, at, segment).0 * tone.unit(at).0);
+        let chirps = self.chirps.iter().map(|chirp| chirp.amplitude * chirp.state(clock, at, segment).0);
+        tones.chain(chirps).fold(self.constant, |sum, a| sum + a) + self.record(clock, at, segment).0
+    }
+
     fn cost(&self, order: usize) -> u64 {
         let (tones, chirps) = (self.tones.len() as u64, self.chirps.len() as u64);
         let order = order as u64;

@@ -46,6 +46,13 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
         roll: &mut Self::Rolling,
     );
 
+    /// a(t) at `at`.
+    fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
+        let mut a = [T::zero(); ROOM];
+        self.seed(clock, at, segment, &mut a, &mut Self::Rolling::default());
+        a[0]
+    }
+
     /// a(t) at `at` by itself, not by the series: what a step is checked against. A drive of many tones may
     /// answer with `by_series`, the value of its series.
     fn value(

@@ -181,13 +181,16 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let x = T::of(model.start.0);
         let v = T::of(model.start.1 * unit);
         let settings = Settings::new(model, unit, tolerance);
+        let costs = Costs::new(settings.order, equation.most_products(), drive);
+        let mut record = Recorder::new(model, clock, unit, settings.order, request, (x, v));
+        record.samples_per_look = costs.samples_per_look();
         Self {
             equation,
             drive,
             clock,
-            record: Recorder::new(model, clock, unit, settings.order, request, (x, v)),
+            record,
             work: Work::new(request.cancel),
-            costs: Costs::new(settings.order, equation.most_products(), drive),
+            costs,
             settings,
             series: Series::new(equation.most_products()),
             roll: D::Rolling::default(),
@@ -258,7 +261,8 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         }
         let left = self.clock.between(&self.at, &self.end);
         if !(left > T::zero()) {
-            return Err(Outcome::Done);
+            let at = self.clock.seconds(&self.at);
+            return Err(if self.record.cut_short { Outcome::Cancelled { at } } else { Outcome::Done });
         }
         self.mark();
         Ok(left)

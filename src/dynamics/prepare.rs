@@ -8,7 +8,6 @@ use super::equation::Equation;
 use super::model::{Model, Request};
 use super::motion::Motion;
 use super::result::Run;
-use super::series::ROOM;
 use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
 use crate::numeric::{Ratio, Scalar};
 use crate::scene::Record;
@@ -48,9 +47,7 @@ pub(super) fn base_at<T: Scalar, D: Drive<T>>(
     at: &Instant<T>,
     unit: f64,
 ) -> f64 {
-    let mut a = [T::zero(); ROOM];
-    drive.seed(clock, at, segment, &mut a, &mut D::Rolling::default());
-    a[0].to_f64() / (unit * unit)
+    drive.acceleration(clock, at, segment).to_f64() / (unit * unit)
 }
 
 /// The three forms of a drive.

@@ -1,5 +1,7 @@
 //! What of a run is kept: samples, events, statistics, ledger. Nothing here acts on the motion.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::clock::{Clock, Instant};
 use super::glide::Glide;
 use super::model::{Model, Request};
@@ -19,6 +21,12 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) unit: f64,
     pub(super) times: &'a [f64],
     pub(super) next_time: usize,
+    pub(super) cancel: Option<&'a AtomicBool>,
+    /// Samples between two looks at that, and since the last.
+    pub(super) samples_per_look: u64,
+    samples_since_look: u64,
+    /// Samples were left out since the run is told to stop.
+    pub(super) cut_short: bool,
     pub(super) samples: Vec<Sample>,
     pub(super) events: Option<Vec<Event>>,
     pub(super) window: (Instant<T>, Instant<T>),
@@ -74,6 +82,10 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             unit,
             times: request.sample_times,
             next_time: 0,
+            cancel: request.cancel,
+            samples_per_look: 1,
+            samples_since_look: 0,
+            cut_short: false,
             samples,
             events: request.events.then(Vec::new),
             window: (from, to),
@@ -170,7 +182,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         }
         if self.next_time < self.times.len() {
             let end = self.clock.seconds(&self.clock.advance(&step.at, step.duration));
-            while let Some(t) = self.times.get(self.next_time).copied().filter(|t| *t < end) {
+            while let Some(t) = self.next_sample(end) {
                 let instant = self.clock.at(t);
                 let into = self.clock.between(&step.at, &instant).larger(T::zero()).smaller(step.duration);
                 let into = step.path.parameter(into, step.length);
@@ -184,6 +196,22 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
                 self.next_time += 1;
             }
         }
+    }
+
+    /// The time in s of the next sample, where it comes before `end`. A single step, or a rest, may hold all that there are,
+    /// each with the sum of a drive's tones: once the run is told to stop there are no more.
+    fn next_sample(&mut self, end: f64) -> Option<f64> {
+        let next = self.times.get(self.next_time).copied().filter(|t| *t < end)?;
+        self.samples_since_look += 1;
+        if self.samples_since_look >= self.samples_per_look {
+            self.samples_since_look = 0;
+            if self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+                self.times = &self.times[..self.next_time];
+                self.cut_short = true;
+                return None;
+            }
+        }
+        Some(next)
     }
 
     fn extremes<P: Path<T>>(&mut self, step: &StepView<T, P>, from: T, to: T, full: bool) {
@@ -343,7 +371,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         }
         if self.next_time < self.times.len() {
             let (begin, end) = (self.clock.seconds(at), self.clock.seconds(until));
-            while let Some(t) = self.times.get(self.next_time).copied().filter(|t| *t < end) {
+            while let Some(t) = self.next_sample(end) {
                 let base_accel = base(&self.clock.at(t));
                 let v = if t <= begin { v.to_f64() / self.unit } else { 0.0 };
                 self.samples.push(Sample { t, x: x.to_f64(), v, base_accel, phase });

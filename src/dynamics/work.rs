@@ -21,6 +21,9 @@ pub(super) const IMPACT_BUDGET: u64 = 2_000_000;
 /// Units between two looks at the cancel flag: 200 steps of a simple scene, some tenths of a millisecond.
 const LOOK: u64 = 10_000;
 
+/// A sample, beside the sum of the drive's parts.
+const SAMPLE: u64 = 10;
+
 /// An arrival at a surface, whose instant is a root of the step's polynomial.
 pub(super) const ARRIVAL: u64 = 50;
 
@@ -36,6 +39,8 @@ pub(super) struct Costs {
     pub check: u64,
     /// An expansion in contact with a compliant stop.
     pub contact: u64,
+    /// A sample of the motion and the base.
+    sample: u64,
 }
 
 impl Costs {
@@ -44,7 +49,17 @@ impl Costs {
         let (order, products) = (order as u64, products as u64);
         let own = drive.cost(order as usize);
         let step = 20 + order * order * (2 + 2 * products) / 80 + own;
-        Self { step, check: 5 + products + own / 2, contact: step + 90 + order * order / 3 }
+        Self {
+            step,
+            check: 5 + products + own / 2,
+            contact: step + 120 + order * order / 3,
+            sample: SAMPLE + own,
+        }
+    }
+
+    /// Samples between two looks at the cancel flag.
+    pub fn samples_per_look(&self) -> u64 {
+        (LOOK / self.sample).max(1)
     }
 }
 
@@ -110,5 +125,63 @@ impl<'a> Work<'a> {
     /// Whether the run is told to stop; looks at the flag.
     pub fn is_cancelled(&self) -> bool {
         self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::composite::Composite;
+    use super::super::drive::Still;
+    use super::*;
+
+    #[test]
+    fn a_simple_scene_may_take_twenty_million_steps_at_any_tolerance() {
+        for order in 8..=23 {
+            let costs = Costs::new::<f64, _>(order, 1, &Still { acceleration: 0.0 });
+            assert!(WORK_BUDGET / costs.step >= 20_000_000, "{order} {costs:?}");
+        }
+        const { assert!(IMPACT_BUDGET >= 2_000_000) };
+    }
+
+    #[test]
+    fn looks_are_as_much_work_apart_whatever_a_piece_costs() {
+        let told = AtomicBool::new(true);
+        for cost in [1, 30, 9_999, 10_000, 3_000_000] {
+            let mut work = Work::new(Some(&told));
+            let mut pieces = 0;
+            while !work.is_told_to_stop() {
+                work.add(cost);
+                pieces += 1;
+            }
+            assert_eq!(pieces, LOOK.div_ceil(cost));
+            assert!(work.pieces_until_look(cost) <= pieces.max(1));
+        }
+    }
+
+    #[test]
+    fn every_part_of_a_drive_costs_its_share() {
+        let drive = |lines: usize| {
+            let tone = super::super::tone::Tone {
+                amplitude: 1.0,
+                frequency: 1.0,
+                ratio: super::super::tone::TurnsPerCycle::Rounded(1.0),
+                phase: 0.0,
+                quarter: false,
+                ramp: None,
+            };
+            Composite {
+                constant: 0.0,
+                tones: vec![tone; lines],
+                chirps: vec![],
+                records: vec![],
+                segment_ends: vec![],
+                common_cycles: None,
+                reach: 1.0,
+                fastest: 1.0,
+            }
+        };
+        let step = |lines| Costs::new(16, 1, &drive(lines)).step;
+        assert!(step(4096) > 500 * step(1) && step(64) > 5 * step(1));
+        assert_eq!(Costs::new(16, 1, &drive(4096)).samples_per_look(), 1);
     }
 }
