@@ -18,7 +18,7 @@ use super::path::StepView;
 use super::penetration::{Entry, FEWEST_LEVELS, Penetration};
 use super::prepare::base_at;
 use super::result::Outcome;
-use super::series::fast_log2;
+use super::series::{MAX_ORDER, fast_log2};
 use super::settings::{RESIDUAL, ROUNDINGS};
 use crate::numeric::{PolynomialRoots, Scalar};
 
@@ -36,6 +36,9 @@ const LEAST_SPEED: f64 = 1e-4;
 /// side, and an elastic mass makes thousands of contacts: its energy then drifts by thousandths of the tolerance in each.
 /// It costs one step in ten.
 const CONTACT_SHARE: f64 = 0.1;
+
+/// What the order of a contact's series is above that of free flight, for that.
+const CONTACT_ORDERS: usize = 2;
 
 /// Where a step of contact ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -228,7 +231,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     fn choose_contact_step(&mut self, end: End, left: T, path: &mut Penetration<T>) -> Option<Step<T>> {
         let arena = &self.equation.arenas[self.arena];
         let damping = self.equation.damping;
-        let order = self.settings.order;
+        let order = (self.settings.order + CONTACT_ORDERS).min(MAX_ORDER);
         let sign = end.sign::<T>();
         let entry = Entry {
             root: self.depth.root,

@@ -28,14 +28,16 @@ pub struct Scales {
     pub speed: f64,
     /// Time in s.
     pub time: f64,
-    /// The longest step of the integrator in s: some radians of the rate; where nothing sets a rate, the run.
-    pub(crate) longest_step: f64,
+    /// The longest step of the integrator in s, at a high order and at a low one: some radians of the rate; where nothing
+    /// sets a rate, the run.
+    pub(crate) longest_step: (f64, f64),
 }
 
-/// The longest step in units of the time scale. Only motions far smaller than the length would let a step be longer, since
-/// the tolerance is relative to that; the series of an oscillation holds to its own size up to here (at order 16 to 4e-7,
-/// the term neglected being 3^17/17!), and small motions are as true as others for it.
-const LONGEST_STEP: f64 = 3.0;
+/// The longest step in units of the time scale. Only a motion far smaller than the length would let a step be longer, since
+/// the tolerance is relative to that. At high orders what is lost then is rounding; at lower ones a step is short enough for
+/// the series of an oscillation to hold to its own size (at order 16 to 3^17/17! = 4e-7), so that small motions are as true
+/// as others, and no noise of the size of the tolerance.
+const LONGEST_STEP: (f64, f64) = (8.0, 3.0);
 
 /// How many times as large as the room between the stops the length is at most.
 const FAR: f64 = 100.0;
@@ -89,10 +91,12 @@ impl Scales {
         } else {
             (l.start_distance, 1.0 / l.duration)
         };
+        let room = l.room.filter(|room| usable(*room) && usable(length) && length > FAR * room);
         let length = if usable(length) { length } else { 1.0 };
         let rate = if usable(rate) { rate } else { 1.0 };
-        let longest_step = if rated { LONGEST_STEP / rate } else { l.duration };
-        let (length, rate) = match l.room.filter(|room| usable(*room) && length > FAR * room) {
+        let longest = |radians: f64| if rated { radians * (1.0 / rate) } else { l.duration };
+        let longest_step = (longest(LONGEST_STEP.0), longest(LONGEST_STEP.1));
+        let (length, rate) = match room {
             None => (length, rate),
             Some(room) => {
                 let within = room.max(FAR * room * (FAR * room / length));

@@ -5,8 +5,8 @@
 //! number of threads.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
@@ -25,7 +25,7 @@ pub struct Sweep {
     base: Scene,
     files: Files,
     grid: Grid,
-    mechanisms: Vec<OnceLock<Built>>,
+    mechanisms: Vec<Mutex<Option<Built>>>,
     /// Mechanisms built so far.
     built: AtomicU64,
 }
@@ -130,7 +130,7 @@ impl Sweep {
         // What no cell needs is not copied for each.
         let base = Scene { notes: String::new(), sweep: Vec::new(), app: None, ..base.clone() };
         let kept = Some(grid.mechanisms()).filter(|n| *n <= KEPT_MECHANISMS).unwrap_or(0);
-        let mechanisms = (0..kept).map(|_| OnceLock::new()).collect();
+        let mechanisms = (0..kept).map(|_| Mutex::new(None)).collect();
         Self { base, files: files.clone(), grid, mechanisms, built: AtomicU64::new(0) }
     }
 
@@ -149,7 +149,9 @@ impl Sweep {
     pub fn first_mechanism(&self) -> Result<Arc<Mechanism>, BuildError> {
         let mut scene = self.base.clone();
         self.grid.apply(0, &mut scene);
-        self.mechanism(0, &scene)
+        let never = AtomicBool::new(false);
+        let built = self.mechanism(0, &scene, &never);
+        built.unwrap_or_else(|| Mechanism::build(&scene.mechanism, &self.files).map(Arc::new))
     }
 
     /// Builds every cell without running it; the first one that is wrong, with all its faults. A mechanism that is
@@ -159,7 +161,7 @@ impl Sweep {
             if task.is_cancelled() {
                 return None;
             }
-            match self.model(index, scene)? {
+            match self.model(index, scene, task)? {
                 Ok(_) => None,
                 Err(faults) => Some(CellFaults { cell: self.grid.describe(index), faults }),
             }
@@ -246,7 +248,7 @@ impl Sweep {
             if task.is_cancelled() {
                 return rows;
             }
-            match self.model(*index, scene) {
+            match self.model(*index, scene, task) {
                 Some(Ok(model)) => {
                     models.push(model);
                     places.push(place);
@@ -262,25 +264,29 @@ impl Sweep {
         rows
     }
 
-    /// The model of a cell, or its faults; none where its mechanism was not solved.
-    fn model(&self, index: u64, scene: &mut Scene) -> Option<Result<Model, Vec<Fault>>> {
+    /// The model of a cell, or its faults; none where its mechanism was not solved, or the task was cancelled meanwhile.
+    fn model(&self, index: u64, scene: &mut Scene, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
         self.grid.apply(index, scene);
-        match self.mechanism(index, scene) {
+        match self.mechanism(index, scene, task.cancel)? {
             Ok(mechanism) => Some(Model::build(scene, mechanism)),
             Err(BuildError::Wrong(fault)) => Some(Err(vec![fault])),
             Err(BuildError::Unsolved(_)) => None,
         }
     }
 
-    fn mechanism(&self, index: u64, scene: &Scene) -> Built {
+    /// The mechanism of a cell; none where it was cancelled before it was built.
+    fn mechanism(&self, index: u64, scene: &Scene, cancel: &AtomicBool) -> Option<Built> {
         let build = || {
+            let built = Mechanism::build_unless(&scene.mechanism, &self.files, cancel)?;
             self.built.fetch_add(1, Ordering::Relaxed);
-            Mechanism::build(&scene.mechanism, &self.files).map(Arc::new)
+            Some(built.map(Arc::new))
         };
-        match self.mechanisms.get(self.grid.mechanism(index) as usize) {
-            Some(place) => place.get_or_init(build).clone(),
-            None => build(),
+        let Some(place) = self.mechanisms.get(self.grid.mechanism(index) as usize) else { return build() };
+        let mut place = place.lock().unwrap_or_else(PoisonError::into_inner);
+        if place.is_none() {
+            *place = build();
         }
+        place.clone()
     }
 
     /// The rows of the cells from `begin` on.
@@ -326,7 +332,7 @@ mod tests {
         let grid = Grid::new(document.axes(&over).unwrap()).unwrap();
         let sweep = Sweep::new(&document.scene, &document.files, grid);
         let error = FlexureError::NotConverged { x: 1e-3, residual: 1.0 };
-        sweep.mechanisms[1].set(Err(error.into())).unwrap();
+        *sweep.mechanisms[1].lock().unwrap() = Some(Err(error.into()));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
         let cancel = AtomicBool::new(false);
         let task = Task { tick: &|| (), cancel: &cancel };

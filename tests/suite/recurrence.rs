@@ -211,7 +211,8 @@ fn laps_that_are_told_again_for_a_list_are_work() {
     let model = preset("paper", &["run.duration_s=1e9", "run.settle_s=5"]);
     let run = model.run(&Request { events: true, ..Request::default() });
     let Outcome::ImpactBudget { count, at } = run.summary.outcome else { panic!("{:?}", run.summary) };
-    assert!((2_000_000..2_001_000).contains(&count) && count == run.summary.total_impacts, "{count}");
+    assert!((2_000_000..2_001_000).contains(&count), "{count}");
+    assert!(run.summary.total_impacts - count < 1000, "{count} of {}", run.summary.total_impacts);
     assert!(run.events.last().is_some_and(|event| event.t <= at));
 }
 
