@@ -35,7 +35,7 @@ const LEAST_SPEED: f64 = 1e-4;
 /// The tolerance of a step in contact relative to that of free flight. A contact takes a dozen steps, which all err to one
 /// side, and an elastic mass makes thousands of contacts: its energy then drifts by thousandths of the tolerance in each.
 /// It costs one step in ten.
-const CONTACT_SHARE: f64 = 0.1;
+const CONTACT_SHARE: f64 = 0.03;
 
 /// What the order of a contact's series is above that of free flight, for that.
 const CONTACT_ORDERS: usize = 2;
