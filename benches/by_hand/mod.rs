@@ -56,6 +56,7 @@ impl Problem {
         let cycles = model.duration * frequency;
         assert_eq!(cycles.fract(), 0.0, "not a whole number of periods");
         let local = model.tolerance * 0.02;
+        let order = (3.0 - 1.25 * local.log10()).round().clamp(8.0, 32.0) as usize;
         Self {
             unit,
             linear: linear * square,
@@ -66,10 +67,10 @@ impl Problem {
             v: start.1 * unit,
             cycles: cycles as i64,
             period: 1.0 / (frequency * unit),
-            order: (3.0 - 1.25 * local.log10()).round().clamp(8.0, 32.0) as usize,
+            order,
             tolerance: local,
             speed: model.scales.speed * unit,
-            longest: 8.0 * model.scales.time / unit,
+            longest: if order < 20 { 3.0 } else { 8.0 } * model.scales.time / unit,
         }
     }
 

@@ -118,10 +118,13 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
             format!("{count} impacts are more than it may make. Lower the restitution.")
         }
         Outcome::StepBudget { .. } => {
-            "it took more steps than it may take. Use a larger tolerance.".to_owned()
+            "it took more work than it may take. Use a larger tolerance.".to_owned()
         }
         Outcome::NotFinite { .. } => {
             "the mass went beyond all bounds. Set stops, or a force that holds it.".to_owned()
+        }
+        Outcome::Inaccurate { .. } => {
+            return Sentence::new(Kind::Fault, "The energy does not balance. Use a smaller tolerance.");
         }
         Outcome::Cancelled { .. } | Outcome::Done => "it was stopped.".to_owned(),
     };

@@ -67,7 +67,7 @@ pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
     if let Some(warning) = yield_warning(&model, &simulation.summary).filter(|_| !common.quiet) {
         say(&format!("warning: {}: {warning}", document.name));
     }
-    if let Some(reason) = early_end(simulation.summary.outcome) {
+    if let Some(reason) = remark(simulation.summary.outcome) {
         let reason = format!("{}: {reason}", document.name);
         if options.strict {
             return Err(Failure::Failed(anyhow::anyhow!("{reason}")));
@@ -85,16 +85,22 @@ fn spanned(sampling: &Sampling) -> Option<(f64, f64)> {
     (first < last).then_some((first, last))
 }
 
-/// Why a run ended before its duration; none where it did not.
-fn early_end(outcome: Outcome) -> Option<String> {
-    let at = outcome.ended_at()?;
+/// Why a run ended before its duration, or what is wrong with it; none where it is done.
+fn remark(outcome: Outcome) -> Option<String> {
     let reason = match outcome {
         Outcome::Done => return None,
         Outcome::LeftTable { .. } => "the mass left the range of the force curve".to_owned(),
         Outcome::ImpactBudget { count, .. } => format!("{count} impacts are all that one run may make"),
-        Outcome::StepBudget { count, .. } => format!("{count} steps are all that one run may take"),
+        Outcome::StepBudget { count, .. } => format!("{count} steps took all the work that one run may take"),
         Outcome::NotFinite { .. } => "a number was no longer finite".to_owned(),
+        Outcome::Inaccurate { residual } => {
+            return Some(format!(
+                "the energy does not balance ({}): {residual:.1e} of what was moved is missing; use a smaller tolerance",
+                outcome.name()
+            ));
+        }
         Outcome::Cancelled { .. } => "it was told to stop".to_owned(),
     };
+    let at = outcome.ended_at()?;
     Some(format!("the run ended early at t = {at} s ({}): {reason}", outcome.name()))
 }

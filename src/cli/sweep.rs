@@ -33,8 +33,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
     let mechanism = first_mechanism(&document, &sweep)?;
     let columns = columns(&options.columns, sweep.grid())?;
-    let model = sweep.first_model().and_then(Result::ok);
-    let until_settled = match &model {
+    let looked_at = Task { tick: &|| (), cancel: interrupt::listen() };
+    let until_settled = match &sweep.first_model(&looked_at).and_then(Result::ok) {
         Some(model) => until_settled(options.until_settled.as_deref(), &document, model)?,
         None => None, // said below, cell by cell
     };

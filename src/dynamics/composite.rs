@@ -11,9 +11,13 @@ use crate::numeric::{DoubleDouble, Number, PolynomialRoots, Scalar};
 const SEARCH_RADIANS: f64 = 2.0;
 const SEARCH_ORDER: usize = 26;
 
-/// Strides of a search before it reports where it stands: longer than a common period of two or three
-/// tones of everyday frequencies.
-pub(crate) const SEARCH_STRIDES: u64 = 4096;
+/// Work of a search before it reports where it stands: some milliseconds, and for two or three tones of everyday
+/// frequencies longer than their common period.
+const SEARCH_WORK: u64 = 500_000;
+
+/// What a stride of a search costs beside its parts, and what they do, in units of [`work`](super::work).
+const STRIDE_WORK: u64 = 80;
+const STRIDE_WORK_OF_A_PART: u64 = 8;
 
 /// Two searches that differ by no more than this share of a quarter cycle have found the same root.
 const SAME_ROOT: f64 = 1e-12;
@@ -274,6 +278,19 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         self.common_cycles.unwrap_or(1)
     }
 
+    /// As the first coefficient, in the same order of sums.
+    fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
+        let tones = self.tones.iter().map(|tone| tone.amplitude_at(clock, at, segment).0 * tone.unit(at).0);
+        let chirps = self.chirps.iter().map(|chirp| chirp.amplitude * chirp.state(clock, at, segment).0);
+        tones.chain(chirps).fold(self.constant, |sum, a| sum + a) + self.record(clock, at, segment).0
+    }
+
+    fn cost(&self, order: usize) -> u64 {
+        let (tones, chirps) = (self.tones.len() as u64, self.chirps.len() as u64);
+        let order = order as u64;
+        tones * (15 + order) / 5 + chirps * (120 + order) / 4 + 20 * self.records.len() as u64
+    }
+
     fn value(
         &self,
         clock: &Clock<T>,
@@ -296,13 +313,16 @@ impl<T: Scalar> Drive<T> for Composite<T> {
     fn next_fall(
         &self,
         clock: &Clock<T>,
-        &Span { from, until, segment }: &Span<T>,
+        &Span { from, until, segment, since }: &Span<T>,
         Press { threshold, sign }: Press<T>,
         roll: &mut Self::Rolling,
-    ) -> Fall<T> {
+    ) -> (Fall<T>, u64) {
         if threshold - sign * self.constant > self.reach {
-            return Fall::Never;
+            return (Fall::Never, 0);
         }
+        let parts = self.tones.len() + 4 * self.chirps.len() + self.records.len();
+        let stride_work = STRIDE_WORK + STRIDE_WORK_OF_A_PART * parts as u64;
+        let mut work = 0;
         let turning = self.fastest > T::zero();
         let stride = T::of(SEARCH_RADIANS) / self.fastest;
         let last_segment = segment >= self.segment_ends.len();
@@ -312,10 +332,11 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         for (k, slot) in search.inverse.iter_mut().enumerate().skip(2) {
             *slot = T::of(1.0) / T::of((k * (k - 1)) as f64);
         }
-        for _ in 0..SEARCH_STRIDES {
+        while work < SEARCH_WORK {
+            work += stride_work;
             let left = clock.between(&at, &until);
             if left <= T::zero() {
-                return Fall::Never;
+                return (Fall::Never, work);
             }
             let h = if turning { stride.smaller(left) } else { left };
             let Look { g, order } = self.look(clock, &at, h, &mut search, roll);
@@ -330,9 +351,9 @@ impl<T: Scalar> Drive<T> for Composite<T> {
                 let Some(s) = press.first() else {
                     at = clock.advance(&at, h);
                     if let (true, Some(cycles)) = (last_segment, self.common_cycles)
-                        && at.cycle > from.cycle + cycles
+                        && at.cycle > since.cycle + cycles
                     {
-                        return Fall::Never; // one common period without a fall: there is none
+                        return (Fall::Never, work); // one common period without a fall: there is none
                     }
                     continue;
                 };
@@ -351,9 +372,9 @@ impl<T: Scalar> Drive<T> for Composite<T> {
                 let own = self.own_root(clock, &fall, &mut search, roll);
                 let own = own.filter(|(own, _)| clock.between(&from, own) > T::zero());
                 let (fall, turn) = own.map_or((fall, None), |(own, turn)| (own, Some(turn)));
-                return Fall::within(clock, fall, turn, &until);
+                return (Fall::within(clock, fall, turn, &until), work);
             }
         }
-        Fall::NotBefore(at)
+        (Fall::NotBefore(at), work)
     }
 }

@@ -1,7 +1,6 @@
 //! What happens where the mass touches a stop, a break or the end of the curve?
 
 use super::clock::Instant;
-use super::composite::SEARCH_STRIDES;
 use super::drive::{Drive, Fall, Press, Span};
 use super::equation::{End, EndKind, FAR};
 use super::motion::{BY_ACCELERATION, BY_JERK, BY_SPEED, Contact, Flow, HELD, Motion, Touch, UNDECIDED};
@@ -117,15 +116,19 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
         let threshold = self.equation.stop(end).map_or(T::zero(), |s| s.press);
         let press = Press { threshold, sign: end.sign::<T>() };
-        let span = Span { from, until, segment: self.segment };
-        match self.drive.next_fall(&self.clock, &span, press, &mut self.roll) {
+        let since = self.searched.take().filter(|(segment, _)| *segment == self.segment);
+        let since = since.map_or(from, |(_, since)| since);
+        let span = Span { from, until, segment: self.segment, since };
+        let (fall, work) = self.drive.next_fall(&self.clock, &span, press, &mut self.roll);
+        self.work.add(self.costs.check + work);
+        match fall {
             Fall::At(fall, turn) => {
                 self.stand(fall, phase);
                 self.release(end, BY_JERK);
                 self.label = turn.filter(|_| self.recurs).map(|turn| Label { end, turn, phase: fall.phase });
             }
             Fall::NotBefore(later) => {
-                self.steps += SEARCH_STRIDES;
+                self.searched = Some((self.segment, since));
                 self.stand(later, phase);
             }
             Fall::Never => {
@@ -164,6 +167,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let sign = end.sign::<T>();
         let restitution = self.equation.stop(end).map_or(T::of(1.0), |s| s.restitution);
         let rebound = restitution * speed;
+        self.work.add_impacts(1);
         // 0 - keeps a rebound of 0 from being -0
         self.record.impact(&self.at, side(end), sign * speed, T::zero() - sign * rebound);
         if rebound > T::zero() {
@@ -246,6 +250,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.stand(until, Phase::Free);
         self.v = T::zero();
         self.steps += 1;
+        self.work.add(self.costs.check);
         self.contact = Contact::Resting(end);
         self.touch = None;
         self.record.rest(&self.at, side(end));

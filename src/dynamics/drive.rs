@@ -26,6 +26,11 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
     /// Whether half a cycle of the clock later it is always the opposite.
     const ODD: bool = false;
 
+    /// What it adds to the cost of a step with a series of this order, in units of [`work`](super::work).
+    fn cost(&self, _order: usize) -> u64 {
+        0
+    }
+
     /// Cycles of the clock after which it repeats, where it does.
     fn common_cycles(&self) -> i64 {
         1
@@ -41,6 +46,13 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
         roll: &mut Self::Rolling,
     );
 
+    /// a(t) at `at`.
+    fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
+        let mut a = [T::zero(); ROOM];
+        self.seed(clock, at, segment, &mut a, &mut Self::Rolling::default());
+        a[0]
+    }
+
     /// a(t) at `at` by itself, not by the series: what a step is checked against. A drive of many tones may
     /// answer with `by_series`, the value of its series.
     fn value(
@@ -55,15 +67,15 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
     /// The instant at which segment `segment` ends, where one follows.
     fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
 
-    /// The next instant in the span at which the press, positive now, changes sign. The span lies within
-    /// one segment.
+    /// The next instant in the span at which the press, positive now, changes sign, and the work that it took to find it.
+    /// The span lies within one segment.
     fn next_fall(
         &self,
         clock: &Clock<T>,
         span: &Span<T>,
         press: Press<T>,
         roll: &mut Self::Rolling,
-    ) -> Fall<T>;
+    ) -> (Fall<T>, u64);
 }
 
 /// When the press on a stop ends.
@@ -91,6 +103,8 @@ pub(crate) struct Span<T> {
     pub from: Instant<T>,
     pub until: Instant<T>,
     pub segment: usize,
+    /// Since when it is known not to have changed sign within this segment; `from` where that is not known.
+    pub since: Instant<T>,
 }
 
 /// The outward acceleration of a mass at rest on a stop: threshold - sign a(t).
@@ -128,7 +142,7 @@ impl<T: Scalar> Drive<T> for Still<T> {
     fn segment_end(&self, _: usize) -> Option<Instant<T>> {
         None
     }
-    fn next_fall(&self, _: &Clock<T>, _: &Span<T>, _: Press<T>, (): &mut ()) -> Fall<T> {
-        Fall::Never
+    fn next_fall(&self, _: &Clock<T>, _: &Span<T>, _: Press<T>, (): &mut ()) -> (Fall<T>, u64) {
+        (Fall::Never, 0)
     }
 }

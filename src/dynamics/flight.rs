@@ -7,7 +7,7 @@
 
 use super::drive::Drive;
 use super::glide::{Glide, Gliding, MARGIN, ROOM_BESIDE};
-use super::motion::{CANCEL_STRIDE, Contact, Motion, Step};
+use super::motion::{Contact, Motion, Step};
 use super::passages::{Passages, side_of};
 use super::taylor;
 use crate::numeric::Scalar;
@@ -29,13 +29,14 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     #[inline]
     pub(super) fn glide(&mut self) -> Flown<T> {
         let free = self.contact == Contact::Free && self.touch.is_none();
-        if LEDGER || !free || !self.record.is_quiet() || !self.has_budget_for(CANCEL_STRIDE) {
+        if LEDGER || !free || !self.record.is_quiet() {
             return Flown::Not;
         }
-        self.fly_on()
+        let most = self.work.pieces_until_look(self.costs.step);
+        if self.has_budget_for(most) { self.fly_on(most) } else { Flown::Not }
     }
 
-    fn fly_on(&mut self) -> Flown<T> {
+    fn fly_on(&mut self, most: u64) -> Flown<T> {
         if self.pass_segment_end() {
             return Flown::On;
         }
@@ -49,7 +50,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let (mut at, mut x, mut v) = (self.at, self.x, self.v);
         let mut ended = Flown::On;
         let (mut flown, mut crossed) = (0, 0);
-        for _ in 0..CANCEL_STRIDE - self.steps % CANCEL_STRIDE {
+        for _ in 0..most {
             drive.seed(clock, &at, *segment, &mut series.a, roll);
             series.begin(x - origin, v);
             series.extend(settings.order, &arena.force, damping, *drive, roll);
@@ -115,6 +116,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             self.record.end_glide_crossings(now.side, crossed);
         }
         self.steps += flown;
+        self.work.add(flown * self.costs.step);
         self.evaluations += flown + u64::from(!matches!(ended, Flown::On));
         ended
     }

@@ -1,5 +1,6 @@
 //! Motion: the equation of motion and its exact, event-driven integration.
 
+mod balance;
 mod base;
 mod clock;
 mod compliant;
@@ -34,6 +35,7 @@ mod summary;
 mod taylor;
 mod tone;
 mod totals;
+mod work;
 
 pub(crate) use base::BaseTone;
 pub use base::STANDARD_GRAVITY;

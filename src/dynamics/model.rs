@@ -147,7 +147,7 @@ impl Model {
         let forcing_period = drive.fastest().and_then(|f| common.map(|cycles| cycles as f64 / f));
         let barrier = landscape.barrier.as_ref();
         let crossing_level = landscape.crossing_position();
-        let scales = scales(scene, mass, &mechanism, &drive, start);
+        let scales = scales(scene, mass, &mechanism, &drive, start, (stops, compliant));
         let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
         let on_a_stop = left.is_some_and(|s| s.x == start.0) || right.is_some_and(|s| s.x == start.0);
         let motionless = scene.start == Start::Rest && !on_a_stop && drive.is_still();
@@ -375,7 +375,14 @@ fn pressed_in(mechanism: &Mechanism, hertz: &Hertz, surface: f64, equilibrium: f
     surface + sign * high
 }
 
-fn scales(scene: &Scene, mass: f64, mechanism: &Mechanism, drive: &BaseMotion, start: (f64, f64)) -> Scales {
+fn scales(
+    scene: &Scene,
+    mass: f64,
+    mechanism: &Mechanism,
+    drive: &BaseMotion,
+    start: (f64, f64),
+    (stops, compliant): (Option<StopPair>, Option<Hertz>),
+) -> Scales {
     let landscape = &mechanism.landscape;
     let curve = &mechanism.curve;
     let mut stiffness: f64 = 0.0;
@@ -402,7 +409,7 @@ fn scales(scene: &Scene, mass: f64, mechanism: &Mechanism, drive: &BaseMotion, s
     if !(stiffness > 0.0 && stiffness.is_finite()) {
         stiffness = curve.stiffness(start.0).abs();
     }
-    Scales::new(&Landmarks {
+    let landmarks = Landmarks {
         stiffness_over_mass: stiffness / mass,
         half_distance,
         start_distance: (start.0 - reference).abs(),
@@ -410,5 +417,12 @@ fn scales(scene: &Scene, mass: f64, mechanism: &Mechanism, drive: &BaseMotion, s
         start_acceleration: curve.force(start.0).abs() / mass,
         drive: drive.parts(),
         duration: scene.run.duration_s,
-    })
+        room: None,
+    };
+    let open = Scales::new(&landmarks);
+    let Some(StopPair { left: Some(left), right: Some(right) }) = stops else { return open };
+    // A compliant stop leaves as much more as the mass could press it in, even without its loss.
+    let depth = compliant.map_or(0.0, |own| Hertz { loss: 0.0, ..own }.depth(mass, open.speed));
+    let room = 0.5 * (right.x - left.x) + depth;
+    Scales::new(&Landmarks { room: Some(room), ..landmarks })
 }

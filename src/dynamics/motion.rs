@@ -18,8 +18,7 @@
 //!   that series in the gap, found without a search (`rebound`).
 //! - What remains of a chatter once it is short is summed in closed form (Nordmark and Piiroinen 2009).
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
+use super::balance::{Reach, judged};
 use super::clock::{Clock, Instant};
 use super::drive::Drive;
 use super::equation::{Compliant, End, Equation};
@@ -34,22 +33,11 @@ use super::result::{Outcome, Phase, Run};
 use super::series::{Series, State};
 use super::settings::Settings;
 use super::summary::Ending;
+use super::work::{ARRIVAL, Costs, IMPACT_BUDGET, WORK_BUDGET, Work};
 use crate::numeric::Scalar;
-
-/// Budgets of one run: generous for any sensible scene, and an end within about 20 s of one core for the
-/// others (an elastic rebound pressed on a stop with damping dies so slowly that it never ends by itself).
-const STEP_BUDGET: u64 = 20_000_000;
-pub(super) const IMPACT_BUDGET: u64 = 2_000_000;
-
-/// What a step in contact with a compliant stop takes beyond one of free flight, in steps of the budget: six products of
-/// series in place of two or three, measured.
-const CONTACT_WEIGHT: u64 = 3;
 
 /// A step halved so often is no step.
 pub(super) const MOST_HALVINGS: u32 = 200;
-
-/// Steps between two looks at the cancel flag.
-pub(super) const CANCEL_STRIDE: u64 = 256;
 
 /// A surface that the mass touches at the start of a step, and how many of the leading coefficients of the
 /// gap are 0 by definition.
@@ -114,15 +102,16 @@ pub(super) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     /// Workspace of contact with a compliant stop, made at the first.
     pub penetration: Option<Box<Penetration<T>>>,
     pub steps: u64,
-    /// Those of the steps that were in contact with a compliant stop.
-    pub contact_steps: u64,
     pub evaluations: u64,
+    pub work: Work<'a>,
+    pub costs: Costs,
+    /// Since when, in which segment of the drive, a release has been searched for and not been found.
+    pub searched: Option<(usize, Instant<T>)>,
     /// Whether the run may be completed from a cycle that comes back, and whether its mirror image would be a motion too.
     pub recurs: bool,
     pub symmetric: bool,
     /// The mass has just been let go, and how.
     pub label: Option<Label<T>>,
-    cancel: Option<&'a AtomicBool>,
     /// Time in s up to which the run goes on until the motion repeats.
     until_settled: Option<f64>,
 }
@@ -194,7 +183,9 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let x = T::of(model.start.0);
         let v = T::of(model.start.1 * unit);
         let settings = Settings::new(model, unit, tolerance);
-        let record = Recorder::new(model, clock, unit, settings.order, request, (x, v));
+        let costs = Costs::new(settings.order, equation.most_products(), drive);
+        let mut record = Recorder::new(model, clock, unit, settings.order, request, (x, v));
+        record.samples_per_look = costs.samples_per_look();
         let until_settled = request.until_settled.filter(|_| model.can_settle());
         let end = if until_settled.is_some() { record.window_end() } else { clock.at(model.duration) };
         Self {
@@ -202,6 +193,8 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             drive,
             clock,
             record,
+            work: Work::new(request.cancel),
+            costs,
             settings,
             series: Series::new(equation.most_products()),
             roll: D::Rolling::default(),
@@ -218,12 +211,11 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             depth: Depth { root: T::zero(), turned: false },
             penetration: None,
             steps: 0,
-            contact_steps: 0,
             evaluations: 0,
+            searched: None,
             recurs: false,
             symmetric: false,
             label: None,
-            cancel: request.cancel,
             until_settled,
         }
     }
@@ -233,10 +225,6 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         self.recurs = recurs;
         self.symmetric = recurs && model.is_symmetric();
         self
-    }
-
-    pub fn is_cancelled(&self) -> bool {
-        self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed))
     }
 
     pub fn run(mut self, model: &Model) -> Run {
@@ -278,6 +266,9 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         }
         let mut left = self.clock.between(&self.at, &self.end);
         if !(left > T::zero()) {
+            if self.record.cut_short {
+                return Err(Outcome::Cancelled { at: self.clock.seconds(&self.at) });
+            }
             if !self.goes_on() {
                 return Err(Outcome::Done);
             }
@@ -299,24 +290,23 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         next.is_some()
     }
 
-    /// Whether it may take `steps` more, one impact a step, without its budget being spent.
+    /// Whether it may take `steps` more of free flight without its budget being spent.
     pub fn has_budget_for(&self, steps: u64) -> bool {
-        self.steps + CONTACT_WEIGHT * self.contact_steps + steps < STEP_BUDGET
-            && self.record.total_impacts() + steps < IMPACT_BUDGET
+        self.work.has_room_for(steps * self.costs.step)
     }
 
     /// How the run ends where its budget is spent, or it is told to.
     #[inline]
-    pub fn spent(&self) -> Flow {
-        if self.steps.is_multiple_of(CANCEL_STRIDE) && self.is_cancelled() {
-            return Some(Outcome::Cancelled { at: self.clock.seconds(&self.at) });
+    pub fn spent(&mut self) -> Flow {
+        let at = || self.clock.seconds(&self.at);
+        if self.work.is_told_to_stop() {
+            return Some(Outcome::Cancelled { at: at() });
         }
-        if self.record.total_impacts() >= IMPACT_BUDGET {
-            let count = self.record.total_impacts();
-            return Some(Outcome::ImpactBudget { at: self.clock.seconds(&self.at), count });
+        if self.work.impacts() >= IMPACT_BUDGET {
+            return Some(Outcome::ImpactBudget { at: at(), count: self.work.impacts() });
         }
-        if self.steps + CONTACT_WEIGHT * self.contact_steps >= STEP_BUDGET {
-            return Some(Outcome::StepBudget { at: self.clock.seconds(&self.at), count: self.steps });
+        if self.work.done() >= WORK_BUDGET {
+            return Some(Outcome::StepBudget { at: at(), count: self.steps });
         }
         None
     }
@@ -326,12 +316,15 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let phase = self.carry().phase();
         let (start_v, potential) = (begun.v, self.potential_since(model, begun.place));
         let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
+        let (low, high) = self.record.places;
+        let reach = Reach { low, high, speed: (2.0 * self.record.peak_kinetic).sqrt() / unit };
         let mut run = self.record.finish(
             &Ending { at: self.at, state: (self.x, self.v), start_v, phase, potential, outcome },
             |at| base_at(drive, &clock, segment, at, unit),
         );
         run.summary.steps = self.steps;
         run.summary.evaluations = self.evaluations;
+        run.summary.outcome = judged(model, &run, reach);
         run
     }
 
@@ -448,6 +441,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let arena = &self.equation.arenas[self.arena];
         match self.find_exit(h, &end) {
             Some((s, exit)) => {
+                self.work.add(ARRIVAL);
                 let (length, level) = (s * h, arena.end(exit).0);
                 let state = (level, self.series.velocity(length));
                 self.arrive((h, length), end.bound, state, None, Some(exit))
@@ -471,6 +465,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             return Some(Outcome::NotFinite { at: self.clock.seconds(&self.at) });
         }
         self.steps += 1;
+        self.work.add(self.costs.step);
         let view = StepView {
             path: &self.series,
             origin: arena.origin,

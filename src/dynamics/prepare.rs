@@ -1,6 +1,6 @@
 //! From a model to a run: the drive and the number type are chosen once, here.
 
-use super::base::{BaseMotion, BaseTone};
+use super::base::BaseTone;
 use super::clock::{Clock, Instant};
 use super::composite::{Chirp, Composite, Line};
 use super::drive::{Drive, Still};
@@ -8,7 +8,6 @@ use super::equation::Equation;
 use super::model::{Model, Request};
 use super::motion::Motion;
 use super::result::Run;
-use super::series::ROOM;
 use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
 use crate::numeric::{Ratio, Scalar};
 use crate::scene::Record;
@@ -48,9 +47,7 @@ pub(super) fn base_at<T: Scalar, D: Drive<T>>(
     at: &Instant<T>,
     unit: f64,
 ) -> f64 {
-    let mut a = [T::zero(); ROOM];
-    drive.seed(clock, at, segment, &mut a, &mut D::Rolling::default());
-    a[0].to_f64() / (unit * unit)
+    drive.acceleration(clock, at, segment).to_f64() / (unit * unit)
 }
 
 /// The three forms of a drive.
@@ -90,12 +87,11 @@ fn still<T: Scalar>(model: &Model, unit: f64) -> Still<T> {
 }
 
 fn sine<T: Scalar>(model: &Model, unit: f64) -> Sine<T> {
-    Sine { tone: tone(&model.drive, 0, unit, usize::MAX) }
+    let drive = &model.drive;
+    Sine { tone: tone(&drive.tones[0], drive.tones[0].frequency, unit, usize::MAX) }
 }
 
-fn tone<T: Scalar>(drive: &BaseMotion, index: usize, unit: f64, holds_from_segment: usize) -> Tone<T> {
-    let tone = &drive.tones[index];
-    let fastest = drive.fastest().unwrap_or(tone.frequency);
+fn tone<T: Scalar>(tone: &BaseTone, fastest: f64, unit: f64, holds_from_segment: usize) -> Tone<T> {
     let square = unit * unit;
     Tone {
         amplitude: T::of(tone.amplitude * square),
@@ -126,8 +122,11 @@ fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite
     // the segment that begins at a time
     let segment = |time: f64| ends.partition_point(|end| *end <= time);
     let holds_from = |over: f64| if over > model.duration { usize::MAX } else { segment(over) };
-    let tones: Vec<Tone<T>> = (0..drive.tones.len())
-        .map(|i| tone(drive, i, unit, drive.tones[i].ramp.map_or(0, |r| holds_from(r.1))))
+    let clocked = drive.fastest().unwrap_or(0.0);
+    let tones: Vec<Tone<T>> = drive
+        .tones
+        .iter()
+        .map(|own| tone(own, clocked, unit, own.ramp.map_or(0, |r| holds_from(r.1))))
         .collect();
     let chirps = drive.chirps.iter().map(|chirp| Chirp {
         amplitude: T::of(chirp.amplitude * square),

@@ -1,5 +1,7 @@
 //! What of a run is kept: samples, events, statistics, ledger. Nothing here acts on the motion.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::clock::{Clock, Instant};
 use super::glide::Glide;
 use super::model::{Model, Request};
@@ -24,6 +26,12 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) unit: f64,
     pub(super) times: &'a [f64],
     pub(super) next_time: usize,
+    pub(super) cancel: Option<&'a AtomicBool>,
+    /// Samples between two looks at that, and since the last.
+    pub(super) samples_per_look: u64,
+    samples_since_look: u64,
+    /// Samples were left out since the run is told to stop.
+    pub(super) cut_short: bool,
     pub(super) samples: Vec<Sample>,
     pub(super) events: Option<Vec<Event>>,
     pub(super) window: (Instant<T>, Instant<T>),
@@ -36,6 +44,8 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) covered: CompensatedSum<T>,
     pub(super) work_moved: f64,
     pub(super) peak_kinetic: f64,
+    /// Lowest and highest displacement at the ends of steps over the whole run, where there is a ledger.
+    pub(super) places: (f64, f64),
     pub(super) barrier: Option<T>,
     /// -1, 0 (on it since the start) or 1.
     pub(super) barrier_side: i8,
@@ -90,6 +100,10 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             unit,
             times: request.sample_times,
             next_time: 0,
+            cancel: request.cancel,
+            samples_per_look: 1,
+            samples_since_look: 0,
+            cut_short: false,
             samples,
             events: request.events.then(Vec::new),
             window: (from, to),
@@ -101,6 +115,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             covered: CompensatedSum::new(),
             work_moved: 0.0,
             peak_kinetic: 0.5 * (start.1 * start.1).to_f64(),
+            places: (start.0.to_f64(), start.0.to_f64()),
             barrier,
             barrier_side: side,
             judge: Judge::new(model.rhythm, scales, periods, first),
@@ -152,6 +167,8 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             self.whole.work.add(-av);
             self.work_moved += av.to_f64().abs();
             self.peak_kinetic = self.peak_kinetic.max(0.5 * (step.v * step.v).to_f64());
+            let x = step.x.to_f64();
+            self.places = (self.places.0.min(x), self.places.1.max(x));
             if full {
                 self.settled.squared_velocity.add(squared);
                 self.settled.work.add(-av);
@@ -190,7 +207,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         }
         if self.next_time < self.times.len() {
             let end = self.clock.seconds(&self.clock.advance(&step.at, step.duration));
-            while let Some(t) = self.times.get(self.next_time).copied().filter(|t| *t < end) {
+            while let Some(t) = self.next_sample(end) {
                 let instant = self.clock.at(t);
                 let into = self.clock.between(&step.at, &instant).larger(T::zero()).smaller(step.duration);
                 let into = step.path.parameter(into, step.length);
@@ -204,6 +221,22 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
                 self.next_time += 1;
             }
         }
+    }
+
+    /// The time in s of the next sample, where it comes before `end`. A single step, or a rest, may hold all that there are,
+    /// each with the sum of a drive's tones: once the run is told to stop there are no more.
+    fn next_sample(&mut self, end: f64) -> Option<f64> {
+        let next = self.times.get(self.next_time).copied().filter(|t| *t < end)?;
+        self.samples_since_look += 1;
+        if self.samples_since_look >= self.samples_per_look {
+            self.samples_since_look = 0;
+            if self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+                self.times = &self.times[..self.next_time];
+                self.cut_short = true;
+                return None;
+            }
+        }
+        Some(next)
     }
 
     fn extremes<P: Path<T>>(&mut self, step: &StepView<T, P>, from: T, to: T, full: bool) {
@@ -454,7 +487,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         }
         if self.next_time < self.times.len() {
             let (begin, end) = (self.clock.seconds(at), self.clock.seconds(until));
-            while let Some(t) = self.times.get(self.next_time).copied().filter(|t| *t < end) {
+            while let Some(t) = self.next_sample(end) {
                 let base_accel = base(&self.clock.at(t));
                 let v = if t <= begin { v.to_f64() / self.unit } else { 0.0 };
                 self.samples.push(Sample { t, x: x.to_f64(), v, base_accel, phase });

@@ -177,6 +177,12 @@ pub enum Outcome {
         /// Time in s.
         at: f64,
     },
+    /// It reached its duration, but its energy does not balance: by more than a hundred tolerances, or by a tenth of what
+    /// was moved. Only told of a run with a ledger.
+    Inaccurate {
+        /// What is unaccounted for over the sum of the magnitudes moved.
+        residual: f64,
+    },
     /// It was told to stop.
     Cancelled {
         /// Time in s.
@@ -193,14 +199,15 @@ impl Outcome {
             Self::ImpactBudget { .. } => "impact_budget",
             Self::StepBudget { .. } => "step_budget",
             Self::NotFinite { .. } => "not_finite",
+            Self::Inaccurate { .. } => "inaccurate",
             Self::Cancelled { .. } => "cancelled",
         }
     }
 
-    /// Time in s at which the run ended early; none where it is done.
+    /// Time in s at which the run ended early; none where it has reached its duration.
     pub fn ended_at(self) -> Option<f64> {
         match self {
-            Self::Done => None,
+            Self::Done | Self::Inaccurate { .. } => None,
             Self::LeftTable { at }
             | Self::ImpactBudget { at, .. }
             | Self::StepBudget { at, .. }

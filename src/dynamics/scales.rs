@@ -1,7 +1,7 @@
 //! Relative to what are errors small? One length, one speed, one time for a scene.
 //!
-//! The rule, from mechanism, drive and start alone, never from the stops (a stop that is never reached must
-//! not change a bit) and covariant under a change of units:
+//! The rule, covariant under a change of units; from mechanism, drive and start alone, since a stop that is never reached
+//! must not change a bit:
 //!
 //! - rate w: the square root of the largest stiffness magnitude over mass among the wells' inner sides and
 //!   the barrier (one well: at it; none: at the start); without stiffness the drive's fastest tone;
@@ -14,6 +14,10 @@
 //!   the drive of amplitude over w and the larger of w and the part's own rate (a fast part moves the mass that
 //!   far, by its first kick);
 //! - speed L w, time 1/w.
+//!
+//! Two stops that leave the mass less than a hundredth of L bound it more than all that: the mass is soon at one of them,
+//! or it rests. L then falls with that room, and is the room itself where it is a ten-thousandth of L; w rises to the rate
+//! at which drive and start speed move the mass as far.
 
 /// Length in m, speed in m/s, time in s; all above 0 and finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,12 +28,19 @@ pub struct Scales {
     pub speed: f64,
     /// Time in s.
     pub time: f64,
-    /// The longest step of the integrator in s: some radians of the rate; where nothing sets a rate, the run.
-    pub(crate) longest_step: f64,
+    /// The longest step of the integrator in s, at a high order and at a low one: some radians of the rate; where nothing
+    /// sets a rate, the run.
+    pub(crate) longest_step: (f64, f64),
 }
 
-/// The longest step in units of the time scale.
-const LONGEST_STEP: f64 = 8.0;
+/// The longest step in units of the time scale. Only a motion far smaller than the length would let a step be longer, since
+/// the tolerance is relative to that. At high orders what is lost then is rounding; at lower ones a step is short enough for
+/// the series of an oscillation to hold to its own size (at order 16 to 3^17/17! = 4e-7), so that small motions are as true
+/// as others, and no noise of the size of the tolerance.
+const LONGEST_STEP: (f64, f64) = (8.0, 3.0);
+
+/// How many times as large as the room between the stops the length is at most.
+const FAR: f64 = 100.0;
 
 /// What the rule looks at. All SI, magnitudes.
 #[derive(Debug, Clone, Default)]
@@ -48,6 +59,8 @@ pub(crate) struct Landmarks {
     pub drive: Vec<(f64, f64)>,
     /// Duration of the run in s.
     pub duration: f64,
+    /// Half of what two stops leave the mass, m; none where a side is open.
+    pub room: Option<f64>,
 }
 
 impl Scales {
@@ -78,9 +91,23 @@ impl Scales {
         } else {
             (l.start_distance, 1.0 / l.duration)
         };
+        let room = l.room.filter(|room| usable(*room) && usable(length) && length > FAR * room);
         let length = if usable(length) { length } else { 1.0 };
         let rate = if usable(rate) { rate } else { 1.0 };
-        let longest_step = if rated { LONGEST_STEP / rate } else { l.duration };
+        let longest = |radians: f64| if rated { radians * (1.0 / rate) } else { l.duration };
+        let longest_step = (longest(LONGEST_STEP.0), longest(LONGEST_STEP.1));
+        let (length, rate) = match room {
+            None => (length, rate),
+            Some(room) => {
+                let within = room.max(FAR * room * (FAR * room / length));
+                let driven: f64 = match rated {
+                    true => l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum(),
+                    false => acceleration / (rate * rate),
+                };
+                let faster = (driven / within).sqrt().max(l.start_speed / rate / within);
+                (within, rate * faster.max(1.0))
+            }
+        };
         Self { length, speed: length * rate, time: 1.0 / rate, longest_step }
     }
 
@@ -104,6 +131,7 @@ mod tests {
             start_acceleration: 12.0,
             drive: vec![(9.8, 18.8), (0.5, 0.0)],
             duration: 10.0,
+            room: None,
         };
         let (l, t) = (1e6, 1e-7);
         let scaled = Landmarks {
@@ -114,8 +142,9 @@ mod tests {
             start_acceleration: base.start_acceleration * l / (t * t),
             drive: base.drive.iter().map(|(a, w)| (a * l / (t * t), w / t)).collect(),
             duration: base.duration * t,
+            room: None,
         };
-        for drop in 0..16 {
+        for drop in 0..32 {
             let thin = |mut m: Landmarks| {
                 if drop & 1 > 0 {
                     m.stiffness_over_mass = 0.0;
@@ -133,7 +162,10 @@ mod tests {
                 }
                 m
             };
-            let (a, b) = (Scales::new(&thin(base.clone())), Scales::new(&thin(scaled.clone())));
+            let tight =
+                |m: Landmarks, unit: f64| Landmarks { room: (drop & 16 > 0).then_some(1e-5 * unit), ..m };
+            let (a, b) = (tight(thin(base.clone()), 1.0), tight(thin(scaled.clone()), l));
+            let (a, b) = (Scales::new(&a), Scales::new(&b));
             assert!(a.length > 0.0 && a.speed.is_finite() && a.time > 0.0, "{drop} {a:?}");
             if a.length != 1.0 {
                 assert!((b.length / a.length / l - 1.0).abs() < 1e-12, "{drop}");

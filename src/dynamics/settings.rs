@@ -15,6 +15,9 @@ pub(super) const RESIDUAL: f64 = 20.0;
 /// Roundings of the terms that add up in a residual.
 pub(super) const ROUNDINGS: f64 = 32.0;
 
+/// From this order on, which a tolerance of 1e-12 has, the errors of a step are near rounding.
+const HIGH_ORDER: usize = 20;
+
 /// Settings of the stepper that follow from the tolerance.
 pub(super) struct Settings<T> {
     pub order: usize,
@@ -36,13 +39,15 @@ impl<T: Scalar> Settings<T> {
         let local = tolerance * LOCAL_SHARE;
         let order = (3.0 - 1.25 * local.log10()).round().clamp(8.0, MAX_ORDER as f64) as usize;
         let speed = model.scales.speed * unit;
+        let (at_high_order, otherwise) = model.scales.longest_step;
+        let longest = if order >= HIGH_ORDER { at_high_order } else { otherwise };
         Self {
             order,
             tolerance: local,
             tolerance_log2: local.log2(),
             speed: T::of(speed),
             speed_log2: fast_log2(speed),
-            longest: model.scales.longest_step / unit,
+            longest: longest / unit,
         }
     }
 }

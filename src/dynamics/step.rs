@@ -39,9 +39,12 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// The step of up to length `h` that ends in time, and with which the equation of motion holds.
     pub(super) fn shorten(&mut self, mut h: T, left: T) -> Option<Step<T>> {
         let border = self.drive.segment_end(self.segment);
-        for _ in 0..MOST_HALVINGS {
+        for attempt in 0..MOST_HALVINGS {
             if !(h > T::zero()) {
                 return None;
+            }
+            if attempt > 0 {
+                self.work.add(self.costs.check);
             }
             let mut arrival = None;
             if left <= h {

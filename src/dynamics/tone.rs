@@ -194,12 +194,12 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         &Span { from, until, .. }: &Span<T>,
         Press { threshold, sign }: Press<T>,
         _: &mut Self::Rolling,
-    ) -> Fall<T> {
+    ) -> (Fall<T>, u64) {
         // threshold - b sin = 0 with sin rising through it (b > 0) or falling (b < 0).
         let b = self.tone.amplitude * sign;
         let height = threshold / b.abs();
         if !(height.abs() < T::of(1.0)) {
-            return Fall::Never; // never reached, or touched without a change of sign
+            return (Fall::Never, 0); // never reached, or touched without a change of sign
         }
         let mut turns = T::of(height.to_f64().asin() / std::f64::consts::TAU);
         for _ in 0..3 {
@@ -231,6 +231,6 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         } else {
             (Instant { cycle: from.cycle + 1, phase }, Some(0))
         };
-        Fall::within(clock, fall, turn, &until)
+        (Fall::within(clock, fall, turn, &until), 0)
     }
 }

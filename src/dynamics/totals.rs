@@ -53,13 +53,6 @@ pub(super) struct Totals<T> {
     next_strobe: Option<Instant<T>>,
 }
 
-impl<T> Totals<T> {
-    /// Impacts since the run's start.
-    pub fn total_impacts(&self) -> u64 {
-        self.counts.total_impacts
-    }
-}
-
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     pub fn totals(&self) -> Totals<T> {
         Totals {
@@ -96,18 +89,10 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         border.filter(|border| self.clock.between(border, end) > T::zero()).unwrap_or(*end)
     }
 
-    /// Whether anything is still listed.
-    pub fn lists_more(&self) -> bool {
-        self.events.is_some() || self.next_time < self.times.len()
-    }
-
-    /// Whether anything between two instants is listed.
-    pub fn lists_between(&self, start: &Instant<T>, end: &Instant<T>) -> bool {
-        let due = |t: &f64| {
-            let at = self.clock.at(*t);
-            self.clock.between(start, &at) >= T::zero() && self.clock.between(&at, end) >= T::zero()
-        };
-        self.events.is_some() || self.times.get(self.next_time).is_some_and(due)
+    /// From when on, at `at` or later, anything is listed; none where nothing is.
+    pub fn next_listed(&self, at: &Instant<T>) -> Option<Instant<T>> {
+        let sample = self.times.get(self.next_time).map(|t| self.clock.at(*t));
+        if self.events.is_some() { Some(*at) } else { sample }
     }
 
     /// Takes sums and counts back to what they were; what has been listed since stays.
@@ -143,13 +128,15 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
 impl Counts {
     fn repeat(&mut self, before: &Self, after: &Self, laps: u64) {
         let Self { crossings, impacts, releases, total_crossings, total_impacts, sums, rests } = self;
-        *crossings += (after.crossings - before.crossings) * laps;
-        *impacts += (after.impacts - before.impacts) * laps;
-        *releases += (after.releases - before.releases) * laps;
-        *total_crossings += (after.total_crossings - before.total_crossings) * laps;
-        *total_impacts += (after.total_impacts - before.total_impacts) * laps;
-        *sums += (after.sums - before.sums) * laps;
-        *rests += (after.rests - before.rests) * laps;
+        *crossings = crossings.saturating_add((after.crossings - before.crossings).saturating_mul(laps));
+        *impacts = impacts.saturating_add((after.impacts - before.impacts).saturating_mul(laps));
+        *releases = releases.saturating_add((after.releases - before.releases).saturating_mul(laps));
+        *total_crossings = total_crossings
+            .saturating_add((after.total_crossings - before.total_crossings).saturating_mul(laps));
+        *total_impacts =
+            total_impacts.saturating_add((after.total_impacts - before.total_impacts).saturating_mul(laps));
+        *sums = sums.saturating_add((after.sums - before.sums).saturating_mul(laps));
+        *rests = rests.saturating_add((after.rests - before.rests).saturating_mul(laps));
     }
 }
 

@@ -20,6 +20,7 @@
 //! by a few times the tolerance and by what six neighbours say that four do not.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::curve::{FitReport, ForceCurve, Piece};
 use super::local::{between, corners, roughness, slopes};
@@ -61,10 +62,15 @@ const MANY_PIECES: usize = 24;
 /// `tolerance` trades pieces (and so the speed of every run) for closeness; below the roughness of the
 /// data it makes the curve follow the roughness.
 pub fn fit(table: &Table, tolerance: f64) -> Result<ForceCurve, String> {
+    fit_unless(table, tolerance, None)
+}
+
+/// As [`fit`]; once `cancel` is set, it soon fails with any sentence.
+pub fn fit_unless(table: &Table, tolerance: f64, cancel: Option<&AtomicBool>) -> Result<ForceCurve, String> {
     let scale = force_scale(table);
     let largest = largest(&table.force);
     let allowed = tolerance * scale + 8.0 * f64::EPSILON * largest;
-    let samples = Samples::new(table, allowed);
+    let samples = Samples { cancel, ..Samples::new(table, allowed) };
     let mut best: Option<(f64, Vec<Piece>, Vec<usize>)> = None;
     for degree in DEGREES {
         let Some((pieces, ends)) = samples.chain(degree) else { continue };
@@ -147,7 +153,9 @@ fn running_cost(samples: &Samples, pieces: &[Piece], ends: &[usize]) -> f64 {
 }
 
 /// The samples as the chain sees them: all of them, or the right half of odd data.
-struct Samples {
+struct Samples<'a> {
+    /// Set from elsewhere to end it: there is then no chain.
+    cancel: Option<&'a AtomicBool>,
     x: Vec<f64>,
     force: Vec<f64>,
     /// How far the curve may be from `force` at each sample in N.
@@ -161,7 +169,7 @@ struct Samples {
     odd: bool,
 }
 
-impl Samples {
+impl Samples<'_> {
     fn new(table: &Table, allowed: f64) -> Self {
         let n = table.x.len();
         let mirror = |i: usize| n - 1 - i;
@@ -178,10 +186,11 @@ impl Samples {
         let between = between(&table.x, &table.force, &corner, allowed);
         if !odd {
             let (x, force) = (table.x.clone(), table.force.clone());
-            return Self { x, force, allowed: vec![allowed; n], corner, slope, between, odd };
+            return Self { cancel: None, x, force, allowed: vec![allowed; n], corner, slope, between, odd };
         }
         // The right half, from 0 on whether or not there is a sample.
         let mut half = Self {
+            cancel: None,
             x: vec![0.0],
             force: vec![0.0],
             allowed: vec![0.0],
@@ -212,6 +221,9 @@ impl Samples {
         let mut links: Vec<Link> = Vec::new();
         let mut from = 0;
         while from < last {
+            if self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+                return None;
+            }
             let limit = (from + 1..last).find(|i| self.corner[*i]).unwrap_or(last);
             let link = if links.is_empty() {
                 self.reach(from, limit, if self.odd { Left::Mirror } else { Left::Free }, degree)?

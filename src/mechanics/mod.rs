@@ -16,7 +16,9 @@ pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Lands
 pub use table::{FEWEST_POINTS, MOST_POINTS, Table, TableError};
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use self::fit::fit_unless;
 use self::flexure::{Geometry, Group};
 use crate::scene::{self, Fault, Files, FlexureGroup};
 
@@ -69,6 +71,26 @@ impl Mechanism {
         files: &Files,
         flexure_tolerance: f64,
     ) -> Result<Self, BuildError> {
+        Self::built(described, files, flexure_tolerance, None)
+    }
+
+    /// As [`build`](Self::build), unless `cancel` is set meanwhile: then soon none. Of flexures each state is some
+    /// milliseconds or less, and of a table each piece; the rest of building takes no time.
+    pub fn build_unless(
+        described: &scene::Mechanism,
+        files: &Files,
+        cancel: &AtomicBool,
+    ) -> Option<Result<Self, BuildError>> {
+        let built = Self::built(described, files, FLEXURE_TOLERANCE, Some(cancel));
+        (!cancel.load(Ordering::Relaxed)).then_some(built)
+    }
+
+    fn built(
+        described: &scene::Mechanism,
+        files: &Files,
+        flexure_tolerance: f64,
+        cancel: Option<&AtomicBool>,
+    ) -> Result<Self, BuildError> {
         match described {
             scene::Mechanism::Flexures {
                 preload_mm,
@@ -92,7 +114,7 @@ impl Mechanism {
                     parallel: group(parallel),
                     buckling: group(buckling),
                 };
-                Self::from_flexures(&geometry, flexure_tolerance)
+                Self::from_flexures(&geometry, flexure_tolerance, cancel)
             }
             scene::Mechanism::Cubic { linear_n_per_m, cubic_n_per_m3 } => {
                 Ok(Self::new(ForceCurve::polynomial(&[0.0, *linear_n_per_m, 0.0, *cubic_n_per_m3])))
@@ -115,7 +137,8 @@ impl Mechanism {
                 let fault =
                     |problem: String| Fault { field: "mechanism.path".into(), value: path.clone(), problem };
                 let text = files.read(path).map_err(|e| fault(e.to_string()))?;
-                Ok(Self::from_table(&text, *tolerance).map_err(fault)?)
+                let table = Table::parse(&text).map_err(|e| fault(e.to_string()))?;
+                Ok(Self::new(fit_unless(&table, *tolerance, cancel).map_err(fault)?))
             }
         }
     }
@@ -131,8 +154,12 @@ impl Mechanism {
     /// Solves flexures; all in SI.
     ///
     /// Fails where the solver does not converge.
-    fn from_flexures(geometry: &Geometry, tolerance: f64) -> Result<Self, BuildError> {
-        let (curve, flexures) = Flexures::solve(geometry, tolerance)?;
+    fn from_flexures(
+        geometry: &Geometry,
+        tolerance: f64,
+        cancel: Option<&AtomicBool>,
+    ) -> Result<Self, BuildError> {
+        let (curve, flexures) = Flexures::solve_unless(geometry, tolerance, cancel)?;
         Ok(Self { flexures: Some(Arc::new(flexures)), ..Self::new(curve) })
     }
 

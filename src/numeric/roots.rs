@@ -255,9 +255,10 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         let end = self.g.iter().map(|c| c.to_f64()).sum::<f64>();
         let (a, b) = (self.g[0].to_f64(), self.g[1].to_f64());
         let c = end - a - b;
-        let root = (b * b - 4.0 * a * c).sqrt();
-        let near = -2.0 * a / (b + root.copysign(b));
-        let far = -(b + root.copysign(b)) / (2.0 * c);
+        // (a slope of 0 has no sign of its own: the polynomial and its negative are to have the same guess)
+        let root = (b * b - 4.0 * a * c).sqrt().copysign(if b == 0.0 { a } else { b });
+        let near = -2.0 * a / (b + root);
+        let far = -(b + root) / (2.0 * c);
         [near, far].into_iter().find(|s| *s > 0.0 && *s < 1.0).map(T::of)
     }
 }
@@ -288,6 +289,26 @@ mod tests {
         });
         assert_eq!(PolynomialRoots::new(g).count_sign_changes(), found.len());
         found
+    }
+
+    #[test]
+    fn a_polynomial_and_its_negative_have_the_same_roots_whatever_sign_a_zero_has() {
+        // A mass that starts at rest: no slope, of either sign.
+        let mut state = 1_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for _ in 0..200 {
+            let g = [0.2 + 0.5 * next(), 0.0, -0.9 - 0.3 * next(), 0.05 * next(), -0.01 * next()];
+            let other = [g[0], -0.0, g[2], g[3], g[4]];
+            let found = all(&g);
+            assert!(!found.is_empty());
+            assert_eq!(
+                (all(&other), all(&g.map(|c| -c)), all(&other.map(|c| -c))),
+                (found.clone(), found.clone(), found)
+            );
+        }
     }
 
     #[test]

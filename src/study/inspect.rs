@@ -75,8 +75,12 @@ fn accuracy(mechanism: &Mechanism, accuracy: &Accuracy) -> String {
     ];
     let parts = parts.into_iter().filter(|(error, _)| error.is_finite());
     let parts: Vec<String> = parts.map(|(error, of)| format!("{} {of}", short(error))).collect();
+    let limit = match accuracy.is_at_limit() {
+        true => ", which are all that there are: the flexures are too thin to be resolved where they bend",
+        false => "",
+    };
     format!(
-        "force curve: {}, from {} solutions with {} modes a flexure; against fresh solutions off by at most {}",
+        "force curve: {}, from {} solutions with {} modes a flexure{limit}; against fresh solutions off by at most {}",
         pieces_and_reach(mechanism),
         accuracy.solves,
         accuracy.modes,

@@ -5,8 +5,8 @@
 //! number of threads.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
@@ -16,7 +16,7 @@ use super::Task;
 use super::fields::SummaryField;
 use super::grid::Grid;
 use super::table::{Table, Values};
-use crate::dynamics::{Model, Outcome, Request, Summary};
+use crate::dynamics::{Model, Request, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
 
@@ -40,7 +40,7 @@ pub struct Sweep {
     files: Files,
     grid: Grid,
     options: SweepOptions,
-    mechanisms: Vec<OnceLock<Built>>,
+    mechanisms: Vec<Mutex<Option<Built>>>,
     /// Mechanisms built so far.
     built: AtomicU64,
 }
@@ -110,7 +110,7 @@ pub struct Tally {
 
 impl Tally {
     fn count(&mut self, cell: &Cell) {
-        self.ended_early += u64::from(cell.summary.is_some_and(|row| row.outcome != Outcome::Done));
+        self.ended_early += u64::from(cell.summary.is_some_and(|row| row.outcome.ended_at().is_some()));
         self.not_converged += u64::from(cell.outcome == NOT_CONVERGED);
         self.yielding += u64::from(cell.summary.is_some_and(|row| row.contact_yields));
         *self.outcomes.entry(cell.outcome).or_default() += 1;
@@ -145,7 +145,7 @@ impl Sweep {
         // What no cell needs is not copied for each.
         let base = Scene { notes: String::new(), sweep: Vec::new(), app: None, ..base.clone() };
         let kept = Some(grid.mechanisms()).filter(|n| *n <= KEPT_MECHANISMS).unwrap_or(0);
-        let mechanisms = (0..kept).map(|_| OnceLock::new()).collect();
+        let mechanisms = (0..kept).map(|_| Mutex::new(None)).collect();
         let options = SweepOptions::default();
         Self { base, files: files.clone(), grid, options, mechanisms, built: AtomicU64::new(0) }
     }
@@ -172,12 +172,14 @@ impl Sweep {
     pub fn first_mechanism(&self) -> Result<Arc<Mechanism>, BuildError> {
         let mut scene = self.base.clone();
         self.grid.apply(0, &mut scene);
-        self.mechanism(0, &scene)
+        let never = AtomicBool::new(false);
+        let built = self.mechanism(0, &scene, &never);
+        built.unwrap_or_else(|| Mechanism::build(&scene.mechanism, &self.files).map(Arc::new))
     }
 
     /// The model of the first cell, or its faults; none where its mechanism was not solved.
-    pub fn first_model(&self) -> Option<Result<Model, Vec<Fault>>> {
-        self.model(0, &mut self.base.clone())
+    pub fn first_model(&self, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
+        self.model(0, &mut self.base.clone(), task)
     }
 
     /// Builds every cell without running it; the first one that is wrong, with all its faults. A mechanism that is
@@ -187,7 +189,7 @@ impl Sweep {
             if task.is_cancelled() {
                 return None;
             }
-            match self.model(index, scene)? {
+            match self.model(index, scene, task)? {
                 Ok(_) => None,
                 Err(faults) => Some(CellFaults { cell: self.grid.describe(index), faults }),
             }
@@ -274,7 +276,7 @@ impl Sweep {
             if task.is_cancelled() {
                 return rows;
             }
-            match self.model(*index, scene) {
+            match self.model(*index, scene, task) {
                 Some(Ok(model)) => {
                     models.push(model);
                     places.push(place);
@@ -298,25 +300,29 @@ impl Sweep {
         rows
     }
 
-    /// The model of a cell, or its faults; none where its mechanism was not solved.
-    fn model(&self, index: u64, scene: &mut Scene) -> Option<Result<Model, Vec<Fault>>> {
+    /// The model of a cell, or its faults; none where its mechanism was not solved, or the task was cancelled meanwhile.
+    fn model(&self, index: u64, scene: &mut Scene, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
         self.grid.apply(index, scene);
-        match self.mechanism(index, scene) {
+        match self.mechanism(index, scene, task.cancel)? {
             Ok(mechanism) => Some(Model::build(scene, mechanism)),
             Err(BuildError::Wrong(fault)) => Some(Err(vec![fault])),
             Err(BuildError::Unsolved(_)) => None,
         }
     }
 
-    fn mechanism(&self, index: u64, scene: &Scene) -> Built {
+    /// The mechanism of a cell; none where it was cancelled before it was built.
+    fn mechanism(&self, index: u64, scene: &Scene, cancel: &AtomicBool) -> Option<Built> {
         let build = || {
+            let built = Mechanism::build_unless(&scene.mechanism, &self.files, cancel)?;
             self.built.fetch_add(1, Ordering::Relaxed);
-            Mechanism::build(&scene.mechanism, &self.files).map(Arc::new)
+            Some(built.map(Arc::new))
         };
-        match self.mechanisms.get(self.grid.mechanism(index) as usize) {
-            Some(place) => place.get_or_init(build).clone(),
-            None => build(),
+        let Some(place) = self.mechanisms.get(self.grid.mechanism(index) as usize) else { return build() };
+        let mut place = place.lock().unwrap_or_else(PoisonError::into_inner);
+        if place.is_none() {
+            *place = build();
         }
+        place.clone()
     }
 
     /// The rows of the cells from `begin` on.
@@ -359,7 +365,7 @@ mod tests {
         let grid = Grid::new(document.axes(&over).unwrap()).unwrap();
         let sweep = Sweep::new(&document.scene, &document.files, grid);
         let error = FlexureError::NotConverged { x: 1e-3, residual: 1.0 };
-        sweep.mechanisms[1].set(Err(error.into())).unwrap();
+        *sweep.mechanisms[1].lock().unwrap() = Some(Err(error.into()));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
         let cancel = AtomicBool::new(false);
         let task = Task { tick: &|| (), cancel: &cancel };

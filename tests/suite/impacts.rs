@@ -9,3 +9,4 @@ mod misleading;
 mod release;
 mod scenes;
 mod stops;
+mod verdicts;

@@ -783,3 +783,18 @@ fn flexures_enter_in_si() {
     assert_eq!(own.flexures.as_ref().unwrap().geometry(), &expected);
     assert_eq!(polynomial(&[0.0, 1.0]).flexures, None);
 }
+
+#[test]
+fn building_ends_once_it_is_told_to() {
+    use std::sync::atomic::AtomicBool;
+    for name in ["paper", "paper-table", "nominal-cubic"] {
+        let document = interwell::scene::Document::load(name).unwrap();
+        let build = |told: bool| {
+            let cancel = AtomicBool::new(told);
+            interwell::mechanics::Mechanism::build_unless(&document.scene.mechanism, &document.files, &cancel)
+        };
+        let whole = interwell::mechanics::Mechanism::build(&document.scene.mechanism, &document.files);
+        assert!(build(true).is_none(), "{name}");
+        assert_eq!(build(false).unwrap().unwrap().curve, whole.unwrap().curve, "{name}");
+    }
+}

@@ -253,6 +253,7 @@ impl<const W: usize> Columns<W> {
             return;
         }
         motion.steps += flown;
+        motion.work.add(flown * motion.costs.step);
         motion.evaluations += flown;
         (motion.x, motion.v) = (self.x.0[lane], self.v.0[lane]);
         motion.at = self.at.get(lane);

@@ -290,7 +290,7 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
             }
             let motion = &mut own.motion;
             self.columns.land(lane, motion);
-            if motion.is_cancelled() {
+            if motion.work.is_cancelled() {
                 let outcome = Outcome::Cancelled { at: motion.clock.seconds(&motion.at) };
                 self.end(lane, outcome);
             } else if motion.has_budget_for(2 * STRIDE) {

@@ -11,8 +11,9 @@ use super::super::motion::{Carried, Contact, Motion};
 use super::super::prepare::{Form, base_at, clock, form};
 use super::super::result::{Event, Outcome, Sample};
 
-/// Steps of one call: some tens of milliseconds. More are only asked for where impacts crowd without end.
-const STEPS_PER_CALL: u64 = 50_000;
+/// Work of one call, in units of [`work`](super::super::work): some tens of milliseconds. More is only asked for where
+/// impacts crowd without end, or a step takes long.
+const WORK_PER_CALL: u64 = 2_000_000;
 
 /// Energies in kernel units, per mass.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -150,7 +151,7 @@ impl Kernel {
         let (mut last, mut ended) = (None, None);
         while ended.is_none()
             && self.clock.between(&motion.at, &until) >= 0.0
-            && motion.steps < STEPS_PER_CALL
+            && motion.work.done() < WORK_PER_CALL
         {
             let left = self.clock.between(&motion.at, &motion.end);
             if !(left > 0.0) {
@@ -206,7 +207,7 @@ impl Kernel {
         }
         let request = Request { sample_times: times, ..Request::default() };
         let mut motion = self.motion::<D, false>(model, drive, &request, Some(tail));
-        while self.clock.between(&motion.at, &head.at) > 0.0 && motion.steps < STEPS_PER_CALL {
+        while self.clock.between(&motion.at, &head.at) > 0.0 && motion.work.done() < WORK_PER_CALL {
             let left = self.clock.between(&motion.at, &motion.end);
             if motion.proceed(left).is_some() {
                 break;
@@ -241,7 +242,7 @@ impl Kernel {
         let request = Request { ledger: true, ..Request::default() };
         let mut motion = self.motion::<D, true>(model, drive, &request, Some(tail));
         motion.end = at;
-        while motion.steps < STEPS_PER_CALL {
+        while motion.work.done() < WORK_PER_CALL {
             let left = self.clock.between(&motion.at, &motion.end);
             if !(left > 0.0) || motion.proceed(left).is_some() {
                 break;

@@ -188,16 +188,18 @@ impl<T: Scalar> Log<T> {
         Carried { at: later.instant(&carried.at), refused: None, ..carried }
     }
 
-    /// Tells the recorder once more what it was told between two marks (to the end without a second), `later`.
+    /// Tells the recorder once more what it was told between two marks (to the end without a second), `later`; how many
+    /// entries those are.
     pub fn play<const LEDGER: bool>(
         &self,
         record: &mut Recorder<T, LEDGER>,
         (from, to): (usize, Option<usize>),
         later: Later,
         mut base: impl FnMut(&Instant<T>) -> f64,
-    ) {
+    ) -> usize {
         let end = to.map_or(self.entries.len(), |mark| self.marks[mark].entries);
-        for entry in &self.entries[self.marks[from].entries..end] {
+        let entries = &self.entries[self.marks[from].entries..end];
+        for entry in entries {
             match entry {
                 Entry::Step(step) => {
                     let (y, a) =
@@ -232,6 +234,7 @@ impl<T: Scalar> Log<T> {
                 Entry::Release { at, side } => record.release(&later.instant(at), *side),
             }
         }
+        entries.len()
     }
 
     /// Appends the mirror image of everything from mark `first` on, later by half a cycle of the clock and `cycles`

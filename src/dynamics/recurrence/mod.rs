@@ -24,9 +24,10 @@ pub(super) use log::{Entry, Log};
 use super::clock::Instant;
 use super::drive::Drive;
 use super::equation::End;
-use super::motion::{IMPACT_BUDGET, Motion};
+use super::motion::Motion;
 use super::prepare::base_at;
 use super::totals::Totals;
+use super::work::TOLD;
 use crate::numeric::Scalar;
 use log::Later;
 
@@ -103,7 +104,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             let carried = self.carry();
             let patience = PATIENCE.saturating_mul(self.drive.common_cycles());
             if let Some(log) = &mut self.record.log {
-                if log.cycles_until(&carried.at) > patience {
+                if log.cycles_until(&carried.at) > patience || !log.has_room() {
                     self.record.log = None; // the next release begins another
                     self.record.judge.end_tape();
                 } else {
@@ -134,10 +135,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let (at, middle) = (start.at, log.marks());
         let back = Instant { cycle: at.cycle + cycles, phase: at.phase };
         self.recurs = false;
-        let added = self.record.totals().total_impacts() - before.total_impacts();
-        if !(self.clock.between(&back, &self.end) > T::zero())
-            || self.record.total_impacts() + added >= IMPACT_BUDGET
-        {
+        if !(self.clock.between(&back, &self.end) > T::zero()) {
             return;
         }
         log.append_mirrored(first, cycles / 2, self.equation.arenas.len(), &self.clock);
@@ -152,20 +150,18 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.recurs = false;
         self.record.judge.comes_back(self.clock.seconds(&log.carried(lap.first).at));
         let mut later = 0;
-        let mut impacts = lap.like.map_or(0, |like| like.after.total_impacts() - like.before.total_impacts());
         loop {
             let next = Instant { cycle: self.at.cycle + lap.cycles, phase: self.at.phase };
             if !(self.clock.between(&next, &self.end) > T::zero()) {
                 break;
             }
-            if self.is_cancelled() || self.record.total_impacts() + 2 * impacts >= IMPACT_BUDGET {
+            if self.work.is_cancelled() || self.work.is_spent() {
                 return; // as it stands it goes on
             }
             if let Some(like) = lap.like {
-                let room = (IMPACT_BUDGET - self.record.total_impacts()) / impacts.max(1);
-                let laps = self.laps_alike(&lap, like.inside).min(room as i64 - 1);
-                if laps > 0 {
-                    self.list(log, &lap, later, laps);
+                let alike = self.laps_alike(&lap, like.inside);
+                if alike > 0 {
+                    let laps = self.list(log, &lap, later, alike);
                     self.record.repeat(&like.before, &like.after, laps, lap.cycles);
                     later += laps * lap.cycles;
                     self.at.cycle += laps * lap.cycles;
@@ -177,7 +173,6 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             self.tell(log, (lap.first, None), Later(later));
             let inside = self.record.lies_inside(&self.at, &next);
             let after = self.record.totals();
-            impacts = after.total_impacts() - before.total_impacts();
             lap.like = inside.map(|inside| Like { inside, before, after });
             self.at = next;
         }
@@ -188,26 +183,42 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     }
 
     /// Tells the recorder the next `laps` as far as something of them is listed; its sums stay, so that what they come to
-    /// does not depend on what is listed.
-    fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) {
+    /// does not depend on what is listed. To tell them again is work: how many of the laps that was done for.
+    fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) -> i64 {
         let (sums, judge) = (self.record.totals(), self.record.judge.clone());
-        let mut start = self.at;
-        for number in 1..=laps {
-            let end = Instant { cycle: start.cycle + lap.cycles, phase: start.phase };
-            if self.record.lists_between(&start, &end) {
-                self.tell(log, (lap.first, None), Later(later + number * lap.cycles));
-            } else if !self.record.lists_more() {
+        let start = self.at;
+        let length = self.clock.period() * T::of(lap.cycles as f64);
+        let begin =
+            |lap_before: i64| Instant { cycle: start.cycle + lap_before * lap.cycles, phase: start.phase };
+        let mut told = 0;
+        while let Some(next) = self.record.next_listed(&begin(told)) {
+            // (by rounding it may lie in the lap before)
+            let between = (self.clock.between(&start, &next) / length).floor().to_f64() as i64 - 1;
+            let number = between.max(told) + 1;
+            if number > laps {
                 break;
             }
-            start = end;
+            if self.work.is_cancelled() || self.work.is_spent() {
+                self.record.take_back(&sums);
+                self.record.judge = judge;
+                return told;
+            }
+            if self.clock.between(&next, &begin(number)) >= T::zero() {
+                let before = self.record.total_impacts();
+                self.tell(log, (lap.first, None), Later(later + number * lap.cycles));
+                self.work.add_impacts(self.record.total_impacts() - before);
+            }
+            told = number;
         }
         self.record.take_back(&sums);
         self.record.judge = judge;
+        laps
     }
 
     fn tell(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: Later) {
         let (drive, clock, segment, unit) = (self.drive, self.clock, self.segment, self.equation.unit);
-        log.play(&mut self.record, marks, later, |at| base_at(drive, &clock, segment, at, unit));
+        let told = log.play(&mut self.record, marks, later, |at| base_at(drive, &clock, segment, at, unit));
+        self.work.add(TOLD * told as u64);
     }
 
     /// Laps from here on that are wholly inside (or outside) the settled window, as the last one was.

@@ -17,6 +17,8 @@ mod pieces;
 mod shape;
 mod solver;
 
+use std::sync::atomic::AtomicBool;
+
 use beam::{Beam, Shape};
 use branch::Segment;
 use equilibrium::{Point, Prescribed};
@@ -88,6 +90,13 @@ pub struct Accuracy {
     pub solves: usize,
     /// Functions of each parity that the most demanding of them needed.
     pub modes: usize,
+}
+
+impl Accuracy {
+    /// Whether a state needed more functions than there are: its flexures are so thin that it is not resolved where they bend.
+    pub fn is_at_limit(&self) -> bool {
+        self.modes >= solver::MOST_MODES
+    }
 }
 
 /// Why no curve could be computed; x in m.
@@ -163,7 +172,7 @@ pub struct Flexures {
     geometry: Geometry,
     tolerance: f64,
     accuracy: Accuracy,
-    solver: Solver,
+    solver: Solver<'static>,
     segments: Vec<Segment>,
     units: Units,
 }
@@ -197,7 +206,16 @@ impl Flexures {
     ///
     /// `tolerance` trades time for closeness; at 1e-8 it takes milliseconds.
     pub fn solve(geometry: &Geometry, tolerance: f64) -> Result<(ForceCurve, Self), FlexureError> {
-        let (mut solver, units) = scaled(geometry, TAIL * tolerance.sqrt());
+        Self::solve_unless(geometry, tolerance, None)
+    }
+
+    /// As [`solve`](Self::solve); once `cancel` is set, it soon fails with any error.
+    pub fn solve_unless(
+        geometry: &Geometry,
+        tolerance: f64,
+        cancel: Option<&AtomicBool>,
+    ) -> Result<(ForceCurve, Self), FlexureError> {
+        let (mut solver, units) = scaled(geometry, TAIL * tolerance.sqrt(), cancel);
         let lost = |lost: Lost| match lost {
             Lost::NotConverged { x, residual } => {
                 FlexureError::NotConverged { x: x * units.length, residual }
@@ -215,7 +233,7 @@ impl Flexures {
         let stretches = pieces::fit(&mut solver, &mut segments, scale, tolerance).map_err(lost)?;
         let curve = curve(&stretches, units);
         let accuracy = measured(&curve, &stretches, &segments, scale, units, &solver);
-        solver.forget();
+        let solver = solver.forget();
         Ok((curve, Self { geometry: geometry.clone(), tolerance, accuracy, solver, segments, units }))
     }
 
@@ -330,7 +348,7 @@ fn bending_modulus(geometry: &Geometry) -> f64 {
 }
 
 /// The equations in units of one buckling flexure: its length, and its EI over that length squared.
-fn scaled(geometry: &Geometry, tail: f64) -> (Solver, Units) {
+fn scaled<'a>(geometry: &Geometry, tail: f64, cancel: Option<&'a AtomicBool>) -> (Solver<'a>, Units) {
     let Geometry { thickness, young, poisson, .. } = *geometry;
     let modulus = bending_modulus(geometry);
     let shear_modulus = young / (2.0 * (1.0 + poisson));
@@ -348,7 +366,7 @@ fn scaled(geometry: &Geometry, tail: f64) -> (Solver, Units) {
     };
     let bow = std::f64::consts::PI * geometry.initial_bow / length;
     let beams = [beam(&geometry.parallel), beam(&geometry.buckling)];
-    (Solver::new(beams, geometry.preload / length, [0.0, bow], tail), Units { length, force })
+    (Solver::new(beams, geometry.preload / length, [0.0, bow], tail, cancel), Units { length, force })
 }
 
 /// The whole curve from its right half.

@@ -5,6 +5,7 @@
 //! guess had.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::basis::Basis;
 use super::beam::{Beam, Shape, Terms};
@@ -12,7 +13,7 @@ use super::equilibrium::{Point, Prescribed, System};
 
 /// Functions of each parity: what a state begins with, and the most that it is given.
 const FEWEST_MODES: usize = 8;
-const MOST_MODES: usize = 256;
+pub(super) const MOST_MODES: usize = 256;
 
 /// The work that a mechanism may take, as the sum over its states of the cubes of their functions: a thousand times that
 /// of the prototype, and an end within some twenty seconds of one core for the others (10 to 45 ns each, measured). It is lengths
@@ -32,7 +33,7 @@ pub(super) enum Lost {
 
 /// The flexures, and the equations for each number of functions that was needed so far.
 #[derive(Debug, Clone)]
-pub(super) struct Solver {
+pub(super) struct Solver<'a> {
     pub beams: [Beam; 2],
     pub preload: f64,
     /// Coefficient of the first buckling mode in the stress-free rotation of each group.
@@ -47,18 +48,26 @@ pub(super) struct Solver {
     pub most_modes: usize,
     /// See [`MOST_WORK`].
     work: usize,
+    /// Set from elsewhere to end it: it is then lost.
+    cancel: Option<&'a AtomicBool>,
 }
 
-impl Solver {
-    pub fn new(beams: [Beam; 2], preload: f64, bow: [f64; 2], tail: f64) -> Self {
-        Self { beams, preload, bow, tail, systems: BTreeMap::new(), solves: 0, most_modes: 0, work: 0 }
+impl<'a> Solver<'a> {
+    pub fn new(
+        beams: [Beam; 2],
+        preload: f64,
+        bow: [f64; 2],
+        tail: f64,
+        cancel: Option<&'a AtomicBool>,
+    ) -> Self {
+        let systems = BTreeMap::new();
+        Self { beams, preload, bow, tail, systems, solves: 0, most_modes: 0, work: 0, cancel }
     }
 
     /// Gives up the tables, which are made again where they are needed; they are larger than all states together. Work
     /// begins anew.
-    pub fn forget(&mut self) {
-        self.systems.clear();
-        self.work = 0;
+    pub fn forget(self) -> Solver<'static> {
+        Solver { systems: BTreeMap::new(), work: 0, cancel: None, ..self }
     }
 
     /// Another bow of the stress-free flexures.
@@ -92,7 +101,7 @@ impl Solver {
             let modes = guess.even[0].len();
             self.solves += 1;
             self.work += modes.pow(3);
-            if self.work > MOST_WORK {
+            if self.work > MOST_WORK || self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
                 return Err(Lost::Endless { x: guess.x });
             }
             self.most_modes = self.most_modes.max(modes);

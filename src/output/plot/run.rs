@@ -257,8 +257,9 @@ fn reason(outcome: Outcome) -> &'static str {
         Outcome::Done => "done",
         Outcome::LeftTable { .. } => "the mass left the force curve",
         Outcome::ImpactBudget { .. } => "more impacts than one run may make",
-        Outcome::StepBudget { .. } => "more steps than one run may take",
+        Outcome::StepBudget { .. } => "more work than one run may take",
         Outcome::NotFinite { .. } => "a number was no longer finite",
+        Outcome::Inaccurate { .. } => "the energy does not balance",
         Outcome::Cancelled { .. } => "told to stop",
     }
 }
@@ -266,6 +267,7 @@ fn reason(outcome: Outcome) -> &'static str {
 fn subtitle(summary: &Summary) -> String {
     match summary.outcome.ended_at() {
         Some(at) => format!("ended early at {} s: {}", short(at), reason(summary.outcome)),
+        None if summary.outcome != Outcome::Done => reason(summary.outcome).to_owned(),
         None => match (summary.regime.name(), summary.period) {
             ("", _) => "one well or none: nothing to cross".to_owned(),
             ("interwell", Some(1)) => "interwell: repeats in every forcing period".to_owned(),

@@ -96,5 +96,5 @@ fn free_flight_is_not_slowed_by_a_contact_a_thousand_times_shorter() {
     assert_eq!(never.summary.peak_contact_force, Some(0.0));
     // and where it strikes: two flights and a contact
     let one = run(&flight(0.5, 4.854, 1e-9)).summary.steps;
-    assert!(one < 20, "one contact and two flights in {one} steps");
+    assert!(one < 25, "one contact and two flights in {one} steps");
 }

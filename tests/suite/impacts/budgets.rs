@@ -2,8 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use interwell::dynamics::{Outcome, Request};
-use interwell::scene::{Excitation, Mechanism};
+use interwell::dynamics::{Model, Outcome, Request};
+use interwell::scene::{Excitation, Mechanism, Stops};
 
 use super::scenes::*;
 
@@ -54,4 +54,48 @@ fn a_billion_seconds_at_rest_cost_nothing() {
         assert_eq!((r.summary.outcome, r.summary.steps), (Outcome::Done, 1));
         assert_eq!((r.summary.final_x, r.summary.rested_share), (1.5e-3, Some(1.0)));
     }
+}
+
+/// A noise of 4096 lines, whose steps take hundreds of times as long as those of a sine.
+fn many_lines() -> Excitation {
+    Excitation::Noise { rms_g: 0.1, low_hz: 1.0, high_hz: 6.0, seed: 1, lines: 4096 }
+}
+
+#[test]
+fn a_run_told_to_stop_looks_by_work_and_not_by_steps() {
+    let told = AtomicBool::new(true);
+    let request = Request { cancel: Some(&told), ..Default::default() };
+    let mut free = nominal_scene(1.5, 0.36, many_lines(), 1e8);
+    free.stops = Stops::None;
+    let ended = model(&free).run(&request).summary;
+    assert!(matches!(ended.outcome, Outcome::Cancelled { .. }) && ended.steps <= 2, "{ended:?}");
+    let together = [model(&free), model(&free)];
+    let all = Model::run_all(&together, None, Some(&told));
+    assert!(all.iter().all(|run| run.summary.steps <= 2), "{:?}", all[0].summary);
+    // On a stop it looks for its release, some strides of a third of a period of the fastest line at a time.
+    let resting = nominal_scene(1.5, 0.36, many_lines(), 1e8);
+    let Outcome::Cancelled { at } = model(&resting).run(&request).summary.outcome else { panic!() };
+    assert!(at < 50.0 / 6.0, "{at}");
+}
+
+#[test]
+fn samples_of_a_single_rest_end_with_the_run_that_is_told_to_stop() {
+    let mut resting = nominal_scene(1.5, 0.36, many_lines(), 1.0);
+    resting.excitation = Excitation::Sum(vec![constant(0.1), many_lines()]);
+    let times: Vec<f64> = (0..100_000).map(|i| f64::from(i) * 1e-5).collect();
+    let told = AtomicBool::new(true);
+    let run =
+        model(&resting).run(&Request { sample_times: &times, cancel: Some(&told), ..Default::default() });
+    assert!(matches!(run.summary.outcome, Outcome::Cancelled { .. }), "{:?}", run.summary.outcome);
+    assert!(run.samples.len() <= 2, "{}", run.samples.len());
+}
+
+#[test]
+fn a_common_period_is_found_however_many_parts_a_drive_has() {
+    // A hundred sines that never free the mass and repeat after ten seconds: known once a common period has passed.
+    let sines = (0..100).map(|i| sine(1.0 + 0.1 * f64::from(i), 0.001, 0.0)).collect();
+    let resting = nominal_scene(1.5, 0.36, Excitation::Sum(sines), 1e9);
+    let run = run(&resting);
+    assert_eq!((run.summary.outcome, run.summary.rested_share), (Outcome::Done, Some(1.0)));
+    assert!(run.summary.steps < 100, "{}", run.summary.steps);
 }

@@ -104,8 +104,13 @@ fn a_stop_that_is_never_reached_changes_no_bit() {
             hertz,
         ] {
             let stopped = Scene { stops, ..open.clone() };
-            let Some(own) = model(&stopped) else { continue };
-            let mut watched = own.run(&request);
+            let Some(stopped_model) = model(&stopped) else { continue };
+            // Stops far inside all that the mass could do otherwise set the scale: it is soon at one of them, unless the
+            // run is shorter.
+            if stopped_model.scales != own.scales {
+                continue;
+            }
+            let mut watched = stopped_model.run(&request);
             watched.summary.peak_contact_force = None; // none where there is nothing to touch
             same_bits(&run, &watched).map_err(|e| TestCaseError::fail(format!("{e}, with {stops:?}")))?;
         }

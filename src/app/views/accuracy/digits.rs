@@ -3,7 +3,6 @@
 use eframe::egui::{Align2, Grid, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
 
 use crate::app::style::Style;
-use crate::dynamics::Outcome;
 use crate::study::accuracy::scene::{
     AtTolerance, StepSize, Tolerances, duration, length_mm, moment, small_length, step_name,
 };
@@ -90,7 +89,7 @@ fn table_ui(ui: &mut Ui, style: &Style, known: &Tolerances, own: f64) {
 fn error(run: &AtTolerance, known: &Tolerances) -> String {
     match run.trusted {
         Some(t) => format!("trust to {}", moment(t)),
-        None if run.outcome != Outcome::Done => "ended early".to_owned(),
+        None if run.outcome.ended_at().is_some() => "ended early".to_owned(),
         None => small_length(run.error, known.travel).replace("about ", ""),
     }
 }
