@@ -4,6 +4,7 @@
 
 mod ask;
 mod build;
+mod hands;
 
 use std::sync::Arc;
 
@@ -14,6 +15,7 @@ use crate::study::{Settled, Thresholds};
 
 use super::accuracy::Accuracy;
 use super::document::Editor;
+use super::fields::suiting_limit;
 use super::map::Mapping;
 use super::player::{Player, fitting_speed};
 use super::status::{self, Sentence, Tense};
@@ -30,8 +32,11 @@ const FUTURE_PERIODS: f64 = 3.0;
 /// off by is not seen. At the end of the gesture they are solved as every study solves them.
 const HANDLED_TOLERANCE: f64 = 1e-6;
 
-/// Stops that appear where a scene does not say which.
-const STOPS_WHEN_ON: Stops = Stops::Rigid { travel_limit_mm: 1.5, restitution: 0.36 };
+/// The share of speed that stops keep where a scene does not say which stops come.
+const RESTITUTION: f64 = 0.36;
+
+/// Time in s within which another press of an arrow key belongs to the same gesture.
+const PRESSES: f64 = 1.0;
 
 /// A side of the card Before / now.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +81,8 @@ pub struct Session {
     changed_at: f64,
     /// The stops that come back when they are switched on.
     remembered_stops: Stops,
+    /// The field whose presses of arrow keys are one gesture, and the time in s of the last one.
+    presses: Option<(&'static str, f64)>,
     wake: Wake,
 }
 
@@ -93,10 +100,7 @@ impl Session {
         let hints = scene.app.clone().unwrap_or_default();
         let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.pace()));
         let player = Player::new(&model, speed);
-        let remembered_stops = match scene.stops {
-            Stops::None => hints.stops_when_on.unwrap_or(STOPS_WHEN_ON),
-            stops => stops,
-        };
+        let remembered_stops = first_stops(&scene, &model);
         let mut session = Self {
             editor,
             model: Arc::new(model),
@@ -115,6 +119,7 @@ impl Session {
             mechanism,
             changed_at: 0.0,
             remembered_stops,
+            presses: None,
             wake,
         };
         session.ask_settled();
@@ -183,7 +188,7 @@ impl Session {
                 self.edit(|scene| scene.mechanism = wanted)
             }
             Err(error) => {
-                self.refused = Some(why(&error));
+                self.refused = Some(why(&error, &document.scene));
                 false
             }
         }
@@ -196,6 +201,7 @@ impl Session {
 
     /// Ends the gesture.
     pub fn end_gesture(&mut self) {
+        self.presses = None;
         if self.editor.in_gesture() {
             self.apply();
             self.editor.end_gesture();
@@ -253,6 +259,7 @@ impl Session {
     pub fn back_to_start(&mut self) {
         self.travel(Editor::back_to_start);
         self.before = None;
+        self.remembered_stops = first_stops(self.scene(), &self.model);
         self.restart();
         let hinted = self.scene().app.as_ref().and_then(|hints| hints.speed);
         self.player.speed = hinted.unwrap_or_else(|| fitting_speed(self.model.pace()));
@@ -286,11 +293,6 @@ impl Session {
         self.remembered_stops
     }
 
-    /// Changes the stops that come when they are switched on.
-    pub fn remember_stops(&mut self, stops: Stops) {
-        self.remembered_stops = stops;
-    }
-
     /// Lets the mass go on as the scene now says, where that has changed.
     fn apply(&mut self) {
         if *self.editor.scene() == self.built {
@@ -308,7 +310,7 @@ impl Session {
                 self.ask_settled();
             }
             Err(error) => {
-                self.fault = Some(error.to_string());
+                self.fault = Some(why(&error, self.editor.scene()));
                 self.settled.clear();
                 self.accuracy.begin(None);
                 self.thresholds.clear();
@@ -403,6 +405,19 @@ impl Session {
             Excitation::Sine { amplitude_g, .. } => Some(amplitude_g),
             _ => None,
         }
+    }
+}
+
+/// The stops that come when they are switched on, before a hand has moved any.
+fn first_stops(scene: &Scene, model: &Model) -> Stops {
+    let hinted = || scene.app.as_ref().and_then(|hints| hints.stops_when_on);
+    let suiting = || {
+        let well = model.mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
+        Stops::Rigid { travel_limit_mm: suiting_limit(well), restitution: RESTITUTION }
+    };
+    match scene.stops {
+        Stops::None => hinted().unwrap_or_else(suiting),
+        stops => stops,
     }
 }
 

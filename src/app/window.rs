@@ -159,6 +159,9 @@ impl Window {
             self.session.moved_by_hand();
         }
         self.session.poll();
+        if let Some(left) = self.session.follow_presses(ctx.input(|input| input.time)) {
+            ctx.request_repaint_after_secs(left as f32);
+        }
         let seconds = ctx.input(|input| f64::from(input.stable_dt));
         self.session.player.tick(seconds);
         if self.session.player.is_playing() {
@@ -198,14 +201,14 @@ impl Window {
         });
         if compact {
             Panel::top("controls row").frame(line).show(ui, |ui| {
-                controls::row_ui(ui, &mut self.session, &style, &mut self.more);
+                controls::row_ui(ui, &mut self.session, &mut self.more);
             });
         } else {
             let width = if ctx.content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
             let column = frame(12, 10);
             Panel::left("controls").frame(column).resizable(false).exact_size(width).show(ui, |ui| {
                 egui::ScrollArea::vertical().show(ui, |ui| {
-                    controls::column_ui(ui, &mut self.session, &style, &mut self.more);
+                    controls::column_ui(ui, &mut self.session, &mut self.more);
                 });
             });
         }

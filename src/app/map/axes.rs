@@ -1,5 +1,6 @@
 //! Which two fields does a map go over, and from where to where?
 
+use crate::app::fields::{decimal, round_up};
 use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};
 use crate::study::{Column, Values};
 
@@ -137,18 +138,6 @@ pub fn label(column: &str) -> String {
 /// The `--over` argument of an axis.
 pub fn over(axis: &SweepAxis) -> String {
     format!("{}={}:{}:{}", axis.field, axis.from, axis.to, axis.step)
-}
-
-/// The least number of one or two digits that is not below `value`.
-fn round_up(value: f64) -> f64 {
-    let power = 10_f64.powf(value.log10().floor());
-    let digits = [1.0, 1.2, 1.5, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0];
-    decimal(digits.iter().map(|digit| digit * power).find(|to| *to >= value * (1.0 - 1e-9)).unwrap_or(value))
-}
-
-/// The number of six digits: what products of round numbers are meant to be.
-fn decimal(value: f64) -> f64 {
-    format!("{value:.6e}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]
