@@ -63,6 +63,16 @@ impl Accuracy {
         self.trust.clear();
     }
 
+    /// For how long the error of the motion has been worked out; none where it is not.
+    pub(super) fn working(&self) -> Option<Duration> {
+        self.trust.running_for()
+    }
+
+    /// Leaves the error of the motion unknown.
+    pub(super) fn stop(&mut self) {
+        self.trust.stop();
+    }
+
     pub(super) fn poll(&mut self) {
         self.trust.poll();
         self.tolerances.poll();

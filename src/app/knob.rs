@@ -61,8 +61,7 @@ pub struct Turn {
 impl Knob<'_> {
     /// Draws it and says what was done to it.
     pub fn ui(&self, ui: &mut Ui, value: f64) -> Turn {
-        let Reach { low, high, step } = self.reach;
-        let least = decimals(step);
+        let least = decimals(self.reach.step);
         // arrow keys are consumed by what they act on
         let pressed = ui.input(|input| {
             [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown]
@@ -71,30 +70,14 @@ impl Knob<'_> {
         });
         let name = hover_beside(ui.label(self.name), self.hover);
         let mut turned = value;
-        let slider = Slider::new(&mut turned, low.min(value)..=high.max(value))
-            .show_value(false)
-            .clamping(egui::SliderClamping::Never)
-            .smart_aim(false)
-            .step_by(step);
-        let width = self.slider_width(ui, value, least);
-        let slider = ui
-            .scope(|ui| {
-                ui.spacing_mut().slider_width = width;
-                ui.add(slider)
+        let (slider, field, typed) = ui
+            .horizontal(|ui| {
+                let slider = self.slider_ui(ui, &mut turned, least).labelled_by(name.id);
+                let slid = turned != value;
+                let (field, typed) = self.number_ui(ui, &mut turned, least, !slid);
+                (slider, field.labelled_by(name.id), typed)
             })
-            .inner
-            .labelled_by(name.id);
-        if turned != value && !slider.dragged() && slider.has_focus() && ui.input(|i| i.modifiers.shift) {
-            turned = value + 10.0 * (turned - value);
-        }
-        // what a slider gives are multiples of its step
-        if turned != value {
-            turned =
-                if turned.abs() < 1e12 * step { decimal((turned / step).round() * step) } else { turned };
-        }
-        let slid = turned != value;
-        let (field, typed) = self.number_ui(ui, &mut turned, least, !slid);
-        let field = field.labelled_by(name.id);
+            .inner;
         let how = match (slider.dragged() || field.dragged(), pressed) {
             (true, _) => How::Dragged,
             (_, true) if !typed => How::Pressed,
@@ -108,6 +91,25 @@ impl Knob<'_> {
         }
         said_ui(ui, self.name, &response);
         Turn { value: changed.then_some(turned), how, ended }
+    }
+
+    fn slider_ui(&self, ui: &mut Ui, value: &mut f64, least: usize) -> Response {
+        let (present, Reach { low, high, step }) = (*value, self.reach);
+        ui.spacing_mut().slider_width = self.slider_width(ui, present, least);
+        let slider = Slider::new(value, low.min(present)..=high.max(present))
+            .show_value(false)
+            .clamping(egui::SliderClamping::Never)
+            .smart_aim(false)
+            .step_by(step);
+        let slider = ui.add(slider);
+        if *value != present && !slider.dragged() && slider.has_focus() && ui.input(|i| i.modifiers.shift) {
+            *value = present + 10.0 * (*value - present);
+        }
+        // what a slider gives are multiples of its step
+        if *value != present && value.abs() < 1e12 * step {
+            *value = decimal((*value / step).round() * step);
+        }
+        slider
     }
 
     /// The number beside the slider. Its response, and whether a number was typed that can be taken.
@@ -232,7 +234,7 @@ fn said_ui(ui: &Ui, of: &str, response: &Response) {
         rect.left_bottom() + egui::vec2(0.0, 4.0)
     };
     let style = Style::of(ui.ctx(), false);
-    let area = egui::Area::new(place().with("text")).order(egui::Order::Tooltip).fixed_pos(at);
+    let area = egui::Area::new(place().with(of)).order(egui::Order::Tooltip).fixed_pos(at);
     area.constrain(true).interactable(false).show(ui.ctx(), |ui| {
         let frame = egui::Frame::popup(ui.style()).stroke(egui::Stroke::new(1.5, style.impact()));
         frame.show(ui, |ui| {

@@ -7,6 +7,7 @@ mod build;
 mod hands;
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use crate::dynamics::Model;
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
@@ -34,6 +35,9 @@ const HANDLED_TOLERANCE: f64 = 1e-6;
 
 /// The share of speed that stops keep where a scene does not say which stops come.
 const RESTITUTION: f64 = 0.36;
+
+/// For how long the background works before it is offered to stop it.
+pub const OFFER_TO_STOP: Duration = Duration::from_secs(2);
 
 /// Time in s within which another press of an arrow key belongs to the same gesture.
 const PRESSES: f64 = 1.0;
@@ -382,7 +386,9 @@ impl Session {
         if !self.model.is_shaken() {
             return status::unshaken(&self.model, &state);
         }
-        let Some(settled) = self.settled.current() else { return Sentence::waiting() };
+        let Some(settled) = self.settled.current() else {
+            return if self.settled.is_running() { Sentence::waiting() } else { stopped() };
+        };
         let tense = if self.is_early(settled) { Tense::Future } else { Tense::Present };
         status::driven(self.scene(), &self.model, settled, self.thresholds.current(), tense)
     }
@@ -406,6 +412,12 @@ impl Session {
             _ => None,
         }
     }
+}
+
+/// While it is not known what the motion settles to, because a person has stopped that.
+fn stopped() -> Sentence {
+    let text = "Stopped before it was known what this settles to: a shorter run length is known sooner.";
+    Sentence { kind: status::Kind::Other, text: text.to_owned(), remedy: String::new() }
 }
 
 /// The stops that come when they are switched on, before a hand has moved any.
