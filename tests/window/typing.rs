@@ -216,3 +216,27 @@ fn what_takes_long_can_be_stopped_and_a_newer_change_takes_its_place() {
         "{text}"
     );
 }
+
+#[test]
+fn the_card_shows_whatever_was_changed() {
+    let mut harness = opened("paper");
+    for (name, text, words) in [
+        ("restitution", "0.45", "0.45"),
+        ("mass", "18.25", "18.25 g"),
+        ("damping ratio", "0.0312", "0.0312"),
+        ("frequency", "3.05", "1.00 g, 3.05 Hz"),
+        ("preload", "2.65", "2.65 mm"),
+        ("run length", "12", "12 s"),
+    ] {
+        let labels = |harness: &Harness<'static, Window>, text: &str| {
+            let all = harness.query_all_by_label(text);
+            all.filter(|node| node.accesskit_node().role() == Role::Label).count()
+        };
+        let before = (labels(&harness, name), labels(&harness, words));
+        type_into(&mut harness, name, text);
+        harness.run_steps(2);
+        // the row is there, and of a frequency it is that of the shaking
+        assert_eq!(labels(&harness, words), before.1 + 1, "{name}");
+        assert_eq!(labels(&harness, name), before.0 + usize::from(name != "frequency"), "{name}");
+    }
+}

@@ -12,7 +12,7 @@ use super::ViewContext;
 use super::labels::{ago, free_place, haloed};
 use super::legend::{LEGEND, Sign};
 use super::ranges::room_for_push;
-use super::stops::{WALL, stops_ui};
+use super::stops::{WALL, key_step, stops_ui};
 
 /// Points between two points of a curve.
 const CURVE_STEP: f32 = 2.0;
@@ -95,8 +95,8 @@ fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
     }
 }
 
-/// Step in mm of a mass that the arrow keys move; with Shift ten of them.
-const KEY_STEP: f64 = 0.1;
+/// Steps of a stop's slider that an arrow key moves the mass by; with Shift ten times as many.
+const KEY_STEPS: f64 = 2.0;
 
 /// Lets the mass be grabbed: it is held where the hand is, and the clock stands. With the keyboard's focus on it the arrow
 /// keys take hold of it and move it, and Enter lets go.
@@ -111,12 +111,11 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
         response.request_focus();
         context.session.player.hold(mm / 1e3);
     }
-    let player = &mut context.session.player;
     if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-        player.hold(context.span.world_from_screen(pointer.x, rect));
+        context.session.player.hold(context.span.world_from_screen(pointer.x, rect));
     }
     if response.drag_stopped() {
-        player.let_go();
+        context.session.player.let_go();
         context.session.moved_by_hand();
         return true;
     }
@@ -125,16 +124,17 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
         let moved = arrows(ui, response.id);
         if moved != 0.0 {
             // on the grid of the step
-            let place = (mm / KEY_STEP).round() + moved;
-            player.hold(place * KEY_STEP / 1e3);
+            let step = KEY_STEPS * key_step(context.session);
+            let place = (mm / step).round() + moved;
+            context.session.player.hold(place * step / 1e3);
         }
         if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
             response.surrender_focus();
         }
         return moved != 0.0;
     }
-    if response.lost_focus() && player.is_held() && !response.dragged() {
-        player.let_go();
+    if response.lost_focus() && context.session.player.is_held() && !response.dragged() {
+        context.session.player.let_go();
         context.session.moved_by_hand();
         return true;
     }
