@@ -93,6 +93,19 @@ impl Knob<'_> {
         Turn { value: changed.then_some(turned), how, ended }
     }
 
+    /// The number alone, without a slider. The new number, where one was typed or dragged to.
+    pub fn alone_ui(&self, ui: &mut Ui, value: f64) -> Option<f64> {
+        let mut turned = value;
+        let (field, _) = self.number_ui(ui, &mut turned, 0, true);
+        ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(self.name));
+        said_ui(ui, self.name, &field);
+        let changed = turned != value && turned.is_finite();
+        if changed {
+            forget(ui);
+        }
+        changed.then_some(turned)
+    }
+
     fn slider_ui(&self, ui: &mut Ui, value: &mut f64, least: usize) -> Response {
         let (present, Reach { low, high, step }) = (*value, self.reach);
         ui.spacing_mut().slider_width = self.slider_width(ui, present, least);

@@ -1,6 +1,6 @@
 //! Which two fields does a map go over, and from where to where?
 
-use crate::app::fields::{decimal, round_up};
+use crate::app::fields::{below, decimal, round_up};
 use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};
 use crate::study::{Column, Values};
 
@@ -118,6 +118,18 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
     SweepAxis { field: path.to_owned(), from, to, step }
 }
 
+/// The part of an axis between two of its values, in as many steps as it has itself, on a round step.
+pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
+    let (from, to) = (from.min(to).max(axis.from), from.max(to).min(axis.to));
+    let cells = ((axis.to - axis.from) / axis.step).max(1.0);
+    let width = (to - from).max(1e-6 * (axis.to - axis.from));
+    let step = below(width / cells).min(axis.step);
+    let on_step = |value: f64| decimal((value / step).round() * step);
+    // at least a step, and never below what the axis begins with
+    let from = on_step(from).max(axis.from);
+    SweepAxis { field: axis.field.clone(), from, to: on_step(to).max(decimal(from + step)), step }
+}
+
 /// What a person calls a field, and its unit, where it has one: `travel limit` and `mm`. `column` is its name in a table.
 pub fn name_and_unit(column: &str) -> (String, Option<String>) {
     let label = Column { name: column.to_owned(), values: Values::Words(Vec::new()) }.label();
@@ -160,6 +172,15 @@ mod tests {
         let prototype = "stops.travel_limit_mm=0.5:7:0.125 excitation.amplitude_g=0:2:0.02";
         assert_eq!(defaults("first-look").as_deref(), Some(prototype));
         assert!(defaults("random-shaking").is_some_and(|axes| axes.contains("rms_g")));
+    }
+
+    #[test]
+    fn a_part_of_an_axis_has_as_many_cells() {
+        let axis = SweepAxis { field: "a".to_owned(), from: 0.5, to: 7.0, step: 0.125 };
+        let own = part(&axis, 2.51, 1.23);
+        assert_eq!((own.from, own.to, own.step), (1.24, 2.5, 0.02));
+        let tiny = part(&axis, 6.9999, 6.9999);
+        assert!(tiny.step > 0.0 && tiny.to > tiny.from);
     }
 
     #[test]

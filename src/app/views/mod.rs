@@ -195,6 +195,8 @@ pub struct Memory {
     ranges: ranges::Ranges,
     /// What the map shows.
     pub map_quantity: MapQuantity,
+    /// What a hand is about to do to the map.
+    map_hand: map::Hand,
     /// What the view Accuracy shows where there is no room for all of it.
     accuracy_page: accuracy::Page,
 }
