@@ -406,6 +406,11 @@ impl Window {
         &self.memory.timeline
     }
 
+    /// Whether the phase portrait shows a point a period and no path.
+    pub fn points_only(&self) -> bool {
+        self.memory.points_only
+    }
+
     /// The views and where they stand.
     pub fn tiling(&self) -> &Tiling {
         &self.tiling

@@ -9,12 +9,12 @@ use eframe::egui::{Align2, Painter, Sense, Shape, Stroke, Ui, pos2, vec2};
 use crate::app::style::BALL;
 use crate::dynamics::STANDARD_GRAVITY;
 
-use super::ViewContext;
 use super::chart::Chart;
 use super::labels::haloed;
 use super::legend::Sign;
 use super::ranges::{axis_end, room_for_push};
 use super::stops::stops_beside_ui;
+use super::{ViewContext, too_small_ui};
 
 /// Room above the largest force of the wells, as a factor.
 const ROOM: f64 = 1.3;
@@ -33,10 +33,12 @@ const LABEL: f32 = 110.0;
 pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if area.width() < 60.0 || area.height() < 80.0 {
+        too_small_ui(ui, &context.style, area);
         return false;
     }
     let style = context.style;
-    let end = end_of_axis(context);
+    let own = end_of_axis(context);
+    let (_, end) = context.memory.held.force.keep((-own, own), context.session.editor.in_gesture());
     let chart = Chart::new(area, context.span, -end, end);
     chart.axes(ui, context, 1.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
@@ -67,7 +69,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let at = chart.screen_from_world(state.x, own.force(state.x));
     painter.circle(at, BALL - 2.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
     chart.numbers(ui, &style, "force (N)", 1.0);
-    chart.legend(ui, &style, &legend);
+    chart.legend(ui, &style, area.right(), &legend);
     if let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) {
         let (x, _) = chart.world_from_screen(pointer);
         let force = context.session.shown().mechanism.curve.force(x);

@@ -10,11 +10,11 @@ use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, 
 use crate::app::style::{BALL, RING_SECONDS};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
-use super::ViewContext;
 use super::flexures::{CLAMP, Place, Scale, bulge_words, clamp, state_at};
 use super::labels::ago;
 use super::stops::stops_beside_ui;
 use super::well::mass_ui;
+use super::{ViewContext, too_small_ui};
 
 /// Points of a drawn flexure.
 const FLEXURE_POINTS: usize = 24;
@@ -38,6 +38,7 @@ pub(super) struct Ring {
 pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let (rect, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if rect.width() < 60.0 || rect.height() < 60.0 {
+        too_small_ui(ui, &context.style, rect);
         return false;
     }
     // an axis of its own only where no other view stands on it

@@ -8,11 +8,11 @@ use eframe::egui::{self, Align2, CursorIcon, Pos2, Rangef, Rect, Sense, Shape, S
 
 use crate::app::style::{BALL, GRAB};
 
-use super::ViewContext;
 use super::labels::{ago, free_place, haloed};
 use super::legend::{LEGEND, Sign};
 use super::ranges::room_for_push;
 use super::stops::{WALL, key_step, stops_ui};
+use super::{ViewContext, too_small_ui};
 
 /// Points between two points of a curve.
 const CURVE_STEP: f32 = 2.0;
@@ -21,6 +21,7 @@ const CURVE_STEP: f32 = 2.0;
 pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let (area, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if area.width() < 60.0 || area.height() < 60.0 {
+        too_small_ui(ui, &context.style, area);
         return false;
     }
     let style = context.style;
@@ -165,7 +166,7 @@ struct Heights {
 
 impl Heights {
     /// From a little below the deepest to a little above the highest place that the mass gets to.
-    fn of(ui: &Ui, context: &ViewContext<'_>, rect: Rect) -> Self {
+    fn of(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect) -> Self {
         let room = room_for_push(context.session.shown().largest_push());
         let model = context.session.shown();
         let curve = &model.mechanism.curve;
@@ -195,12 +196,15 @@ impl Heights {
             (low, high) = (low - 1e-3, low + 1e-3);
         }
         let room = 0.22 * (high - low);
+        let in_gesture = context.session.editor.in_gesture();
+        let own = (low - 0.5 * room, high + room);
+        let (low, high) = context.memory.held.heights.keep(own, in_gesture);
         let id = ui.scope_id();
         let ease = |name: &str, value: f64| {
             let target = (value * 1e6) as f32;
             f64::from(ui.ctx().animate_value_with_time(id.with(name), target, 0.3)) * 1e-6
         };
-        Self { low: ease("low", low - 0.5 * room), high: ease("high", high + room), rect }
+        Self { low: ease("low", low), high: ease("high", high), rect }
     }
 
     fn screen_from_world(&self, energy: f64) -> f32 {

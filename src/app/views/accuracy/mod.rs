@@ -8,7 +8,7 @@ mod steps;
 
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
-use super::{ViewContext, is_covered_ui};
+use super::{ViewContext, is_covered_ui, too_small_ui};
 
 /// Room in points from which both parts are shown.
 const BOTH: (f32, f32) = (760.0, 250.0);
@@ -40,11 +40,12 @@ pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     if is_covered_ui(ui, context) {
         return false;
     }
-    context.session.want_accuracy();
     let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
     if area.width() < 160.0 || area.height() < 100.0 {
+        too_small_ui(ui, &context.style, ui.max_rect());
         return false;
     }
+    context.session.want_accuracy();
     let part = |ui: &mut Ui, rect: Rect, page: Page, context: &mut ViewContext<'_>| {
         ui.scope_builder(UiBuilder::new().max_rect(rect).id_salt(page.name()), |ui| match page {
             Page::Digits => digits::digits_ui(ui, context),

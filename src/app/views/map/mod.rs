@@ -14,7 +14,7 @@ use crate::app::style::Style;
 use crate::dynamics::{Regime, Summary};
 use crate::output::sweep_about;
 
-use super::{ViewContext, is_covered_ui};
+use super::{ViewContext, is_covered_ui, too_small_ui};
 use frame::Frame;
 use picture::{Picture, bar, lines};
 use quantity::{Scale, kind, kind_name};
@@ -39,6 +39,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     let Some((map, current)) = context.session.map.shown() else { return changed };
     if area.width() < 140.0 || area.height() < 110.0 {
+        too_small_ui(ui, &style, area);
         return changed;
     }
     let quantity = context.memory.map_quantity;
