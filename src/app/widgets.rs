@@ -12,8 +12,19 @@ pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
 }
 
 /// A hover text that stands beside what it explains, where the window has a column of controls: below it would cover the
-/// next one.
+/// next one. It stays away from what a hand has just changed, until the pointer comes back to it.
 pub fn hover_beside(response: Response, text: &str) -> Response {
+    let hushed = egui::Id::unique("hushed");
+    let own = Some(response.id);
+    let is_hushed = || response.ctx.data(|data| data.get_temp::<Option<egui::Id>>(hushed)).flatten() == own;
+    if response.changed() || response.dragged() || response.is_pointer_button_down_on() {
+        response.ctx.data_mut(|data| data.insert_temp(hushed, own));
+    } else if is_hushed() && !response.contains_pointer() {
+        response.ctx.data_mut(|data| data.insert_temp::<Option<egui::Id>>(hushed, None));
+    }
+    if is_hushed() {
+        return response;
+    }
     if response.ctx.content_rect().width() < COMPACT_BELOW {
         return response.on_hover_text(text);
     }

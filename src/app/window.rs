@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, Ui};
+use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
 use egui_tiles::Tree;
 
 use crate::scene::{Layout, PRESETS};
@@ -28,6 +28,9 @@ use super::{controls, export, hint, shortcuts};
 
 /// Where the scenes opened last are kept between two starts of the program.
 pub const RECENT: &str = "recent";
+
+/// Height in points of the line of the first minute.
+const HINT_ROW: f32 = 32.0;
 
 /// Where a person's own arrangement is kept.
 pub const OWN_KEY: &str = "arrangement";
@@ -85,6 +88,8 @@ pub struct Window {
     /// Input that waits for the next frame.
     later: Later,
     hint: hint::Hint,
+    /// The line of the first minute has been there.
+    hint_row: bool,
     wake: Wake,
     /// What was applied last, to be applied again only where it changes.
     applied: Option<Settings>,
@@ -126,6 +131,7 @@ impl Window {
             dialogs: true,
             typed: None,
             later: Later::default(),
+            hint_row: false,
             wake,
             applied: None,
         })
@@ -213,11 +219,21 @@ impl Window {
             });
         }
         let hinted = self.hint.is_shown(&self.session);
+        self.hint_row |= hinted;
         if self.ways && !self.covered {
             let ways = self.session.ways();
             Panel::top("ways").frame(line).show(ui, |ui| ui.label(ways));
-        } else if hinted {
-            Panel::top("hint").frame(line).show(ui, |ui| self.hint.ui(ui));
+        } else if self.hint_row {
+            // its room stays when it goes: the views below do not jump
+            Panel::top("hint").frame(line).exact_size(HINT_ROW).show(ui, |ui| match hinted {
+                true => self.hint.ui(ui),
+                false => {
+                    ui.label(
+                        RichText::new("H says what it would take to cross, F1 lists all keys.")
+                            .color(style.faint()),
+                    );
+                }
+            });
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.memory.grab = false;

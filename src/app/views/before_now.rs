@@ -176,8 +176,10 @@ fn value(card: &Card, of: impl Fn(&Settled) -> Option<String>) -> String {
 }
 
 fn shaking(scene: &Scene) -> String {
-    let g = |value: f64| shown(value, 2);
-    let hz = |value: f64| shown(value, 1);
+    // what these leave out has a row of its own where it differs
+    let rounded = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
+    let g = |value: f64| shown(rounded(value), 2);
+    let hz = |value: f64| shown(rounded(value), 1);
     match &scene.excitation {
         Excitation::None => "none".to_owned(),
         Excitation::Constant { accel_g } => format!("{} g, constant", g(*accel_g)),

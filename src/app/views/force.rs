@@ -6,6 +6,7 @@
 
 use eframe::egui::{Align2, Painter, Sense, Shape, Stroke, Ui, pos2, vec2};
 
+use crate::app::fields::three;
 use crate::app::style::BALL;
 use crate::dynamics::STANDARD_GRAVITY;
 
@@ -74,7 +75,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let (x, _) = chart.world_from_screen(pointer);
         let force = context.session.shown().mechanism.curve.force(x);
         if force.is_finite() {
-            chart.readout(ui, &style, &format!("{force:.3} N at {:.2} mm", x * 1e3));
+            chart.readout(ui, &style, &format!("{} N at {} mm", three(force), three(x * 1e3)));
         }
     }
     changed
@@ -141,7 +142,7 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
         let inwards = -MARK * way as f32;
         painter.line_segment([at, at + vec2(LINE * inwards, 0.0)], stroke);
         // beyond the wall, out of the way of the mass; on the inner side where the picture ends
-        let text = format!("frees at {:.2} g", force.abs() / (model.mass * STANDARD_GRAVITY));
+        let text = format!("frees at {} g", three(force.abs() / (model.mass * STANDARD_GRAVITY)));
         let room = if way > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };
         let outwards = if room > LABEL { -inwards.signum() } else { inwards.signum() };
         let align = if outwards > 0.0 { Align2::LEFT_CENTER } else { Align2::RIGHT_CENTER };

@@ -87,7 +87,7 @@ impl View {
     pub fn about(self) -> &'static str {
         match self {
             Self::Mechanism => {
-                "The mass between its flexures and stops, seen from the base that shakes. The arrow is the push that the mass \
+                "The mass between its stops, seen from the base that shakes, with its flexures or a spring in their place. The arrow is the push that the mass \
                  feels. Drag the mass or a stop."
             }
             Self::Well => {

@@ -7,6 +7,7 @@ use std::collections::VecDeque;
 
 use eframe::egui::{self, Color32, Painter, Pos2, Sense, Shape, Stroke, Ui};
 
+use crate::app::fields::three;
 use crate::app::status::Kind;
 use crate::app::widgets::kind_shapes;
 use crate::dynamics::{Model, Phase, Sample};
@@ -118,7 +119,7 @@ fn start_ui(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, c
         context.session.player.place(x, if inside { v } else { 0.0 });
         context.session.moved_by_hand();
     }
-    chart.readout(ui, &context.style, &format!("{:.2} mm, {:.0} mm/s", x * 1e3, v * 1e3));
+    chart.readout(ui, &context.style, &format!("{} mm, {} mm/s", three(x * 1e3), three(v * 1e3)));
     if rests(ui) {
         response.clone().on_hover_text_at_pointer("Click: the motion goes on from here.");
     }

@@ -9,6 +9,7 @@ use egui_plot::{
     GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span, VLine,
 };
 
+use crate::app::fields::decimals_for;
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
 use crate::study::Watch;
 
@@ -224,7 +225,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
                 plot.line(Line::new("impact", ends).stroke(style.impact_stroke()));
             }
             for path in paths {
-                plot.line(Line::new(quantity.name(), PlotPoints::Owned(path)).stroke(line));
+                let own = Line::new(quantity.name(), PlotPoints::Owned(path)).stroke(line);
+                // a band reaches beyond the ends of a steep line
+                plot.line(own.allow_band(quantity != Quantity::Displacement));
             }
             if let Some(t) = cursor {
                 let dashed = LineStyle::dashed_dense();
@@ -242,7 +245,11 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
         let watch = context.session.player.watch();
         let value = quantity.seen(watch, &watch.state_at(t));
         let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
-        let text = format!("{value:.3} {} at {t:.3} s", quantity.unit());
+        let text = format!(
+            "{value:.digits$} {} at {t:.3} s",
+            quantity.unit(),
+            digits = 1 + decimals_for(high - low)
+        );
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }
     legend(&painter, &style, area, right, &entries);

@@ -150,6 +150,6 @@ pub fn kind_name(kind: Kind) -> &'static str {
         Kind::Intrawell => "intrawell",
         Kind::Irregular => "irregular",
         Kind::Interwell => "interwell",
-        Kind::Other | Kind::Fault => "one well",
+        Kind::Other | Kind::Fault => "no barrier",
     }
 }
