@@ -240,3 +240,31 @@ fn the_card_shows_whatever_was_changed() {
         assert_eq!(labels(&harness, name), before.0 + usize::from(name != "frequency"), "{name}");
     }
 }
+
+#[test]
+fn a_hover_text_stays_away_from_what_was_just_changed() {
+    let mut harness = window("first-look", [1280.0, 720.0], Settings::default());
+    let rail = harness.get_by_role_and_label(Role::Slider, "amplitude").rect();
+    let at = |share: f32| eframe::egui::pos2(rail.left() + share * rail.width(), rail.center().y);
+    let explained = |harness: &Harness<'static, Window>| {
+        harness.query_all_by_label_contains("Increase: the base pushes").next().is_some()
+    };
+    harness.hover_at(at(0.45));
+    harness.run_steps(8);
+    assert!(explained(&harness));
+    harness.drag_at(at(0.45));
+    harness.run_steps(1);
+    harness.hover_at(at(0.6));
+    harness.run_steps(1);
+    harness.drop_at(at(0.6));
+    harness.run_steps(1);
+    harness.hover_at(at(0.61));
+    harness.run_steps(8);
+    assert!(!explained(&harness));
+    // away and back it explains again
+    harness.hover_at(eframe::egui::pos2(900.0, 300.0));
+    harness.run_steps(3);
+    harness.hover_at(at(0.5));
+    harness.run_steps(8);
+    assert!(explained(&harness));
+}

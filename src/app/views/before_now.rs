@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
 
-use crate::app::fields::{exact, name_and_unit, shown};
+use crate::app::fields::{decimals_for, exact, name_and_unit, shown};
 use crate::app::session::Card;
 use crate::app::status::{Kind, mm, speed};
 use crate::app::widgets::kind_shapes;
@@ -197,7 +197,7 @@ fn shaking(scene: &Scene) -> String {
 }
 
 fn stops(scene: &Scene) -> String {
-    let mm = |value: f64| format!("{} mm", shown(value, 2));
+    let mm = |value: f64| format!("{} mm", shown(value, decimals_for(value).min(2)));
     match scene.stops {
         Stops::None => "none".to_owned(),
         Stops::Rigid { travel_limit_mm, .. } => format!("±{}", mm(travel_limit_mm)),

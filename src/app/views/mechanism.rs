@@ -215,7 +215,9 @@ fn words_ui(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, word
     }
     put(words.to_owned(), style.faint());
     if context.session.shown().is_shaken() {
-        let decimals = decimals_for(context.session.shown().largest_push() / STANDARD_GRAVITY);
+        // hundredths, and more only where these say nothing
+        let most = context.session.shown().largest_push() / STANDARD_GRAVITY;
+        let decimals = if most < 0.1 { decimals_for(most) } else { 2 };
         put(format!("push {:.decimals$} g", (base_accel / STANDARD_GRAVITY).abs()), style.base());
     }
     inset(painter, context, Rect::from_min_max(pos2(at.x, rect.top()), rect.max), base_accel);
