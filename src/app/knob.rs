@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Slider, Ui, pos2};
 
 use super::fields::{Reach, decimal, decimals, exact, shown};
-use super::style::Style;
+use super::style::{COMPACT_BELOW, Style};
 use super::widgets::hover_beside;
 
 /// Room in points that a slider leaves for its number, and what is left of the slider for a long one.
@@ -240,7 +240,7 @@ fn said_ui(ui: &Ui, of: &str, response: &Response) {
     }
     ui.ctx().request_repaint_after_secs(left as f32);
     let (rect, window) = (response.rect, ui.ctx().content_rect());
-    let beside = window.right() - rect.right() > WIDTH + 40.0;
+    let beside = window.width() >= COMPACT_BELOW && window.right() - rect.right() > WIDTH + 40.0;
     let at = if beside {
         pos2(rect.right() + 10.0, rect.top())
     } else {

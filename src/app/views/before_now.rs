@@ -102,19 +102,19 @@ struct Row {
 
 /// A row for everything in which two scenes differ: shaking and stops whole, else a number each.
 fn changes(before: &Scene, now: &Scene) -> Vec<Row> {
-    let kinds: [(&str, fn(&Scene) -> String); 5] = [
-        ("shaking", shaking),
-        ("stops", stops),
-        ("damping", damping),
-        ("mechanism", mechanism),
-        ("start", start),
-    ];
-    let whole = kinds.into_iter().map(|(name, text)| Row {
+    let row = |name: &str, text: fn(&Scene) -> String| Row {
         name: name.to_owned(),
         before: text(before),
         now: text(now),
-    });
-    let mut rows: Vec<Row> = whole.filter(|row| row.before != row.now).collect();
+    };
+    let whole = [
+        row("shaking", shaking),
+        row("stops", stops),
+        row("damping", damping),
+        row("mechanism", mechanism),
+        row("start", start),
+    ];
+    let mut rows: Vec<Row> = whole.into_iter().filter(|row| row.before != row.now).collect();
     let differs = |name: &str, rows: &[Row]| rows.iter().any(|row| row.name == name);
     let (shaken, stopped, begun) =
         (differs("shaking", &rows), differs("stops", &rows), differs("start", &rows));

@@ -96,6 +96,8 @@ fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) 
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let menu = MenuButton::new("Range").config(config);
     let (button, _) = menu.ui(ui, |ui| {
+        // numbers that can be typed look so, which a menu's would not
+        *ui.style_mut() = (*ui.ctx().global_style()).clone();
         let mut wanted = axes.clone();
         egui::Grid::new("ranges").num_columns(7).show(ui, |ui| {
             for (axis, role) in wanted.iter_mut().zip(["across", "up"]) {
