@@ -81,6 +81,7 @@ pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
 fn waiting_ui(ui: &mut Ui, context: &ViewContext<'_>) {
     let text = match context.session.fault() {
         Some(_) => "This scene cannot run.",
+        None if context.session.accuracy.is_stopped() => "Stopped: the next change begins it again.",
         None => "Working it out.",
     };
     ui.label(RichText::new(text).color(context.style.faint()));
