@@ -63,7 +63,7 @@ const fn field(
 }
 
 const G: (f64, f64) = (-1e4, 1e4);
-const HZ: (f64, f64) = (1e-3, 1e5);
+const HZ: (f64, f64) = (1e-2, 1e5);
 const BAND: (f64, f64) = (0.0, 1e5);
 const LENGTH: (f64, f64) = (1e-3, 1e4);
 const LIMIT: (f64, f64) = (1e-3, 1e6);

@@ -91,7 +91,7 @@ fn what_is_no_number_is_refused_in_words() {
         ("amplitude", "1e9", "amplitude may be -10000 to 10000 g"),
         ("at ±", "0", "at ± may be 0.001 to 1000000 mm"),
         ("at ±", "-2", "at ± may be 0.001 to 1000000 mm"),
-        ("frequency", "0", "frequency may be 0.001 to 100000 Hz"),
+        ("frequency", "0", "frequency may be 0.01 to 100000 Hz"),
         ("restitution", "1.5", "restitution may be 0 to 1"),
         ("run length", "1e9", "run length may be 0.01 to 1000000 s"),
         ("mass", "1,5", "It takes a point"),

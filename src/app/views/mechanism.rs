@@ -236,7 +236,8 @@ fn inset(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, base_ac
     painter.line_segment([track - vec2(half, 0.0), track + vec2(half, 0.0)], style.ghost_stroke());
     let at = track + vec2((place / swing) as f32 * half, 0.0);
     painter.rect_filled(Rect::from_center_size(at, vec2(14.0, 9.0)), 2.0, style.base());
-    let text = format!("base: ±{} mm", three(swing * 1e3));
+    let (size, unit) = if swing < 10.0 { (swing * 1e3, "mm") } else { (swing, "m") };
+    let text = format!("base: ±{} {unit}", three(size));
     let left = track - vec2(half + 14.0, 0.0);
     painter.text(left, Align2::RIGHT_CENTER, text, style.small(), style.base());
 }
