@@ -68,7 +68,7 @@ fn what_is_typed_is_what_is_stored_and_shown() {
         ("amplitude", "excitation.amplitude_g", "1.137", 1.137),
         ("mass", "mass_g", "15.2345", 15.2345),
         ("preload", "mechanism.preload_mm", "2.7125", 2.7125),
-        ("frequency", "excitation.frequency_hz", "3.1234567 Hz", 3.1234567),
+        ("frequency", "excitation.frequency_hz", "3.12345 Hz", 3.12345),
     ] {
         type_into(&mut harness, name, text);
         assert_eq!(number(&harness, path), value);

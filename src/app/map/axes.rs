@@ -122,7 +122,7 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
 pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
     let (from, to) = (from.min(to).max(axis.from), from.max(to).min(axis.to));
     let cells = ((axis.to - axis.from) / axis.step).max(1.0);
-    let width = (to - from).max(1e-6 * (axis.to - axis.from));
+    let width = (to - from).max(1e-3 * (axis.to - axis.from));
     let step = below(width / cells).min(axis.step);
     let on_step = |value: f64| decimal((value / step).round() * step);
     // at least a step, and never below what the axis begins with

@@ -6,7 +6,7 @@ use crate::app::fields::{decimals_for, exact, name_and_unit, shown};
 use crate::app::session::Card;
 use crate::app::status::{Kind, mm, speed};
 use crate::app::widgets::kind_shapes;
-use crate::dynamics::Regime;
+use crate::dynamics::{Outcome, Regime};
 use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};
 use crate::study::Settled;
 
@@ -244,6 +244,10 @@ fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Settled>) 
         ui.label("-");
         return;
     };
+    if settled.summary.outcome != Outcome::Done {
+        ui.label("the run ended early");
+        return;
+    }
     let (kind, name) = match settled.summary.regime {
         Regime::Rest => (Kind::Resting, "resting"),
         Regime::Intrawell if settled.summary.releases > 0 => (Kind::Intrawell, "hopping"),
