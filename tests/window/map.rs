@@ -61,7 +61,7 @@ fn it_fills_and_a_click_is_one_step() {
 
 #[test]
 fn it_stops_and_goes_on() {
-    let mut harness = open("paper", WIDE, (0.02, 0.02));
+    let mut harness = open("paper", WIDE, (0.005, 0.005));
     harness.get_by_label("Stop").click();
     harness.run_steps(3);
     let known = map(harness.state()).known();
@@ -79,7 +79,8 @@ fn hidden_it_computes_nothing() {
     let mut harness = window("paper", WIDE, Settings::default());
     harness.run_steps(5);
     assert!(harness.state().session.map.map().is_none());
-    harness.state_mut().session.map.choose(Some(axes((0.02, 0.02))));
+    // more cells than are run in the frames of this test
+    harness.state_mut().session.map.choose(Some(axes((0.005, 0.005))));
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
     harness.run_steps(3);
     assert!(harness.state().session.map.is_running());
