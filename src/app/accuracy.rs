@@ -37,6 +37,8 @@ pub struct Accuracy {
     tolerances: Latest<Tolerances>,
     step_of: Option<(Arc<Model>, Scheme, f64)>,
     stepped: Latest<Result<StepSize, Unfit>>,
+    /// A person has stopped what was being worked out.
+    stopped: bool,
 }
 
 impl Default for Accuracy {
@@ -52,6 +54,7 @@ impl Default for Accuracy {
             tolerances: Latest::default(),
             step_of: None,
             stepped: Latest::default(),
+            stopped: false,
         }
     }
 }
@@ -59,8 +62,27 @@ impl Default for Accuracy {
 impl Accuracy {
     /// Another motion: what moves from now on and the live time in s, or none where nothing can be said of it.
     pub(super) fn begin(&mut self, origin: Option<(Arc<Model>, f64)>) {
-        (self.origin, self.asked) = (origin, None);
+        (self.origin, self.asked, self.stopped) = (origin, None, false);
         self.trust.clear();
+    }
+
+    /// For how long something has been worked out; none where nothing is.
+    pub(super) fn working(&self) -> Option<Duration> {
+        let all = [self.trust.running_for(), self.tolerances.running_for(), self.stepped.running_for()];
+        all.into_iter().flatten().max()
+    }
+
+    /// Leaves what is being worked out unknown.
+    pub(super) fn stop(&mut self) {
+        self.trust.stop();
+        self.tolerances.stop();
+        self.stepped.stop();
+        self.stopped = true;
+    }
+
+    /// Whether a person has stopped it since the last change.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped
     }
 
     pub(super) fn poll(&mut self) {

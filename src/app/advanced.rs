@@ -4,11 +4,10 @@
 
 use eframe::egui::{self, ComboBox, Ui};
 
-use crate::scene::{Excitation, Scene, Stops};
+use crate::scene::{Excitation, Stops};
 
-use super::controls::turn;
+use super::controls::field_ui;
 use super::session::Session;
-use super::widgets::Knob;
 
 /// Draws it. Whether something changed.
 pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
@@ -36,15 +35,19 @@ fn kind(excitation: &Excitation) -> &'static str {
     }
 }
 
-/// Another kind of shaking, as strong and as fast as the present one where that has a meaning.
-fn of_kind(name: &str, from: &Excitation) -> Excitation {
+/// Another kind of shaking, as strong and as fast as the present one where that has a meaning, else as `suiting`.
+fn of_kind(name: &str, from: &Excitation, suiting: &Excitation) -> Excitation {
+    let (own_f, own_g) = match suiting {
+        Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),
+        _ => (3.0, 0.5),
+    };
     let (f, g) = match from {
         Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),
         Excitation::AmplitudeRamp { frequency_hz, to_g, .. } => (*frequency_hz, *to_g),
         Excitation::Chirp { from_hz, to_hz, amplitude_g, .. } => (0.5 * (from_hz + to_hz), *amplitude_g),
         Excitation::Noise { rms_g, low_hz, high_hz, .. } => (0.5 * (low_hz + high_hz), *rms_g),
-        Excitation::Constant { accel_g } => (3.0, *accel_g),
-        _ => (3.0, 0.5),
+        Excitation::Constant { accel_g } => (own_f, *accel_g),
+        _ => (own_f, own_g),
     };
     match name {
         "constant" => Excitation::Constant { accel_g: g },
@@ -74,140 +77,23 @@ fn kind_ui(ui: &mut Ui, session: &mut Session) -> bool {
         }
     });
     combo.response.labelled_by(name.id).on_hover_text("What moves the base.");
-    wanted != present && session.edit_once(|scene| scene.excitation = of_kind(wanted, &scene.excitation))
-}
-
-/// A number of a scene; none where the scene does not have it.
-type Place = fn(&mut Scene) -> Option<&mut f64>;
-
-/// One slider of such a number, kept within its range.
-fn number_ui(ui: &mut Ui, session: &mut Session, knob: &Knob<'_>, place: Place) -> bool {
-    let mut present = session.scene().clone();
-    let Some(value) = place(&mut present).map(|value| *value) else { return false };
-    let done = knob.ui(ui, value);
-    let (low, high) = (knob.range.0.min(value), knob.range.1.max(value));
-    turn(session, done, |scene, value| {
-        if let Some(own) = place(scene) {
-            *own = value.clamp(low, high);
-        }
-    })
+    let suiting = session.suiting_sine();
+    wanted != present
+        && session.edit_once(|scene| scene.excitation = of_kind(wanted, &scene.excitation, &suiting))
 }
 
 fn excitation_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    let knob =
-        |name, unit, range, step, decimals, hover| Knob { name, unit, range, step, decimals, hover, width };
-    let knobs: Vec<(Knob<'_>, Place)> = match &session.scene().excitation {
-        Excitation::Constant { .. } => vec![(
-            knob(
-                "acceleration",
-                " g",
-                (-2.0, 2.0),
-                0.01,
-                2,
-                "Increase: the tray is tipped further to the left.",
-            ),
-            |scene| match &mut scene.excitation {
-                Excitation::Constant { accel_g } => Some(accel_g),
-                _ => None,
-            },
-        )],
-        Excitation::Sine { .. } => vec![(
-            knob("phase", "°", (-180.0, 180.0), 15.0, 0, "Increase: the shaking begins later in its cycle."),
-            |scene| match &mut scene.excitation {
-                Excitation::Sine { phase_deg, .. } => Some(phase_deg),
-                _ => None,
-            },
-        )],
-        Excitation::AmplitudeRamp { .. } => vec![
-            (
-                knob("from", " g", (0.0, 3.0), 0.01, 2, "Increase: the ramp begins with harder shaking."),
-                |scene| match &mut scene.excitation {
-                    Excitation::AmplitudeRamp { from_g, .. } => Some(from_g),
-                    _ => None,
-                },
-            ),
-            (
-                knob("to", " g", (0.0, 3.0), 0.01, 2, "Increase: the ramp ends with harder shaking."),
-                |scene| match &mut scene.excitation {
-                    Excitation::AmplitudeRamp { to_g, .. } => Some(to_g),
-                    _ => None,
-                },
-            ),
-            (
-                knob(
-                    "ramp frequency",
-                    " Hz",
-                    (0.5, 20.0),
-                    0.1,
-                    1,
-                    "Increase: the pushes follow each other faster.",
-                ),
-                |scene| match &mut scene.excitation {
-                    Excitation::AmplitudeRamp { frequency_hz, .. } => Some(frequency_hz),
-                    _ => None,
-                },
-            ),
-            (knob("over", " s", (1.0, 600.0), 1.0, 0, "Increase: the shaking grows more slowly."), |scene| {
-                match &mut scene.excitation {
-                    Excitation::AmplitudeRamp { over_s, .. } => Some(over_s),
-                    _ => None,
-                }
-            }),
-        ],
-        Excitation::Chirp { .. } => vec![
-            (
-                knob("from", " Hz", (0.0, 30.0), 0.1, 1, "Increase: the sweep begins at a higher frequency."),
-                |scene| match &mut scene.excitation {
-                    Excitation::Chirp { from_hz, .. } => Some(from_hz),
-                    _ => None,
-                },
-            ),
-            (
-                knob("to", " Hz", (0.0, 30.0), 0.1, 1, "Increase: the sweep ends at a higher frequency."),
-                |scene| match &mut scene.excitation {
-                    Excitation::Chirp { to_hz, .. } => Some(to_hz),
-                    _ => None,
-                },
-            ),
-            (
-                knob("over", " s", (1.0, 600.0), 1.0, 0, "Increase: the frequency changes more slowly."),
-                |scene| match &mut scene.excitation {
-                    Excitation::Chirp { over_s, .. } => Some(over_s),
-                    _ => None,
-                },
-            ),
-        ],
-        // the ends of the band stay apart: each ends where the other begins
-        Excitation::Noise { low_hz, high_hz, .. } => vec![
-            (
-                knob(
-                    "lowest",
-                    " Hz",
-                    (0.0, high_hz - 0.1),
-                    0.1,
-                    1,
-                    "Increase: the slow part of the shaking goes.",
-                ),
-                |scene| match &mut scene.excitation {
-                    Excitation::Noise { low_hz, .. } => Some(low_hz),
-                    _ => None,
-                },
-            ),
-            (
-                knob("highest", " Hz", (low_hz + 0.1, 50.0), 0.1, 1, "Increase: faster shaking comes in."),
-                |scene| match &mut scene.excitation {
-                    Excitation::Noise { high_hz, .. } => Some(high_hz),
-                    _ => None,
-                },
-            ),
-        ],
-        _ => Vec::new(),
+    let paths: &[&'static str] = match &session.scene().excitation {
+        Excitation::Constant { .. } => &["excitation.accel_g"],
+        Excitation::Sine { .. } => &["excitation.phase_deg"],
+        Excitation::AmplitudeRamp { .. } => {
+            &["excitation.from_g", "excitation.to_g", "excitation.frequency_hz", "excitation.over_s"]
+        }
+        Excitation::Chirp { .. } => &["excitation.from_hz", "excitation.to_hz", "excitation.over_s"],
+        Excitation::Noise { .. } => &["excitation.low_hz", "excitation.high_hz"],
+        _ => &[],
     };
-    let mut changed = false;
-    for (knob, place) in &knobs {
-        changed |= number_ui(ui, session, knob, *place);
-    }
-    changed
+    paths.iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))
 }
 
 fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
@@ -242,20 +128,8 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
             });
         }
     }
-    let hover = "Increase: a rebound at this side keeps more of the speed.";
-    let knob = |name| Knob { name, unit: "", range: (0.0, 1.0), step: 0.01, decimals: 2, hover, width };
-    let places: [(&str, Place); 2] = [
-        ("left restitution", |scene| match &mut scene.stops {
-            Stops::Uneven { restitution_left, .. } => restitution_left.as_mut(),
-            _ => None,
-        }),
-        ("right restitution", |scene| match &mut scene.stops {
-            Stops::Uneven { restitution_right, .. } => restitution_right.as_mut(),
-            _ => None,
-        }),
-    ];
-    for (name, place) in places {
-        changed |= number_ui(ui, session, &knob(name), place);
+    for path in ["stops.restitution_left", "stops.restitution_right"] {
+        changed |= field_ui(ui, session, path, width);
     }
     changed
 }
@@ -281,22 +155,7 @@ fn other_kind(stops: Stops) -> Stops {
 const TOLERANCES: [(f64, &str); 4] = [(1e-6, "1e-6"), (1e-9, "1e-9"), (1e-12, "1e-12"), (1e-14, "1e-14")];
 
 fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    let knob = Knob {
-        name: "run length",
-        unit: " s",
-        range: (1.0, 120.0),
-        step: 1.0,
-        decimals: 0,
-        hover: "Increase: what is said of the motion rests on more periods. The second half of the run counts, or \
-                what comes after the settling time of the scene.",
-        width,
-    };
-    let done = knob.ui(ui, session.scene().run.duration_s);
-    let mut changed = turn(session, done, |scene, value| {
-        scene.run.duration_s = value.max(1.0);
-        // a window that would begin after the end begins in the middle
-        scene.run.settle_s = scene.run.settle_s.filter(|settle| *settle < scene.run.duration_s);
-    });
+    let mut changed = field_ui(ui, session, "run.duration_s", width);
     let present = session.scene().run.tolerance;
     let mut wanted = present;
     let name = ui.label("tolerance");
@@ -315,14 +174,15 @@ fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Document, check};
+    use crate::scene::{Document, Scene, check};
 
     #[test]
     fn every_kind_of_every_preset_can_be_run() {
         for preset in crate::scene::PRESETS {
             let scene = Document::load(preset.name).unwrap().scene;
             for name in KINDS {
-                let excitation = of_kind(name, &scene.excitation);
+                let sine = Excitation::Sine { frequency_hz: 3.0, amplitude_g: 0.5, phase_deg: 0.0 };
+                let excitation = of_kind(name, &scene.excitation, &sine);
                 assert_eq!(kind(&excitation), name);
                 let changed = Scene { excitation, sweep: Vec::new(), ..scene.clone() };
                 assert!(check(&changed).faults.is_empty(), "{} {name}", preset.name);

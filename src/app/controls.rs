@@ -4,18 +4,14 @@ use eframe::egui::{self, RichText, Ui};
 
 use crate::scene::{Damping, Excitation, Stops};
 
+use super::fields::{self, FieldInfo, shown};
+use super::knob::{How, Knob, refuse};
 use super::session::Session;
-use super::style::Style;
-use super::widgets::{Knob, Turn, hover_beside};
+use super::widgets::hover_beside;
 use super::{advanced, geometry};
 
-const SHAKING_HOVER: &str =
-    "Increase: the base pushes the mass harder. Beyond some amplitude it crosses to the other well.";
-const LIMIT_HOVER: &str = "Increase: the stops move outward. Inside the wells the mass then rests lower on the hill: it takes more \
-     shaking to free it and travels further once it crosses.";
-
 /// The controls as a column. Whether something changed.
-pub fn column_ui(ui: &mut Ui, session: &mut Session, style: &Style, more: &mut bool) -> bool {
+pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) -> bool {
     let width = (ui.available_width() - 84.0).max(80.0);
     heading_ui(ui, "Shaking");
     let mut changed = shaking_ui(ui, session, width);
@@ -29,7 +25,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, style: &Style, more: &mut b
         *more = !*more;
     }
     if *more {
-        changed |= more_ui(ui, session, style, width);
+        changed |= more_ui(ui, session, width);
     }
     changed
 }
@@ -63,83 +59,64 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) -> bool {
 }
 
 /// What is changed less often, as a column beside the views. Whether something changed.
-pub fn more_column_ui(ui: &mut Ui, session: &mut Session, style: &Style) -> bool {
-    egui::ScrollArea::vertical().show(ui, |ui| more_ui(ui, session, style, 150.0)).inner
+pub fn more_column_ui(ui: &mut Ui, session: &mut Session) -> bool {
+    egui::ScrollArea::vertical().show(ui, |ui| more_ui(ui, session, 150.0)).inner
 }
 
 fn heading_ui(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).heading());
 }
 
-/// Applies what a knob did through `change`. Whether something changed.
-pub(super) fn turn(
-    session: &mut Session,
-    turn: Turn,
-    change: impl FnOnce(&mut crate::scene::Scene, f64),
-) -> bool {
-    let changed = turn.value.is_some_and(|value| session.edit(|scene| change(scene, value)));
-    if turn.ended {
+/// The control of a number of the scene, or of the stops that come when they are switched on; none where there is no such
+/// number. Whether the scene changed.
+pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &'static str, width: f32) -> bool {
+    let (Some(field), Some(value)) = (fields::info(path), session.number(path)) else { return false };
+    let FieldInfo { name, unit, typed, hover, .. } = *field;
+    let reach = field.reach(session);
+    let turn = Knob { name, unit, reach, typed, hover, width }.ui(ui, value);
+    let mut changed = false;
+    if let Some(value) = turn.value {
+        match turn.how {
+            How::Pressed => session.press(path, ui.input(|input| input.time)),
+            How::Once | How::Dragged => session.end_presses(),
+        }
+        match session.set_number(path, value) {
+            Ok(own) => changed = own,
+            Err(why) => {
+                let value = shown(value, fields::decimals(reach.step));
+                let space = if unit.is_empty() { "" } else { " " };
+                refuse(ui, name, format!("{value}{space}{unit} was not taken: {why}"));
+            }
+        }
+    }
+    if turn.ended || (turn.value.is_some() && turn.how == How::Once) {
         session.end_gesture();
     }
     changed
 }
 
 fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    let knob =
-        |name, hover| Knob { name, unit: " g", range: (0.0, 2.0), step: 0.01, decimals: 2, hover, width };
-    match &session.scene().excitation {
-        Excitation::Sine { amplitude_g, .. } => {
-            let (name, value) = ("amplitude", *amplitude_g);
-            let done = knob(name, SHAKING_HOVER).ui(ui, value);
-            turn(session, done, |scene, value| {
-                if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
-                    *amplitude_g = value;
-                }
-            })
+    let text = match &session.scene().excitation {
+        Excitation::Sine { .. } | Excitation::Chirp { .. } => {
+            return field_ui(ui, session, "excitation.amplitude_g", width);
         }
-        Excitation::Noise { rms_g, .. } => {
-            let value = *rms_g;
-            let done = Knob { range: (0.0, 1.0), ..knob("RMS", SHAKING_HOVER) }.ui(ui, value);
-            turn(session, done, |scene, value| {
-                if let Excitation::Noise { rms_g, .. } = &mut scene.excitation {
-                    *rms_g = value.max(0.0);
-                }
-            })
-        }
-        Excitation::Chirp { amplitude_g, .. } => {
-            let value = *amplitude_g;
-            let done = knob("amplitude", SHAKING_HOVER).ui(ui, value);
-            turn(session, done, |scene, value| {
-                if let Excitation::Chirp { amplitude_g, .. } = &mut scene.excitation {
-                    *amplitude_g = value;
-                }
-            })
-        }
+        Excitation::Noise { .. } => return field_ui(ui, session, "excitation.rms_g", width),
         Excitation::None => {
-            let hover = "A sine of 3 Hz and 0.5 g.";
-            ui.button("Shake it").on_hover_text(hover).clicked()
-                && session.edit_once(|scene| {
-                    scene.excitation =
-                        Excitation::Sine { frequency_hz: 3.0, amplitude_g: 0.5, phase_deg: 0.0 };
-                })
+            let own = session.suiting_sine();
+            let Excitation::Sine { frequency_hz, amplitude_g, .. } = own else { return false };
+            let hover = format!("A sine of {frequency_hz} Hz and {amplitude_g} g.");
+            return ui.button("Shake it").on_hover_text(hover).clicked()
+                && session.edit_once(|scene| scene.excitation = own);
         }
         Excitation::AmplitudeRamp { from_g, to_g, over_s, .. } => {
-            ui.label(format!("{from_g} to {to_g} g over {over_s} s"));
-            false
+            format!("{from_g} to {to_g} g over {over_s} s")
         }
-        Excitation::Recorded { path, .. } => {
-            ui.label(format!("record {path}"));
-            false
-        }
-        Excitation::Constant { accel_g } => {
-            ui.label(format!("constant {accel_g} g"));
-            false
-        }
-        Excitation::Sum(terms) => {
-            ui.label(format!("sum of {} parts", terms.len()));
-            false
-        }
-    }
+        Excitation::Recorded { path, .. } => format!("record {path}"),
+        Excitation::Constant { accel_g } => format!("constant {accel_g} g"),
+        Excitation::Sum(terms) => format!("sum of {} parts", terms.len()),
+    };
+    ui.label(text);
+    false
 }
 
 fn stops_switch_ui(ui: &mut Ui, session: &mut Session) -> bool {
@@ -149,48 +126,14 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) -> bool {
     hover_beside(ui.checkbox(&mut on, text), hover).changed() && session.switch_stops(on)
 }
 
+/// The distance of the stops, or of each of them; while they are off, of those that come: moving it switches them on.
 fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    let stops = session.scene().stops;
-    let on = stops != Stops::None;
-    let shown = if on { stops } else { session.remembered_stops() };
-    let reach = session.model().mechanism.landscape.right_stable().map_or(10.0, |well| well.x.abs() * 1e3);
-    // on the grid of the step
-    let range = (0.1, ((1.2 * reach).max(1.0) * 10.0).round() / 10.0);
-    let knob = |name| Knob { name, unit: " mm", range, step: 0.05, decimals: 2, hover: LIMIT_HOVER, width };
-    match shown {
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
-            // remembered while off: moving it then says where they will be
-            let done = knob("at ±").ui(ui, travel_limit_mm);
-            let put = |value: f64| {
-                let mut moved = shown;
-                put_side(&mut moved, true, value);
-                moved
-            };
-            if on {
-                turn(session, done, |scene, value| scene.stops = put(value))
-            } else {
-                if let Some(value) = done.value {
-                    session.remember_stops(put(value));
-                }
-                false
-            }
-        }
-        Stops::Uneven { left_mm, right_mm, .. } => {
-            let mut changed = false;
-            for (name, value, right) in [("left", left_mm, false), ("right", right_mm, true)] {
-                let Some(value) = value else { continue };
-                let done = ui.add_enabled_ui(on, |ui| knob(name).ui(ui, value)).inner;
-                changed |= turn(session, done, |scene, value| put_side(&mut scene.stops, right, value));
-            }
-            changed
-        }
-        Stops::None => false,
-    }
+    let paths = ["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"];
+    paths.into_iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))
 }
 
 /// Puts the stop of one side to a distance in mm from the middle.
 pub fn put_side(stops: &mut Stops, right: bool, mm: f64) {
-    let mm = mm.max(1e-3);
     match stops {
         Stops::None => {}
         Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => *travel_limit_mm = mm,
@@ -203,27 +146,19 @@ pub fn put_side(stops: &mut Stops, right: bool, mm: f64) {
     }
 }
 
-fn more_ui(ui: &mut Ui, session: &mut Session, style: &Style, width: f32) -> bool {
+fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let mut changed = restitution_ui(ui, session, width);
-    changed |= geometry::preload_ui(ui, session, style, width);
-    changed |= frequency_ui(ui, session, width);
+    changed |= geometry::preload_ui(ui, session, width);
+    if matches!(session.scene().excitation, Excitation::Sine { .. }) {
+        changed |= field_ui(ui, session, "excitation.frequency_hz", width);
+    }
     changed |= damping_ui(ui, session, width);
-    let knob = Knob {
-        name: "mass",
-        unit: " g",
-        range: (1.0, 50.0),
-        step: 0.1,
-        decimals: 1,
-        hover: "Increase: a heavier mass is pushed harder by the same shaking and swings more slowly.",
-        width,
-    };
-    let done = knob.ui(ui, session.scene().mass_g);
-    changed |= turn(session, done, |scene, value| scene.mass_g = value.max(1e-3));
+    changed |= field_ui(ui, session, "mass_g", width);
     ui.add_space(8.0);
     let hover = "What is changed seldom: sizes of the flexures, kind of shaking, uneven stops, run.";
     let heading = RichText::new("Advanced").strong();
     let advanced = egui::CollapsingHeader::new(heading).id_salt("advanced").show_unindented(ui, |ui| {
-        changed |= geometry::sizes_ui(ui, session, style, width);
+        changed |= geometry::sizes_ui(ui, session, width);
         ui.separator();
         changed |= advanced::advanced_ui(ui, session, width);
     });
@@ -232,72 +167,22 @@ fn more_ui(ui: &mut Ui, session: &mut Session, style: &Style, width: f32) -> boo
 }
 
 fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    let Stops::Rigid { restitution, .. } = session.scene().stops else {
-        let why = match session.scene().stops {
-            Stops::None => "There are no stops to rebound from: switch them on first.",
-            Stops::Hertz { .. } => {
-                "These stops are compliant: a faster impact keeps a smaller share of its speed."
-            }
-            _ => "The two stops have a restitution each, under Advanced.",
-        };
-        ui.add_enabled(false, egui::Label::new("restitution")).on_disabled_hover_text(why);
-        return false;
-    };
-    let knob = Knob {
-        name: "restitution",
-        unit: "",
-        range: (0.0, 1.0),
-        step: 0.01,
-        decimals: 2,
-        hover: "Increase: a rebound keeps more of the speed, so that the mass chatters for longer before it rests.",
-        width,
-    };
-    let done = knob.ui(ui, restitution);
-    turn(session, done, |scene, value| {
-        if let Stops::Rigid { restitution, .. } = &mut scene.stops {
-            *restitution = value.clamp(0.0, 1.0);
+    let why = match session.scene().stops {
+        Stops::Rigid { .. } => return field_ui(ui, session, "stops.restitution", width),
+        Stops::None => "There are no stops to rebound from: switch them on first.",
+        Stops::Hertz { .. } => {
+            "These stops are compliant: a faster impact keeps a smaller share of its speed."
         }
-    })
-}
-
-fn frequency_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    let Excitation::Sine { frequency_hz, .. } = session.scene().excitation else { return false };
-    let knob = Knob {
-        name: "frequency",
-        unit: " Hz",
-        range: (0.5, 20.0),
-        step: 0.1,
-        decimals: 1,
-        hover: "Increase: the pushes follow each other faster and last less long.",
-        width,
+        Stops::Uneven { .. } => "The two stops have a restitution each, under Advanced.",
     };
-    let done = knob.ui(ui, frequency_hz);
-    turn(session, done, |scene, value| {
-        if let Excitation::Sine { frequency_hz, .. } = &mut scene.excitation {
-            *frequency_hz = value.max(1e-3);
-        }
-    })
+    ui.add_enabled(false, egui::Label::new("restitution")).on_disabled_hover_text(why);
+    false
 }
 
 fn damping_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    let hover = "Increase: the motion dies away faster.";
     match session.scene().damping {
-        Damping::Ratio(ratio) => {
-            let range = (0.0, 0.2);
-            let knob =
-                Knob { name: "damping ratio", unit: "", range, step: 0.001, decimals: 3, hover, width };
-            let done = knob.ui(ui, ratio);
-            turn(session, done, |scene, value| scene.damping = Damping::Ratio(value.max(0.0)))
-        }
-        Damping::Coefficient { c_n_s_per_m } => {
-            let range = (0.0, (2.0 * c_n_s_per_m).max(0.01));
-            let (step, unit) = (range.1 / 200.0, " N s/m");
-            let knob = Knob { name: "damping", unit, range, step, decimals: 3, hover, width };
-            let done = knob.ui(ui, c_n_s_per_m);
-            turn(session, done, |scene, value| {
-                scene.damping = Damping::Coefficient { c_n_s_per_m: value.max(0.0) }
-            })
-        }
+        Damping::Ratio(_) => field_ui(ui, session, "damping.xi", width),
+        Damping::Coefficient { .. } => field_ui(ui, session, "damping.c_n_s_per_m", width),
         Damping::None => {
             ui.add_enabled(false, egui::Label::new("no damping"))
                 .on_disabled_hover_text("The scene has none.");

@@ -84,6 +84,11 @@ impl Hint {
         session.amplitude_g().is_some_and(|g| g.abs() <= self.opened_g.abs() * (1.0 + 1e-9))
     }
 
+    /// Whether it takes two lines.
+    pub fn is_long(&self) -> bool {
+        self.stage == Stage::Answer
+    }
+
     /// What it says: what there is, and what to try.
     pub fn text(&self, session: &Session) -> (&'static str, String) {
         let opened = grams(self.opened_g);
@@ -114,9 +119,9 @@ impl Hint {
             ),
             (Stage::Answer, ..) => (
                 "What stops do, and why:",
-                "a stop near the middle holds the mass high on the barrier, so a weaker push carries it over; but it \
-                 leaves less room, so the mass travels less and more slowly. Further out the mechanism presses the mass \
-                 harder against the stop, and the same push no longer frees it or no longer carries it over."
+                "a stop near the middle holds the mass high on the barrier, so that a weaker push carries it over; but \
+                 the mass travels less. Further out the mechanism presses the mass harder against the stop, and the same \
+                 push no longer frees it or carries it over."
                     .to_owned(),
             ),
             (Stage::Done, ..) => ("", String::new()),

@@ -11,6 +11,7 @@
 //! | [`player`] | the clock and the live motion with its past |
 //! | [`session`] | those three together, and what is known of the scene |
 //! | [`accuracy`] | how accurate the motion is, as far as it was asked |
+//! | [`fields`], `knob` | the numbers of a scene as they are called and bounded here, and the slider of one |
 //! | `controls`, `geometry`, `advanced` | the hands on the scene, on its flexures, and on what is changed seldom |
 //! | [`map`] | the map of the scene, made while it is looked at |
 //! | [`status`], `announce` | the sentence that says what the mass does, and when it is spoken |
@@ -26,8 +27,10 @@ mod bring;
 pub mod controls;
 pub mod document;
 pub mod export;
+pub mod fields;
 mod geometry;
 mod hint;
+mod knob;
 pub mod layouts;
 pub mod leave;
 pub mod map;

@@ -4,8 +4,10 @@
 
 mod ask;
 mod build;
+mod hands;
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use crate::dynamics::Model;
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
@@ -14,6 +16,7 @@ use crate::study::{Settled, Thresholds};
 
 use super::accuracy::Accuracy;
 use super::document::Editor;
+use super::fields::suiting_limit;
 use super::map::Mapping;
 use super::player::{Player, fitting_speed};
 use super::status::{self, Sentence, Told};
@@ -26,8 +29,14 @@ use build::{solved, unbuilt, why};
 /// off by is not seen. At the end of the gesture they are solved as every study solves them.
 const HANDLED_TOLERANCE: f64 = 1e-6;
 
-/// Stops that appear where a scene does not say which.
-const STOPS_WHEN_ON: Stops = Stops::Rigid { travel_limit_mm: 1.5, restitution: 0.36 };
+/// The share of speed that stops keep where a scene does not say which stops come.
+const RESTITUTION: f64 = 0.36;
+
+/// For how long the background works before it is offered to stop it.
+pub const OFFER_TO_STOP: Duration = Duration::from_secs(2);
+
+/// Time in s within which another press of an arrow key belongs to the same gesture.
+const PRESSES: f64 = 1.0;
 
 /// A side of the card Before / now.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,6 +87,8 @@ pub struct Session {
     continued: bool,
     /// The stops that come back when they are switched on.
     remembered_stops: Stops,
+    /// The field whose presses of arrow keys are one gesture, and the time in s of the last one.
+    presses: Option<(&'static str, f64)>,
     wake: Wake,
 }
 
@@ -95,10 +106,7 @@ impl Session {
         let hints = scene.app.clone().unwrap_or_default();
         let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.pace()));
         let player = Player::new(&model, speed);
-        let remembered_stops = match scene.stops {
-            Stops::None => hints.stops_when_on.unwrap_or(STOPS_WHEN_ON),
-            stops => stops,
-        };
+        let remembered_stops = first_stops(&scene, &model);
         let mut session = Self {
             editor,
             model: Arc::new(model),
@@ -120,6 +128,7 @@ impl Session {
             asked_from: 0.0,
             continued: false,
             remembered_stops,
+            presses: None,
             wake,
         };
         session.ask_settled();
@@ -188,7 +197,7 @@ impl Session {
                 self.edit(|scene| scene.mechanism = wanted)
             }
             Err(error) => {
-                self.refused = Some(why(&error));
+                self.refused = Some(why(&error, &document.scene));
                 false
             }
         }
@@ -201,6 +210,7 @@ impl Session {
 
     /// Ends the gesture.
     pub fn end_gesture(&mut self) {
+        self.presses = None;
         if self.editor.in_gesture() {
             self.apply();
             self.editor.end_gesture();
@@ -259,6 +269,7 @@ impl Session {
     pub fn back_to_start(&mut self) {
         self.travel(Editor::back_to_start);
         self.before = None;
+        self.remembered_stops = first_stops(self.scene(), &self.model);
         self.restart();
         let hinted = self.scene().app.as_ref().and_then(|hints| hints.speed);
         self.player.speed = hinted.unwrap_or_else(|| fitting_speed(self.model.pace()));
@@ -297,11 +308,6 @@ impl Session {
         self.remembered_stops
     }
 
-    /// Changes the stops that come when they are switched on.
-    pub fn remember_stops(&mut self, stops: Stops) {
-        self.remembered_stops = stops;
-    }
-
     /// Lets the mass go on as the scene now says, where that has changed.
     fn apply(&mut self) {
         if *self.editor.scene() == self.built {
@@ -321,7 +327,7 @@ impl Session {
                 self.ask_settled();
             }
             Err(error) => {
-                self.fault = Some(error.to_string());
+                self.fault = Some(why(&error, self.editor.scene()));
                 self.settled.clear();
                 self.accuracy.begin(None);
                 self.thresholds.clear();
@@ -403,7 +409,8 @@ impl Session {
         }
         match self.told() {
             Some(told) => status::driven(&told),
-            None => Sentence::waiting(),
+            None if self.settled.is_running() => Sentence::waiting(),
+            None => stopped(),
         }
     }
 
@@ -439,6 +446,25 @@ fn differ_in_amplitude_alone(a: &Scene, b: &Scene) -> bool {
         _ => return false,
     }
     other == *b
+}
+
+/// While it is not known what the motion settles to, because a person has stopped that.
+fn stopped() -> Sentence {
+    let text = "Stopped before it was known what this settles to: a shorter run length is known sooner.";
+    Sentence { kind: status::Kind::Other, text: text.to_owned(), remedy: String::new() }
+}
+
+/// The stops that come when they are switched on, before a hand has moved any.
+fn first_stops(scene: &Scene, model: &Model) -> Stops {
+    let hinted = || scene.app.as_ref().and_then(|hints| hints.stops_when_on);
+    let suiting = || {
+        let well = model.mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
+        Stops::Rigid { travel_limit_mm: suiting_limit(well), restitution: RESTITUTION }
+    };
+    match scene.stops {
+        Stops::None => hinted().unwrap_or_else(suiting),
+        stops => stops,
+    }
 }
 
 /// The stops of a scene in mm, left and right; none where a side is open.

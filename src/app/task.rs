@@ -125,13 +125,15 @@ impl<T> Drop for Stream<T> {
 pub struct Latest<T> {
     generation: u64,
     task: Option<Task<Option<T>>>,
+    /// When the question under way was asked.
+    since: Option<Instant>,
     /// The answer and the generation of its question.
     answer: Option<(u64, T)>,
 }
 
 impl<T> Default for Latest<T> {
     fn default() -> Self {
-        Self { generation: 0, task: None, answer: None }
+        Self { generation: 0, task: None, since: None, answer: None }
     }
 }
 
@@ -140,6 +142,7 @@ impl<T: Send + 'static> Latest<T> {
     pub fn ask(&mut self, wake: &Wake, job: impl FnOnce(&AtomicBool) -> Option<T> + Send + 'static) {
         self.generation += 1;
         self.task = Task::start(wake, job);
+        self.since = Some(Instant::now());
     }
 
     /// Forgets question and answer.
@@ -186,6 +189,11 @@ impl<T: Send + 'static> Latest<T> {
     /// The newest answer, be it to an older question.
     pub fn newest(&self) -> Option<&T> {
         self.answer.as_ref().map(|answer| &answer.1)
+    }
+
+    /// For how long an answer has been worked on; none where none is.
+    pub fn running_for(&self) -> Option<Duration> {
+        self.since.filter(|_| self.is_running()).map(|since| since.elapsed())
     }
 
     /// Whether an answer is being worked on.

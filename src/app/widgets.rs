@@ -1,88 +1,9 @@
-//! Small things that several panels draw: a slider that is one gesture, icons, the shapes of regimes.
+//! Small things that several panels draw: hover texts, icons, the shapes of regimes.
 
 use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
 
 use super::status::Kind;
 use super::style::COMPACT_BELOW;
-
-/// Room in points that a slider leaves for its number, and what is left of the slider for a long one.
-const NUMBER: f32 = 72.0;
-const LEAST_SLIDER: f32 = 30.0;
-
-/// A slider of a number of the scene.
-pub struct Knob<'a> {
-    /// Its name.
-    pub name: &'a str,
-    /// The unit after the number.
-    pub unit: &'a str,
-    /// Smallest and largest value of the slider; a typed number may lie outside.
-    pub range: (f64, f64),
-    /// Step of the arrow keys; with Shift ten of them.
-    pub step: f64,
-    /// Decimals of the number.
-    pub decimals: usize,
-    /// What happens if it is increased.
-    pub hover: &'a str,
-    /// Width of the slider in points.
-    pub width: f32,
-}
-
-/// What was done to a knob.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Turn {
-    /// The new value, where it changed.
-    pub value: Option<f64>,
-    /// Whether the gesture has ended.
-    pub ended: bool,
-}
-
-impl Knob<'_> {
-    /// What a long number takes more than the usual one, the slider has less: together they keep their room.
-    fn slider_width(&self, ui: &Ui, value: f64) -> f32 {
-        let text = format!("{value:.*}{}", self.decimals, self.unit);
-        let font = egui::TextStyle::Button.resolve(ui.style());
-        let text = ui.painter().layout_no_wrap(text, font, Color32::PLACEHOLDER).size().x;
-        let number = text + 2.0 * ui.spacing().button_padding.x;
-        (self.width - (number - NUMBER).max(0.0)).max(LEAST_SLIDER)
-    }
-
-    /// Draws it and says what was done to it.
-    pub fn ui(&self, ui: &mut Ui, value: f64) -> Turn {
-        let mut turned = value;
-        let (low, high) = (self.range.0.min(value), self.range.1.max(value));
-        let slider = egui::Slider::new(&mut turned, low..=high)
-            .fixed_decimals(self.decimals)
-            .suffix(self.unit)
-            .clamping(egui::SliderClamping::Never)
-            .smart_aim(false)
-            // a number that is half typed is not meant yet
-            .update_while_editing(false)
-            .step_by(self.step);
-        let name = hover_beside(ui.label(self.name), self.hover);
-        let width = self.slider_width(ui, value);
-        let response = ui
-            .scope(|ui| {
-                ui.spacing_mut().slider_width = width;
-                ui.add(slider)
-            })
-            .inner
-            .labelled_by(name.id);
-        let response = hover_beside(response, self.hover);
-        if turned != value && !response.dragged() && response.has_focus() && ui.input(|i| i.modifiers.shift) {
-            turned = value + 10.0 * (turned - value);
-        }
-        // the decimals that are shown are the number
-        let tens = 10_f64.powi(self.decimals as i32);
-        if turned != value && turned.abs() < 1e12 {
-            turned = (turned * tens).round() / tens;
-        }
-        let changed = turned != value && turned.is_finite();
-        Turn {
-            value: changed.then_some(turned),
-            ended: response.drag_stopped() || (changed && !response.dragged()),
-        }
-    }
-}
 
 /// What waits for an answer, over everything else.
 pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
@@ -96,8 +17,19 @@ pub fn dialog_width(ui: &Ui, most: f32) -> f32 {
 }
 
 /// A hover text that stands beside what it explains, where the window has a column of controls: below it would cover the
-/// next one.
+/// next one. It stays away from what a hand has just changed, until the pointer comes back to it.
 pub fn hover_beside(response: Response, text: &str) -> Response {
+    let hushed = egui::Id::unique("hushed");
+    let own = Some(response.id);
+    let is_hushed = || response.ctx.data(|data| data.get_temp::<Option<egui::Id>>(hushed)).flatten() == own;
+    if response.changed() || response.dragged() || response.is_pointer_button_down_on() {
+        response.ctx.data_mut(|data| data.insert_temp(hushed, own));
+    } else if is_hushed() && !response.contains_pointer() {
+        response.ctx.data_mut(|data| data.insert_temp::<Option<egui::Id>>(hushed, None));
+    }
+    if is_hushed() {
+        return response;
+    }
     if response.ctx.content_rect().width() < COMPACT_BELOW {
         return response.on_hover_text(text);
     }

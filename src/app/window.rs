@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, Ui};
+use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
 use egui_tiles::Tree;
 
 use crate::scene::{Layout, PRESETS};
@@ -34,6 +34,8 @@ const MORE: f32 = 276.0;
 
 /// Where the window's size in points is kept, at the zoom 1.
 pub const SIZE: &str = "size";
+/// Height in points of the line of the first minute.
+const HINT_ROW: f32 = 32.0;
 
 /// Where a person's own arrangement is kept.
 pub const OWN_KEY: &str = "arrangement";
@@ -105,6 +107,8 @@ pub struct Window {
     /// Input that waits for the next frame.
     later: Later,
     hint: hint::Hint,
+    /// The line of the first minute has been there.
+    hint_row: bool,
     wake: Wake,
     /// What was applied last, to be applied again only where it changes.
     applied: Option<Settings>,
@@ -158,6 +162,7 @@ impl Window {
             dialogs: true,
             typed: None,
             later: Later::default(),
+            hint_row: false,
             wake,
             applied: None,
         })
@@ -192,6 +197,9 @@ impl Window {
             self.session.moved_by_hand();
         }
         self.session.poll();
+        if let Some(left) = self.session.follow_presses(ctx.input(|input| input.time)) {
+            ctx.request_repaint_after_secs(left as f32);
+        }
         let seconds = ctx.input(|input| f64::from(input.stable_dt));
         self.session.player.tick(seconds);
         self.tell_reached();
@@ -237,7 +245,7 @@ impl Window {
             });
             if self.more {
                 Panel::right("more").frame(line).resizable(false).exact_size(MORE).show(ui, |ui| {
-                    controls::more_column_ui(ui, &mut self.session, &style);
+                    controls::more_column_ui(ui, &mut self.session);
                 });
             }
         } else {
@@ -246,7 +254,7 @@ impl Window {
             Panel::left("controls").frame(column).resizable(false).exact_size(width).show(ui, |ui| {
                 let bottom = ui.max_rect().bottom();
                 egui::ScrollArea::vertical().show(ui, |ui| {
-                    controls::column_ui(ui, &mut self.session, &style, &mut self.more);
+                    controls::column_ui(ui, &mut self.session, &mut self.more);
                     if !self.covered && notes::notes_ui(ui, self.session.scene(), bottom) {
                         asked.push(Command::Notes);
                     }
@@ -254,11 +262,23 @@ impl Window {
             });
         }
         let hinted = self.hint.is_shown(&self.session);
+        self.hint_row |= hinted;
         if self.ways && !self.covered {
             let ways = self.session.ways();
             Panel::top("ways").frame(line).show(ui, |ui| ui.label(ways));
-        } else if hinted && !self.covered {
-            Panel::top("hint").frame(line).show(ui, |ui| self.hint.ui(ui, &self.session));
+        } else if self.hint_row {
+            // its room stays when it goes: the views below do not jump
+            let hinted = hinted && !self.covered;
+            let height = if hinted && self.hint.is_long() { 2.0 * HINT_ROW } else { HINT_ROW };
+            Panel::top("hint").frame(line).exact_size(height).show(ui, |ui| match hinted {
+                true => self.hint.ui(ui, &self.session),
+                false => {
+                    ui.label(
+                        RichText::new("H says what it would take to cross, F1 lists all keys.")
+                            .color(style.faint()),
+                    );
+                }
+            });
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.memory.grab = false;
@@ -338,6 +358,11 @@ impl Window {
     /// What the traces share.
     pub fn timeline(&self) -> &views::Timeline {
         &self.memory.timeline
+    }
+
+    /// Whether the phase portrait shows a point a period and no path.
+    pub fn points_only(&self) -> bool {
+        self.memory.points_only
     }
 
     /// The views and where they stand.

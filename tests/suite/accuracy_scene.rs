@@ -52,6 +52,34 @@ fn fixed_steps_arrive_late_and_count_too_many_impacts() {
 }
 
 #[test]
+fn early_and_late_are_counted_and_more_impacts_are_explained() {
+    let paper = stepped(&preset("paper", &[]), Scheme::RungeKutta4, 1.0 / 60.0);
+    let late = paper.late.unwrap();
+    assert!(
+        late.early > 0 && late.early < late.matched && late.earliest < 0.0 && late.latest > 0.0,
+        "{late:?}"
+    );
+    let words = paper.sentences().join(" ");
+    assert!(words.starts_with(&format!("Of the first {} impacts after a flight", late.matched)), "{words}");
+    assert!(words.contains(&format!("and {} early, by up to", late.early)), "{words}");
+    // shorter steps count more impacts, and nearly all of what is too many are hops
+    let model = preset("nominal-cubic", &[]);
+    let [coarse, fine] = [1.0 / 240.0, 1.0 / 600.0].map(|step| stepped(&model, Scheme::RungeKutta4, step));
+    assert!(fine.impacts.1 > coarse.impacts.1 && fine.hops > coarse.hops);
+    for own in [&coarse, &fine] {
+        assert!(own.hops <= own.impacts.1 && own.hops + own.impacts.0 > own.impacts.1, "{own:?}");
+        let words = own.sentences().join(" ");
+        assert!(
+            words.contains(&format!("{} of them are hops of a mass that truly rests", own.hops)),
+            "{words}"
+        );
+    }
+    // without rest there is nothing to explain
+    let box_ = stepped(&preset("elastic-box", &[]), Scheme::RungeKutta4, 1.0 / 60.0);
+    assert!(box_.hops == 0 && !box_.sentences().join(" ").contains("hops"));
+}
+
+#[test]
 fn the_drawn_paths_are_those_of_the_runs() {
     let model = preset("nominal-cubic", &[]);
     let run = stepped(&model, Scheme::RungeKutta4, 1.0 / 600.0);

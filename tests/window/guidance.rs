@@ -85,8 +85,11 @@ fn the_hint_leads_on_and_ends() {
     harness.key_press(Key::Home);
     harness.run_steps(3);
     harness.get_by_label("Make it cross to the other side.");
+    // what is below it stays where it is
+    let place = harness.get_by_label("Well").rect();
     harness.get_by_label("Dismiss").click();
     harness.run_steps(3);
+    assert_eq!(harness.get_by_label("Well").rect(), place);
     assert!(harness.query_by_label("Dismiss").is_none());
 }
 

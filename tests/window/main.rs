@@ -16,4 +16,5 @@ mod random;
 mod screen;
 mod sentences;
 mod support;
+mod typing;
 mod views;

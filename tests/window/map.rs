@@ -67,7 +67,7 @@ fn it_fills_and_a_click_is_one_step() {
 
 #[test]
 fn it_stops_and_goes_on() {
-    let mut harness = open("paper", WIDE, (0.02, 0.02));
+    let mut harness = open("paper", WIDE, (0.005, 0.005));
     harness.get_by_label("Stop").click();
     harness.run_steps(3);
     let known = map(harness.state()).known();
@@ -85,7 +85,8 @@ fn hidden_it_computes_nothing() {
     let mut harness = window("paper", WIDE, Settings::default());
     harness.run_steps(5);
     assert!(harness.state().session.map.map().is_none());
-    harness.state_mut().session.map.choose(Some(axes((0.02, 0.02))));
+    // more cells than are run in the frames of this test
+    harness.state_mut().session.map.choose(Some(axes((0.005, 0.005))));
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
     harness.run_steps(3);
     assert!(harness.state().session.map.is_running());
@@ -199,4 +200,113 @@ fn every_preset_has_a_map_or_says_why_not() {
             mapping.problem()
         );
     }
+}
+
+/// Ends and steps of both axes.
+fn ranges(harness: &Harness<'static, Window>) -> [(f64, f64, f64); 2] {
+    map(harness.state()).question.axes.clone().map(|axis| (axis.from, axis.to, axis.step))
+}
+
+#[test]
+fn it_keeps_its_own_axes_when_it_is_clicked() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
+    harness.run_steps(3);
+    let before = ranges(&harness);
+    assert_eq!(before[1], (0.0, 2.0, 0.02));
+    let place = harness.get_by_role_and_label(Role::Image, "map").rect();
+    let at = place.left_bottom() + eframe::egui::vec2(0.3 * place.width(), -0.1 * place.height());
+    harness.drag_at(at);
+    harness.run_steps(1);
+    harness.drop_at(at);
+    harness.run_steps(4);
+    let g = harness.state().session.amplitude_g().unwrap();
+    assert!((0.1..0.3).contains(&g), "{g}");
+    assert_eq!(ranges(&harness), before);
+    // nor do other hands on the scene move them
+    harness.state_mut().session.set_number("excitation.amplitude_g", 0.05).unwrap();
+    harness.state_mut().session.end_gesture();
+    harness.run_steps(3);
+    assert_eq!(ranges(&harness), before);
+}
+
+#[test]
+fn a_box_enlarges_and_a_double_click_is_back() {
+    let mut harness = open("paper", WIDE, (0.25, 0.25));
+    fill(&mut harness);
+    let (before, scene) = (ranges(&harness), harness.state().session.scene().clone());
+    let place = harness.get_by_role_and_label(Role::Image, "map").rect();
+    let at = |x: f32, y: f32| place.min + eframe::egui::vec2(x, y) * place.size();
+    harness.drag_at(at(0.5, 0.6));
+    harness.run_steps(2);
+    for share in [0.6, 0.7, 0.8] {
+        harness.hover_at(at(share, 0.6 - 0.5 * (share - 0.5)));
+        harness.run_steps(1);
+    }
+    harness.drop_at(at(0.8, 0.45));
+    harness.run_steps(3);
+    let [across, up] = ranges(&harness);
+    assert!(across.0 > 1.8 && across.1 < 2.8 && across.2 < 0.25, "{across:?}");
+    assert!(up.0 > 0.8 && up.1 < 1.2 && up.2 < 0.25, "{up:?}");
+    assert_eq!(*harness.state().session.scene(), scene);
+    harness.get_by_label("Whole map");
+    // a test's frames are long
+    harness.ctx.options_mut(|options| options.input_options.max_double_click_delay = 5.0);
+    for _ in 0..2 {
+        harness.drag_at(at(0.5, 0.5));
+        harness.drop_at(at(0.5, 0.5));
+    }
+    harness.run_steps(40);
+    assert_eq!(ranges(&harness), before);
+    assert_eq!(*harness.state().session.scene(), scene);
+}
+
+#[test]
+fn the_cross_hair_is_dragged_and_stepped() {
+    let mut harness = open("paper", WIDE, (0.25, 0.25));
+    fill(&mut harness);
+    let before = harness.state().session.scene().clone();
+    let place = harness.get_by_role_and_label(Role::Image, "map").rect();
+    let cross = harness.get_by_role_and_label(Role::Slider, "cross-hair").rect().center();
+    harness.drag_at(cross);
+    harness.run_steps(2);
+    for step in 1..=4 {
+        harness.hover_at(cross + (place.center() - cross) * (step as f32 / 4.0));
+        harness.run_steps(1);
+    }
+    harness.drop_at(place.center());
+    harness.run_steps(2);
+    let stops = |harness: &Harness<'static, Window>| harness.state().session.scene().stops;
+    assert_eq!(stops(&harness), Stops::Rigid { travel_limit_mm: 2.0, restitution: 0.36 });
+    harness.get_by_role_and_label(Role::Slider, "cross-hair").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    assert_eq!(stops(&harness), Stops::Rigid { travel_limit_mm: 2.25, restitution: 0.36 });
+    let session = &mut harness.state_mut().session;
+    assert!(session.undo() && session.undo() && *session.scene() == before && !session.undo());
+}
+
+#[test]
+fn ends_and_steps_are_typed() {
+    let mut harness = open("paper", WIDE, (0.25, 0.25));
+    harness.get_by_label("Range").click();
+    harness.run_steps(4);
+    let mut enter = |name: &str, text: &str| {
+        harness.get_by_role_and_label(Role::SpinButton, name).click();
+        harness.run_steps(2);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        harness.event(eframe::egui::Event::Text(text.to_owned()));
+        harness.run_steps(2);
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+    };
+    enter("across, from", "0.5");
+    enter("across, step", "0.5");
+    enter("up, to", "1.25");
+    // a step that is none is refused
+    enter("up, step", "0");
+    enter("up, step", "one");
+    assert_eq!(ranges(&harness), [(0.5, 3.0, 0.5), (0.5, 1.25, 0.25)]);
+    harness.get_by_label_contains("“one” is no number");
 }

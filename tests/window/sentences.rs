@@ -57,7 +57,7 @@ fn shaken() {
     );
     let (_, text) = of("monostable", &[]);
     assert!(text.starts_with(
-        "One well: there is no barrier, so nothing to cross; will swing ±3.6 mm, RMS velocity 66 mm/s."
+        "No barrier: one well, so nothing to cross; will swing ±3.6 mm, RMS velocity 66 mm/s."
     ));
     // nobody has seen it yet
     let (kind, text) = of("random-shaking", &[]);

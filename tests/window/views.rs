@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable as _;
 use interwell::app::layouts::Room;
 use interwell::app::menu::Command;
 use interwell::app::settings::Settings;
-use interwell::app::views::{Span, View, energy};
+use interwell::app::views::{Memory, Span, View, energy};
 use interwell::app::window::Window;
 use interwell::scene::{Layout, PRESETS, Stops};
 
@@ -201,4 +201,74 @@ fn the_wheel_zooms_all_traces() {
     });
     harness.run_steps(10);
     assert!(harness.state().timeline().window.is_some());
+}
+
+#[test]
+fn axes_stand_still_while_the_wells_move_apart() {
+    let (mut own, mut memory) = (session("first-look", &[]), Memory::default());
+    let (before, well) = (memory.span(&own), own.model().mechanism.landscape.barrier.unwrap().right_well);
+    for mm in [2.75, 2.9, 3.1] {
+        assert!(own.set_number("mechanism.preload_mm", mm).unwrap());
+        own.poll();
+        assert_eq!(memory.span(&own), before, "{mm}");
+    }
+    let moved = own.model().mechanism.landscape.barrier.unwrap().right_well;
+    assert!(moved > 1.04 * well && moved < before.high, "{well} {moved} {before:?}");
+    own.end_gesture();
+    assert!(memory.span(&own).high > before.high);
+}
+
+#[test]
+fn a_displacement_is_zoomed_with_shift_and_back() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    let rect = harness.get_by_label("Displacement").rect();
+    let at = rect.left_bottom() + eframe::egui::vec2(200.0, 120.0);
+    harness.hover_at(at);
+    harness.run_steps(2);
+    harness.event(eframe::egui::Event::MouseWheel {
+        unit: eframe::egui::MouseWheelUnit::Point,
+        delta: eframe::egui::vec2(0.0, 100.0),
+        phase: eframe::egui::TouchPhase::Move,
+        source: eframe::egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::SHIFT,
+    });
+    harness.event(eframe::egui::Event::ModifiersChanged(Modifiers::SHIFT));
+    harness.run_steps(6);
+    let timeline = harness.state().timeline();
+    let (low, high) = timeline.vertical[0].unwrap();
+    assert!(timeline.window.is_none() && high - low < 17.5 && high > low, "{timeline:?}");
+    harness.event(eframe::egui::Event::ModifiersChanged(Modifiers::NONE));
+    harness.ctx.options_mut(|options| options.input_options.max_double_click_delay = 5.0);
+    for _ in 0..2 {
+        harness.drag_at(at);
+        harness.drop_at(at);
+    }
+    harness.run_steps(4);
+    assert_eq!(harness.state().timeline().vertical[0], None);
+}
+
+#[test]
+fn the_phase_portrait_shows_points_only() {
+    let mut harness = study("paper", WIDE);
+    assert!(!harness.state().points_only());
+    harness.get_by_label("points only").click();
+    harness.run_steps(3);
+    assert!(harness.state().points_only());
+    let before = harness.state().session.player.watch().ledger().by_hand_j;
+    // and the choice is no click on the states below it
+    assert_eq!(before, 0.0);
+}
+
+#[test]
+fn a_view_without_room_says_so() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    for view in View::ALL {
+        command(&mut harness, Command::Show(view, true));
+    }
+    harness.run_steps(4);
+    harness.get_by_label("Energy");
+    // at least a digit of the ledger, or the word that there is no room for it
+    let drawn = harness.query_by_label_contains("accounted for").is_some();
+    let said = harness.query_all_by_label_contains("Too small to show").next().is_some();
+    assert!(drawn || said);
 }

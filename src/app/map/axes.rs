@@ -1,5 +1,6 @@
 //! Which two fields does a map go over, and from where to where?
 
+use crate::app::fields::{below, decimal, round_up};
 use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};
 use crate::study::{Column, Values};
 
@@ -119,6 +120,24 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
     SweepAxis { field: path.to_owned(), from, to, step, values: Vec::new() }
 }
 
+/// The part of an axis between two of its values, in as many steps as it has itself, on a round step.
+pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
+    let (from, to) = (from.min(to).max(axis.from), from.max(to).min(axis.to));
+    let cells = ((axis.to - axis.from) / axis.step).max(1.0);
+    let width = (to - from).max(1e-3 * (axis.to - axis.from));
+    let step = below(width / cells).min(axis.step);
+    let on_step = |value: f64| decimal((value / step).round() * step);
+    // at least a step, and never below what the axis begins with
+    let from = on_step(from).max(axis.from);
+    SweepAxis {
+        field: axis.field.clone(),
+        from,
+        to: on_step(to).max(decimal(from + step)),
+        step,
+        ..SweepAxis::default()
+    }
+}
+
 /// What a person calls a field, and its unit, where it has one: `travel limit` and `mm`. `column` is its name in a table.
 pub fn name_and_unit(column: &str) -> (String, Option<String>) {
     let label = Column { name: column.to_owned(), values: Values::Words(Vec::new()) }.label();
@@ -141,18 +160,6 @@ pub fn over(axis: &SweepAxis) -> String {
     format!("{}={}:{}:{}", axis.field, axis.from, axis.to, axis.step)
 }
 
-/// The least number of one or two digits that is not below `value`.
-fn round_up(value: f64) -> f64 {
-    let power = 10_f64.powf(value.log10().floor());
-    let digits = [1.0, 1.2, 1.5, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0];
-    decimal(digits.iter().map(|digit| digit * power).find(|to| *to >= value * (1.0 - 1e-9)).unwrap_or(value))
-}
-
-/// The number of six digits: what products of round numbers are meant to be.
-fn decimal(value: f64) -> f64 {
-    format!("{value:.6e}").parse().unwrap_or(value)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -173,6 +180,16 @@ mod tests {
         let prototype = "stops.travel_limit_mm=0.5:7:0.125 excitation.amplitude_g=0:2:0.02";
         assert_eq!(defaults("first-look").as_deref(), Some(prototype));
         assert!(defaults("random-shaking").is_some_and(|axes| axes.contains("rms_g")));
+    }
+
+    #[test]
+    fn a_part_of_an_axis_has_as_many_cells() {
+        let axis =
+            SweepAxis { field: "a".to_owned(), from: 0.5, to: 7.0, step: 0.125, ..SweepAxis::default() };
+        let own = part(&axis, 2.51, 1.23);
+        assert_eq!((own.from, own.to, own.step), (1.24, 2.5, 0.02));
+        let tiny = part(&axis, 6.9999, 6.9999);
+        assert!(tiny.step > 0.0 && tiny.to > tiny.from);
     }
 
     #[test]

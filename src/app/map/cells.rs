@@ -4,8 +4,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::document::Editor;
+use crate::app::fields::in_words;
 use crate::numeric::short;
 use crate::output::{header, rows};
+use crate::scene::SceneError;
 use crate::study::{Cell, Edges, Grid, Levels, STRIDES, Sweep, Table, first_interwell, first_interwell_edge};
 
 use super::{Question, over};
@@ -40,9 +42,10 @@ impl Map {
     pub(super) fn new(question: &Question, editor: &Editor) -> Result<Self, String> {
         let mut document = editor.document().clone();
         document.scene = question.scene.clone();
-        document.check().map_err(|error| error.to_string())?;
+        let words = |error: SceneError| in_words(&error.to_string(), &question.scene);
+        document.check().map_err(words)?;
         let arguments = question.axes.each_ref().map(over);
-        let axes = document.axes(&arguments).map_err(|error| error.to_string())?;
+        let axes = document.axes(&arguments).map_err(words)?;
         let grid = Grid::new(axes).map_err(|error| error.to_string())?;
         if grid.cells() > MOST_CELLS {
             return Err(format!(

@@ -20,7 +20,7 @@ use super::document::Editor;
 use super::task::{Stream, Wake};
 
 pub use crate::numeric::short;
-pub use axes::{axis, fields, label, name_and_unit, over};
+pub use axes::{axis, fields, label, name_and_unit, over, part};
 pub use cells::Map;
 
 /// Seconds for which a hand has to be still before a map is begun in the middle of a gesture.
@@ -40,6 +40,10 @@ pub struct Question {
 pub struct Mapping {
     /// The axes that were chosen; none for the scene's own.
     chosen: Option<[SweepAxis; 2]>,
+    /// The scene's own, as they were when the map was first looked at: they do not follow the scene over its map.
+    held: Option<[SweepAxis; 2]>,
+    /// What was chosen before a part of the map was enlarged.
+    whole: Option<Option<[SweepAxis; 2]>>,
     map: Option<Map>,
     /// The map before, shown until the new one covers its ground.
     before: Option<Map>,
@@ -106,7 +110,25 @@ impl Mapping {
 
     /// Chooses axes; none for the scene's own.
     pub fn choose(&mut self, axes: Option<[SweepAxis; 2]>) {
-        self.chosen = axes;
+        (self.chosen, self.whole) = (axes, None);
+    }
+
+    /// Enlarges a part of the map, which has these axes.
+    pub fn enlarge(&mut self, axes: [SweepAxis; 2]) {
+        self.whole.get_or_insert(self.chosen.take());
+        self.chosen = Some(axes);
+    }
+
+    /// Whether a part of the map is enlarged.
+    pub fn is_enlarged(&self) -> bool {
+        self.whole.is_some()
+    }
+
+    /// Back to the whole map.
+    pub fn show_whole(&mut self) {
+        if let Some(axes) = self.whole.take() {
+            self.chosen = axes;
+        }
     }
 
     fn pause(&mut self) {

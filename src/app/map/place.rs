@@ -3,8 +3,9 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::app::fields::name_and_unit;
 use crate::app::session::Session;
-use crate::scene::{FieldPath, Stops, SweepAxis};
+use crate::scene::{Axis, FieldPath, Stops, SweepAxis};
 use crate::study::release_line;
 
 use super::{Map, Question, axes, command};
@@ -13,10 +14,10 @@ impl Session {
     /// The axes of the map; none where the scene has too few fields.
     pub fn map_axes(&self) -> Option<[SweepAxis; 2]> {
         let (scene, when_on) = (self.scene(), self.remembered_stops());
-        if let Some(chosen) = &self.map.chosen {
-            let ground = axes::ground(scene, when_on, chosen);
-            if chosen.iter().all(|axis| FieldPath::new(&axis.field).get(&ground).is_some()) {
-                return Some(chosen.clone());
+        for own in [&self.map.chosen, &self.map.held].into_iter().flatten() {
+            let ground = axes::ground(scene, when_on, own);
+            if own.iter().all(|axis| FieldPath::new(&axis.field).get(&ground).is_some()) {
+                return Some(own.clone());
             }
         }
         axes::default_axes(scene, when_on, self.well_mm())
@@ -42,6 +43,10 @@ impl Session {
             self.map.problem = Some("This scene has no two fields to make a map over.".to_owned());
             return false;
         };
+        // a choice that the scene has no fields for at the moment is kept for when it has
+        if self.map.chosen.as_ref() != Some(&axes) {
+            self.map.held = Some(axes.clone());
+        }
         let mut scene = axes::ground(self.scene(), self.remembered_stops(), &axes);
         for axis in &axes {
             if !FieldPath::new(&axis.field).set(&mut scene, axis.from) {
@@ -68,14 +73,33 @@ impl Session {
         question.axes.each_ref().map(|axis| FieldPath::new(&axis.field).get(self.scene()))
     }
 
+    /// Why axes cannot be those of a map of the scene; none where they can.
+    pub fn map_problem(&self, axes: &[SweepAxis; 2]) -> Option<String> {
+        let ground = axes::ground(self.scene(), self.remembered_stops(), axes);
+        for axis in axes {
+            if let Err((part, problem)) = Axis::from_scene(axis, &ground) {
+                return Some(format!("{}, {part}: {problem}", name_and_unit(&axis.field).0));
+            }
+        }
+        None
+    }
+
     /// Takes the scene to a cell of its map, by one gesture; the motion goes on from where it is.
     pub fn go_to_cell(&mut self, column: usize, row: usize) -> bool {
+        self.end_gesture();
+        let changed = self.drag_to_cell(column, row);
+        self.end_gesture();
+        changed
+    }
+
+    /// The same as part of a gesture.
+    pub fn drag_to_cell(&mut self, column: usize, row: usize) -> bool {
         let Some((map, _)) = self.map.shown() else { return false };
         let (Some(x), Some(y)) = (map.edges[0].values.get(column), map.edges[1].values.get(row)) else {
             return false;
         };
         let (values, axes, stops) = ([*x, *y], map.question.axes.clone(), map.question.scene.stops);
-        self.edit_once(|scene| {
+        self.edit(|scene| {
             if scene.stops == Stops::None && axes.iter().any(|axis| axis.field.starts_with("stops.")) {
                 scene.stops = stops;
             }

@@ -52,6 +52,9 @@ impl Session {
             (Some(settled), Some(thresholds), Some(stops)) => {
                 status::ways(self.scene(), settled, thresholds, *stops)
             }
+            _ if self.working().is_none() => {
+                "The search was stopped: the next change begins it again.".to_owned()
+            }
             _ => "Looking for what it would take.".to_owned(),
         }
     }
@@ -62,6 +65,25 @@ impl Session {
         if self.stands_still() && self.settled.current().is_some() {
             self.accuracy.follow(self.player.watch().time(), &self.wake);
         }
+    }
+
+    /// For how long the background has worked on what is said of the scene; none where it does not.
+    pub fn working(&self) -> Option<Duration> {
+        let all = [
+            self.settled.running_for(),
+            self.thresholds.running_for(),
+            self.stops_that_cross.running_for(),
+            self.accuracy.working(),
+        ];
+        all.into_iter().flatten().max()
+    }
+
+    /// Stops it; the next change asks again.
+    pub fn stop_working(&mut self) {
+        self.settled.stop();
+        self.thresholds.stop();
+        self.stops_that_cross.stop();
+        self.accuracy.stop();
     }
 
     /// Asks, for a view, what digits and steps cost in the scene; to be asked anew in every frame.

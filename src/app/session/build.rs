@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FlexureError, Mechanism};
-use crate::scene::{Document, Fault, SceneError};
+use crate::scene::{Document, Fault, Scene, SceneError};
+
+use crate::app::fields::{in_words, name_and_unit};
 
 /// Why a scene cannot be run.
 #[derive(Debug, thiserror::Error)]
@@ -35,14 +37,17 @@ pub(super) fn solved(document: &Document, tolerance: f64) -> Result<Arc<Mechanis
     Ok(mechanism)
 }
 
-/// The first thing that is wrong, without the place in a file, which a hand on a slider does not look at.
-pub(super) fn why(error: &CannotRun) -> String {
+/// The first thing that is wrong, with the names that stand on the screen and without the place in a file, which a hand on a
+/// slider does not look at.
+pub(super) fn why(error: &CannotRun, scene: &Scene) -> String {
     match error {
         CannotRun::Wrong(SceneError::Faults { faults, .. }) => faults.first().map_or_else(
             || error.to_string(),
             |placed| {
                 let Fault { field, value, problem } = &placed.fault;
-                format!("{field} = {value}: {problem}")
+                let (name, unit) = name_and_unit(field);
+                let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+                in_words(&format!("{name} = {value}{unit}: {problem}"), scene)
             },
         ),
         _ => error.to_string(),

@@ -131,13 +131,13 @@ pub fn driven(told: &Told) -> Sentence {
     let from = told.from();
     let (kind, text) = match summary.regime {
         Regime::OneWell if model.mechanism.landscape.right_stable().is_none() => {
-            (Kind::Other, format!("No well: {} {range}; {rms}.", words.moves))
+            (Kind::Other, format!("No barrier: {} {range}; {rms}.", words.moves))
         }
         Regime::OneWell => {
             let symmetric = (low + high).abs() < 0.02 * reach;
             let swing = if symmetric { format!("±{} mm", mm(reach)) } else { range };
             let text = format!(
-                "One well: there is no barrier, so nothing to cross; {} {swing}, {rms}.",
+                "No barrier: one well, so nothing to cross; {} {swing}, {rms}.",
                 words.swings
             );
             (Kind::Other, text)

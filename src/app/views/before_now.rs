@@ -1,16 +1,20 @@
-//! Before / now: what the last gesture changed.
+//! Before / now: what the last gesture changed, and what that did.
 
-use eframe::egui::{self, Grid, RichText, Sense, Ui, Vec2};
+use eframe::egui::{self, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
 
+use crate::app::fields::{decimals_for, exact, name_and_unit, shown};
 use crate::app::session::Card;
 use crate::app::status::{Kind, grams, mm, speed};
 use crate::app::widgets::kind_shapes;
 use crate::app::words::explained;
-use crate::dynamics::Regime;
-use crate::scene::{Excitation, Scene, Stops};
+use crate::dynamics::{Outcome, Regime};
+use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};
 use crate::study::Settled;
 
 use super::ViewContext;
+
+/// Height in points of a row, and of the heading.
+const ROW: f32 = 26.0;
 
 /// Draws it. Whether something changed.
 pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
@@ -18,48 +22,136 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
     ground.show(ui, |ui| {
         ui.set_min_size(ui.available_size());
-        let now = context.session.now_card();
-        let before = context.session.before_card().cloned();
-        let columns = ui.available_width() / 3.0 - 12.0;
-        Grid::new("before and now").num_columns(3).min_col_width(columns).spacing([8.0, 6.0]).show(
-            ui,
-            |ui| {
-                ui.label("");
-                ui.label(RichText::new("before").color(style.faint()));
-                ui.label(RichText::new("now").heading());
-                ui.end_row();
-                let row = |ui: &mut Ui, name: &str, text: &dyn Fn(&Card) -> String| {
-                    explained(ui.label(RichText::new(name).color(style.faint())), name);
-                    ui.label(before.as_ref().map_or_else(dash, text));
-                    ui.label(RichText::new(text(&now)).heading());
-                    ui.end_row();
-                };
-                row(ui, "shaking", &|card| shaking(&card.scene));
-                row(ui, "stops", &|card| stops(&card.scene));
-                ui.label(RichText::new("motion").color(style.faint()));
-                for card in [before.as_ref(), Some(&now)] {
-                    regime_ui(ui, context, card.and_then(|card| card.settled.as_ref()));
-                }
-                ui.end_row();
-                row(ui, "RMS velocity", &|card| {
-                    value(card, |s| s.summary.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))
-                });
-                row(ui, "reach", &|card| {
-                    value(card, |s| s.summary.max_abs_x.map(|reach| format!("{} mm", mm(reach))))
-                });
-                row(ui, "crosses from", &crosses_from);
-            },
-        );
-        // only where there is room for it
-        if before.is_none() && ui.available_height() > 28.0 {
-            ui.add_space(6.0);
-            ui.label(
-                RichText::new("Change something: the state before it stays here to compare.")
-                    .color(style.faint()),
-            );
-        }
+        // what has no room for every row can be scrolled
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| card_ui(ui, context));
     });
     false
+}
+
+fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
+    let style = context.style;
+    let now = context.session.now_card();
+    let before = context.session.before_card();
+    let mut rows = before.map_or_else(Vec::new, |before| changes(&before.scene, &now.scene));
+    // shaking and stops stay to be seen where there is room for what has not changed
+    let room = (ui.available_height() / ROW) as usize;
+    for (i, (name, text)) in
+        [("shaking", shaking as fn(&Scene) -> String), ("stops", stops)].into_iter().enumerate()
+    {
+        let own = before.map_or_else(dash, |before| text(&before.scene));
+        if rows.iter().all(|row| row.name != name) && rows.len() + 5 < room {
+            let at = rows.len().min(i);
+            rows.insert(at, Row { name: name.to_owned(), before: own, now: text(&now.scene) });
+        }
+    }
+    let columns = ui.available_width() / 3.0 - 12.0;
+    Grid::new("before and now").num_columns(3).min_col_width(columns).spacing([8.0, 6.0]).show(ui, |ui| {
+        ui.label("");
+        ui.label(RichText::new("before").color(style.faint()));
+        ui.label(RichText::new("now").heading());
+        ui.end_row();
+        let row_ui = |ui: &mut Ui, row: &Row| {
+            explained(ui.label(RichText::new(&row.name).color(style.faint())), &row.name);
+            ui.label(&row.before);
+            ui.label(RichText::new(&row.now).heading());
+            ui.end_row();
+        };
+        rows.iter().for_each(|row| row_ui(ui, row));
+        ui.label(RichText::new("motion").color(style.faint()));
+        for card in [before, Some(&now)] {
+            regime_ui(ui, context, card.and_then(|card| card.settled.as_ref()));
+        }
+        ui.end_row();
+        let both = |name: &str, text: &dyn Fn(&Card) -> String| Row {
+            name: name.to_owned(),
+            before: before.map_or_else(dash, text),
+            now: text(&now),
+        };
+        row_ui(
+            ui,
+            &both("RMS velocity", &|card| {
+                value(card, |s| s.summary.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))
+            }),
+        );
+        row_ui(
+            ui,
+            &both("reach", &|card| {
+                value(card, |s| s.summary.max_abs_x.map(|reach| format!("{} mm", mm(reach))))
+            }),
+        );
+        row_ui(ui, &both("crosses from", &crosses_from));
+    });
+    // only where there is room for it
+    if before.is_none() && ui.available_height() > 28.0 {
+        ui.add_space(6.0);
+        let text = "Change something: the state before it stays here to compare.";
+        ui.label(RichText::new(text).color(style.faint()));
+    }
+}
+
+/// A row of the card.
+#[derive(Debug, Clone, PartialEq)]
+struct Row {
+    name: String,
+    before: String,
+    now: String,
+}
+
+/// A row for everything in which two scenes differ: shaking and stops whole, else a number each.
+fn changes(before: &Scene, now: &Scene) -> Vec<Row> {
+    let row = |name: &str, text: fn(&Scene) -> String| Row {
+        name: name.to_owned(),
+        before: text(before),
+        now: text(now),
+    };
+    let whole = [
+        row("shaking", shaking),
+        row("stops", stops),
+        row("damping", damping),
+        row("mechanism", mechanism),
+        row("start", start),
+    ];
+    let mut rows: Vec<Row> = whole.into_iter().filter(|row| row.before != row.now).collect();
+    let differs = |name: &str, rows: &[Row]| rows.iter().any(|row| row.name == name);
+    let (shaken, stopped, begun) =
+        (differs("shaking", &rows), differs("stops", &rows), differs("start", &rows));
+    for path in numeric_fields(now) {
+        let (own, field) = (name_and_unit(&path), FieldPath::new(&path));
+        let numbers = [before, now].map(|scene| field.get(scene));
+        let [Some(was), Some(is)] = numbers else { continue };
+        // what a row above says already
+        let is_told = match path.split_once('.') {
+            Some(("excitation", number)) => shaken && in_shaking(&now.excitation, number),
+            Some(("stops", number)) => stopped && number.ends_with("_mm") && number != "radius_mm",
+            Some(("start", _)) => begun,
+            Some(("app", _)) => true,
+            _ => false,
+        };
+        if was == is || is_told {
+            continue;
+        }
+        // as many digits as tell them apart
+        let short = shown(was, 0) != shown(is, 0);
+        let text = |value: f64| {
+            let number = if short { shown(value, 0) } else { exact(value, 0) };
+            format!("{number} {}", own.1).trim_end().to_owned()
+        };
+        rows.push(Row { name: own.0, before: text(was), now: text(is) });
+    }
+    rows
+}
+
+/// Whether the row of the shaking says this number.
+fn in_shaking(excitation: &Excitation, number: &str) -> bool {
+    let all: &[&str] = match excitation {
+        Excitation::Constant { .. } => &["accel_g"],
+        Excitation::Sine { .. } => &["amplitude_g", "frequency_hz"],
+        Excitation::AmplitudeRamp { .. } => &["from_g", "to_g"],
+        Excitation::Chirp { .. } => &["amplitude_g", "from_hz", "to_hz"],
+        Excitation::Noise { .. } => &["rms_g"],
+        _ => &[],
+    };
+    all.contains(&number)
 }
 
 /// The least shaking that crosses, as far as it was searched for.
@@ -80,30 +172,66 @@ fn value(card: &Card, of: impl Fn(&Settled) -> Option<String>) -> String {
 }
 
 fn shaking(scene: &Scene) -> String {
+    // what these leave out has a row of its own where it differs
+    let rounded = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
+    let g = |value: f64| shown(rounded(value), 2);
+    let hz = |value: f64| shown(rounded(value), 1);
     match &scene.excitation {
         Excitation::None => "none".to_owned(),
-        Excitation::Constant { accel_g } => format!("{accel_g:.2} g, constant"),
+        Excitation::Constant { accel_g } => format!("{} g, constant", g(*accel_g)),
         Excitation::Sine { amplitude_g, frequency_hz, .. } => {
-            format!("{amplitude_g:.2} g, {frequency_hz:.1} Hz")
+            format!("{} g, {} Hz", g(*amplitude_g), hz(*frequency_hz))
         }
-        Excitation::AmplitudeRamp { from_g, to_g, .. } => format!("{from_g:.2} to {to_g:.2} g"),
-        Excitation::Chirp { from_hz, to_hz, .. } => format!("{from_hz:.1} to {to_hz:.1} Hz"),
-        Excitation::Noise { rms_g, .. } => format!("noise, {rms_g:.2} g"),
+        Excitation::AmplitudeRamp { from_g, to_g, .. } => format!("{} to {} g", g(*from_g), g(*to_g)),
+        Excitation::Chirp { from_hz, to_hz, amplitude_g, .. } => {
+            format!("{} g, {} to {} Hz", g(*amplitude_g), hz(*from_hz), hz(*to_hz))
+        }
+        Excitation::Noise { rms_g, .. } => format!("noise, {} g", g(*rms_g)),
         Excitation::Recorded { .. } => "recorded".to_owned(),
-        Excitation::Sum(_) => "several".to_owned(),
+        Excitation::Sum(terms) => format!("sum of {}", terms.len()),
     }
 }
 
 fn stops(scene: &Scene) -> String {
+    let mm = |value: f64| format!("{} mm", shown(value, decimals_for(value).min(2)));
     match scene.stops {
         Stops::None => "none".to_owned(),
-        Stops::Rigid { travel_limit_mm, .. } => format!("±{travel_limit_mm:.2} mm"),
-        Stops::Hertz { travel_limit_mm, .. } => format!("±{travel_limit_mm:.2} mm, compliant"),
+        Stops::Rigid { travel_limit_mm, .. } => format!("±{}", mm(travel_limit_mm)),
+        Stops::Hertz { travel_limit_mm, .. } => format!("±{}, compliant", mm(travel_limit_mm)),
         Stops::Uneven { left_mm, right_mm, .. } => {
-            let side =
-                |mm: Option<f64>, sign: &str| mm.map_or("open".to_owned(), |mm| format!("{sign}{mm:.2} mm"));
+            let side = |own: Option<f64>, sign: &str| {
+                own.map_or("open".to_owned(), |own| format!("{sign}{}", mm(own)))
+            };
             format!("{}, {}", side(left_mm, "-"), side(right_mm, "+"))
         }
+    }
+}
+
+/// What kind of damping there is; its number has a row of its own.
+fn damping(scene: &Scene) -> String {
+    match scene.damping {
+        Damping::None => "none",
+        Damping::Ratio(_) => "by ratio",
+        Damping::Coefficient { .. } => "by coefficient",
+    }
+    .to_owned()
+}
+
+/// What kind of mechanism it is; its numbers have rows of their own.
+fn mechanism(scene: &Scene) -> String {
+    match &scene.mechanism {
+        Mechanism::Flexures { .. } => "flexures".to_owned(),
+        Mechanism::Cubic { .. } => "cubic".to_owned(),
+        Mechanism::DoubleWell { .. } => "double well".to_owned(),
+        Mechanism::Polynomial { coefficients_si } => format!("polynomial of {}", coefficients_si.len()),
+        Mechanism::Table { path, .. } => path.clone(),
+    }
+}
+
+fn start(scene: &Scene) -> String {
+    match scene.start {
+        Start::Rest => "at rest".to_owned(),
+        Start::At { x_mm, v_m_per_s } => format!("{} mm, {} m/s", shown(x_mm, 1), shown(v_m_per_s, 0)),
     }
 }
 
@@ -112,6 +240,10 @@ fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Settled>) 
         ui.label("-");
         return;
     };
+    if settled.summary.outcome != Outcome::Done {
+        ui.label("the run ended early");
+        return;
+    }
     let (kind, name) = match settled.summary.regime {
         Regime::Rest => (Kind::Resting, "resting"),
         Regime::Intrawell if settled.summary.releases > 0 => (Kind::Intrawell, "hopping"),
@@ -119,11 +251,40 @@ fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Settled>) 
         Regime::Interwell => (Kind::Interwell, "interwell"),
         Regime::Irregular => (Kind::Irregular, "irregular"),
         Regime::Crossing => (Kind::Crossing, "crossing"),
-        Regime::OneWell => (Kind::Other, "one well"),
+        // no wells or one: there is nothing to cross
+        Regime::OneWell => (Kind::Other, "no barrier"),
     };
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(16.0), Sense::hover());
         ui.painter().extend(kind_shapes(kind, rect.center(), 5.0, context.style.kind(kind)));
         explained(ui.label(name), name);
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Document, PRESETS};
+
+    /// Whatever differs has a row, whose two sides differ.
+    #[test]
+    fn every_number_that_differs_has_a_row() {
+        for preset in PRESETS {
+            let before = Document::load(preset.name).unwrap().scene;
+            for path in numeric_fields(&before).iter().filter(|path| !path.starts_with("app.")) {
+                let (mut now, field) = (before.clone(), FieldPath::new(path));
+                let Some(value) = field.get(&before) else { continue };
+                let changed = if value == 0.0 { 1.0 } else { value * 1.000_000_01 };
+                assert!(field.set(&mut now, changed));
+                // a whole number does not take so small a change
+                if now == before {
+                    assert!(field.set(&mut now, value + 1.0));
+                }
+                let rows = changes(&before, &now);
+                assert!(rows.len() == 1, "{} {path}: {rows:?}", preset.name);
+                assert!(rows.iter().all(|row| row.before != row.now), "{path}: {rows:?}");
+            }
+            assert!(changes(&before, &before).is_empty());
+        }
+    }
 }

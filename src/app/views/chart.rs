@@ -9,7 +9,7 @@ use crate::app::style::Style;
 use crate::mechanics::Landscape;
 
 use super::ViewContext;
-use super::labels::haloed;
+use super::labels::{haloed, plated};
 use super::legend::{LEGEND, Sign, legend};
 use super::span::{Span, ticks};
 use super::well::x_axis;
@@ -104,7 +104,7 @@ impl Chart {
     pub fn numbers(&self, ui: &Ui, style: &Style, name: &str, unit: f64) {
         let painter = ui.painter().with_clip_rect(self.area);
         let write = |at: Pos2, align: Align2, text: &str| {
-            haloed(&painter, style, (at, align), text, (style.small(), style.faint()));
+            plated(&painter, style, (at, align), text, (style.small(), style.faint()));
         };
         let (values, decimals) = self.rows(unit);
         for value in values {
@@ -125,9 +125,9 @@ impl Chart {
         haloed(&painter, style, at, text, (style.small(), style.ink()));
     }
 
-    /// What the lines mean, above the picture; what has no room is left out.
-    pub fn legend(&self, ui: &Ui, style: &Style, entries: &[(Sign, &str)]) {
-        legend(&ui.painter().with_clip_rect(self.area), style, self.area, self.area.right(), entries);
+    /// What the lines mean, above the picture; what has no room before `right` is left out.
+    pub fn legend(&self, ui: &Ui, style: &Style, right: f32, entries: &[(Sign, &str)]) {
+        legend(&ui.painter().with_clip_rect(self.area), style, self.area, right, entries);
     }
 
     /// Equilibria where the vertical axis is 0: filled where stable, hollow where not.

@@ -8,8 +8,8 @@ use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, 
 use crate::app::style::Style;
 use crate::dynamics::LiveLedger;
 
-use super::ViewContext;
 use super::ranges::axis_end;
+use super::{ViewContext, too_small_ui};
 
 /// Widths in points of the names and of the numbers.
 const NAMES: f32 = 64.0;
@@ -73,7 +73,9 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let style = context.style;
     ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
     let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
-    if area.width() < 160.0 || area.height() < 80.0 {
+    // less than every row and the bar below them
+    if area.width() < NAMES + NUMBERS + 40.0 || area.height() < ROWS.0 * (COUNT - 2.0) {
+        too_small_ui(ui, &style, ui.max_rect());
         return false;
     }
     context.session.player.want_ledgers();

@@ -6,15 +6,16 @@
 
 use eframe::egui::{Align2, Painter, Sense, Shape, Stroke, Ui, pos2, vec2};
 
+use crate::app::fields::three;
 use crate::app::style::BALL;
 use crate::dynamics::STANDARD_GRAVITY;
 
-use super::ViewContext;
 use super::chart::Chart;
 use super::labels::haloed;
 use super::legend::Sign;
 use super::ranges::{axis_end, room_for_push};
 use super::stops::stops_beside_ui;
+use super::{ViewContext, too_small_ui};
 
 /// Room above the largest force of the wells, as a factor.
 const ROOM: f64 = 1.3;
@@ -33,10 +34,12 @@ const LABEL: f32 = 110.0;
 pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if area.width() < 60.0 || area.height() < 80.0 {
+        too_small_ui(ui, &context.style, area);
         return false;
     }
     let style = context.style;
-    let end = end_of_axis(context);
+    let own = end_of_axis(context);
+    let (_, end) = context.memory.held.force.keep((-own, own), context.session.editor.in_gesture());
     let chart = Chart::new(area, context.span, -end, end);
     chart.axes(ui, context, 1.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
@@ -67,12 +70,12 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let at = chart.screen_from_world(state.x, own.force(state.x));
     painter.circle(at, BALL - 2.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
     chart.numbers(ui, &style, "force (N)", 1.0);
-    chart.legend(ui, &style, &legend);
+    chart.legend(ui, &style, area.right(), &legend);
     if let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) {
         let (x, _) = chart.world_from_screen(pointer);
         let force = context.session.shown().mechanism.curve.force(x);
         if force.is_finite() {
-            chart.readout(ui, &style, &format!("{force:.3} N at {:.2} mm", x * 1e3));
+            chart.readout(ui, &style, &format!("{} N at {} mm", three(force), three(x * 1e3)));
         }
     }
     changed
@@ -139,7 +142,7 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
         let inwards = -MARK * way as f32;
         painter.line_segment([at, at + vec2(LINE * inwards, 0.0)], stroke);
         // beyond the wall, out of the way of the mass; on the inner side where the picture ends
-        let text = format!("frees at {:.2} g", force.abs() / (model.mass * STANDARD_GRAVITY));
+        let text = format!("frees at {} g", three(force.abs() / (model.mass * STANDARD_GRAVITY)));
         let room = if way > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };
         let outwards = if room > LABEL { -inwards.signum() } else { inwards.signum() };
         let align = if outwards > 0.0 { Align2::LEFT_CENTER } else { Align2::RIGHT_CENTER };

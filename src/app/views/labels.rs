@@ -31,6 +31,21 @@ pub fn haloed(
     place
 }
 
+/// Text on a plate of the ground, readable over walls and hatching as well. Where it stands.
+pub fn plated(
+    painter: &Painter,
+    style: &Style,
+    (at, align): (Pos2, Align2),
+    text: &str,
+    (font, color): (FontId, Color32),
+) -> Rect {
+    let galley = painter.layout_no_wrap(text.to_owned(), font, color);
+    let place = align.anchor_size(at, galley.size());
+    painter.rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, style.ground().gamma_multiply(0.9));
+    painter.galley(place.min, galley, color);
+    place
+}
+
 /// The left end of a text of some width in a row, as near as may be to the middle that it should have: within `room` and
 /// clear of what is taken. None where it would not stand by that middle any more.
 pub fn free_place(middle: f32, width: f32, room: Rangef, taken: &[Rangef]) -> Option<f32> {

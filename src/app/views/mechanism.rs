@@ -1,24 +1,27 @@
 //! The mechanism as a drawing, over the well and on its x axis, seen from the base.
 //!
-//! Where the force comes from flexures they are drawn as they are bent ([`flexures`](super::flexures)); else a schematic
-//! has clamps, flexures and the mass in the right places along x, not to scale across it. The base stands
+//! Where the force comes from flexures they are drawn as they are bent ([`flexures`](super::flexures)); another force is a
+//! spring in a schematic, and one that is the same everywhere has none. The base stands
 //! still in it, and the push that the mass feels instead is an arrow; the base's own motion is far larger than the travel
 //! and has an inset at its own scale. An impact is a ring whose size is the energy that it takes.
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
+use crate::app::fields::{decimals_for, three};
 use crate::app::style::{BALL, RING_SECONDS};
 use crate::app::words::explained;
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
+use crate::mechanics::ForceCurve;
 
-use super::ViewContext;
 use super::flexures::{CLAMP, Place, Scale, bulge_words, clamp, state_at};
 use super::labels::{ago, haloed};
 use super::stops::{WALL, stops_beside_ui};
 use super::well::mass_ui;
+use super::{Span, ViewContext, too_small_ui};
 
-/// Points of a drawn flexure.
-const FLEXURE_POINTS: usize = 24;
+/// Half turns of a drawn spring, and half its width in points.
+const COILS: usize = 12;
+const COIL: f32 = 9.0;
 
 /// The least size in points of a drawing whose parts are named.
 const NAMED: egui::Vec2 = vec2(280.0, 140.0);
@@ -42,6 +45,7 @@ pub(super) struct Ring {
 pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let (rect, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if rect.width() < 60.0 || rect.height() < 60.0 {
+        too_small_ui(ui, &context.style, rect);
         return false;
     }
     // an axis of its own only where no other view stands on it
@@ -59,18 +63,13 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
     let (top, bottom) = (rect.top() + 28.0, rect.bottom() - 12.0);
     // as wide as the ball on the well, so that it touches the stops when it should
     let half = vec2(BALL, ((bottom - top) * 0.13).clamp(14.0, 30.0));
-    for (y, above) in [(top, true), (bottom, false)] {
-        let y = if above { y - CLAMP..=y } else { y..=y + CLAMP };
-        clamp(&painter, &style, Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y), above);
-    }
     let place = Place { top, bottom, half };
     let (middle, words) = match bent_ui(ui, &painter, context, rect, place, state.x) {
         Some(drawn) => drawn,
         None => {
             let middle = 0.5 * (top + bottom);
             let x = context.span.screen_from_world(state.x, rect);
-            flexures(&painter, context, rect, (x, middle, half), (top, bottom));
-            (middle, "schematic".to_owned())
+            (middle, schematic(&painter, context, rect, (x, middle, half), top))
         }
     };
     let x = context.span.screen_from_world(state.x, rect);
@@ -157,6 +156,10 @@ fn bent_ui(
     {
         context.span = own;
     }
+    for (y, above) in [(place.top, true), (place.bottom, false)] {
+        let y = if above { y - CLAMP..=y } else { y..=y + CLAMP };
+        clamp(painter, &style, Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y), above);
+    }
     painter.extend(scale.shapes(geometry, &bent, context.span, rect, style.flexure_stroke()));
     scale.bar(painter, &style, pos2(rect.right() - 18.0, place.bottom - 8.0));
     let words = bulge_words(&bent);
@@ -168,41 +171,70 @@ fn bent_ui(
     Some((scale.middle(&bent), words))
 }
 
-/// Two guided flexures below the mass and the buckled one above it.
-fn flexures(
+/// What is drawn of a force without flexures behind it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Schematic {
+    /// A spring that pushes the mass away from the middle and draws it back from far out, or the like.
+    Spring,
+    /// Nothing: the force is the same everywhere.
+    Mass { pulled: bool },
+}
+
+impl Schematic {
+    /// Where the force does not depend on the place there is no spring.
+    fn of(curve: &ForceCurve, span: Span) -> Self {
+        let domain = curve.domain();
+        let place = |share: f64| (span.low + share * (span.high - span.low)).clamp(domain.0, domain.1);
+        let forces = [0.0, 0.21, 0.5, 0.83, 1.0].map(|share| curve.force(place(share)));
+        let same = forces.iter().all(|force| (force - forces[0]).abs() <= 1e-9 * forces[0].abs());
+        if same { Self::Mass { pulled: forces[0] != 0.0 } } else { Self::Spring }
+    }
+
+    fn words(self, force: f64) -> String {
+        match self {
+            Self::Spring => "a spring of this force, not to scale; seen from the base".to_owned(),
+            Self::Mass { pulled: false } => "a free mass, seen from the base".to_owned(),
+            Self::Mass { pulled: true } => {
+                let way = if force > 0.0 { "left" } else { "right" };
+                format!("a steady force of {} N to the {way}, seen from the base", three(force.abs()))
+            }
+        }
+    }
+}
+
+/// The mass on its rail, with a spring from above where there is one.
+fn schematic(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
     rect: Rect,
     (x, middle, half): (f32, f32, egui::Vec2),
-    (top, bottom): (f32, f32),
-) {
-    let stroke = context.style.flexure_stroke();
-    let zero = context.span.screen_from_world(0.0, rect);
-    let landscape = &context.session.shown().mechanism.landscape;
-    // The bump is largest at the barrier and gone at the wells, where the flexure is straight.
-    let (place, well) = match landscape.barrier {
-        Some(barrier) => {
-            (x - context.span.screen_from_world(barrier.x, rect), barrier.right_well - barrier.x)
-        }
-        None => (0.0, 0.0),
-    };
-    let reach = (context.span.scale(rect) * well) as f32;
-    let left = if reach > 0.0 { (1.0 - (place / reach).powi(2)).max(0.0) } else { 0.0 };
-    let bump = 0.35 * (middle - top) * left.sqrt();
-    let shape = |from: Pos2, to: Pos2, bump: f32| {
-        let point = |i: usize| {
-            let s = i as f32 / FLEXURE_POINTS as f32;
-            let guided = s * s * (3.0 - 2.0 * s);
-            let bulge = (std::f32::consts::PI * s).sin().powi(2);
-            pos2(from.x + (to.x - from.x) * guided + bump * bulge, from.y + (to.y - from.y) * s)
-        };
-        Shape::line((0..=FLEXURE_POINTS).map(point).collect(), stroke)
-    };
-    for side in [-0.6, 0.6] {
-        let foot = pos2(zero + side * half.x, bottom);
-        painter.add(shape(foot, pos2(x + side * half.x, middle + half.y), 0.0));
+    top: f32,
+) -> String {
+    let style = context.style;
+    let curve = &context.session.shown().mechanism.curve;
+    let own = Schematic::of(curve, context.span);
+    painter.hline(rect.x_range().shrink(6.0), middle + half.y + 3.0, Stroke::new(2.0, style.faint()));
+    if own == Schematic::Spring {
+        let clamp_at = Rect::from_x_y_ranges(rect.x_range().shrink(6.0), top - CLAMP..=top);
+        clamp(painter, &style, clamp_at, true);
+        let barrier = context.session.shown().mechanism.landscape.barrier;
+        let foot = context.span.screen_from_world(barrier.map_or(0.0, |barrier| barrier.x), rect);
+        let (from, to) = (pos2(foot, top), pos2(x, middle - half.y));
+        painter.add(Shape::line(coil(from, to), style.flexure_stroke()));
     }
-    painter.add(shape(pos2(zero, top), pos2(x, middle - half.y), bump));
+    own.words(curve.force(0.0_f64.clamp(curve.domain().0, curve.domain().1)))
+}
+
+/// A coil spring from one place to another: straight ends, and turns between that a stretch pulls apart.
+fn coil(from: Pos2, to: Pos2) -> Vec<Pos2> {
+    let along = to - from;
+    let across = along.normalized().rot90() * COIL;
+    let turn = |i: usize| {
+        let share = 0.15 + 0.7 * (i as f32 + 0.5) / COILS as f32;
+        from + along * share + if i.is_multiple_of(2) { across } else { -across }
+    };
+    let turns = (0..COILS).map(turn);
+    [from, from + along * 0.15].into_iter().chain(turns).chain([from + along * 0.85, to]).collect()
 }
 
 /// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g). It lies at the mass's height on the
@@ -250,7 +282,10 @@ fn words_ui(
     put("seen from the base".to_owned(), style.faint());
     put(words.to_owned(), style.faint());
     if context.session.shown().is_shaken() {
-        put(format!("push {:.2} g", (base_accel / STANDARD_GRAVITY).abs()), style.base());
+        // hundredths, and more only where these say nothing
+        let most = context.session.shown().largest_push() / STANDARD_GRAVITY;
+        let decimals = if most < 0.1 { decimals_for(most) } else { 2 };
+        put(format!("push {:.decimals$} g", (base_accel / STANDARD_GRAVITY).abs()), style.base());
     }
     inset(ui, painter, context, Rect::from_min_max(pos2(at.x, rect.top()), rect.max), base_accel);
 }
@@ -268,7 +303,8 @@ fn inset(ui: &Ui, painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect
     painter.line_segment([track - vec2(half, 0.0), track + vec2(half, 0.0)], style.ghost_stroke());
     let at = track + vec2((place / swing) as f32 * half, 0.0);
     painter.rect_filled(Rect::from_center_size(at, vec2(14.0, 9.0)), 2.0, style.base());
-    let text = format!("base: ±{:.1} mm", swing * 1e3);
+    let (size, unit) = if swing < 10.0 { (swing * 1e3, "mm") } else { (swing, "m") };
+    let text = format!("base: ±{} {unit}", three(size));
     let left = track - vec2(half + 14.0, 0.0);
     let place = painter.text(left, Align2::RIGHT_CENTER, &text, style.small(), style.base());
     explain(ui, place, &text);
@@ -314,5 +350,28 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
         let color: Color32 = style.impact().gamma_multiply((1.0 - age) as f32);
         painter.circle_stroke(center, radius, Stroke::new(2.5, color));
         ui.ctx().request_repaint();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::app::document::Editor;
+    use crate::app::session::Session;
+
+    #[test]
+    fn only_a_force_that_depends_on_the_place_has_a_spring() {
+        let words = |preset: &str| {
+            let session = Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap();
+            let curve = &session.model().mechanism.curve;
+            Schematic::of(curve, Span::of(&session, (0.0, 0.0))).words(curve.force(0.0))
+        };
+        assert_eq!(words("bouncing-ball"), "a steady force of 9.81 N to the left, seen from the base");
+        assert_eq!(words("elastic-box"), "a free mass, seen from the base");
+        for preset in ["duffing", "monostable", "nominal-cubic", "paper-table"] {
+            assert!(words(preset).starts_with("a spring"), "{preset}");
+        }
     }
 }

@@ -21,7 +21,7 @@ mod stops;
 mod trace;
 mod well;
 
-use eframe::egui::{Ui, UiBuilder};
+use eframe::egui::{Align, Label, Layout, Rect, RichText, Ui, UiBuilder};
 
 use crate::mechanics::flexure::State;
 
@@ -88,14 +88,15 @@ impl View {
     pub fn about(self) -> &'static str {
         match self {
             Self::Mechanism => {
-                "The mass between its flexures and stops, seen from the base that shakes. The arrow is the push that the mass \
+                "The mass between its stops, seen from the base that shakes, with its flexures or a spring in their place. The arrow is the push that the mass \
                  feels. Drag the mass or a stop."
             }
             Self::Well => {
                 "The mass rides on the potential like a ball on a tray that the push tips. Drag the ball or a stop."
             }
             Self::Displacement => {
-                "Where the mass is, seen from the base, over time. The wheel zooms in time, a double click is back."
+                "Where the mass is, seen from the base, over time. The wheel zooms in time; with Shift, or over the numbers of \
+                 the axis, in displacement. A double click is back."
             }
             Self::BeforeNow => "What your last change did: the state before it, and the one after it.",
             Self::PhasePortrait => {
@@ -155,7 +156,12 @@ impl Memory {
     /// The x axis that views share, with room for what has been seen.
     pub fn span(&mut self, session: &Session) -> Span {
         let seen = self.ranges.follow(session).reach(session);
-        Span::of(session, seen)
+        let own = Span::of(session, seen);
+        let x = session.player.state().x;
+        let is_seen = self.held.span.0.is_none_or(|(low, high)| low < x && x < high);
+        let held = session.editor.in_gesture() && is_seen;
+        let (low, high) = self.held.span.keep((own.low, own.high), held);
+        Span { low, high }
     }
 }
 
@@ -177,9 +183,41 @@ pub struct ViewContext<'a> {
     pub filled: bool,
 }
 
+/// An axis that stands still while a hand changes the scene, so that what the hand does to it is seen.
+#[derive(Debug, Clone, Copy, Default)]
+struct Held(Option<(f64, f64)>);
+
+/// The room in an axis, as a share of it, that may be used up before an axis that is held gives way.
+const SPARE: f64 = 0.08;
+
+impl Held {
+    /// The ends of the axis: those that it should have, or in the midst of a gesture those that it had, as long as what it
+    /// has to show is inside.
+    fn keep(&mut self, own: (f64, f64), in_gesture: bool) -> (f64, f64) {
+        let spare = SPARE * (own.1 - own.0);
+        let holds = |had: &(f64, f64)| had.0 <= own.0 + spare && had.1 >= own.1 - spare;
+        let ends = self.0.filter(|had| in_gesture && holds(had)).unwrap_or(own);
+        self.0 = Some(ends);
+        ends
+    }
+}
+
+/// The axes that stand still during a gesture.
+#[derive(Debug, Clone, Copy, Default)]
+struct HeldAxes {
+    /// Displacement.
+    span: Held,
+    /// Potential energy.
+    heights: Held,
+    /// Force.
+    force: Held,
+}
+
 /// What views keep between frames.
 #[derive(Debug, Clone, Default)]
 pub struct Memory {
+    /// Axes that stand still during a gesture.
+    held: HeldAxes,
     /// The last impact on the left and the right that is drawn as a ring.
     rings: [Option<mechanism::Ring>; 2],
     /// The flexures as they were drawn last.
@@ -194,8 +232,12 @@ pub struct Memory {
     pub timeline: Timeline,
     /// How far axes of velocity and power reach.
     ranges: ranges::Ranges,
+    /// The phase portrait shows a point a period and no path.
+    pub points_only: bool,
     /// What the map shows.
     pub map_quantity: MapQuantity,
+    /// What a hand is about to do to the map.
+    map_hand: map::Hand,
     /// What the view Accuracy shows where there is no room for all of it.
     accuracy_page: accuracy::Page,
 }
@@ -219,6 +261,19 @@ fn covered_ui(ui: &mut Ui, style: &Style) {
     });
 }
 
+/// In place of a view that has no room: a word, where there is room for one.
+fn too_small_ui(ui: &mut Ui, style: &Style, area: Rect) {
+    ui.painter().rect_filled(area, 0.0, style.ground());
+    let text = RichText::new("Too small to show: drag an edge of it, or press Z over it.")
+        .small()
+        .color(style.faint());
+    let middle = UiBuilder::new().max_rect(area.shrink(4.0)).layout(Layout::top_down(Align::Center));
+    ui.scope_builder(middle, |ui| {
+        ui.set_clip_rect(area.intersect(ui.clip_rect()));
+        ui.add(Label::new(text).wrap())
+    });
+}
+
 fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
     if context.covered {
         covered_ui(ui, &context.style);
@@ -237,5 +292,22 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
         View::Power => trace::trace_ui(ui, Quantity::Power, context),
         View::Map => map::map_ui(ui, context),
         View::Accuracy => accuracy::accuracy_ui(ui, context),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_stands_still_while_a_hand_moves_what_it_shows() {
+        let mut held = Held::default();
+        assert_eq!(held.keep((-8.0, 8.0), false), (-8.0, 8.0));
+        // smaller or a little larger it stays, and what leaves it takes it along
+        assert_eq!(held.keep((-4.0, 4.0), true), (-8.0, 8.0));
+        assert_eq!(held.keep((-9.0, 9.0), true), (-8.0, 8.0));
+        assert_eq!(held.keep((-12.0, 12.0), true), (-12.0, 12.0));
+        assert_eq!(held.keep((-9.0, 9.0), true), (-12.0, 12.0));
+        assert_eq!(held.keep((-9.0, 9.0), false), (-9.0, 9.0));
     }
 }

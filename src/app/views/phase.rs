@@ -7,16 +7,17 @@ use std::collections::VecDeque;
 
 use eframe::egui::{self, Color32, Painter, Pos2, Sense, Shape, Stroke, Ui};
 
+use crate::app::fields::three;
 use crate::app::status::Kind;
 use crate::app::widgets::kind_shapes;
 use crate::dynamics::{Model, Phase, Sample};
 use crate::study::between;
 
-use super::ViewContext;
 use super::chart::Chart;
 use super::labels::rests;
-use super::legend::Sign;
+use super::legend::{LEGEND, Sign};
 use super::stops::stops_beside_ui;
+use super::{ViewContext, too_small_ui};
 
 /// Length of the trail in forcing periods; without a period, in swings of the scene's own time scale.
 const TRAIL_PERIODS: f64 = 4.0;
@@ -45,6 +46,7 @@ const STROBE: f32 = 3.0;
 pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
     if area.width() < 60.0 || area.height() < 80.0 {
+        too_small_ui(ui, &context.style, area);
         return false;
     }
     let style = context.style;
@@ -61,11 +63,15 @@ pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let edges = (chart.rect.top(), chart.rect.bottom());
     let changed = stops_beside_ui(ui, context, chart.rect, edges, 0.0);
     let painter = ui.painter().with_clip_rect(chart.rect.expand(STATE));
-    trail(&painter, context, &chart);
-    if context.session.shown().forcing_period.is_some() {
+    let is_periodic = context.session.shown().forcing_period.is_some();
+    let points_only = context.memory.points_only && is_periodic;
+    if !points_only {
+        trail(&painter, context, &chart);
+    }
+    if is_periodic {
         legend.push((Sign::Ring(style.base_stroke()), "once a period"));
     }
-    if context.session.shown().stop_positions() != (None, None) {
+    if context.session.shown().stop_positions() != (None, None) && !points_only {
         legend.push((Sign::Dashed(style.impact_stroke()), "impact"));
     }
     strobes(&painter, context, &chart);
@@ -78,8 +84,29 @@ pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         painter.extend(kind_shapes(Kind::Resting, at, STATE, style.mass()));
     }
     chart.numbers(ui, &style, "velocity (mm/s)", 1e-3);
-    chart.legend(ui, &style, &legend);
+    let right = if is_periodic { points_ui(ui, area, &mut context.memory.points_only) } else { area.right() };
+    chart.legend(ui, &style, right, &legend);
     changed | start_ui(ui, &response, context, &chart)
+}
+
+/// The choice whether the path is drawn, in the row of the legend. Its left end.
+fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) -> f32 {
+    let row = area.with_max_y(area.top() + LEGEND).with_max_x(area.right() - 4.0);
+    let layout = egui::Layout::right_to_left(egui::Align::Center);
+    let builder = egui::UiBuilder::new().max_rect(row).layout(layout);
+    ui.scope_builder(builder, |ui| {
+        ui.spacing_mut().interact_size.y = LEGEND - 4.0;
+        ui.spacing_mut().button_padding.y = 0.0;
+        let text = egui::RichText::new("points only").small();
+        let hover = "One point a forcing period, always at the same phase, and no path: motion that repeats is a few points, \
+                     chaos is many.";
+        let response = ui.selectable_label(*points_only, text).on_hover_text(hover);
+        if response.clicked() {
+            *points_only = !*points_only;
+        }
+        response.rect.left() - 6.0
+    })
+    .inner
 }
 
 /// A click starts the motion at that state.
@@ -92,7 +119,7 @@ fn start_ui(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, c
         context.session.player.place(x, if inside { v } else { 0.0 });
         context.session.moved_by_hand();
     }
-    chart.readout(ui, &context.style, &format!("{:.2} mm, {:.0} mm/s", x * 1e3, v * 1e3));
+    chart.readout(ui, &context.style, &format!("{} mm, {} mm/s", three(x * 1e3), three(v * 1e3)));
     if rests(ui) {
         response.clone().on_hover_text_at_pointer("Click: the motion goes on from here.");
     }

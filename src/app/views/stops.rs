@@ -3,15 +3,20 @@
 use eframe::egui::{self, CursorIcon, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::controls::put_side;
+use crate::app::fields::{decimal, decimals, info, shown};
 use crate::app::session::{Session, stop_distances};
 use crate::app::style::GRAB;
-use crate::scene::Scene;
 
 use super::ViewContext;
 use super::well::arrows;
 
-/// Step in mm of a stop that the arrow keys move, as that of its slider.
-const KEY_STEP: f64 = 0.05;
+/// Steps of the slider of a stop that a drag tells apart.
+const FINE: f64 = 0.2;
+
+/// The step in mm of the slider of a stop, which the arrow keys take as well.
+pub(super) fn key_step(session: &Session) -> f64 {
+    info("stops.travel_limit_mm").map_or(0.05, |field| field.reach(session).step)
+}
 
 /// Thickness of a wall in points.
 pub(super) const WALL: f32 = 10.0;
@@ -48,6 +53,9 @@ pub fn stops_beside_ui(
     radius: f32,
 ) -> bool {
     let (stops, movable) = shown_stops(context.session);
+    let step = key_step(context.session);
+    let fine = FINE * step;
+    let words = |mm: f64| format!("{} mm", shown(mm, decimals(fine)));
     let mut changed = false;
     for (mm, way) in stops.into_iter().zip([-1.0_f32, 1.0]) {
         let Some(mm) = mm else { continue };
@@ -64,7 +72,7 @@ pub fn stops_beside_ui(
         painter.rect_filled(wall, 0.0, style.stop());
         painter.extend(hatching(wall, way, Stroke::new(1.0, style.ground())));
         if !movable {
-            let then = format!("Then the stop was at {mm:.2} mm. The controls change what is now.");
+            let then = format!("Then the stop was at {}. The controls change what is now.", words(mm));
             ui.interact(grab, id, Sense::hover()).on_hover_text(then);
             continue;
         }
@@ -75,13 +83,15 @@ pub fn stops_beside_ui(
             let edge = Stroke::new(2.0, style.ink());
             painter.rect_stroke(wall.expand(1.0), 1.0, edge, egui::StrokeKind::Outside);
         }
+        if response.drag_started() {
+            context.session.end_presses();
+        }
         if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
             let place = context.span.world_from_screen(pointer.x - way * (radius + 0.5 * WALL), rect) * 1e3;
-            // a hundredth of a millimetre is finer than a hand
-            let distance = (f64::from(way) * place * 100.0).round() / 100.0;
-            changed |=
-                context.session.edit(|scene| put_side(&mut scene.stops, way > 0.0, distance.max(0.05)));
-            let text = format!("{distance:.2} mm");
+            // of the prototype a hundredth of a millimetre, which is finer than a hand
+            let distance = decimal((f64::from(way) * place / fine).round() * fine).max(step);
+            changed |= context.session.edit(|scene| put_side(&mut scene.stops, way > 0.0, distance));
+            let text = words(distance);
             let align = if way > 0.0 { egui::Align2::LEFT_TOP } else { egui::Align2::RIGHT_TOP };
             let at = pos2(x + way * (WALL + 5.0), top);
             painter.text(at, align, text, style.body(), style.ink());
@@ -91,9 +101,9 @@ pub fn stops_beside_ui(
             ui.painter().rect_stroke(wall.expand(3.0), 2.0, stroke, egui::StrokeKind::Outside);
             let moved = arrows(ui, response.id) * f64::from(way);
             if moved != 0.0 {
-                let distance = ((mm.abs() / KEY_STEP).round() + moved) * KEY_STEP;
-                let edit = |scene: &mut Scene| put_side(&mut scene.stops, way > 0.0, distance.max(KEY_STEP));
-                changed |= context.session.edit_once(edit);
+                let distance = decimal(((mm.abs() / step).round() + moved) * step).max(step);
+                context.session.press(name, ui.input(|input| input.time));
+                changed |= context.session.edit(|scene| put_side(&mut scene.stops, way > 0.0, distance));
             }
         }
         if response.drag_stopped() {

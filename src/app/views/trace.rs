@@ -5,8 +5,11 @@
 //! scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
 
 use eframe::egui::{self, Align2, TextStyle, Ui, UiBuilder, vec2};
-use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
+use egui_plot::{
+    GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span, VLine,
+};
 
+use crate::app::fields::decimals_for;
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
 use crate::study::Watch;
 
@@ -34,6 +37,9 @@ const SHORTEST: f64 = 1e-3;
 
 /// The most points of a line; a longer path is drawn from fewer.
 const MOST_POINTS: usize = 20_000;
+
+/// The most flights that are drawn one by one; of more no tip is seen.
+const MOST_FLIGHTS: usize = 400;
 
 /// Width in points that every vertical axis takes, so that traces below each other line up.
 const AXIS_WIDTH: f32 = 58.0;
@@ -111,6 +117,8 @@ impl Quantity {
 pub struct Timeline {
     /// The stretch of time in s that a person has chosen.
     pub window: Option<f64>,
+    /// The ends of the vertical axes that a person has chosen, in the order of the quantities.
+    pub vertical: [Option<(f64, f64)>; 4],
     /// The time in s under the pointer, and the pass in which it was there.
     cursor: Option<(f64, u64)>,
 }
@@ -118,7 +126,8 @@ pub struct Timeline {
 /// Draws it. Whether something changed.
 pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) -> bool {
     let style = context.style;
-    let (low, high) = quantity.ends(context);
+    let ends = quantity.ends(context);
+    let (low, high) = context.memory.timeline.vertical[quantity as usize].unwrap_or(ends);
     let (now, model) = (context.session.player.time(), context.session.shown());
     let own = stretch(model);
     let window = context.memory.timeline.window.unwrap_or(own);
@@ -132,8 +141,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
     let stride = ((last.max(first) - first) / MOST_POINTS).max(1);
     let samples: Vec<Sample> =
         shown.range(first..last.max(first)).step_by(stride).copied().chain([state]).collect();
-    let points: Vec<PlotPoint> =
-        samples.iter().map(|sample| PlotPoint::new(sample.t, quantity.seen(watch, sample))).collect();
+    let paths = paths(&samples, quantity == Quantity::Displacement, |sample| {
+        PlotPoint::new(sample.t, quantity.seen(watch, sample))
+    });
     let rests = rests(&samples);
     let impacts: Vec<f64> = watch
         .events()
@@ -214,7 +224,11 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
                 let ends = vec![[t, low], [t, low + tick]];
                 plot.line(Line::new("impact", ends).stroke(style.impact_stroke()));
             }
-            plot.line(Line::new(quantity.name(), PlotPoints::Owned(points)).stroke(line));
+            for path in paths {
+                let own = Line::new(quantity.name(), PlotPoints::Owned(path)).stroke(line);
+                // a band reaches beyond the ends of a steep line
+                plot.line(own.allow_band(quantity != Quantity::Displacement));
+            }
             if let Some(t) = cursor {
                 let dashed = LineStyle::dashed_dense();
                 plot.vline(VLine::new("cursor", t).stroke(style.ghost_stroke()).style(dashed));
@@ -222,6 +236,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
         });
     let (transform, response) = (response.transform, response.response);
     zoom(&ui, &response, context, own);
+    zoom_up(&ui, &transform, area, context, (quantity, ends));
     let painter = ui.painter().with_clip_rect(area);
     let mut right = area.right();
     if let Some(at) = response.hover_pos() {
@@ -230,7 +245,11 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
         let watch = context.session.player.watch();
         let value = quantity.seen(watch, &watch.state_at(t));
         let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
-        let text = format!("{value:.3} {} at {t:.3} s", quantity.unit());
+        let text = format!(
+            "{value:.digits$} {} at {t:.3} s",
+            quantity.unit(),
+            digits = 1 + decimals_for(high - low)
+        );
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }
     legend(&painter, &style, area, right, &entries);
@@ -251,9 +270,10 @@ fn watch_begin(context: &ViewContext<'_>) -> f64 {
 fn zoom(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, own: f64) {
     let window = &mut context.memory.timeline.window;
     if response.double_clicked() {
-        *window = None;
+        (context.memory.timeline.window, context.memory.timeline.vertical) = (None, [None; 4]);
+        return;
     }
-    if !response.hovered() {
+    if !response.hovered() || ui.input(|input| input.modifiers.shift) {
         return;
     }
     let by = ui.input(|input| {
@@ -262,6 +282,49 @@ fn zoom(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, own: 
     if by != 1.0 && by.is_finite() && by > 0.0 {
         *window = Some((window.unwrap_or(own) * by).clamp(SHORTEST * own, LONGEST * own));
     }
+}
+
+/// The wheel over the numbers of the vertical axis, or with Shift anywhere, chooses the part of it that is shown, about the
+/// pointer; a double click leaves it to the scene.
+fn zoom_up(
+    ui: &Ui,
+    transform: &PlotTransform,
+    area: egui::Rect,
+    context: &mut ViewContext<'_>,
+    (quantity, ends): (Quantity, (f64, f64)),
+) {
+    let Some(at) = ui.input(|input| input.pointer.hover_pos()).filter(|at| area.contains(*at)) else {
+        return;
+    };
+    let over_axis = at.x < transform.frame().left();
+    if !ui.rect_contains_pointer(area) || !(over_axis || ui.input(|input| input.modifiers.shift)) {
+        return;
+    }
+    // with Shift a wheel goes sideways
+    let turned = ui.input(|input| input.smooth_scroll_delta().x + input.smooth_scroll_delta().y);
+    let by = (-f64::from(turned) / 200.0).exp();
+    if by == 1.0 || !by.is_finite() {
+        return;
+    }
+    let own = &mut context.memory.timeline.vertical[quantity as usize];
+    let (low, high) = own.unwrap_or(ends);
+    let y = transform.value_from_position(at).y.clamp(low, high);
+    let least = SHORTEST * (ends.1 - ends.0);
+    let by = by.max(least / (high - low));
+    let new = (y - (y - low) * by, y + (high - y) * by);
+    // all that there is, is as good as nothing chosen
+    *own = (new.1 - new.0 < ends.1 - ends.0).then_some(new);
+}
+
+/// The path as lines. A line that turns on the spot is drawn with a tip that reaches beyond it: between stops each flight is
+/// a line of its own, so that none is seen to go through.
+fn paths(samples: &[Sample], flights: bool, point: impl Fn(&Sample) -> PlotPoint) -> Vec<Vec<PlotPoint>> {
+    let turns = |pair: &&[Sample]| pair[0].t == pair[1].t;
+    if !flights || samples.windows(2).filter(turns).count() > MOST_FLIGHTS {
+        return vec![samples.iter().map(point).collect()];
+    }
+    let parts = samples.chunk_by(|a, b| a.t != b.t);
+    parts.map(|part| part.iter().map(&point).collect()).collect()
 }
 
 /// Round numbers for an axis, some `count` of them.

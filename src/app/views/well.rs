@@ -8,11 +8,11 @@ use eframe::egui::{self, Align2, CursorIcon, Pos2, Rangef, Rect, Sense, Shape, S
 
 use crate::app::style::{BALL, GRAB};
 
-use super::ViewContext;
 use super::labels::{ago, free_place, haloed};
 use super::legend::{LEGEND, Sign};
 use super::ranges::room_for_push;
-use super::stops::{WALL, stops_ui};
+use super::stops::{WALL, key_step, stops_ui};
+use super::{ViewContext, too_small_ui};
 
 /// Points between two points of a curve.
 const CURVE_STEP: f32 = 2.0;
@@ -21,6 +21,7 @@ const CURVE_STEP: f32 = 2.0;
 pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let (area, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if area.width() < 60.0 || area.height() < 60.0 {
+        too_small_ui(ui, &context.style, area);
         return false;
     }
     let style = context.style;
@@ -95,8 +96,8 @@ fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
     }
 }
 
-/// Step in mm of a mass that the arrow keys move; with Shift ten of them.
-const KEY_STEP: f64 = 0.1;
+/// Steps of a stop's slider that an arrow key moves the mass by; with Shift ten times as many.
+const KEY_STEPS: f64 = 2.0;
 
 /// Lets the mass be grabbed: it is held where the hand is, and the clock stands. With the keyboard's focus on it the arrow
 /// keys take hold of it and move it, and Enter lets go.
@@ -111,12 +112,11 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
         response.request_focus();
         context.session.player.hold(mm / 1e3);
     }
-    let player = &mut context.session.player;
     if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-        player.hold(context.span.world_from_screen(pointer.x, rect));
+        context.session.player.hold(context.span.world_from_screen(pointer.x, rect));
     }
     if response.drag_stopped() {
-        player.let_go();
+        context.session.player.let_go();
         context.session.moved_by_hand();
         return true;
     }
@@ -125,16 +125,17 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
         let moved = arrows(ui, response.id);
         if moved != 0.0 {
             // on the grid of the step
-            let place = (mm / KEY_STEP).round() + moved;
-            player.hold(place * KEY_STEP / 1e3);
+            let step = KEY_STEPS * key_step(context.session);
+            let place = (mm / step).round() + moved;
+            context.session.player.hold(place * step / 1e3);
         }
         if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
             response.surrender_focus();
         }
         return moved != 0.0;
     }
-    if response.lost_focus() && player.is_held() && !response.dragged() {
-        player.let_go();
+    if response.lost_focus() && context.session.player.is_held() && !response.dragged() {
+        context.session.player.let_go();
         context.session.moved_by_hand();
         return true;
     }
@@ -165,7 +166,7 @@ struct Heights {
 
 impl Heights {
     /// From a little below the deepest to a little above the highest place that the mass gets to.
-    fn of(ui: &Ui, context: &ViewContext<'_>, rect: Rect) -> Self {
+    fn of(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect) -> Self {
         let room = room_for_push(context.session.shown().largest_push());
         let model = context.session.shown();
         let curve = &model.mechanism.curve;
@@ -195,12 +196,15 @@ impl Heights {
             (low, high) = (low - 1e-3, low + 1e-3);
         }
         let room = 0.22 * (high - low);
+        let in_gesture = context.session.editor.in_gesture();
+        let own = (low - 0.5 * room, high + room);
+        let (low, high) = context.memory.held.heights.keep(own, in_gesture);
         let id = ui.scope_id();
         let ease = |name: &str, value: f64| {
             let target = (value * 1e6) as f32;
             f64::from(ui.ctx().animate_value_with_time(id.with(name), target, 0.3)) * 1e-6
         };
-        Self { low: ease("low", low - 0.5 * room), high: ease("high", high + room), rect }
+        Self { low: ease("low", low), high: ease("high", high), rect }
     }
 
     fn screen_from_world(&self, energy: f64) -> f32 {

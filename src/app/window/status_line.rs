@@ -3,7 +3,7 @@
 use eframe::egui::{self, RichText, Sense, Ui, Vec2};
 
 use crate::app::announce::Announcer;
-use crate::app::session::Session;
+use crate::app::session::{OFFER_TO_STOP, Session};
 use crate::app::style::{BODY, STATUS, STATUS_COMPACT, Style};
 use crate::app::widgets::kind_shapes;
 use crate::app::words::meaning;
@@ -37,6 +37,7 @@ pub fn status_ui(
         ));
         let settling = session.settling().map(|(gone, of)| format!("settling: {gone:.1} of {of:.1} s"));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            stop_ui(ui, session);
             beside_ui(ui, session, style, settling);
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let text = sentence.whole();
@@ -49,6 +50,22 @@ pub fn status_ui(
             });
         });
     });
+}
+
+/// Offers to stop what the background has worked on for long.
+fn stop_ui(ui: &mut Ui, session: &mut Session) {
+    let Some(worked) = session.working() else { return };
+    if worked < OFFER_TO_STOP {
+        ui.ctx().request_repaint_after(OFFER_TO_STOP - worked);
+        return;
+    }
+    let hover = "The background has worked for so long on what this settles to, what it would take to cross and how accurate \
+                 the motion is. The motion goes on without it; the next change asks anew.";
+    let text = format!("Stop ({} s)", worked.as_secs());
+    ui.ctx().request_repaint_after_secs(1.0);
+    if ui.button(text).on_hover_text(hover).clicked() {
+        session.stop_working();
+    }
 }
 
 /// Beside the sentence: how accurate the motion is and, below, how far it has settled.

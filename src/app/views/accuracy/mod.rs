@@ -8,7 +8,7 @@ mod steps;
 
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
-use super::ViewContext;
+use super::{ViewContext, too_small_ui};
 
 /// Room in points from which both parts are shown.
 const BOTH: (f32, f32) = (760.0, 250.0);
@@ -38,11 +38,12 @@ impl Page {
 /// Draws it. Whether something changed.
 pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     ui.painter().rect_filled(ui.max_rect(), 0.0, context.style.ground());
-    context.session.want_accuracy();
     let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
     if area.width() < 160.0 || area.height() < 100.0 {
+        too_small_ui(ui, &context.style, ui.max_rect());
         return false;
     }
+    context.session.want_accuracy();
     let part = |ui: &mut Ui, rect: Rect, page: Page, context: &mut ViewContext<'_>| {
         ui.scope_builder(UiBuilder::new().max_rect(rect).id_salt(page.name()), |ui| match page {
             Page::Digits => digits::digits_ui(ui, context),
@@ -78,6 +79,7 @@ pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
 fn waiting_ui(ui: &mut Ui, context: &ViewContext<'_>) {
     let text = match context.session.fault() {
         Some(_) => "This scene cannot run.",
+        None if context.session.accuracy.is_stopped() => "Stopped: the next change begins it again.",
         None => "Working it out.",
     };
     ui.label(RichText::new(text).color(context.style.faint()));

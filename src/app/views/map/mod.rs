@@ -1,6 +1,7 @@
 //! The map: what every combination of two fields comes to, each run from rest; a click takes the scene there.
 
 mod frame;
+mod hand;
 mod picture;
 mod quantity;
 mod tools;
@@ -13,11 +14,12 @@ use crate::app::style::Style;
 use crate::dynamics::{Regime, Summary};
 use crate::output::sweep_about;
 
-use super::ViewContext;
+use super::{ViewContext, too_small_ui};
 use frame::Frame;
 use picture::{Picture, bar, lines};
 use quantity::{Scale, kind, kind_name};
 
+pub use hand::Hand;
 pub use quantity::Quantity;
 
 /// Draws it. Whether something changed.
@@ -28,13 +30,14 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     if context.session.want_map(time) {
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
     }
-    let mut changed = tools::tools_ui(ui, context);
+    let changed = tools::tools_ui(ui, context);
     if let Some(problem) = context.session.map.problem() {
         ui.label(format!("  No map: {}", problem.lines().next().unwrap_or_default()));
     }
-    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     let Some((map, current)) = context.session.map.shown() else { return changed };
     if area.width() < 140.0 || area.height() < 110.0 {
+        too_small_ui(ui, &style, area);
         return changed;
     }
     let quantity = context.memory.map_quantity;
@@ -60,22 +63,19 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let at = frame.rect.center_top() + vec2(0.0, 8.0);
         painter.text(at, Align2::CENTER_TOP, words, style.body(), style.ink());
     }
-    marker(&painter, &frame, &style, context.session.place_on_map(&map.question));
+    let place = context.session.place_on_map(&map.question);
+    let at = marker(&painter, &frame, &style, place);
     let hovered = response.hover_pos().and_then(|at| cell_at(&frame, map, at));
-    let mut clicked = None;
-    if let Some((column, row)) = hovered {
+    if let Some((column, row)) = hovered.filter(|_| !response.dragged()) {
         painter.add(outline(&frame, map, column, row, &style));
         let text = reading(map, column, row);
-        if response.clicked() {
-            clicked = Some((column, row));
-        }
-        response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text_at_pointer(text);
+        let over = response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
+        over.on_hover_text_at_pointer(text);
     }
+    let hand = (&mut context.memory.map_hand, context.session.map.is_enlarged());
+    let wanted = hand::wanted_ui(ui, (&response, &frame), map, hand, (&style, at));
     ui.data_mut(|data| data.insert_temp(id, Some(picture)));
-    if let Some((column, row)) = clicked {
-        changed |= context.session.go_to_cell(column, row);
-    }
-    changed
+    changed | hand::done(context, wanted)
 }
 
 /// The cell at a place on the screen.
@@ -128,7 +128,7 @@ fn reading(map: &Map, column: usize, row: usize) -> String {
                     lines.push(format!("repeats after {period} forcing period{plural}"));
                 }
             }
-            lines.push("click: take the scene there".to_owned());
+            lines.push("click: take the scene there; drag: enlarge".to_owned());
         }
     }
     lines.join("\n")
@@ -143,8 +143,8 @@ fn named(column: &str, value: f64) -> String {
     }
 }
 
-/// Where the scene is: a ring, or an arrow at the edge that it lies beyond.
-fn marker(painter: &egui::Painter, frame: &Frame, style: &Style, place: [Option<f64>; 2]) {
+/// Where the scene is: a ring, or an arrow at the edge that it lies beyond. The place of either.
+fn marker(painter: &egui::Painter, frame: &Frame, style: &Style, place: [Option<f64>; 2]) -> Pos2 {
     // without a stop the mass goes as far as it would with one far out
     let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));
     let inside = |axis: &crate::output::Axis, value: f64| (axis.low..=axis.high).contains(&value);
@@ -158,7 +158,7 @@ fn marker(painter: &egui::Painter, frame: &Frame, style: &Style, place: [Option<
                 painter.line_segment([at + way * 5.0, at + way * 13.0], stroke);
             }
         }
-        return;
+        return at;
     }
     let way = vec2(
         if inside(&frame.x, x) { 0.0 } else { (x - frame.x.low).signum() as f32 },
@@ -179,4 +179,5 @@ fn marker(painter: &egui::Painter, frame: &Frame, style: &Style, place: [Option<
     );
     painter.rect_filled(Rect::from_min_size(corner, size).expand(3.0), 3.0, style.ground());
     painter.galley_with_override_text_color(corner, galley, style.ink());
+    at
 }

@@ -152,6 +152,6 @@ pub fn kind_name(kind: Kind) -> &'static str {
         Kind::Irregular => "irregular",
         Kind::Interwell => "interwell",
         Kind::Crossing => "crossing",
-        Kind::Other | Kind::Fault => "one well",
+        Kind::Other | Kind::Fault => "no barrier",
     }
 }

@@ -1,18 +1,21 @@
 //! What the map shows, over which fields, and how far it is; its legend.
 
-use eframe::egui::{self, Align2, ComboBox, Painter, Rect, RichText, Ui, pos2, vec2};
+use eframe::egui::containers::menu::{MenuButton, MenuConfig};
+use eframe::egui::{self, Align2, ComboBox, Painter, PopupCloseBehavior, Rect, RichText, Ui, pos2, vec2};
 
+use crate::app::fields::Reach;
+use crate::app::knob::{Knob, refuse};
 use crate::app::map::{Map, name_and_unit};
 use crate::app::style::Style;
 use crate::app::widgets::kind_shapes;
-use crate::scene::column_names;
+use crate::scene::{SweepAxis, column_names};
 
 use super::super::ViewContext;
 use super::picture::{Picture, kinds};
 use super::quantity::{Look, Quantity, kind_name};
 
 /// Width in points below which the choices take two rows.
-const NARROW: f32 = 560.0;
+const NARROW: f32 = 740.0;
 
 /// Width in points from which on the legend stands beside what was run.
 const WIDE: f32 = 760.0;
@@ -80,11 +83,55 @@ fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let range = format!("The axis {role}: from {} to {} in steps of {}.", axis.from, axis.to, axis.step);
         inner.response.on_hover_text(range);
     }
+    ranges_ui(ui, context, &axes);
     if let Some((i, path)) = wanted.filter(|(i, path)| axes[*i].field != *path) {
         let mut chosen = axes;
         chosen[i] = context.session.map_axis(&path);
         context.session.map.choose(Some(chosen));
     }
+}
+
+/// A menu in which the ends and steps of both axes are typed.
+fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) {
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let menu = MenuButton::new("Range").config(config);
+    let (button, _) = menu.ui(ui, |ui| {
+        // numbers that can be typed look so, which a menu's would not
+        *ui.style_mut() = (*ui.ctx().global_style()).clone();
+        let mut wanted = axes.clone();
+        egui::Grid::new("ranges").num_columns(7).show(ui, |ui| {
+            for (axis, role) in wanted.iter_mut().zip(["across", "up"]) {
+                ui.label(field_name(&axis.field));
+                let (_, unit) = crate::app::fields::name_and_unit(&axis.field);
+                let reach = Reach { low: axis.from, high: axis.to, step: axis.step };
+                let parts = [("from", &mut axis.from), ("to", &mut axis.to), ("step", &mut axis.step)];
+                for (part, value) in parts {
+                    ui.label(part);
+                    let name = format!("{role}, {part}");
+                    let typed = (-1e30, 1e30);
+                    let knob = Knob { name: &name, unit, reach, typed, hover: "", width: 0.0 };
+                    if let Some(typed) = knob.alone_ui(ui, *value) {
+                        *value = typed;
+                    }
+                }
+                ui.end_row();
+            }
+        });
+        if wanted != *axes {
+            match context.session.map_problem(&wanted) {
+                None => context.session.map.choose(Some(wanted)),
+                Some(why) => {
+                    let changed = wanted.iter().zip(axes).position(|(new, old)| new != old);
+                    let role = if changed == Some(0) { "across" } else { "up" };
+                    refuse(ui, &format!("{role}, to"), why);
+                }
+            }
+        }
+        if ui.button("As the scene has it").on_hover_text("The ranges that the map began with.").clicked() {
+            context.session.map.choose(None);
+        }
+    });
+    button.on_hover_text("Ends and steps of both axes. A box drawn over the map enlarges it as well.");
 }
 
 /// The name of a field without its unit.
@@ -95,6 +142,11 @@ fn field_name(path: &str) -> String {
 
 fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let mapping = &mut context.session.map;
+    if mapping.is_enlarged()
+        && ui.button("Whole map").on_hover_text("A double click on the map does the same.").clicked()
+    {
+        mapping.show_whole();
+    }
     let Some(map) = mapping.map() else { return };
     let (known, all) = (map.known(), map.len());
     let took = map.took.as_secs_f64();

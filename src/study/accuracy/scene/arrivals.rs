@@ -1,6 +1,6 @@
 //! How late does another run arrive at a stop?
 
-use crate::dynamics::{Event, Model};
+use crate::dynamics::{Event, EventKind, Model};
 
 /// Impacts slower than this share of the scene's speed are no arrivals: what a chatter or a hop makes.
 const SLOWEST: f64 = 0.01;
@@ -24,6 +24,8 @@ pub struct Lateness {
     pub latest: f64,
     /// How many arrivals in a row were found in both runs.
     pub matched: usize,
+    /// How many of those are early.
+    pub early: usize,
     /// How many there are.
     pub of: usize,
 }
@@ -55,7 +57,33 @@ pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<
     late.sort_by(f64::total_cmp);
     let (earliest, latest) = (*late.first()?, *late.last()?);
     let median = late[late.len() / 2];
-    Some(Lateness { median, earliest, latest, matched: late.len(), of: arrivals.len() })
+    let early = late.iter().filter(|late| **late < 0.0).count();
+    Some(Lateness { median, earliest, latest, matched: late.len(), early, of: arrivals.len() })
+}
+
+/// How many impacts of a run fall into the times in which the mass of the other one rests on a stop: hops of a mass that is
+/// pressed there. `exact` are all events of that one, in order of time.
+pub(super) fn hops(own: &[Event], exact: &[Event]) -> u64 {
+    let turns = || exact.iter().filter(|event| matches!(event.kind, EventKind::Rest | EventKind::Release));
+    // what begins with a release has rested from the start
+    let mut since = turns().next().filter(|first| first.kind == EventKind::Release).map(|_| 0.0);
+    let mut rests: Vec<(f64, f64)> = Vec::new();
+    for turn in turns() {
+        match (turn.kind, since) {
+            (EventKind::Rest, _) => since = Some(turn.t),
+            (_, Some(begin)) => {
+                rests.push((begin, turn.t));
+                since = None;
+            }
+            _ => {}
+        }
+    }
+    rests.extend(since.map(|begin| (begin, f64::INFINITY)));
+    let within = |impact: &&Event| {
+        let next = rests.partition_point(|rest| rest.0 < impact.t);
+        next > 0 && impact.t < rests[next - 1].1
+    };
+    own.iter().filter(within).count() as u64
 }
 
 fn arrivals(impacts: &[Event], slowest: f64) -> Vec<Event> {

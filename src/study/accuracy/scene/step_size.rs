@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::arrivals::{Lateness, lateness};
+use super::arrivals::{Lateness, hops, lateness};
 use super::at_tolerance;
 use super::beside::{Beside, times};
 use super::trust::finished;
@@ -55,6 +55,8 @@ pub struct StepSize {
     pub late: Option<Lateness>,
     /// Impacts counted.
     pub impacts: (u64, u64),
+    /// Impacts of the run in fixed steps while the true mass rests on a stop.
+    pub hops: u64,
     /// Passages of the barrier top counted.
     pub crossings: (u64, u64),
     /// RMS velocity in m/s over the settled window; none where a run ended before it.
@@ -100,8 +102,8 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     let exact = finished(model.run(&request(&even))).ok_or(Unfit::Cancelled)?;
     let path = finished(model.run(&request(&fine))).ok_or(Unfit::Cancelled)?.samples;
     let summary = exact.summary;
-    let impacts: Vec<Event> =
-        exact.events.into_iter().filter(|event| event.kind == EventKind::Impact).collect();
+    let all = exact.events;
+    let impacts: Vec<Event> = all.iter().copied().filter(|event| event.kind == EventKind::Impact).collect();
 
     let keep = |sample_times| Keep { sample_times, impacts: true, cancel: Some(cancel) };
     let own = fixed_step(model, scheme, step, &keep(&even));
@@ -130,6 +132,7 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
         ghost: ghost.iter().map(|sample| (sample.t, sample.x)).collect(),
         late: lateness(model, &own.impacts, &impacts),
         impacts: (summary.total_impacts, statistics.impacts),
+        hops: hops(&own.impacts, &all),
         crossings: (summary.total_crossings, statistics.crossings),
         rms_velocity: (summary.rms_velocity, statistics.rms_velocity),
         error: beside.error(),

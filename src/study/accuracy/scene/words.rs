@@ -135,7 +135,7 @@ impl Trust {
 impl Lateness {
     fn words(&self) -> String {
         let way = |t: f64| if t >= 0.0 { "late" } else { "early" };
-        let (median, worst) = (self.median, self.worst());
+        let median = self.median;
         let all = self.matched == self.of;
         let who = match (all, self.matched) {
             (true, 1) => "The one impact after a flight arrives".to_owned(),
@@ -143,14 +143,32 @@ impl Lateness {
             (false, 1) => "The first impact arrives".to_owned(),
             (false, n) => format!("The first {n} impacts after a flight arrive"),
         };
-        let worst = match (self.matched, way(worst) == way(median)) {
-            (1, _) => String::new(),
-            (_, true) if duration(worst) == duration(median) => String::new(),
-            (_, true) => format!(" (worst {})", duration(worst)),
-            (_, false) => format!(" (worst {} {})", duration(worst), way(worst)),
-        };
         let then = if all { "" } else { "; then it takes another course" };
-        format!("{who} {} {}{worst}{then}.", duration(median), way(median))
+        let (late, early) = (self.matched - self.early, self.early);
+        let (fewer, other) = if median >= 0.0 { (early, self.earliest) } else { (late, self.latest) };
+        // where many go each way, a median would hide the others
+        if fewer * 5 > self.matched {
+            let of = match all {
+                true => format!("{} impacts", self.of),
+                false => format!("the first {} impacts after a flight", self.matched),
+            };
+            return format!(
+                "Of {of} {late} arrive late, by up to {}, and {early} early, by up to {}{then}.",
+                duration(self.latest),
+                duration(-self.earliest)
+            );
+        }
+        let worst = if median >= 0.0 { self.latest } else { self.earliest }.abs();
+        let worst = match self.matched {
+            1 => String::new(),
+            _ if duration(worst) == duration(median.abs()) => String::new(),
+            _ => format!(" (worst {})", duration(worst)),
+        };
+        let others = match fewer {
+            0 => String::new(),
+            n => format!(", {n} of {} up to {} {}", self.matched, duration(other.abs()), way(other)),
+        };
+        format!("{who} {} {}{worst}{others}{then}.", duration(median.abs()), way(median))
     }
 }
 
@@ -168,6 +186,13 @@ impl StepSize {
             all.push(format!("{own} impacts counted where there are {exact}."));
         } else if exact > 0 {
             all.push(format!("{own} impacts counted, which is right."));
+        }
+        if own > exact && self.hops > 0 {
+            all.push(format!(
+                "{} of them are hops of a mass that truly rests: pressed on a stop it bounces every step or two, so that \
+                 shorter steps count more.",
+                self.hops
+            ));
         }
         if let Some(error) = self.rms_error() {
             let percent = 100.0 * error.abs();
@@ -213,12 +238,18 @@ mod tests {
 
     #[test]
     fn lateness_says_which_way() {
-        let late = Lateness { median: 0.014, earliest: 0.013, latest: 0.017, matched: 60, of: 60 };
+        let late = Lateness { median: 0.014, earliest: 0.013, latest: 0.017, matched: 60, early: 0, of: 60 };
         assert_eq!(late.words(), "Impacts arrive 14 ms late (worst 17 ms).");
-        let early = Lateness { earliest: -0.02, matched: 3, ..late };
+        // both ways each is counted: a median would hide the other
+        let mixed = Lateness { earliest: -0.02, matched: 3, early: 1, ..late };
         assert_eq!(
-            early.words(),
-            "The first 3 impacts after a flight arrive 14 ms late (worst 20 ms early); then it takes another course."
+            mixed.words(),
+            "Of the first 3 impacts after a flight 2 arrive late, by up to 17 ms, and 1 early, by up to 20 ms; then it takes \
+             another course."
         );
+        let early = Lateness { median: -0.01, earliest: -0.02, latest: -0.01, early: 60, ..late };
+        assert_eq!(early.words(), "Impacts arrive 10 ms early (worst 20 ms).");
+        let few = Lateness { earliest: -0.003, early: 1, ..late };
+        assert_eq!(few.words(), "Impacts arrive 14 ms late (worst 17 ms), 1 of 60 up to 3.0 ms early.");
     }
 }

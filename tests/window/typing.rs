@@ -1,0 +1,270 @@
+//! Numbers that are typed: what is passed through stays, what is typed is taken to its last digit, and what cannot be is
+//! refused in words.
+
+use eframe::egui::{Event, Key, Modifiers, accesskit::Role};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use interwell::app::settings::Settings;
+use interwell::app::window::Window;
+use interwell::scene::{Excitation, FieldPath, Stops};
+
+use crate::support::{LONG, command, window};
+
+const TALL: [f32; 2] = [1280.0, 1600.0];
+
+fn opened(preset: &str) -> Harness<'static, Window> {
+    let mut harness = window(preset, TALL, Settings::default());
+    harness.get_by_label("More").click();
+    harness.run_steps(3);
+    harness.get_by_label("Advanced").click();
+    harness.run_steps(15);
+    harness
+}
+
+/// Types into the field beside the slider called `name`, and leaves it by Enter.
+fn type_into(harness: &mut Harness<'static, Window>, name: &str, text: &str) {
+    harness.get_by_role_and_label(Role::SpinButton, name).click();
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.run_steps(1);
+    harness.event(Event::Text(text.to_owned()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+}
+
+fn number(harness: &Harness<'static, Window>, path: &str) -> f64 {
+    FieldPath::new(path).get(harness.state().session.scene()).unwrap()
+}
+
+#[test]
+fn a_field_that_is_passed_through_writes_nothing() {
+    for preset in ["duffing", "first-look", "paper", "elastic-box", "random-shaking"] {
+        let mut harness = opened(preset);
+        let before = harness.state().session.scene().clone();
+        let fields = harness.get_all_by_role(Role::SpinButton).count();
+        assert!(fields >= 3, "{preset}: {fields}");
+        for i in 0..fields {
+            harness.get_all_by_role(Role::SpinButton).nth(i).unwrap().click();
+            harness.run_steps(2);
+            // the field is a text while it is edited
+            harness.key_press(Key::Enter);
+            harness.run_steps(2);
+            assert_eq!(*harness.state().session.scene(), before, "{preset}: field {i} by a click and Enter");
+        }
+        for i in 0..80 {
+            harness.key_press(Key::Tab);
+            harness.run_steps(1);
+            assert_eq!(*harness.state().session.scene(), before, "{preset}: after {i} times Tab");
+        }
+        assert!(!harness.state().session.editor.can_undo() && !harness.state().session.editor.is_dirty());
+    }
+}
+
+#[test]
+fn what_is_typed_is_what_is_stored_and_shown() {
+    let mut harness = opened("first-look");
+    for (name, path, text, value) in [
+        ("amplitude", "excitation.amplitude_g", "1.137", 1.137),
+        ("mass", "mass_g", "15.2345", 15.2345),
+        ("preload", "mechanism.preload_mm", "2.7125", 2.7125),
+        ("frequency", "excitation.frequency_hz", "3.12345 Hz", 3.12345),
+    ] {
+        type_into(&mut harness, name, text);
+        assert_eq!(number(&harness, path), value);
+        let field = harness.get_by_role_and_label(Role::SpinButton, name);
+        let shown = field.accesskit_node().value().unwrap();
+        assert!(shown.starts_with(&value.to_string()), "{shown}");
+    }
+    // a number of many digits keeps them, and its field shows more than a step has
+    let harness = opened("duffing");
+    let shown = harness.get_by_role_and_label(Role::SpinButton, "amplitude").accesskit_node().value();
+    assert_eq!(shown.as_deref(), Some("0.0377295 g"));
+}
+
+#[test]
+fn what_is_no_number_is_refused_in_words() {
+    let mut harness = opened("paper");
+    let before = harness.state().session.scene().clone();
+    for (name, text, words) in [
+        ("amplitude", "abc", "“abc” is no number: amplitude stays 1 g"),
+        ("amplitude", "1e9", "amplitude may be -10000 to 10000 g"),
+        ("at ±", "0", "at ± may be 0.001 to 1000000 mm"),
+        ("at ±", "-2", "at ± may be 0.001 to 1000000 mm"),
+        ("frequency", "0", "frequency may be 0.01 to 100000 Hz"),
+        ("restitution", "1.5", "restitution may be 0 to 1"),
+        ("run length", "1e9", "run length may be 0.01 to 1000000 s"),
+        ("mass", "1,5", "It takes a point"),
+    ] {
+        type_into(&mut harness, name, text);
+        assert_eq!(*harness.state().session.scene(), before, "{name}: {text}");
+        harness.get_by_label_contains(words);
+    }
+    // what can be taken ends the words
+    type_into(&mut harness, "amplitude", "0.8");
+    assert!(harness.query_by_label_contains("It takes a point").is_none());
+    assert_eq!(harness.state().session.amplitude_g(), Some(0.8));
+}
+
+#[test]
+fn what_two_fields_say_together_is_said_with_their_names() {
+    let mut harness = opened("random-shaking");
+    type_into(&mut harness, "lowest", "7");
+    harness.get_by_label_contains("7.0 Hz was not taken: highest must be above lowest = 7");
+    assert_eq!(number(&harness, "excitation.low_hz"), 1.0);
+    // a scene that cannot run says so with the names of its controls
+    harness.state_mut().session.edit_once(|scene| {
+        scene.stops = Stops::Rigid { travel_limit_mm: 0.0, restitution: 0.5 };
+    });
+    let fault = harness.state().session.sentence().text;
+    assert!(fault.starts_with("This scene cannot run: stops at ± = 0 mm: must be"), "{fault}");
+}
+
+#[test]
+fn the_stops_that_are_off_come_when_they_are_moved() {
+    let mut harness = window("first-look", [1280.0, 720.0], Settings::default());
+    let slider = harness.get_by_role_and_label(Role::Slider, "at ±");
+    slider.set_value_accesskit(2.25);
+    harness.run_steps(3);
+    let stops = |harness: &Harness<'static, Window>| harness.state().session.scene().stops;
+    assert_eq!(stops(&harness), Stops::Rigid { travel_limit_mm: 2.25, restitution: 0.36 });
+    harness.get_by_role_and_label(Role::CheckBox, "Stops").click();
+    harness.run_steps(3);
+    assert_eq!(stops(&harness), Stops::None);
+    let shown = |harness: &Harness<'static, Window>| {
+        harness.get_by_role_and_label(Role::Slider, "at ±").accesskit_node().numeric_value()
+    };
+    assert_eq!(shown(&harness), Some(2.25));
+    // the start again, the stops that would come with it
+    harness.key_press(Key::Home);
+    harness.run_steps(3);
+    assert_eq!((stops(&harness), shown(&harness)), (Stops::None, Some(1.5)));
+}
+
+#[test]
+fn a_scene_of_other_size_gets_stops_and_shaking_of_its_own() {
+    let mut harness = window("duffing", [1280.0, 720.0], Settings::default());
+    harness.get_by_role_and_label(Role::CheckBox, "Stops").click();
+    harness.run_steps(3);
+    let Stops::Rigid { travel_limit_mm, .. } = harness.state().session.scene().stops else { panic!() };
+    assert!((100.0..500.0).contains(&travel_limit_mm), "{travel_limit_mm}");
+    harness.get_by_role_and_label(Role::Slider, "amplitude").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    let Excitation::Sine { amplitude_g, .. } = harness.state().session.scene().excitation else { panic!() };
+    assert!(amplitude_g > 0.0377 && amplitude_g < 0.0385, "{amplitude_g}");
+}
+
+#[test]
+fn presses_of_a_key_are_one_step_and_one_before() {
+    let mut harness = window("first-look", [1280.0, 720.0], Settings::default());
+    harness.get_by_role_and_label(Role::Slider, "amplitude").focus();
+    harness.run_steps(2);
+    for _ in 0..5 {
+        harness.key_press(Key::ArrowRight);
+        harness.run_steps(2);
+    }
+    let before = |harness: &Harness<'static, Window>| {
+        let card = harness.state().session.before_card().cloned();
+        card.map(|card| FieldPath::new("excitation.amplitude_g").get(&card.scene).unwrap())
+    };
+    assert_eq!((harness.state().session.amplitude_g(), before(&harness)), (Some(0.95), Some(0.9)));
+    // the hand rests: what comes then is another gesture
+    harness.run_steps(80);
+    assert!(!harness.state().session.editor.in_gesture());
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    assert_eq!(before(&harness), Some(0.95));
+    // another field is another gesture at once
+    harness.get_by_role_and_label(Role::Slider, "at ±").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    assert_eq!(before(&harness), Some(0.96));
+    let session = &mut harness.state_mut().session;
+    assert!(session.undo() && session.scene().stops == Stops::None && session.amplitude_g() == Some(0.96));
+    assert!(session.undo() && session.amplitude_g() == Some(0.95));
+    assert!(session.undo() && session.amplitude_g() == Some(0.9) && !session.undo());
+}
+
+#[test]
+fn what_takes_long_can_be_stopped_and_a_newer_change_takes_its_place() {
+    let mut harness = window("first-look", [1280.0, 720.0], Settings::default());
+    harness.state_mut().session.edit_once(|scene| scene.run.duration_s = 1e9);
+    harness.run_steps(2);
+    assert!(harness.state().session.sentence().text.starts_with("Working out"));
+    // the motion goes on meanwhile
+    let time = harness.state().session.player.time();
+    harness.run_steps(5);
+    assert!(harness.state().session.player.time() > time);
+    std::thread::sleep(interwell::app::session::OFFER_TO_STOP);
+    harness.run_steps(2);
+    harness.get_by_label_contains("Stop (").click();
+    harness.run_steps(2);
+    assert!(harness.state().session.working().is_none());
+    assert!(harness.query_by_label_contains("Stop (").is_none());
+    let text = harness.state().session.sentence().text;
+    assert!(text.starts_with("Stopped before it was known"), "{text}");
+    harness.state_mut().session.edit_once(|scene| scene.run.duration_s = 1e9);
+    command(&mut harness, interwell::app::menu::Command::Undo);
+    harness.state_mut().session.wait(LONG);
+    harness.run_steps(2);
+    let text = harness.state().session.sentence().text;
+    assert!(
+        text.contains("stay in the right-hand well") || text.contains("stays in the right-hand well"),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_card_shows_whatever_was_changed() {
+    let mut harness = opened("paper");
+    for (name, text, words) in [
+        ("restitution", "0.45", "0.45"),
+        ("mass", "18.25", "18.25 g"),
+        ("damping ratio", "0.0312", "0.0312"),
+        ("frequency", "3.05", "1.00 g, 3.05 Hz"),
+        ("preload", "2.65", "2.65 mm"),
+        ("run length", "12", "12 s"),
+    ] {
+        let labels = |harness: &Harness<'static, Window>, text: &str| {
+            let all = harness.query_all_by_label(text);
+            all.filter(|node| node.accesskit_node().role() == Role::Label).count()
+        };
+        let before = (labels(&harness, name), labels(&harness, words));
+        type_into(&mut harness, name, text);
+        harness.run_steps(2);
+        // the row is there, and of a frequency it is that of the shaking
+        assert_eq!(labels(&harness, words), before.1 + 1, "{name}");
+        assert_eq!(labels(&harness, name), before.0 + usize::from(name != "frequency"), "{name}");
+    }
+}
+
+#[test]
+fn a_hover_text_stays_away_from_what_was_just_changed() {
+    let mut harness = window("first-look", [1280.0, 720.0], Settings::default());
+    let rail = harness.get_by_role_and_label(Role::Slider, "amplitude").rect();
+    let at = |share: f32| eframe::egui::pos2(rail.left() + share * rail.width(), rail.center().y);
+    let explained = |harness: &Harness<'static, Window>| {
+        harness.query_all_by_label_contains("Increase: the base pushes").next().is_some()
+    };
+    harness.hover_at(at(0.45));
+    harness.run_steps(8);
+    assert!(explained(&harness));
+    harness.drag_at(at(0.45));
+    harness.run_steps(1);
+    harness.hover_at(at(0.6));
+    harness.run_steps(1);
+    harness.drop_at(at(0.6));
+    harness.run_steps(1);
+    harness.hover_at(at(0.61));
+    harness.run_steps(8);
+    assert!(!explained(&harness));
+    // away and back it explains again
+    harness.hover_at(eframe::egui::pos2(900.0, 300.0));
+    harness.run_steps(3);
+    harness.hover_at(at(0.5));
+    harness.run_steps(8);
+    assert!(explained(&harness));
+}
