@@ -177,12 +177,13 @@ impl Player {
         let until = self.watch.time() + most;
         while self.watch.time() < until {
             let before = self.watch.time();
-            self.watch.advance((before + most / 50.0).min(until));
+            let arrived = self.watch.advance((before + most / 50.0).min(until));
             if let Some(event) = self.watch.neighbour(t, true) {
                 self.seek(event.t);
                 return true;
             }
-            if self.watch.time() <= before {
+            // where the work of one call does not get there the window must not wait for more of it
+            if !arrived || self.watch.time() <= before {
                 break;
             }
         }
