@@ -329,12 +329,16 @@ pub struct SweepAxis {
 #[serde(rename = "SweepAxis", deny_unknown_fields)]
 struct WrittenAxis {
     field: String,
+    /// As in the axis, -1e200 to 1e200.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     from: Option<f64>,
+    /// As in the axis, -1e200 to 1e200.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     to: Option<f64>,
+    /// As in the axis, 1e-200 to 1e200.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     step: Option<f64>,
+    /// As in the axis, each -1e200 to 1e200.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     values: Vec<f64>,
 }

@@ -56,9 +56,11 @@ fn shaken() {
         "{text}"
     );
     let (_, text) = of("monostable", &[]);
-    assert!(text.starts_with(
-        "No barrier: one well, so nothing to cross; will swing ±3.6 mm, RMS velocity 66 mm/s."
-    ));
+    assert!(
+        text.starts_with(
+            "No barrier: one well, so nothing to cross; will swing ±3.6 mm, RMS velocity 66 mm/s."
+        )
+    );
     // nobody has seen it yet
     let (kind, text) = of("random-shaking", &[]);
     assert!(

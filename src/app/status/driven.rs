@@ -136,10 +136,7 @@ pub fn driven(told: &Told) -> Sentence {
         Regime::OneWell => {
             let symmetric = (low + high).abs() < 0.02 * reach;
             let swing = if symmetric { format!("±{} mm", mm(reach)) } else { range };
-            let text = format!(
-                "No barrier: one well, so nothing to cross; {} {swing}, {rms}.",
-                words.swings
-            );
+            let text = format!("No barrier: one well, so nothing to cross; {} {swing}, {rms}.", words.swings);
             (Kind::Other, text)
         }
         Regime::Rest if scene.stops == Stops::None => {

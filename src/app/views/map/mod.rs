@@ -127,6 +127,9 @@ fn reading(map: &Map, column: usize, row: usize) -> String {
                     let plural = if period == 1 { "" } else { "s" };
                     lines.push(format!("repeats after {period} forcing period{plural}"));
                 }
+                if settled.settled == Some(false) {
+                    lines.push("not settled in this time".to_owned());
+                }
             }
             lines.push("click: take the scene there; drag: enlarge".to_owned());
         }

@@ -19,6 +19,10 @@ use super::quantity::{Look, Quantity, Scale};
 const HATCH: f32 = 7.0;
 const SAMPLE: f32 = 2.0;
 
+/// Radius in points of the dot of a motion that had not settled, and the least side of a cell that bears one.
+const DOT: f32 = 1.3;
+const SMALLEST_DOTTED: f32 = 4.0;
+
 /// Points between symbols of regimes.
 const SYMBOLS: f32 = 46.0;
 
@@ -27,6 +31,8 @@ const SYMBOLS: f32 = 46.0;
 pub struct Picture {
     texture: TextureHandle,
     looks: Arc<[Look]>,
+    /// Which cells show a motion that had not settled.
+    unsettled: Arc<[bool]>,
     size: [usize; 2],
     key: Key,
 }
@@ -48,10 +54,11 @@ impl Picture {
         }
         let size = map.size();
         let [columns, rows] = size;
-        let look = |i: usize| {
-            map.cell(i % columns, rows - 1 - i / columns).map_or(Look::Unknown, |c| scale.look(c.0))
-        };
+        let cell = |i: usize| map.cell(i % columns, rows - 1 - i / columns);
+        let look = |i: usize| cell(i).map_or(Look::Unknown, |c| scale.look(c.0));
         let looks: Arc<[Look]> = (0..columns * rows).map(look).collect();
+        let transient = |i: usize| cell(i).and_then(|c| c.0.settled()?.settled) == Some(false);
+        let unsettled = (0..columns * rows).map(transient).collect();
         let image = ColorImage::new(size, looks.iter().map(|look| colour(&style, *look)).collect());
         let texture = match old {
             Some(mut old) => {
@@ -60,7 +67,7 @@ impl Picture {
             }
             None => ui.ctx().load_texture("map", image, TextureOptions::NEAREST),
         };
-        Self { texture, looks, size, key }
+        Self { texture, looks, unsettled, size, key }
     }
 
     /// Whether some cell shows this.
@@ -77,6 +84,25 @@ impl Picture {
         self.hatch(painter, frame.rect, Look::Missing, -1.0, style.missing_stroke());
         if self.key.1 == Quantity::Regime {
             self.symbols(painter, frame.rect, style);
+        }
+        self.dots(painter, frame.rect, style);
+    }
+
+    /// Whether some cell shows a motion that had not settled.
+    pub fn shows_unsettled(&self) -> bool {
+        self.unsettled.contains(&true)
+    }
+
+    /// A dot on every cell whose motion had not settled, where cells are large enough to bear one.
+    fn dots(&self, painter: &Painter, rect: Rect, style: &Style) {
+        let [columns, rows] = self.size;
+        let cell = rect.size() / vec2(columns as f32, rows as f32);
+        if !self.shows_unsettled() || cell.min_elem() < SMALLEST_DOTTED {
+            return;
+        }
+        for (i, _) in self.unsettled.iter().enumerate().filter(|(_, unsettled)| **unsettled) {
+            let place = vec2((i % columns) as f32 + 0.5, (i / columns) as f32 + 0.5);
+            dot(painter, rect.min + place * cell, style);
         }
     }
 
@@ -194,6 +220,11 @@ pub fn bar(painter: &Painter, frame: &Frame, scale: &Scale, style: &Style) {
         painter.text(at + vec2(7.0, 0.0), Align2::LEFT_CENTER, text, style.small(), style.ink());
     }
     upright(painter, style, pos2(rect.right() + 44.0, rect.center().y), &axis.label);
+}
+
+/// The mark of a motion that had not settled.
+pub fn dot(painter: &Painter, at: Pos2, style: &Style) {
+    painter.circle_filled(at, DOT, style.hatch_stroke().color);
 }
 
 /// The regimes that a picture shows, in the order of the legend.

@@ -11,7 +11,7 @@ use crate::app::widgets::kind_shapes;
 use crate::scene::{SweepAxis, column_names};
 
 use super::super::ViewContext;
-use super::picture::{Picture, kinds};
+use super::picture::{self, Picture, kinds};
 use super::quantity::{Look, Quantity, kind_name};
 
 /// Width in points below which the choices take two rows.
@@ -226,6 +226,9 @@ pub fn legend(
     }
     if picture.shows(Look::None) {
         entry("does not repeat", &|rect| patch(rect, style.ground(), &[]));
+    }
+    if picture.shows_unsettled() {
+        entry("not settled", &|rect| picture::dot(painter, rect.center(), style));
     }
     if picture.shows(Look::Missing) {
         entry("ended early", &|rect| {
