@@ -186,6 +186,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// does not depend on what is listed. To tell them again is work: how many of the laps that was done for.
     fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) -> i64 {
         let (sums, judge) = (self.record.totals(), self.record.judge.clone());
+        self.record.next_strobe = None; // it has no part in what is listed
         let start = self.at;
         let length = self.clock.period() * T::of(lap.cycles as f64);
         let begin =
