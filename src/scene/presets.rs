@@ -48,7 +48,7 @@ presets! {
     "bouncing-ball": "a ball that comes to rest after infinitely many bounces, at an exactly known time";
     "elastic-box": "a free mass between two perfect stops: no energy is lost";
     "duffing": "the periodically forced double well, with its published periods: 1, 2, 4, 5, chaos, 2";
-    "duffing-chaos": "the same double well where it never repeats: chaos, and averages that hold";
+    "duffing-chaos": "the same double well where no period is found: chaos, and averages that hold";
     "period-adding": "the same double well just touching a stop: one impact in 6, 5, 4, 3, 2, 1 periods";
 }
 
