@@ -20,6 +20,10 @@ use crate::numeric::{CompensatedSum, GaussLegendre, PolynomialRoots, Scalar};
 /// period is looked for.
 const STILL: u32 = 32;
 
+/// The most stroboscopic states that are told one by one: some tenths of a second of one core, and more than a run makes
+/// whose steps are shorter than a forcing period. What comes after them is not judged.
+const MOST_STROBES: u32 = 1 << 22;
+
 pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) model: &'a Model,
     pub(super) clock: Clock<T>,
@@ -55,6 +59,8 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) next_strobe: Option<Instant<T>>,
     /// Cycles of the clock in a forcing period.
     pub(super) period_cycles: i64,
+    /// How many stroboscopic states may still be told one by one.
+    strobes_left: u32,
     /// Forcing periods in the window.
     periods: u64,
     /// Speed of the fastest impact in the window.
@@ -122,6 +128,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             origin,
             next_strobe: (periods > 0).then_some(origin),
             period_cycles: cycles,
+            strobes_left: MOST_STROBES,
             periods,
             impact_speed: T::zero(),
             counts: Counts::default(),
@@ -369,7 +376,8 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     pub(super) fn strobe(&mut self, x: T, v: T) {
         let Some(strobe) = &mut self.next_strobe else { return };
         strobe.cycle += self.period_cycles;
-        if self.clock.between(strobe, &self.window.1) < T::zero() {
+        self.strobes_left -= 1;
+        if self.strobes_left == 0 || self.clock.between(strobe, &self.window.1) < T::zero() {
             self.next_strobe = None;
         }
         let state = Strobe { x: x.to_f64(), v: v.to_f64() / self.unit };
@@ -431,12 +439,12 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     }
 
     /// The settled window begins anew at its end, where the run stands; where the new one ends, if that is not after
-    /// `until` in s.
+    /// `until` in s and can be judged.
     pub fn next_window(&mut self, until: f64) -> Option<Instant<T>> {
         let from = self.window.1;
         let length = self.periods as i64 * self.period_cycles;
         let to = Instant { cycle: from.cycle + length, phase: from.phase };
-        if self.clock.seconds(&to) > until {
+        if self.clock.seconds(&to) > until || u64::from(self.strobes_left) <= self.periods {
             return None;
         }
         self.window = (from, to);

@@ -302,11 +302,8 @@ impl Judge {
         if !self.last_crossing.is_some_and(lasting) {
             firsts.crossing_in_every_period = None;
         }
-        for first in [&mut firsts.release, &mut firsts.crossing, &mut firsts.crossing_in_every_period] {
-            if let Some(first) = first {
-                first.amplitude = amplitude(first.t);
-            }
-        }
+        let all = [&mut firsts.release, &mut firsts.crossing, &mut firsts.crossing_in_every_period];
+        all.into_iter().flatten().for_each(|first| first.amplitude = amplitude(first.t));
         (self.rhythm == Rhythm::Changing).then_some(firsts)
     }
 

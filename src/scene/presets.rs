@@ -35,21 +35,21 @@ macro_rules! presets {
 }
 
 presets! {
-    "first-look": "what the window opens on: the prototype without stops, shaken a little too weakly to cross";
+    "first-look": "what the window opens on: the prototype without stops, shaken too weakly to cross";
     "paper": "the prototype: travel limits inside the wells, and the map over limit and shaking";
     "paper-table": "the prototype with its force from an independent three-dimensional model of the flexures";
-    "paper-unconstrained": "the prototype without stops: rattles at 1 g, crosses from 1.16 g, wildly at first";
+    "paper-unconstrained": "the prototype without stops: stays in its well at 1 g, crosses from 1.16 g";
     "paper-ramp": "the prototype, shaken from 0 to 2 g in five minutes: when it frees, when it crosses";
-    "uneven-stops": "the prototype between unequal stops: two different rebounds, and the worse stop decides";
+    "uneven-stops": "the prototype between unequal stops: two different rebounds, and two thresholds";
     "walking": "the prototype carried by a walking person: crosses in every step with stops at 0.6 mm";
-    "random-shaking": "the prototype under noise: crosses at random with stops, and not without them";
+    "random-shaking": "the prototype under noise: crosses with stops at 1 mm, and not without stops";
     "nominal-cubic": "a textbook double well with the prototype's mass; its map has 41 x 101 cells";
-    "monostable": "one well for comparison: nothing to cross, and stops only take away";
-    "bouncing-ball": "a ball that comes to rest after infinitely many bounces, at a time known exactly";
-    "elastic-box": "a free mass between two perfect stops: nothing is lost, ever";
+    "monostable": "one well for comparison: nothing to cross, and no least shaking";
+    "bouncing-ball": "a ball that comes to rest after infinitely many bounces, at an exactly known time";
+    "elastic-box": "a free mass between two perfect stops: no energy is lost";
     "duffing": "the periodically forced double well, with its published periods: 1, 2, 4, 5, chaos, 2";
-    "duffing-chaos": "the same double well where it never repeats: chaos, and averages that hold";
-    "period-adding": "the same double well just touching a stop: one light impact in 6, 5, 4, 3, 2 periods";
+    "duffing-chaos": "the same double well where no period is found: chaos, and averages that hold";
+    "period-adding": "the same double well just touching a stop: one impact in 6, 5, 4, 3, 2, 1 periods";
 }
 
 /// The embedded tables and records.

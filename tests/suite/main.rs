@@ -14,6 +14,7 @@ mod lanes;
 mod layers;
 mod live;
 mod mechanics;
+mod notes;
 mod oracles;
 mod plots;
 mod presets;

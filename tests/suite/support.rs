@@ -37,12 +37,17 @@ pub fn unit_well(rest: &str) -> Model {
 }
 
 /// A built-in scene with fields changed, each as `FIELD=VALUE`.
-pub fn preset(name: &str, changes: &[&str]) -> Model {
+pub fn changed(name: &str, changes: &[&str]) -> Document {
     let mut document = Document::load(name).unwrap();
     for change in changes {
         document.set(change).unwrap();
     }
-    build(&document)
+    document
+}
+
+/// The model of a built-in scene with fields changed.
+pub fn preset(name: &str, changes: &[&str]) -> Model {
+    build(&changed(name, changes))
 }
 
 /// A run with events and ledger.
