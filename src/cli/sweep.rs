@@ -10,7 +10,7 @@ use interwell::output::{Overlay, SweepPicture, can_show, header, is_regular, man
 use interwell::scene::Document;
 use interwell::study::{
     Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, SummaryField, Sweep, SweepEnd, SweepOptions, Table, Task,
-    first_interwell, is_orderly, release_line,
+    first_crossing, release_line,
 };
 
 use super::failure::{Failure, wrong_cell};
@@ -77,7 +77,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         let grid = sweep.grid();
         let overlay = Overlay {
             release: mechanism.and_then(|own| release_line(&document.scene, &own, grid)),
-            first_interwell: first_interwell(grid, &rows).filter(|line| is_orderly(line, &rows)),
+            first_crossing: first_crossing(grid, &rows),
         };
         let (rows, scene, quantity) = (&rows, &document.scene, &*options.quantity);
         let shown = SweepPicture { rows, grid, scene, quantity, overlay, ranges: axes };

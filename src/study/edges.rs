@@ -1,4 +1,4 @@
-//! Where do the cells of a map begin and end, and along which of their edges does interwell motion begin?
+//! Edges of the cells of a map, and the line along them at which motions begin to cross.
 
 use super::table::Table;
 
@@ -52,9 +52,9 @@ impl Edges {
     }
 }
 
-/// The line of [`first_interwell`](super::first_interwell) over a map of `x` and `y`: along the edges of its cells,
+/// The line of [`first_crossing`](super::first_crossing) over a map of `x` and `y`: along the edges of its cells,
 /// towards smaller amplitudes, in one part for each stretch without a gap.
-pub fn first_interwell_edge(
+pub fn first_crossing_edge(
     table: &Table,
     (x, y): (&str, &str),
     across: &Edges,

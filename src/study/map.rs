@@ -1,4 +1,4 @@
-//! Lines that tell where interwell motion begins on a map of runs.
+//! Lines that tell where motions begin to cross on a map of runs.
 
 use super::grid::Grid;
 use super::table::{Table, Values};
@@ -39,11 +39,11 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
     Some(table.with("amplitude_g", Values::Numbers(amplitudes)))
 }
 
-/// For each value of the other field the least amplitude, 0 or above, whose cell is interwell; NaN
+/// For each value of the other field the least amplitude, 0 or above, whose cell crosses; NaN
 /// where there is none. The two columns are called as in the sweep, the other field first.
 ///
 /// Only for a grid over two fields of which one is an amplitude. `rows` are all rows of the sweep.
-pub fn first_interwell(grid: &Grid, rows: &Table) -> Option<Table> {
+pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
     let [a, b] = grid.axes() else { return None };
     let amplitude = |axis: &Axis| axis.field == "amplitude_g" || axis.field.ends_with(".amplitude_g");
     let (other, own) = match (amplitude(a), amplitude(b)) {
@@ -59,7 +59,7 @@ pub fn first_interwell(grid: &Grid, rows: &Table) -> Option<Table> {
     values.dedup();
     let mut least = vec![f64::NAN; values.len()];
     for (i, other) in others.iter().enumerate() {
-        let counts = regimes.get(i) == Some(&Regime::Interwell.name()) && amplitudes[i] >= 0.0;
+        let counts = regimes.get(i).is_some_and(|regime| crosses(regime)) && amplitudes[i] >= 0.0;
         if let Ok(place) = values.binary_search_by(|own| own.total_cmp(other))
             && counts
         {
@@ -71,32 +71,9 @@ pub fn first_interwell(grid: &Grid, rows: &Table) -> Option<Table> {
     Some(table.with(&grid.columns()[own], Values::Numbers(least)))
 }
 
-/// The least share of the cells beyond a line of [`first_interwell`] that are interwell, for it to part a map in two.
-const ORDERLY: f64 = 0.8;
-
-/// Whether `line`, as [`first_interwell`] gives it of `rows`, parts what is interwell from what is not: where chance decides
-/// from cell to cell, the first of them tells nothing.
-pub fn is_orderly(line: &Table, rows: &Table) -> bool {
-    let names = || line.columns().iter().map(|column| column.name.as_str());
-    let both = |table: &Table| -> Option<Vec<(f64, f64)>> {
-        let mut columns = names().map(|name| table.numbers(name));
-        let (others, amplitudes) = (columns.next()??, columns.next()??);
-        Some(others.iter().copied().zip(amplitudes.iter().copied()).collect())
-    };
-    let (Some(line), Some(cells)) = (both(line), both(rows)) else { return false };
-    let Some(Values::Words(regimes)) = rows.column("regime").map(|column| &column.values) else {
-        return false;
-    };
-    let (mut beyond, mut interwell) = (0_u64, 0_u64);
-    for ((other, amplitude), regime) in cells.into_iter().zip(regimes) {
-        let first =
-            line.binary_search_by(|own| own.0.total_cmp(&other)).map_or(f64::NAN, |place| line[place].1);
-        if amplitude >= first {
-            beyond += 1;
-            interwell += u64::from(*regime == Regime::Interwell.name());
-        }
-    }
-    interwell as f64 >= ORDERLY * beyond as f64
+/// Whether a regime is one of motions that cross at all.
+fn crosses(regime: &str) -> bool {
+    [Regime::Interwell, Regime::Irregular, Regime::Crossing].iter().any(|own| own.name() == regime)
 }
 
 fn axis<'a>(grid: &'a Grid, field: &str) -> Option<&'a Axis> {

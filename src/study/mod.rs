@@ -34,13 +34,13 @@ pub use curve::{
     CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency,
     stop_positions,
 };
-pub use edges::{Edges, first_interwell_edge};
+pub use edges::{Edges, first_crossing_edge};
 pub use fields::{Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
 pub use inspect::inspect;
 pub use levels::{Levels, STRIDES};
-pub use map::{first_interwell, is_orderly, release_line};
+pub use map::{first_crossing, release_line};
 pub use models::Held;
 pub use passage::between;
 pub use settled::{Settled, Standing, settled, standing};

@@ -102,7 +102,7 @@ fn pictures_say_what_they_show() {
     says(SMALL_MAP, &["travel limit, mm", "amplitude, g", "RMS velocity, mm/s", "at rest"]);
     says(
         SMALL_MAP,
-        &["release in closed form", "first interwell cell", "7 \u{d7} 9 runs of 2 s, each from rest"],
+        &["release in closed form", "first crossing cell", "7 \u{d7} 9 runs of 2 s, each from rest"],
     );
     let line = "sweep duffing --set run.settle_s=100 --set run.duration_s=300 --over excitation.amplitude_g=0.02,0.05";
     says(line, &["amplitude, g", "RMS velocity, mm/s", "2 runs of 300 s", "intrawell"]);
@@ -145,7 +145,7 @@ fn lines_over_a_map_stand_only_where_they_mean_something() {
     // The other way round is the same map on its side.
     let turned = "sweep paper --set run.settle_s=None --set run.duration_s=2 --over excitation.amplitude_g=0:2:0.25 \
                   --over stops.travel_limit_mm=1:7:1";
-    says(turned, &["release in closed form", "first interwell cell"]);
+    says(turned, &["release in closed form", "first crossing cell"]);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::app::fields::in_words;
 use crate::numeric::short;
 use crate::output::{header, rows};
 use crate::scene::SceneError;
-use crate::study::{Cell, Edges, Grid, Levels, STRIDES, Sweep, Table, first_interwell, first_interwell_edge};
+use crate::study::{Cell, Edges, Grid, Levels, STRIDES, Sweep, Table, first_crossing, first_crossing_edge};
 
 use super::{Question, over};
 
@@ -23,7 +23,7 @@ pub struct Map {
     pub edges: [Edges; 2],
     /// The least amplitude that frees the mass, in closed form, where that makes sense: `x` and `y` of its points.
     pub release: Vec<(f64, f64)>,
-    /// Where the first interwell cells begin, as far as is known.
+    /// Where the first crossing cells begin, as far as is known.
     pub crossing: Vec<Vec<(f64, f64)>>,
     pub(super) sweep: Arc<Sweep>,
     pub(super) levels: Arc<Levels>,
@@ -157,8 +157,8 @@ impl Map {
         let table = self.table();
         let columns = self.grid().columns();
         let names = (columns[0].as_str(), columns[1].as_str());
-        self.crossing = first_interwell(self.grid(), &table)
-            .map(|line| first_interwell_edge(&line, names, &self.edges[0], &self.edges[1]))
+        self.crossing = first_crossing(self.grid(), &table)
+            .map(|line| first_crossing_edge(&line, names, &self.edges[0], &self.edges[1]))
             .unwrap_or_default();
     }
 }

@@ -8,15 +8,15 @@ use super::mark::{REGIMES, Sample, cross, legend};
 use super::quantity::Quantity;
 use super::style::{self, Theme, viridis};
 use super::sweep::{BOTTOM, LEFT, SweepPicture, TOP, label, missing_words, words};
-use crate::study::{Edges, Table, first_interwell_edge};
+use crate::study::{Edges, Table, first_crossing_edge};
 
 /// The lines over a map, each where it makes sense.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlay {
     /// The release in closed form, with the swept columns of the map.
     pub release: Option<Table>,
-    /// The first interwell cell along the amplitude.
-    pub first_interwell: Option<Table>,
+    /// The first crossing cell along the amplitude.
+    pub first_crossing: Option<Table>,
 }
 
 /// What a cell of a map shows.
@@ -111,13 +111,13 @@ fn over(
     let pairs = |table: &Table| -> Option<Vec<(f64, f64)>> {
         Some(table.numbers(x)?.iter().copied().zip(table.numbers(y)?.iter().copied()).collect())
     };
-    if let Some(table) = &overlay.first_interwell {
-        let parts = first_interwell_edge(table, (x, y), across, up);
+    if let Some(table) = &overlay.first_crossing {
+        let parts = first_crossing_edge(table, (x, y), across, up);
         for (width, ink) in [(style::GUIDE + 4.0, style::WHITE), (style::GUIDE, style::OVER_MAP)] {
             parts.iter().for_each(|part| frame.line(figure, part, width, ink));
         }
         if !parts.is_empty() {
-            entries.push((Sample::Line(style::OVER_MAP, style::GUIDE, None), "first interwell cell"));
+            entries.push((Sample::Line(style::OVER_MAP, style::GUIDE, None), "first crossing cell"));
         }
     }
     if let Some(points) = overlay.release.as_ref().and_then(pairs) {

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::mechanics::Mechanism;
 use interwell::scene::Document;
-use interwell::study::{Grid, Sweep, Table, Task, Values, first_interwell, release_line};
+use interwell::study::{Grid, Sweep, Table, Task, Values, first_crossing, release_line};
 
 fn swept(document: &Document, over: &[&str]) -> (Grid, Table) {
     let grid = Grid::new(document.axes(over).unwrap()).unwrap();
@@ -47,27 +47,29 @@ fn release_parts_rest_from_motion() {
 }
 
 #[test]
-fn the_first_interwell_cell_is_the_first_one() {
+fn the_first_crossing_cell_is_the_first_one() {
     let mut document = Document::load("nominal-cubic").unwrap();
     document.set("run.duration_s=4").unwrap();
     document.set("run.settle_s=2").unwrap();
     // Not in order, and too weak for the last one.
     let (grid, rows) =
         swept(&document, &["excitation.amplitude_g=1,0.2,0.5,0", "stops.travel_limit_mm=1,0.5,4"]);
-    let line = first_interwell(&grid, &rows).unwrap();
+    let line = first_crossing(&grid, &rows).unwrap();
     assert_eq!(line.numbers("travel_limit_mm").unwrap(), [0.5, 1.0, 4.0]);
     let least = line.numbers("amplitude_g").unwrap();
     let Values::Words(regimes) = &rows.column("regime").unwrap().values else { panic!() };
     for (limit, least) in line.numbers("travel_limit_mm").unwrap().iter().zip(least) {
-        let cells = (0..rows.rows())
-            .filter(|i| rows.numbers("travel_limit_mm").unwrap()[*i] == *limit && regimes[*i] == "interwell");
+        let cells = (0..rows.rows()).filter(|i| {
+            rows.numbers("travel_limit_mm").unwrap()[*i] == *limit
+                && ["interwell", "irregular"].contains(&regimes[*i])
+        });
         let expected = cells.map(|i| rows.numbers("amplitude_g").unwrap()[i]).reduce(f64::min);
         assert_eq!(expected, Some(*least).filter(|own| own.is_finite()));
     }
     assert!(least[0].is_finite());
     // Without an amplitude there is no such line.
     let (grid, rows) = swept(&document, &["mass_g=15,16", "stops.restitution=0,0.5"]);
-    assert_eq!(first_interwell(&grid, &rows), None);
+    assert_eq!(first_crossing(&grid, &rows), None);
     let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
     assert_eq!(release_line(&document.scene, &mechanism, &grid), None);
 }
