@@ -35,6 +35,7 @@ mod summary;
 mod taylor;
 mod tone;
 mod totals;
+mod window;
 mod work;
 
 pub(crate) use base::BaseTone;

@@ -10,19 +10,10 @@ use super::path::{Path, StepView};
 use super::penetration::Penetration;
 use super::recurrence::{Entry, Log};
 use super::regime::Judge;
-use super::repeats::Strobe;
 use super::result::{Event, EventKind, Phase, Sample, Side};
 use super::taylor;
 use super::totals::{Counts, Sums};
 use crate::numeric::{CompensatedSum, GaussLegendre, PolynomialRoots, Scalar};
-
-/// Stroboscopic states of a mass that stands still that are told one by one before some are passed over: more than a
-/// period is looked for.
-const STILL: u32 = 32;
-
-/// The most stroboscopic states that are told one by one: some tenths of a second of one core, and more than a run makes
-/// whose steps are shorter than a forcing period. What comes after them is not judged.
-const MOST_STROBES: u32 = 1 << 22;
 
 pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) model: &'a Model,
@@ -55,14 +46,14 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub(super) barrier_side: i8,
     pub(super) judge: Judge,
     /// The first instant of the run at the window's phase.
-    origin: Instant<T>,
+    pub(super) origin: Instant<T>,
     pub(super) next_strobe: Option<Instant<T>>,
     /// Cycles of the clock in a forcing period.
     pub(super) period_cycles: i64,
     /// How many stroboscopic states may still be told one by one.
-    strobes_left: u32,
+    pub(super) strobes_left: u32,
     /// Forcing periods in the window.
-    periods: u64,
+    pub(super) periods: u64,
     /// Speed of the fastest impact in the window.
     pub(super) impact_speed: T,
     pub(super) counts: Counts,
@@ -128,7 +119,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             origin,
             next_strobe: (periods > 0).then_some(origin),
             period_cycles: cycles,
-            strobes_left: MOST_STROBES,
+            strobes_left: super::window::MOST_STROBES,
             periods,
             impact_speed: T::zero(),
             counts: Counts::default(),
@@ -342,11 +333,6 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         self.events.is_some() || self.judge.times_all_crossings()
     }
 
-    /// Forcing periods since the first stroboscopic state; NaN where the drive has no period.
-    pub(super) fn in_periods(&self, at: &Instant<T>) -> f64 {
-        (self.clock.between(&self.origin, at) / self.period).to_f64()
-    }
-
     fn crossing<P: Path<T>>(&mut self, step: &StepView<T, P>, into: T) {
         self.barrier_side = -self.barrier_side;
         let at = self.clock.advance(&step.at, step.path.time(into));
@@ -358,104 +344,6 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         }
         self.judge.crossing(self.in_periods(&at), side, self.clock.seconds(&at));
         self.event(&at, EventKind::Crossing, side, v, v);
-    }
-
-    fn strobes<P: Path<T>>(&mut self, step: &StepView<T, P>) {
-        while let Some(strobe) = self.next_strobe {
-            let into = self.clock.between(&step.at, &strobe);
-            if into >= step.duration {
-                return;
-            }
-            let into = step.path.parameter(into, step.length);
-            let x = step.x_at(into);
-            let v = step.path.velocity(into);
-            self.strobe(x, v);
-        }
-    }
-
-    pub(super) fn strobe(&mut self, x: T, v: T) {
-        let Some(strobe) = &mut self.next_strobe else { return };
-        strobe.cycle += self.period_cycles;
-        self.strobes_left -= 1;
-        if self.strobes_left == 0 || self.clock.between(strobe, &self.window.1) < T::zero() {
-            self.next_strobe = None;
-        }
-        let state = Strobe { x: x.to_f64(), v: v.to_f64() / self.unit };
-        self.judge.strobe(state, self.settled.squared_velocity.value().to_f64(), self.counts.crossings);
-    }
-
-    /// Passes over stroboscopic states of a mass that stands still up to `until`, all like the last ones, but for some
-    /// before the next border of the window.
-    fn skip_strobes(&mut self, until: &Instant<T>) {
-        let Some(strobe) = &mut self.next_strobe else { return };
-        let left = |border: &Instant<T>| {
-            let periods = (self.clock.between(strobe, border) / self.period).to_f64();
-            Some(periods).filter(|periods| *periods > 0.0)
-        };
-        let borders = [until, &self.window.0, &self.window.1];
-        let fewest = borders.into_iter().filter_map(left).fold(f64::INFINITY, f64::min);
-        let more = (fewest - f64::from(STILL)).floor() as i64;
-        if more > 0 && fewest.is_finite() {
-            strobe.cycle += more * self.period_cycles;
-            self.judge.skip_still(more as u64);
-        }
-    }
-
-    /// The stroboscopic state at `end`, the end of the run, where the window ends there too.
-    pub(super) fn last_strobe(&mut self, end: &Instant<T>, (x, v): (T, T)) {
-        let due = |strobe: &Instant<T>| self.clock.between(strobe, end).abs() <= self.period * T::of(1e-9);
-        if self.next_strobe.as_ref().is_some_and(due) {
-            self.strobe(x, v);
-        }
-    }
-
-    /// The first instant of the run at the window's phase.
-    pub(super) fn origin(&self) -> Instant<T> {
-        self.origin
-    }
-
-    /// Whole forcing periods in the settled window; 0 where it holds none.
-    pub(super) fn periods(&self) -> u64 {
-        self.periods
-    }
-
-    /// Begin and end of the settled window in s, as far as a run that ended at `end` came.
-    pub(super) fn window_seconds(&self, end: &Instant<T>) -> (f64, f64) {
-        let (from, to) = &self.window;
-        let reached = if self.clock.between(to, end) > T::zero() { to } else { end };
-        // as it was written, where it was
-        let written = [self.model.settle, self.model.duration];
-        let seconds = |at: &Instant<T>| {
-            let own = written.into_iter().find(|t| self.clock.at(*t) == *at);
-            own.unwrap_or_else(|| self.clock.seconds(at))
-        };
-        let (from, reached) = (seconds(from), seconds(reached));
-        (from, reached.max(from))
-    }
-
-    /// The end of the settled window.
-    pub fn window_end(&self) -> Instant<T> {
-        self.window.1
-    }
-
-    /// The settled window begins anew at its end, where the run stands; where the new one ends, if that is not after
-    /// `until` in s and can be judged.
-    pub fn next_window(&mut self, until: f64) -> Option<Instant<T>> {
-        let from = self.window.1;
-        let length = self.periods as i64 * self.period_cycles;
-        let to = Instant { cycle: from.cycle + length, phase: from.phase };
-        if self.clock.seconds(&to) > until || u64::from(self.strobes_left) <= self.periods {
-            return None;
-        }
-        self.window = (from, to);
-        self.next_strobe = Some(Instant { cycle: from.cycle + self.period_cycles, phase: from.phase });
-        self.settled = Sums::new();
-        self.covered = CompensatedSum::new();
-        (self.low, self.high) = (T::of(f64::INFINITY), T::of(f64::NEG_INFINITY));
-        self.impact_speed = T::zero();
-        (self.counts.crossings, self.counts.impacts, self.counts.releases) = (0, 0, 0);
-        self.judge.open_window();
-        Some(to)
     }
 
     /// Takes in a span in which the mass stands still at `x` (at rest on a stop, in an equilibrium, or in
@@ -488,7 +376,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             }
             self.strobe(x, T::zero());
             told += 1;
-            if told == STILL {
+            if told == super::window::STILL {
                 told = 0;
                 self.skip_strobes(until);
             }

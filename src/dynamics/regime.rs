@@ -1,6 +1,6 @@
 //! Judgement of a run: regime, period, whether the motion has settled, and what happened first.
 
-use super::repeats::{Crossings, LONGEST, Strobe, Strobes};
+use super::repeats::{Crossings, Strobe, Strobes};
 use super::result::{First, Firsts, Side};
 
 /// Forcing periods of a run before irregular motion may be called settled. Without stops the prototype moves without
@@ -108,7 +108,7 @@ impl Judge {
             rhythm,
             periods,
             from,
-            strobes: Strobes::new(scales, from),
+            strobes: Strobes::new(scales, periods, from),
             crossings: Crossings::new(periods),
             crossing_periods: PeriodsWith::default(),
             release_periods: PeriodsWith::default(),
@@ -210,7 +210,7 @@ impl Judge {
     pub fn repeat(&mut self, from: usize, to: usize, laps: u64, periods: u64) {
         let Some(tape) = self.tape.take() else { return };
         // As many laps as any judgement looks back, and one more to see what each of them adds.
-        let told = laps.min(2 * LONGEST as u64 / periods.max(1) + 4);
+        let told = laps.min(2 * self.strobes.longest() as u64 / periods.max(1) + 4);
         let mut before = (0, 0);
         for lap in 1..=told {
             before = (self.crossing_periods.count, self.release_periods.count);
@@ -252,7 +252,7 @@ impl Judge {
     /// The smallest number of forcing periods, at most 12 and half the window, after which all stroboscopic states of the
     /// window repeat, and the number of the state since which they have.
     fn repeats(&self) -> Option<(u32, u64)> {
-        self.strobes.period(self.periods / 2).filter(|_| self.rhythm == Rhythm::Periodic)
+        self.strobes.period().filter(|_| self.rhythm == Rhythm::Periodic)
     }
 
     /// The period in forcing periods.

@@ -35,6 +35,8 @@ impl Strobe {
 pub(super) struct Strobes {
     /// Length and speed that states are compared by.
     scales: (f64, f64),
+    /// After how many states at most they may have come back.
+    longest: usize,
     seen: u64,
     /// The last of them, each at its number modulo [`LONGEST`].
     recent: [Strobe; LONGEST],
@@ -46,10 +48,11 @@ pub(super) struct Strobes {
 }
 
 impl Strobes {
-    /// `from` is the number of the state at which the settled window begins.
-    pub fn new(scales: (f64, f64), from: u64) -> Self {
-        let recent = [Strobe::default(); LONGEST];
-        Self { scales, seen: 0, recent, since: [0; LONGEST], opening: Vec::new(), from }
+    /// Of a settled window of so many `periods` that begins with the state number `from`. A period is only accepted if the
+    /// window holds it twice.
+    pub fn new(scales: (f64, f64), periods: u64, from: u64) -> Self {
+        let (recent, longest) = ([Strobe::default(); LONGEST], LONGEST.min((periods / 2) as usize));
+        Self { scales, longest, seen: 0, recent, since: [0; LONGEST], opening: Vec::new(), from }
     }
 
     /// How many have been told.
@@ -59,7 +62,7 @@ impl Strobes {
 
     pub fn tell(&mut self, state: Strobe) {
         let number = self.seen;
-        for (own, since) in self.since.iter_mut().enumerate() {
+        for (own, since) in self.since.iter_mut().enumerate().take(self.longest) {
             let Some(before) = number.checked_sub(own as u64 + 1) else { break };
             if !state.is_near(&self.recent[before as usize % LONGEST], self.scales) {
                 *since = before + 1;
@@ -73,11 +76,11 @@ impl Strobes {
     }
 
     /// Takes in `more` states of a motion that repeats exactly after every `lap` states, which divides `more`, and has
-    /// done so for [`LONGEST`] states and two laps at least.
+    /// done so for twice as many states as are looked back at and four laps.
     pub fn skip(&mut self, more: u64, lap: u64) {
         for since in &mut self.since {
             // one that has not come back lately will not either
-            if *since + LONGEST as u64 + lap >= self.seen {
+            if *since + self.longest as u64 + lap >= self.seen {
                 *since += more;
             }
         }
@@ -85,10 +88,15 @@ impl Strobes {
         self.seen += more;
     }
 
-    /// The smallest number of states, at most `most`, after which all states of the window have come back, and the number
-    /// of the state since which they have.
-    pub fn period(&self, most: u64) -> Option<(u32, u64)> {
-        (1..=most.min(LONGEST as u64)).find_map(|q| {
+    /// After how many states at most they may have come back.
+    pub fn longest(&self) -> usize {
+        self.longest
+    }
+
+    /// The smallest number of states after which all states of the window have come back, and the number of the state since
+    /// which they have.
+    pub fn period(&self) -> Option<(u32, u64)> {
+        (1..=self.longest as u64).find_map(|q| {
             let since = self.since[q as usize - 1];
             (since <= self.from && self.seen > self.from + q).then_some((q as u32, since))
         })
@@ -237,40 +245,40 @@ mod tests {
         assert!(!crossings.repeat());
     }
 
-    fn strobes(states: impl Iterator<Item = i32>) -> Strobes {
-        let mut strobes = Strobes::new((1.0, 1.0), 0);
+    fn strobes(periods: u64, states: impl Iterator<Item = i32>) -> Strobes {
+        let mut strobes = Strobes::new((1.0, 1.0), periods, 0);
         states.for_each(|x| strobes.tell(Strobe { x: f64::from(x), v: 0.0 }));
         strobes
     }
 
     #[test]
     fn the_period_of_stroboscopic_states() {
-        let five = strobes((0..41).map(|i| i % 5));
-        assert_eq!(five.period(20), Some((5, 0)));
+        let five = strobes(40, (0..41).map(|i| i % 5));
+        assert_eq!(five.period(), Some((5, 0)));
         assert!(five.is_steady(5));
-        assert_eq!(five.period(4), None);
-        assert_eq!(strobes((0..41).map(|i| i * i % 37)).period(20), None);
+        assert_eq!(strobes(9, (0..10).map(|i| i % 5)).period(), None); // the window holds it once
+        assert_eq!(strobes(40, (0..41).map(|i| i * i % 37)).period(), None);
         // three states of their own, then two in turn
-        assert_eq!(strobes((0..41).map(|i| if i < 3 { 7 + i } else { i % 2 })).since[1], 3);
+        assert_eq!(strobes(40, (0..41).map(|i| if i < 3 { 7 + i } else { i % 2 })).since[1], 3);
     }
 
     #[test]
     fn a_slow_drift_repeats_and_is_not_steady() {
-        let mut drifting = Strobes::new((1.0, 1.0), 0);
+        let mut drifting = Strobes::new((1.0, 1.0), 40, 0);
         (0..41).for_each(|i| drifting.tell(Strobe { x: 5e-4 * f64::from(i), v: 0.0 }));
-        assert_eq!(drifting.period(20), Some((1, 0)));
+        assert_eq!(drifting.period(), Some((1, 0)));
         assert!(!drifting.is_steady(1));
     }
 
     #[test]
     fn states_that_are_skipped_are_as_if_told() {
-        let mut own = strobes((0..40).map(|i| i % 5));
+        let mut own = strobes(1000, (0..40).map(|i| i % 5));
         own.skip(1000, 5);
-        assert_eq!((own.seen(), own.period(600)), (1040, Some((5, 0))));
+        assert_eq!((own.seen(), own.period()), (1040, Some((5, 0))));
         (1040..1050).for_each(|i| own.tell(Strobe { x: f64::from(i % 5), v: 0.0 }));
-        assert_eq!(own.period(600), Some((5, 0)));
+        assert_eq!(own.period(), Some((5, 0)));
         assert!(own.is_steady(5));
         own.tell(Strobe { x: 9.0, v: 0.0 });
-        assert_eq!(own.period(600), None);
+        assert_eq!(own.period(), None);
     }
 }
