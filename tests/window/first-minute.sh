@@ -83,7 +83,7 @@ minute() {
     sleep 1
     shot 1-plays
     [ "$(differ 1-opened 1-plays)" != 0 ] || fail "$name: nothing moves"
-    # shake harder: it leaps across
+    # shake harder: it begins to cross
     type_into $shaking 1.3
     sleep 6
     shot 2-shaken-harder
@@ -93,7 +93,7 @@ minute() {
     shot 3-back
     # stops on: it crosses every period
     xdotool mousemove $stops click 1
-    xdotool mousemove $((width / 2)) $((height - 5))
+    xdotool mousemove $((width * 3 / 5)) 12
     sleep 6
     shot 4-stops
     # outward: faster, then over the cliff
