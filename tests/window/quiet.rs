@@ -153,7 +153,8 @@ fn a_drag_waits_for_nothing() {
     let mut screen = Screen::new("paper", WIDE);
     screen.ctx.enable_accesskit();
     screen.window.session.player.speed = 1.0;
-    screen.window.session.edit_once(|scene| scene.run.duration_s = 1e6);
+    // integrated to their end: what comes back is known at once
+    screen.window.session.edit_once(|scene| (scene.run.duration_s, scene.run.recurrence) = (1e6, false));
     screen.window.session.map.choose(Some(axes(0.01)));
     screen.ask(Command::Arrange(Layout::Map));
     screen.steps(5);
@@ -198,6 +199,7 @@ fn a_drag_waits_for_nothing() {
     screen.steps(3);
     let session = &screen.window.session;
     assert!(!session.editor.in_gesture() && session.map.is_running());
-    // nothing was waited for
+    // none of it has come, and none of it was waited for
+    assert!(session.now_card().settled.is_none());
     assert!(session.map.map().is_some_and(|map| !map.is_covered()));
 }
