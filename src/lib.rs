@@ -89,3 +89,8 @@ pub mod numeric;
 pub mod output;
 pub mod scene;
 pub mod study;
+
+/// The README's program compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

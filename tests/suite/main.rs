@@ -8,6 +8,7 @@ mod by_hand;
 mod cli;
 mod compliant;
 mod convergence;
+mod documents;
 mod drives;
 mod impacts;
 mod lanes;

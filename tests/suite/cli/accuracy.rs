@@ -62,9 +62,9 @@ fn speed_against_error_comes_with_a_picture() {
 }
 
 #[test]
-fn with_stops_no_fixed_step_comes_below_what_the_readme_says() {
-    let readme = include_str!("../../../README.md");
-    let said = readme.split_once("none of the three comes below ").unwrap().1;
+fn with_stops_no_fixed_step_comes_below_what_is_said_of_them() {
+    let page = include_str!("../../../docs/accuracy.md");
+    let said = page.split_once("none of the three comes below ").unwrap().1;
     let least: f64 = said.split_once(". ").unwrap().0.parse().unwrap();
     let csv = stdout("accuracy --case p2 --out - --quiet");
     let (methods, errors) = (column(&csv, "method"), column(&csv, "error"));

@@ -72,9 +72,9 @@ fn check_says_the_loss_at_the_speed_that_occurs() {
     let rigid = line("paper").unwrap();
     let (speed, loss) = (number(&rigid, "struck at "), number(&rigid, "0.36 there takes loss_s_per_m: "));
     assert!((speed - 0.233).abs() < 1e-3 && (loss * speed - 2.427).abs() < 2e-3, "{rigid}");
-    // The README's stop is that one: struck as fast, with that restitution.
-    let readme = include_str!("../../../README.md");
-    let stops = readme.split_once("`stops: Hertz(").unwrap().1.split_once(")`").unwrap().0.replace(' ', "");
+    // The documented stop is that one: struck as fast, with that restitution.
+    let page = include_str!("../../../docs/scene.md");
+    let stops = page.split_once("`stops: Hertz(").unwrap().1.split_once(")`").unwrap().0.replace(' ', "");
     let own = line(&format!("paper --set stops=Hertz({stops})")).unwrap();
     assert!((number(&own, "restitution ") - 0.36).abs() < 2e-3, "{own}");
     assert!((number(&own, "struck at ") / speed - 1.0).abs() < 0.01, "{own}");

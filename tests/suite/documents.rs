@@ -1,0 +1,164 @@
+//! The documents: every field, column, word and option of the program stands in them, and what they show works.
+
+use std::fs;
+use std::path::Path;
+
+use interwell::dynamics::{EventKind, Phase, Regime};
+use interwell::scene::{Document, Files};
+use interwell::study::SUMMARY_FIELDS;
+
+use crate::cli::{headless, stdout};
+
+const README: &str = include_str!("../../README.md");
+const SCENE: &str = include_str!("../../docs/scene.md");
+const OUTPUT: &str = include_str!("../../docs/output.md");
+
+/// Whether `name` stands in `page` as code.
+fn says(page: &str, name: &str) -> bool {
+    page.contains(&format!("`{name}`"))
+}
+
+/// The blocks of a page in this language.
+fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
+    let fence = format!("```{language}\n");
+    page.split(fence.as_str()).skip(1).map(|rest| rest.split_once("```").unwrap().0).collect()
+}
+
+#[test]
+fn every_field_of_a_scene_is_documented_with_its_range() {
+    // a field is declared as `name: Type,`, its range in the comment above
+    let (mut fields, mut range) = (0, None);
+    for line in include_str!("../../src/scene/data.rs").lines().map(str::trim) {
+        if let Some(comment) = line.strip_prefix("/// ") {
+            let words: Vec<&str> = comment.split(' ').collect();
+            let number = |word: &str| word.trim_end_matches([',', '.', ';']).parse::<f64>().is_ok();
+            if let Some(ends) = words.windows(3).find(|w| number(w[0]) && w[1] == "to" && number(w[2])) {
+                range = Some(ends.join(" ").trim_end_matches([',', '.', ';']).to_owned());
+            }
+            continue;
+        }
+        let declared = line.strip_prefix("pub ").unwrap_or(line).split_once(": ");
+        if let Some((name, kind)) = declared
+            && kind.ends_with(',')
+            && !line.contains(['(', ')', '=', '{', '}'])
+            && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+            && name != "record"
+        {
+            fields += 1;
+            let rows: Vec<&str> =
+                SCENE.lines().filter(|row| row.starts_with("| `") && says(row, name)).collect();
+            assert!(!rows.is_empty(), "docs/scene.md has no row for `{name}`");
+            if let Some(range) = range.take() {
+                assert!(rows.iter().any(|row| row.contains(&range)), "docs/scene.md: `{name}` is {range}");
+            }
+        }
+        if !line.starts_with('#') {
+            range = None;
+        }
+    }
+    assert!(fields > 60, "{fields} fields found");
+}
+
+#[test]
+fn every_column_and_word_of_the_output_is_documented() {
+    let words = SUMMARY_FIELDS.iter().map(|field| field.name).chain(
+        [Regime::Rest, Regime::Intrawell, Regime::Interwell, Regime::Irregular, Regime::Crossing]
+            .map(Regime::name),
+    );
+    let kinds = [EventKind::Impact, EventKind::Rest, EventKind::Release, EventKind::Crossing];
+    let compliant = [EventKind::Contact, EventKind::Separate].map(EventKind::name);
+    let phases = [Phase::Free, Phase::LeftStop, Phase::RightStop].map(Phase::name);
+    for word in words.chain(kinds.map(EventKind::name)).chain(compliant).chain(phases) {
+        assert!(says(OUTPUT, word), "docs/output.md does not say `{word}`");
+    }
+    // outcomes as the source names them, that of a sweep's cell too
+    let names = include_str!("../../src/study/sweep.rs").split("NOT_CONVERGED: &str = \"").nth(1).unwrap();
+    assert!(says(OUTPUT, names.split('"').next().unwrap()));
+
+    let hertz = "--set stops=Hertz(travel_limit_mm:1.5,stiffness_n_per_m1_5:3.7e9,loss_s_per_m:10)";
+    let tables = [
+        "simulate paper --at 0,1".to_owned(),
+        "simulate paper --at 0 --out /dev/null --events -".to_owned(),
+        "curve paper --full --points 3".to_owned(),
+        "curve paper --out /dev/null --shapes - --points 3".to_owned(),
+        format!("curve paper --out /dev/null --contact - {hertz}"),
+        "threshold paper --of release".to_owned(),
+        "accuracy --case grazing --out - --quiet".to_owned(),
+        "accuracy nominal-cubic --out - --quiet".to_owned(),
+        "sweep paper --over excitation.amplitude_g=1 --columns all --out - --quiet".to_owned(),
+    ];
+    for command in tables {
+        let csv = stdout(&command);
+        let header = csv.lines().next().unwrap();
+        for column in header.split(',').filter(|column| *column != "amplitude_g") {
+            assert!(says(OUTPUT, column), "docs/output.md does not say `{column}` of {command}");
+        }
+    }
+    for (command, least) in
+        [("simulate paper --out /dev/null --summary -", 30), ("curve paper --out /dev/null --landscape -", 5)]
+    {
+        let json: serde_json::Value = serde_json::from_str(&stdout(command)).unwrap();
+        let keys: Vec<&String> = json.as_object().unwrap().keys().collect();
+        assert!(keys.len() >= least);
+        for key in keys {
+            assert!(says(OUTPUT, key), "docs/output.md does not say `{key}` of {command}");
+        }
+    }
+}
+
+#[test]
+fn the_keys_of_a_manifest_are_documented() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("map.csv");
+    headless("sweep paper --over excitation.amplitude_g=1 --quiet --out").arg(&data).assert().success();
+    let text = fs::read_to_string(folder.path().join("map.csv.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
+    for key in manifest.as_object().unwrap().keys() {
+        assert!(says(OUTPUT, key), "docs/output.md does not say `{key}`");
+    }
+}
+
+#[test]
+fn scenes_in_the_documents_are_valid() {
+    let scenes: Vec<&str> = [README, SCENE].iter().flat_map(|page| blocks(page, "ron")).collect();
+    assert_eq!(scenes.len(), 2);
+    for text in scenes {
+        Document::from_text("document", text, Files::default()).unwrap().check().unwrap();
+    }
+}
+
+#[test]
+fn the_readmes_commands_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let commands: Vec<&str> = blocks(README, "sh")
+        .into_iter()
+        .flat_map(str::lines)
+        .filter_map(|line| line.strip_prefix("interwell --headless "))
+        .collect();
+    assert!(commands.len() >= 5, "{commands:?}");
+    for command in commands {
+        headless(command).arg("--quiet").current_dir(folder.path()).assert().success();
+    }
+    for made in ["run.csv", "events.csv", "run.json", "run.png", "map.csv", "map.csv.json"] {
+        assert!(fs::metadata(folder.path().join(made)).unwrap().len() > 0, "{made}");
+    }
+}
+
+#[test]
+fn links_and_pictures_lead_somewhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut pages = vec![root.join("README.md"), root.join("CONTRIBUTING.md"), root.join("CHANGELOG.md")];
+    pages.extend(fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path()));
+    let mut links = 0;
+    for page in pages.iter().filter(|page| page.extension().is_some_and(|own| own == "md")) {
+        let text = fs::read_to_string(page).unwrap();
+        for target in text.split("](").skip(1).map(|rest| rest.split(')').next().unwrap()) {
+            if !target.starts_with("http") {
+                let path = page.parent().unwrap().join(target.split('#').next().unwrap());
+                assert!(path.exists(), "{}: {target}", page.display());
+                links += 1;
+            }
+        }
+    }
+    assert!(links > 8, "{links}");
+}
