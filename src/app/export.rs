@@ -5,6 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use eframe::egui::ColorImage;
 
+use crate::app::session::Session;
+use crate::app::session::editor::keep_start_inside;
+use crate::app::session::player::Player;
 use crate::dynamics::Model;
 use crate::output::{Sink, header, rows};
 use crate::scene::{Scene, arguments};
@@ -12,10 +15,6 @@ use crate::study::{
     CURVE_POINTS, Keep, OutsideCurve, Sampling, continued_scene, curve, default_positions, events_table,
     sample_times, samples_table, simulate,
 };
-
-use super::document::keep_start_inside;
-use super::player::Player;
-use super::session::Session;
 
 /// Writes text or bytes; a file is replaced only once all of it is there. The error is a sentence.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
@@ -114,8 +113,8 @@ pub(super) fn quoted(word: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::document::Editor;
     use super::*;
+    use crate::app::session::editor::Editor;
 
     #[test]
     fn the_command_says_what_was_changed() {

@@ -2,8 +2,8 @@
 
 use eframe::egui::{Key, Modifiers, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
-use interwell::app::map::Map;
-use interwell::app::settings::Settings;
+use interwell::app::session::map::Map;
+use interwell::app::ui::settings::Settings;
 use interwell::app::window::Window;
 use interwell::scene::{Layout, Start, Stops, SweepAxis};
 
@@ -189,7 +189,7 @@ fn every_preset_has_a_map_or_says_why_not() {
         let mut harness = window(preset.name, WIDE, Settings::default());
         harness.state_mut().carry_out(
             &eframe::egui::Context::default(),
-            interwell::app::menu::Command::Arrange(Layout::Map),
+            interwell::app::window::menu::Command::Arrange(Layout::Map),
         );
         harness.run_steps(4);
         let mapping = &harness.state().session.map;

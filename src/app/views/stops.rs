@@ -2,10 +2,10 @@
 
 use eframe::egui::{self, CursorIcon, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::controls::put_side;
-use crate::app::fields::{decimal, decimals, info, shown};
+use crate::app::panels::controls::put_side;
 use crate::app::session::{Session, stop_distances};
-use crate::app::style::GRAB;
+use crate::app::ui::style::GRAB;
+use crate::app::words::fields::{decimal, decimals, info, shown};
 
 use super::ViewContext;
 use super::well::arrows;

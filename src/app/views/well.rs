@@ -6,7 +6,7 @@
 
 use eframe::egui::{self, Align2, CursorIcon, Pos2, Rangef, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::style::{BALL, GRAB};
+use crate::app::ui::style::{BALL, GRAB};
 
 use super::labels::{ago, free_place, haloed};
 use super::legend::{LEGEND, Sign};

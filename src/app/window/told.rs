@@ -2,8 +2,8 @@
 
 use eframe::egui::{self, Align2, Area, Id, Order, Ui, accesskit::Live, vec2};
 
-use crate::app::player::Reached;
-use crate::app::widgets::{dialog, dialog_width};
+use crate::app::session::player::Reached;
+use crate::app::ui::widgets::{dialog, dialog_width};
 
 use super::Window;
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui;
 
 use crate::app::export;
-use crate::app::map::Map;
+use crate::app::session::map::Map;
 
 use super::Window;
 

@@ -1,0 +1,6 @@
+//! Text of the window: names of the fields, explanations of terms, the sentence that describes the motion.
+
+pub(super) mod announce;
+pub mod fields;
+pub(super) mod meanings;
+pub mod status;
