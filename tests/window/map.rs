@@ -144,7 +144,7 @@ fn it_is_the_sweep_of_the_command_line() {
         session.map.choose(Some(axes((0.25, 0.125))));
         session.want_map(0.0);
         assert!(session.wait_for_map(LONG));
-        let command = session.map_command().unwrap();
+        let command = interwell::app::export::map_command_line(&session).unwrap();
         let words: Vec<String> = words(&command);
         assert_eq!(words[0], "interwell");
         let output = assert_cmd::Command::cargo_bin("interwell").unwrap().args(&words[1..]).output().unwrap();

@@ -5,7 +5,8 @@ use eframe::egui::{self, RichText, Ui};
 use crate::app::session::Session;
 use crate::app::ui::knob::{How, Knob, refuse};
 use crate::app::ui::widgets::hover_beside;
-use crate::app::words::fields::{self, FieldInfo, shown};
+use crate::app::words::fields::{self, FieldInfo};
+use crate::app::words::numbers::{decimals, shown};
 use crate::scene::{Damping, Excitation, Stops};
 
 use super::{advanced, geometry};
@@ -83,7 +84,7 @@ pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &'static str, w
         match session.set_number(path, value) {
             Ok(own) => changed = own,
             Err(why) => {
-                let value = shown(value, fields::decimals(reach.step));
+                let value = shown(value, decimals(reach.step));
                 let space = if unit.is_empty() { "" } else { " " };
                 refuse(ui, name, format!("{value}{space}{unit} was not taken: {why}"));
             }
@@ -130,20 +131,6 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) -> bool {
 fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let paths = ["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"];
     paths.into_iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))
-}
-
-/// Puts the stop of one side to a distance in mm from the middle.
-pub fn put_side(stops: &mut Stops, right: bool, mm: f64) {
-    match stops {
-        Stops::None => {}
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => *travel_limit_mm = mm,
-        Stops::Uneven { left_mm, right_mm, .. } => {
-            let own = if right { right_mm } else { left_mm };
-            if own.is_some() {
-                *own = Some(mm);
-            }
-        }
-    }
 }
 
 fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {

@@ -9,8 +9,7 @@ use eframe::egui::{
 use crate::app::session::Session;
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::ui::style::Style;
-use crate::app::ui::widgets::{Icon, icon_button_ui};
-use crate::app::views::arrows;
+use crate::app::ui::widgets::{Icon, arrows, icon_button_ui};
 use crate::app::words::meanings::{explained, meaning};
 use crate::dynamics::{Event, EventKind};
 

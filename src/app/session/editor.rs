@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use crate::app::export;
+use crate::output::write_file;
 use crate::scene::{Document, Files, Scene, SceneError, Source, Start, Stops, numeric_fields, write};
 
 use super::bring::{bring, follow};
@@ -68,7 +68,7 @@ impl Editor {
 
     /// Whether the file that the scene came from has comments, which are no part of a scene.
     pub fn has_comments(&self) -> bool {
-        self.path().is_some() && crate::app::window::leave::has_comments(&self.document.text)
+        self.path().is_some() && crate::scene::has_comments(&self.document.text)
     }
 
     /// The scene.
@@ -174,7 +174,7 @@ impl Editor {
         let mut document = self.document.clone();
         let brought = bring(&mut document.scene, &document.files, path)?;
         document.text = text_of(&runnable(&document).scene)?;
-        export::write(path, document.text.as_bytes())?;
+        write_file(path, document.text.as_bytes())?;
         (document.name, document.source) = (path.display().to_string(), Source::File(path.to_owned()));
         let before = std::mem::replace(&mut document.files, Files::beside(path));
         let mut now = document.scene.clone();

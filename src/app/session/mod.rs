@@ -10,12 +10,12 @@ pub mod editor;
 mod hands;
 pub mod map;
 pub mod player;
+mod sliders;
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::task::{Latest, Wake};
-use crate::app::words::fields::suiting_limit;
 use crate::app::words::status::{self, Sentence, Told};
 use crate::dynamics::Model;
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
@@ -28,6 +28,7 @@ use build::{solved, unbuilt, why};
 use editor::Editor;
 use map::Mapping;
 use player::{Player, fitting_speed};
+use sliders::suiting_limit;
 
 /// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and what it is
 /// off by is not seen. At the end of the gesture they are solved as every study solves them.
@@ -468,16 +469,5 @@ fn first_stops(scene: &Scene, model: &Model) -> Stops {
     match scene.stops {
         Stops::None => hinted().unwrap_or_else(suiting),
         stops => stops,
-    }
-}
-
-/// The stops of a scene in mm, left and right; none where a side is open.
-pub fn stop_distances(scene: &Scene) -> (Option<f64>, Option<f64>) {
-    match scene.stops {
-        scene::Stops::None => (None, None),
-        scene::Stops::Rigid { travel_limit_mm, .. } | scene::Stops::Hertz { travel_limit_mm, .. } => {
-            (Some(-travel_limit_mm), Some(travel_limit_mm))
-        }
-        scene::Stops::Uneven { left_mm, right_mm, .. } => (left_mm.map(|mm| -mm), right_mm),
     }
 }

@@ -6,7 +6,8 @@ use std::cell::RefCell;
 
 use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Slider, Ui, pos2};
 
-use crate::app::words::fields::{Reach, decimal, decimals, exact, shown};
+use crate::app::words::fields::Reach;
+use crate::app::words::numbers::{decimal, decimals, exact, shown};
 
 use super::style::{COMPACT_BELOW, Style};
 use super::widgets::hover_beside;

@@ -40,6 +40,26 @@ pub fn hover_beside(response: Response, text: &str) -> Response {
     response
 }
 
+/// The button that closes a message; it has the keyboard, so that Enter does.
+pub fn close_ui(ui: &mut Ui) -> bool {
+    let button = ui.button("Close");
+    if ui.memory(|memory| memory.focused().is_none()) {
+        button.request_focus();
+    }
+    button.clicked()
+}
+
+/// Steps to the right that the arrow keys ask of what has the focus; they then do not move the focus itself.
+pub fn arrows(ui: &Ui, id: egui::Id) -> f64 {
+    let filter = egui::EventFilter { horizontal_arrows: true, ..egui::EventFilter::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+    ui.input(|input| {
+        let presses = |key| f64::from(u32::try_from(input.num_presses(key)).unwrap_or(0));
+        let steps = presses(egui::Key::ArrowRight) - presses(egui::Key::ArrowLeft);
+        if input.modifiers.shift { 10.0 * steps } else { steps }
+    })
+}
+
 /// What a button shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Icon {

@@ -4,8 +4,9 @@ use eframe::egui::{self, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
 
 use crate::app::session::Card;
 use crate::app::ui::widgets::kind_shapes;
-use crate::app::words::fields::{decimals_for, exact, name_and_unit, shown};
+use crate::app::words::fields::name_and_unit;
 use crate::app::words::meanings::explained;
+use crate::app::words::numbers::{decimals_for, exact, shown};
 use crate::app::words::status::{Kind, grams, mm, speed};
 use crate::dynamics::{Outcome, Regime};
 use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};

@@ -8,8 +8,8 @@
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::ui::style::{BALL, RING_SECONDS};
-use crate::app::words::fields::{decimals_for, three};
 use crate::app::words::meanings::explained;
+use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 use crate::mechanics::ForceCurve;
 

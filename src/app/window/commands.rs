@@ -79,7 +79,7 @@ impl Window {
                 None => self.say_nameless(),
             },
             Command::SaveMap => self.choose(Wanted::Map),
-            Command::CopyMapCommand => match self.session.map_command() {
+            Command::CopyMapCommand => match export::map_command_line(&self.session) {
                 Some(line) => {
                     ctx.copy_text(line);
                     self.tell("Copied: the command line of the map");

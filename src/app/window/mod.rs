@@ -56,7 +56,6 @@ use files::Chosen;
 use place::Place;
 use release::Later;
 use told::Told;
-pub(super) use told::close_ui;
 use typed::Typed;
 
 /// Everything that the window shows.

@@ -2,9 +2,7 @@
 
 use eframe::egui::{self, Grid, Key, Modifiers, RichText, Ui};
 
-use crate::app::ui::widgets::{dialog, dialog_width};
-
-use super::close_ui;
+use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
 
 /// Keys and what they do, in groups.
 const GROUPS: [(&str, &[(&str, &str)]); 4] = [

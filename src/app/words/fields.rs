@@ -1,12 +1,10 @@
-//! The numbers of a scene as the window shows them: what each is called, how far its slider goes, what may be typed.
+//! Table of the numeric fields of a scene: name on the screen, unit, limits, range of the slider.
 
-use crate::app::session::Session;
-use crate::dynamics::STANDARD_GRAVITY;
-use crate::scene::{FieldPath, Mechanism, Scene, Stops};
+use crate::scene::{Scene, Stops};
 
 /// What sets how far a slider goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Scale {
+pub enum Scale {
     /// Nothing of the scene.
     Fixed,
     /// The value that the scene was opened with.
@@ -31,8 +29,9 @@ pub struct FieldInfo {
     /// Its unit; none for a ratio.
     pub unit: &'static str,
     /// Smallest and largest value and step of the slider, for a scene of the prototype's size.
-    slider: (f64, f64, f64),
-    scale: Scale,
+    pub slider: (f64, f64, f64),
+    /// What sets that range in another scene.
+    pub scale: Scale,
     /// Smallest and largest value that may be typed.
     pub typed: (f64, f64),
     /// What happens if it is increased.
@@ -190,144 +189,20 @@ pub fn in_words(text: &str, scene: &Scene) -> String {
     text
 }
 
-impl FieldInfo {
-    /// How far the slider goes in a scene: as in the prototype's, where that suits its scales, else by its own.
-    pub fn reach(&self, session: &Session) -> Reach {
-        let (low, high, step) = self.slider;
-        let saved = FieldPath::new(self.path).get(session.editor.saved());
-        let scales = &session.model().scales;
-        // of the prototype these are 2 g and 20 Hz
-        let own = match self.scale {
-            Scale::Fixed => None,
-            Scale::Value => saved.map(|value| 2.5 * value.abs()),
-            Scale::Push => Some(0.15 * high * scales.length / scales.time.powi(2) / STANDARD_GRAVITY),
-            Scale::Rate => Some(0.065 * high / (std::f64::consts::TAU * scales.time)),
-            Scale::Travel => return travel(session),
-            Scale::Preload => return preload(session).unwrap_or(Reach { low, high, step }),
-        };
-        let fits = saved.is_none_or(|value| (low..=high).contains(&value))
-            && match self.scale {
-                Scale::Push | Scale::Rate => own.is_none_or(|own| (0.25..=4.0).contains(&(own / high))),
-                Scale::Value => saved.is_none_or(|value| value == 0.0 || value.abs() > high / 200.0),
-                _ => true,
-            };
-        let Some(own) = own.filter(|own| !fits && *own > 0.0 && own.is_finite()) else {
-            return Reach { low, high, step };
-        };
-        let high_own = round_up(own.max(1.25 * saved.map_or(0.0, f64::abs)));
-        let low_own = if low < 0.0 { -high_own } else { low / high * high_own };
-        let step = below(high_own / 200.0);
-        Reach { low: (low_own / step).round() * step, high: high_own, step }
+/// The stops of a scene in mm, left and right; none where a side is open.
+pub fn stop_distances(scene: &Scene) -> (Option<f64>, Option<f64>) {
+    match scene.stops {
+        Stops::None => (None, None),
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
+            (Some(-travel_limit_mm), Some(travel_limit_mm))
+        }
+        Stops::Uneven { left_mm, right_mm, .. } => (left_mm.map(|mm| -mm), right_mm),
     }
-}
-
-/// The slider of a stop: from near the middle to beyond the well.
-fn travel(session: &Session) -> Reach {
-    let (saved, limits) = (session.editor.saved(), [session.remembered_stops(), session.scene().stops]);
-    let well = session.model().mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
-    let furthest = |stops: &Stops| match *stops {
-        Stops::None => None,
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => Some(travel_limit_mm),
-        Stops::Uneven { left_mm, right_mm, .. } => left_mm.into_iter().chain(right_mm).reduce(f64::max),
-    };
-    let stops = || furthest(&saved.stops).or_else(|| limits.iter().find_map(furthest));
-    let size = well.filter(|mm| *mm > 0.0).or_else(stops).unwrap_or(10.0);
-    let step = below(size / 130.0);
-    Reach { low: 2.0 * step, high: (0.6 * size / step).round() * 2.0 * step, step }
-}
-
-/// The preload that the slider reaches, as a share of the shorter flexure.
-const MOST_PRELOAD: f64 = 0.2;
-
-fn preload(session: &Session) -> Option<Reach> {
-    let Mechanism::Flexures { parallel, buckling, .. } = &session.scene().mechanism else { return None };
-    let most = MOST_PRELOAD * parallel.length_mm.min(buckling.length_mm);
-    let step = below(most / 80.0);
-    Some(Reach { low: 0.0, high: (most / step).round() * step, step })
-}
-
-/// Stops that suit a scene that does not say which: where the prototype has them, in parts of the well's distance.
-pub fn suiting_limit(well_mm: Option<f64>) -> f64 {
-    match well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()) {
-        Some(mm) => format!("{:.1e}", 0.215 * mm).parse().unwrap_or(mm),
-        None => 1.5,
-    }
-}
-
-/// The least number of one or two digits that is not below `value`.
-pub fn round_up(value: f64) -> f64 {
-    let power = 10_f64.powf(value.log10().floor());
-    let digits = [1.0, 1.2, 1.5, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0];
-    decimal(digits.iter().map(|digit| digit * power).find(|to| *to >= value * (1.0 - 1e-9)).unwrap_or(value))
-}
-
-/// 1, 2 or 5 times a power of ten, not above `value`.
-pub fn below(value: f64) -> f64 {
-    let power = 10_f64.powf(value.log10().floor());
-    decimal(
-        [5.0, 2.0, 1.0]
-            .map(|digit| digit * power)
-            .into_iter()
-            .find(|own| *own <= value * (1.0 + 1e-9))
-            .unwrap_or(power),
-    )
-}
-
-/// The number of six digits: what products of round numbers are meant to be.
-pub fn decimal(value: f64) -> f64 {
-    format!("{value:.6e}").parse().unwrap_or(value)
-}
-
-/// Decimals that tell multiples of a step apart.
-pub fn decimals(step: f64) -> usize {
-    let text = format!("{}", decimal(step));
-    text.split_once('.').map_or(0, |(_, after)| after.len()).min(12)
-}
-
-/// The most significant digits that a field shows while nobody types in it.
-const DIGITS: usize = 7;
-
-/// A number as a field shows it: at least so many decimals, and all digits that it has up to seven.
-pub fn shown(value: f64, least: usize) -> String {
-    let rounded: f64 = format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value);
-    exact(rounded, least)
-}
-
-/// The same with every digit that the number has.
-pub fn exact(value: f64, least: usize) -> String {
-    if value != 0.0 && !(1e-6..1e9).contains(&value.abs()) {
-        return format!("{value:e}");
-    }
-    let text = format!("{}", value + 0.0);
-    let own = text.split_once('.').map_or(0, |(_, after)| after.len());
-    if own >= least { text } else { format!("{:.least$}", value + 0.0) }
-}
-
-/// A number with at least three significant digits, and no more decimals than these take.
-pub fn three(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || !size.is_finite() {
-        return format!("{}", value + 0.0);
-    }
-    let decimals = (2.0 - size.log10().floor()).clamp(0.0, 12.0) as usize;
-    format!("{value:.decimals$}")
-}
-
-/// Decimals with which numbers up to `most` have three significant digits.
-pub fn decimals_for(most: f64) -> usize {
-    if most > 0.0 && most.is_finite() { (2.0 - most.log10().floor()).clamp(0.0, 12.0) as usize } else { 2 }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
-    use crate::app::session::editor::Editor;
-
-    fn session(preset: &str) -> Session {
-        Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap()
-    }
 
     #[test]
     fn every_field_has_a_name_of_its_own() {
@@ -356,54 +231,5 @@ mod tests {
         let scene = crate::scene::Document::load("random-shaking").unwrap().scene;
         let text = "excitation.high_hz = 1: must be above excitation.low_hz = 2";
         assert_eq!(in_words(text, &scene), "highest = 1: must be above lowest = 2");
-    }
-
-    #[test]
-    fn sliders_follow_the_scales_of_the_scene() {
-        let reach = |preset: &str, path: &str| info(path).unwrap().reach(&session(preset));
-        assert_eq!(reach("first-look", "excitation.amplitude_g"), Reach { low: 0.0, high: 2.0, step: 0.01 });
-        assert_eq!(reach("paper", "stops.travel_limit_mm"), Reach { low: 0.1, high: 8.6, step: 0.05 });
-        assert_eq!(reach("first-look", "excitation.frequency_hz"), Reach { low: 0.5, high: 20.0, step: 0.1 });
-        assert_eq!(reach("duffing", "excitation.amplitude_g"), Reach { low: 0.0, high: 0.07, step: 2e-4 });
-        assert_eq!(reach("duffing", "stops.travel_limit_mm"), Reach { low: 10.0, high: 1200.0, step: 5.0 });
-        assert_eq!(reach("duffing", "mass_g").high, 3000.0);
-        assert_eq!(reach("duffing", "run.duration_s").high, 4000.0);
-        // on its slider every number is at a place that a hand can reach
-        for preset in crate::scene::PRESETS {
-            let session = session(preset.name);
-            for field in FIELDS {
-                let (own, value) = (field.reach(&session), FieldPath::new(field.path).get(session.scene()));
-                assert!(own.low < own.high && own.step > 0.0, "{}: {own:?}", field.path);
-                let Some(value) = value else { continue };
-                assert!(
-                    value <= 1.3 * own.high && (value == 0.0 || value.abs() > own.high / 250.0),
-                    "{} {}: {value} {own:?}",
-                    preset.name,
-                    field.path
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn numbers_have_the_digits_that_they_have() {
-        let all = [
-            (0.9, 2),
-            (1.137, 2),
-            (0.037_729_499_880_183_35, 2),
-            (1_047.197_551, 0),
-            (15.0, 1),
-            (-0.0, 2),
-            (1e-9, 2),
-        ];
-        let texts = all.map(|(value, least)| shown(value, least));
-        assert_eq!(texts, ["0.90", "1.137", "0.0377295", "1047.198", "15.0", "0.00", "1e-9"]);
-        assert_eq!(exact(0.037_729_499_880_183_35, 2), "0.03772949988018335");
-        assert_eq!([0.05, 0.01, 15.0, 2e-4].map(decimals), [2, 2, 0, 4]);
-        assert_eq!([0.0384, 1.25, 1000.0].map(three), ["0.0384", "1.25", "1000"]);
-        assert_eq!(
-            (suiting_limit(Some(6.9)), suiting_limit(Some(1000.0)), suiting_limit(None)),
-            (1.5, 220.0, 1.5)
-        );
     }
 }

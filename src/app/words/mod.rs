@@ -3,4 +3,5 @@
 pub(super) mod announce;
 pub mod fields;
 pub(super) mod meanings;
+pub mod numbers;
 pub mod status;

@@ -1,6 +1,6 @@
 //! Which two fields does a map go over, and from where to where?
 
-use crate::app::words::fields::{below, decimal, round_up};
+use crate::app::words::numbers::{below, decimal, round_up};
 use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};
 use crate::study::{Column, Values};
 

@@ -5,7 +5,6 @@
 
 mod axes;
 mod cells;
-mod command;
 mod place;
 
 use std::sync::Arc;

@@ -8,7 +8,7 @@ use crate::app::words::fields::name_and_unit;
 use crate::scene::{Axis, FieldPath, Stops, SweepAxis};
 use crate::study::release_line;
 
-use super::{Map, Question, axes, command};
+use super::{Map, Question, axes};
 
 impl Session {
     /// The axes of the map; none where the scene has too few fields.
@@ -108,12 +108,6 @@ impl Session {
                 debug_assert!(known, "an axis of the map belongs to the scene");
             }
         })
-    }
-
-    /// The command line that makes the map, for a shell; none without a map, and for a scene that has no name
-    /// yet.
-    pub fn map_command(&self) -> Option<String> {
-        self.map.map().and_then(|map| command::command(&map.question, &self.editor))
     }
 
     /// Waits until the map that was asked for is whole, at most so long. Whether it is.

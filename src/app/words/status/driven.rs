@@ -1,6 +1,6 @@
 //! The sentence of a mass that is shaken.
 
-use crate::app::session::stop_distances;
+use crate::app::words::fields::stop_distances;
 use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, Summary};
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
