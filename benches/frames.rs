@@ -8,9 +8,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use eframe::egui::{Context, Pos2, RawInput, Rect, vec2};
-use interwell::app::menu::Command;
-use interwell::app::settings::Settings;
+use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
+use interwell::app::window::menu::Command;
 use interwell::app::window::{Window, prepare};
 use interwell::scene::{Excitation, Layout, Mechanism, SweepAxis};
 

@@ -1,29 +1,20 @@
-//! What leaves the window: the motion as CSV, the window as a picture, the command line that shows the same.
+//! Results of the window as CSV, PNG and command lines.
 
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use eframe::egui::ColorImage;
 
+use crate::app::session::Session;
+use crate::app::session::editor::keep_start_inside;
+use crate::app::session::map::over;
+use crate::app::session::player::Player;
 use crate::dynamics::Model;
-use crate::output::{Sink, header, rows};
-use crate::scene::{Scene, arguments};
+use crate::output::{header, rows};
+use crate::scene::{FieldPath, Scene, arguments};
 use crate::study::{
     CURVE_POINTS, Keep, OutsideCurve, Sampling, continued_scene, curve, default_positions, events_table,
     sample_times, samples_table, simulate,
 };
-
-use super::document::keep_start_inside;
-use super::player::Player;
-use super::session::Session;
-
-/// Writes text or bytes; a file is replaced only once all of it is there. The error is a sentence.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    let mut sink = Sink::open(path).map_err(|error| error.to_string())?;
-    let refused = |error: std::io::Error| format!("cannot write {}: {error}", path.display());
-    sink.put_bytes(bytes).map_err(refused)?;
-    sink.finish().map_err(refused)
-}
 
 /// The motion that is remembered, in the columns of the command line's `simulate`.
 pub fn motion_csv(player: &Player) -> String {
@@ -96,14 +87,35 @@ pub fn command_line(session: &Session) -> Option<(String, Runs)> {
     };
     let mut scene = scene;
     keep_start_inside(&mut scene);
-    for argument in arguments(editor.saved(), &scene) {
-        line += &format!(" --set {}", quoted(&argument));
-    }
+    line += &settings(editor.saved(), &scene);
     Some((line, runs))
 }
 
+/// The command that makes the map without a window; none without a map, and for a scene that neither has a file nor
+/// is built in.
+pub fn map_command_line(session: &Session) -> Option<String> {
+    let (question, editor) = (&session.map.map()?.question, &session.editor);
+    let mut line = format!("interwell --headless sweep {}", quoted(&editor.origin()?));
+    let mut from = editor.saved().clone();
+    // what the axes say need not be set
+    for axis in &question.axes {
+        let known = FieldPath::new(&axis.field).set(&mut from, axis.from);
+        debug_assert!(known || editor.saved().stops != question.scene.stops);
+    }
+    line += &settings(&from, &question.scene);
+    for axis in &question.axes {
+        line += &format!(" --over {}", quoted(&over(axis)));
+    }
+    Some(line)
+}
+
+/// The options of a command that change one scene into another.
+fn settings(from: &Scene, to: &Scene) -> String {
+    arguments(from, to).iter().map(|argument| format!(" --set {}", quoted(argument))).collect()
+}
+
 /// A word as a shell takes it.
-pub(super) fn quoted(word: &str) -> String {
+fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-/=+:,".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()
@@ -114,8 +126,8 @@ pub(super) fn quoted(word: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::document::Editor;
     use super::*;
+    use crate::app::session::editor::Editor;
 
     #[test]
     fn the_command_says_what_was_changed() {

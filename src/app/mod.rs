@@ -1,59 +1,36 @@
-//! The window: what is seen of a scene, and the hands on it.
+//! The window: everything that is seen of a scene, and the controls that change it.
 //!
-//! Nothing is computed here. [`session`] holds what is open (a scene with undo, its live motion, what background tasks
-//! have found) and works without a window; the rest draws it. A view is a function of a [`views::ViewContext`].
+//! Nothing is computed here. [`session`] holds what is open (a scene with undo, its live motion, the answers of background
+//! tasks) and works without a window; the rest draws it. A view is a function of a [`views::ViewContext`].
+//!
+//! Each folder uses only those above it; a test holds this.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`document`], `bring` | the scene, its file and the files that it names, undo |
-//! | [`export`], [`leave`] | what leaves the window, and what is asked before a scene does |
 //! | [`task`] | background tasks as values |
-//! | [`player`] | the clock and the live motion with its past |
-//! | [`session`] | those three together, and what is known of the scene |
-//! | [`accuracy`] | how accurate the motion is, as far as it was asked |
-//! | [`fields`], `knob` | the numbers of a scene as they are called and bounded here, and the slider of one |
-//! | `controls`, `geometry`, `advanced` | the hands on the scene, on its flexures, and on what is changed seldom |
-//! | [`map`] | the map of the scene, made while it is looked at |
-//! | [`status`], `announce` | the sentence that says what the mass does, and when it is spoken |
-//! | [`style`], `words` | every colour and width, and what words mean |
-//! | [`views`] | what is seen, a file each |
-//! | [`layouts`] | where the views stand |
-//! | [`window`] | panels, menus, keys: the `eframe::App` |
+//! | [`words`] | names and units of fields, number formats, explanations, the sentence about the motion |
+//! | [`session`] | the open scene with undo and files, the player, the map, the accuracy, without a window |
+//! | [`export`] | files and command lines that leave the window |
+//! | [`ui`] | colours and widths, widgets, settings |
+//! | [`panels`] | controls, status line, transport, hints |
+//! | [`views`] | the plots and drawings, a file each |
+//! | [`window`] | layouts, menus, keys, files, dialogs: the `eframe::App` |
 
-pub mod accuracy;
-mod advanced;
-mod announce;
-mod bring;
-pub mod controls;
-pub mod document;
 pub mod export;
-pub mod fields;
-mod geometry;
-mod hint;
-mod knob;
-pub mod layouts;
-pub mod leave;
-pub mod map;
-pub mod menu;
-pub mod player;
+pub mod panels;
 pub mod session;
-pub mod settings;
-mod shortcuts;
-pub mod status;
-pub mod style;
 pub mod task;
-pub mod transport;
+pub mod ui;
 pub mod views;
-mod widgets;
 pub mod window;
-mod words;
+pub mod words;
 
 use std::sync::Arc;
 
 use eframe::egui;
 
 pub use session::CannotRun;
-use settings::Settings;
+use ui::settings::Settings;
 use window::Window;
 
 /// Why there is no window.

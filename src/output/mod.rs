@@ -20,5 +20,5 @@ pub use plot::{
     SweepPicture, Theme, UnknownFormat, accuracy_figure, can_show, contact_figure, curve_figure, quantities,
     run_figure, speed_unit, sweep_about, sweep_figure, viridis,
 };
-pub use sink::{OpenError, Sink, is_regular, same_target};
+pub use sink::{OpenError, Sink, is_regular, same_target, write_file};
 pub use text::aligned;

@@ -136,3 +136,45 @@ fn without_the_window_nothing_of_it_is_built() {
         assert!(!window, "`{line}` is built without the window");
     }
 }
+
+/// The folders and files of `src/app`, the lowest first: each may name those before it.
+const WINDOW_ORDER: [&str; 8] = ["task", "words", "session", "export", "ui", "panels", "views", "window"];
+
+/// The folders of `src/app` that a file uses, by `crate::app::`, with lines. A `super` that leads out of the folder is
+/// an empty name: another folder is named in full.
+fn folders_used(path: &Path, text: &str) -> Vec<(usize, String)> {
+    let depth = path.components().count() - usize::from(path.ends_with("mod.rs"));
+    let leaving = "super::".repeat(depth);
+    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let outward = code.lines().zip(1..).filter(|(line, _)| line.contains(&leaving));
+    let mut found: Vec<_> = outward.map(|(_, number)| (number, String::new())).collect();
+    for (line, number) in text.lines().zip(1..) {
+        for (at, root) in line.split("//").next().unwrap_or_default().match_indices("crate::app::") {
+            let name = line[at + root.len()..].split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            found.push((number, name.into_iter().next().unwrap_or_default().to_owned()));
+        }
+    }
+    found
+}
+
+#[test]
+fn folders_of_the_window_use_only_those_below_them() {
+    let window = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app");
+    let place = |name: &str| WINDOW_ORDER.iter().position(|own| *own == name);
+    let mut files = Vec::new();
+    sources(&window, &mut files);
+    let mut wrong = Vec::new();
+    for file in files.iter().filter(|file| **file != window.join("mod.rs")) {
+        let path = file.strip_prefix(&window).unwrap();
+        let folder = path.components().next().unwrap().as_os_str().to_string_lossy().into_owned();
+        let folder = folder.trim_end_matches(".rs");
+        let own = place(folder).unwrap_or_else(|| panic!("{folder} has no place in the order"));
+        for (line, used) in folders_used(path, &fs::read_to_string(file).unwrap()) {
+            if place(&used).is_none_or(|used| used > own) {
+                wrong.push(format!("{}:{line}: {folder} uses `{used}`", path.display()));
+            }
+        }
+    }
+    assert!(files.len() > 50, "only {} files found in {}", files.len(), window.display());
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

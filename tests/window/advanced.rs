@@ -3,7 +3,7 @@
 use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::settings::Settings;
+use interwell::app::ui::settings::Settings;
 use interwell::app::window::Window;
 use interwell::scene::{Excitation, Stops};
 
@@ -69,7 +69,7 @@ fn a_sweep_over_what_is_switched_off_waits() {
     assert!(own.fault().is_none(), "{:?}", own.fault());
     // what is written can be opened
     let text = own.editor.text().unwrap();
-    assert!(interwell::app::document::Editor::from_text(&text).unwrap().document().check().is_ok());
+    assert!(interwell::app::session::editor::Editor::from_text(&text).unwrap().document().check().is_ok());
     own.switch_stops(true);
     assert!(own.fault().is_none() && own.scene().sweep == axes);
 }

@@ -3,10 +3,10 @@
 use eframe::egui::{self, Event, Key, OutputCommand};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::leave::Next;
-use interwell::app::menu::Command;
-use interwell::app::settings::Settings;
+use interwell::app::ui::settings::Settings;
 use interwell::app::window::Window;
+use interwell::app::window::leave::Next;
+use interwell::app::window::menu::Command;
 
 use crate::support::window;
 
@@ -111,7 +111,7 @@ fn comments_go_only_when_it_has_been_said() {
 }
 
 fn harness_text() -> String {
-    interwell::app::document::Editor::open("first-look").unwrap().text().unwrap()
+    interwell::app::session::editor::Editor::open("first-look").unwrap().text().unwrap()
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn a_motion_that_was_changed_on_its_way_is_reproduced() {
         let number = |text: &str| text.parse::<f64>().unwrap();
         for row in &rows {
             session.player.seek(f64::INFINITY);
-            session.player.go_to(interwell::app::player::Goal::Time(begin + number(row[0])));
+            session.player.go_to(interwell::app::session::player::Goal::Time(begin + number(row[0])));
             while session.player.goal().is_some() {
                 session.player.tick(0.0);
             }
@@ -388,12 +388,12 @@ fn a_file_may_be_called_like_a_built_in_scene() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("built-in paper.ron");
     std::fs::write(&path, harness_text()).unwrap();
-    let editor = interwell::app::document::Editor::open(path.to_str().unwrap()).unwrap();
+    let editor = interwell::app::session::editor::Editor::open(path.to_str().unwrap()).unwrap();
     assert_eq!((editor.path(), editor.origin().as_deref()), (Some(path.as_path()), path.to_str()));
     // also by a path that begins so
     let document =
         interwell::scene::Document::from_text("built-in paper", &harness_text(), Default::default());
-    let editor = interwell::app::document::Editor::new(document.unwrap());
+    let editor = interwell::app::session::editor::Editor::new(document.unwrap());
     assert_eq!((editor.path(), editor.origin()), (None, None));
 }
 

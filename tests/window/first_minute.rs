@@ -2,7 +2,7 @@
 
 use eframe::egui::{Event, Key, Modifiers, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::settings::Settings;
+use interwell::app::ui::settings::Settings;
 use interwell::dynamics::EventKind;
 use interwell::scene::Stops;
 

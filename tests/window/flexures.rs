@@ -2,7 +2,7 @@
 
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::settings::Settings;
+use interwell::app::ui::settings::Settings;
 use interwell::mechanics::FLEXURE_TOLERANCE;
 use interwell::scene::Mechanism;
 

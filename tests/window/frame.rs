@@ -3,10 +3,10 @@
 use eframe::egui::{self, Key, Modifiers, Rect, ViewportCommand, accesskit::Role, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::menu::Command;
-use interwell::app::settings::Settings;
+use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::Window;
+use interwell::app::window::menu::Command;
 use interwell::dynamics::EventKind;
 use interwell::scene::{PRESETS, Stops};
 
@@ -253,7 +253,7 @@ fn space_presses_what_has_the_focus() {
 
 /// The outlines that are painted in the colour of the focus.
 fn rings(harness: &Harness<'static, Window>) -> Vec<Rect> {
-    let color = interwell::app::style::Style { dark: false, projector: false }.focus_stroke().color;
+    let color = interwell::app::ui::style::Style { dark: false, projector: false }.focus_stroke().color;
     let outline = |shape: &egui::epaint::ClippedShape| match &shape.shape {
         egui::Shape::Rect(rect) if rect.stroke.color == color && rect.stroke.width > 1.5 => {
             Some(rect.rect.intersect(shape.clip_rect))
@@ -375,7 +375,7 @@ fn an_event_is_named_by_what_happened() {
         let event = *harness.state().session.player.event().unwrap();
         let words = match event.kind {
             EventKind::Impact => {
-                let speed = |v: f64| interwell::app::status::speed(v.abs());
+                let speed = |v: f64| interwell::app::words::status::speed(v.abs());
                 format!("impact, {}, {} to {} mm/s", event.side.name(), speed(event.v_in), speed(event.v_out))
             }
             kind => kind.name().to_owned(),

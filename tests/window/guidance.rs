@@ -2,7 +2,7 @@
 
 use eframe::egui::{Key, Role};
 use egui_kittest::kittest::{NodeT, Queryable};
-use interwell::app::settings::Settings;
+use interwell::app::ui::settings::Settings;
 use interwell::dynamics::Regime;
 use interwell::scene::{Excitation, Stops};
 

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Key, Modifiers, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use interwell::app::settings::Settings;
+use interwell::app::ui::settings::Settings;
 use interwell::scene::Stops;
 
 use crate::support::{says, window};

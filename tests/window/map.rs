@@ -2,8 +2,8 @@
 
 use eframe::egui::{Key, Modifiers, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
-use interwell::app::map::Map;
-use interwell::app::settings::Settings;
+use interwell::app::session::map::Map;
+use interwell::app::ui::settings::Settings;
 use interwell::app::window::Window;
 use interwell::scene::{Layout, Start, Stops, SweepAxis};
 
@@ -144,7 +144,7 @@ fn it_is_the_sweep_of_the_command_line() {
         session.map.choose(Some(axes((0.25, 0.125))));
         session.want_map(0.0);
         assert!(session.wait_for_map(LONG));
-        let command = session.map_command().unwrap();
+        let command = interwell::app::export::map_command_line(&session).unwrap();
         let words: Vec<String> = words(&command);
         assert_eq!(words[0], "interwell");
         let output = assert_cmd::Command::cargo_bin("interwell").unwrap().args(&words[1..]).output().unwrap();
@@ -189,7 +189,7 @@ fn every_preset_has_a_map_or_says_why_not() {
         let mut harness = window(preset.name, WIDE, Settings::default());
         harness.state_mut().carry_out(
             &eframe::egui::Context::default(),
-            interwell::app::menu::Command::Arrange(Layout::Map),
+            interwell::app::window::menu::Command::Arrange(Layout::Map),
         );
         harness.run_steps(4);
         let mapping = &harness.state().session.map;

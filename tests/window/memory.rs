@@ -1,8 +1,8 @@
 //! Does a window that plays for an hour hold more and more?
 
 use allocation_counter::measure;
-use interwell::app::menu::Command;
 use interwell::app::views::View;
+use interwell::app::window::menu::Command;
 
 use crate::screen::Screen;
 use crate::support::session;

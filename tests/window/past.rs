@@ -2,7 +2,7 @@
 
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::settings::Settings;
+use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::scene::{Excitation, Stops};
 
@@ -76,7 +76,7 @@ fn a_stop_of_the_well_stands_at_its_travel_limit() {
     let ctx = harness.ctx.clone();
     harness.state_mut().session.player.set_playing(false);
     for view in View::ALL {
-        let show = interwell::app::menu::Command::Show(view, view == View::Well);
+        let show = interwell::app::window::menu::Command::Show(view, view == View::Well);
         harness.state_mut().carry_out(&ctx, show);
     }
     harness.state_mut().session.player.hold(1.5e-3);

@@ -9,11 +9,11 @@ use eframe::egui::{
     Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Rect, TouchPhase, Vec2, accesskit::Role,
     pos2, vec2,
 };
-use interwell::app::document::Editor;
-use interwell::app::menu::Command;
-use interwell::app::player::SPEEDS;
-use interwell::app::settings::Settings;
+use interwell::app::session::editor::Editor;
+use interwell::app::session::player::SPEEDS;
+use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
+use interwell::app::window::menu::Command;
 use interwell::scene::{Layout, PRESETS, Scene, SweepAxis};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};

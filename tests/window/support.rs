@@ -6,10 +6,10 @@ use std::time::Duration;
 use eframe::egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use interwell::app::document::Editor;
-use interwell::app::menu::Command;
 use interwell::app::session::Session;
-use interwell::app::settings::Settings;
+use interwell::app::session::editor::Editor;
+use interwell::app::ui::settings::Settings;
+use interwell::app::window::menu::Command;
 use interwell::app::window::{Window, prepare};
 use interwell::scene::Document;
 

@@ -3,11 +3,11 @@
 use eframe::egui::{Key, Modifiers, Pos2, accesskit::Role, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::layouts::Room;
-use interwell::app::menu::Command;
-use interwell::app::settings::Settings;
+use interwell::app::ui::settings::Settings;
 use interwell::app::views::{Memory, Span, View, energy};
 use interwell::app::window::Window;
+use interwell::app::window::layouts::Room;
+use interwell::app::window::menu::Command;
 use interwell::scene::{Layout, PRESETS, Stops};
 
 use crate::support::{command, session, window};

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::app::words::status;
 use crate::scene::{Excitation, Stops};
 use crate::study;
 
 use super::Session;
-use crate::app::status;
 
 impl Session {
     pub(super) fn ask_settled(&mut self) {

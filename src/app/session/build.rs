@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
+use crate::app::words::fields::{in_words, name_and_unit};
 use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FlexureError, Mechanism};
 use crate::scene::{Document, Fault, Scene, SceneError};
-
-use crate::app::fields::{in_words, name_and_unit};
 
 /// Why a scene cannot be run.
 #[derive(Debug, thiserror::Error)]

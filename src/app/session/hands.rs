@@ -1,10 +1,10 @@
 //! Numbers of the scene as hands change them: by drags, presses of keys, or typed.
 
+use crate::app::words::fields::{in_words, name_and_unit};
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::scene::{Excitation, FieldPath, Scene, Stops, check};
 
 use super::{PRESSES, Session};
-use crate::app::fields::{in_words, name_and_unit};
 
 impl Session {
     /// The number at a path; that of the stops is, while they are off, of those that come.

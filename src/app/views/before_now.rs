@@ -2,11 +2,12 @@
 
 use eframe::egui::{self, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
 
-use crate::app::fields::{decimals_for, exact, name_and_unit, shown};
 use crate::app::session::Card;
-use crate::app::status::{Kind, grams, mm, speed};
-use crate::app::widgets::kind_shapes;
-use crate::app::words::explained;
+use crate::app::ui::widgets::kind_shapes;
+use crate::app::words::fields::name_and_unit;
+use crate::app::words::meanings::explained;
+use crate::app::words::numbers::{decimals_for, exact, shown};
+use crate::app::words::status::{Kind, grams, mm, speed};
 use crate::dynamics::{Outcome, Regime};
 use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};
 use crate::study::Settled;

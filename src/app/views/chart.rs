@@ -5,7 +5,7 @@
 
 use eframe::egui::{Align2, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
-use crate::app::style::Style;
+use crate::app::ui::style::Style;
 use crate::mechanics::Landscape;
 
 use super::ViewContext;

@@ -5,7 +5,7 @@
 
 use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
-use crate::app::style::Style;
+use crate::app::ui::style::Style;
 use crate::dynamics::LiveLedger;
 
 use super::ranges::axis_end;

@@ -6,7 +6,7 @@
 
 use eframe::egui::{self, Align2, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 
-use crate::app::style::Style;
+use crate::app::ui::style::Style;
 use crate::mechanics::flexure::{Geometry, State};
 
 use super::{Span, ViewContext};

@@ -6,8 +6,8 @@
 
 use eframe::egui::{Align2, Painter, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::fields::three;
-use crate::app::style::BALL;
+use crate::app::ui::style::BALL;
+use crate::app::words::numbers::three;
 use crate::dynamics::STANDARD_GRAVITY;
 
 use super::chart::Chart;

@@ -3,7 +3,7 @@
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rangef, Rect, Ui, vec2};
 
 use crate::app::session::Session;
-use crate::app::style::Style;
+use crate::app::ui::style::Style;
 
 /// How far in points the ground shows around a letter.
 const HALO: f32 = 1.2;

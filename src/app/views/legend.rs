@@ -2,7 +2,7 @@
 
 use eframe::egui::{Color32, Painter, Rect, Shape, Stroke, pos2, vec2};
 
-use crate::app::style::Style;
+use crate::app::ui::style::Style;
 
 /// Height in points of the row.
 pub const LEGEND: f32 = 22.0;

@@ -7,9 +7,9 @@
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::fields::{decimals_for, three};
-use crate::app::style::{BALL, RING_SECONDS};
-use crate::app::words::explained;
+use crate::app::ui::style::{BALL, RING_SECONDS};
+use crate::app::words::meanings::explained;
+use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 use crate::mechanics::ForceCurve;
 
@@ -358,8 +358,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::app::document::Editor;
     use crate::app::session::Session;
+    use crate::app::session::editor::Editor;
 
     #[test]
     fn only_a_force_that_depends_on_the_place_has_a_spring() {

@@ -1,7 +1,7 @@
 //! The views: what of a motion is seen, each in a file of its own.
 //!
 //! A new view is an entry of [`View`], a file with a function `..._ui(ui, &mut ViewContext)`, and a place in
-//! [`layouts`](super::layouts). Views share the x axis of [`Span`], so that mechanism and well stand above each other, and
+//! a layout of the window. Views share the x axis of [`Span`], so that mechanism and well stand above each other, and
 //! keep what they must remember between frames in [`Memory`].
 
 mod accuracy;
@@ -23,15 +23,13 @@ mod well;
 
 use eframe::egui::{Align, Label, Layout, Rect, RichText, Ui, UiBuilder};
 
+use crate::app::session::Session;
+use crate::app::ui::style::Style;
 use crate::mechanics::flexure::State;
-
-use super::session::Session;
-use super::style::Style;
 
 pub use map::Quantity as MapQuantity;
 pub use span::Span;
 pub use trace::{Quantity, Timeline};
-pub(super) use well::arrows;
 
 /// What can be seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]

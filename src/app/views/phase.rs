@@ -7,9 +7,9 @@ use std::collections::VecDeque;
 
 use eframe::egui::{self, Color32, Painter, Pos2, Sense, Shape, Stroke, Ui};
 
-use crate::app::fields::three;
-use crate::app::status::Kind;
-use crate::app::widgets::kind_shapes;
+use crate::app::ui::widgets::kind_shapes;
+use crate::app::words::numbers::three;
+use crate::app::words::status::Kind;
 use crate::dynamics::{Model, Phase, Sample};
 use crate::study::between;
 

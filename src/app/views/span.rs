@@ -118,7 +118,7 @@ mod tests {
     use eframe::egui::pos2;
 
     use super::*;
-    use crate::app::document::Editor;
+    use crate::app::session::editor::Editor;
     use crate::app::views::Memory;
 
     /// Whether everything that happened in some seconds is within the axis, which then did not grow too often.

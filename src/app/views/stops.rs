@@ -2,13 +2,14 @@
 
 use eframe::egui::{self, CursorIcon, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::controls::put_side;
-use crate::app::fields::{decimal, decimals, info, shown};
-use crate::app::session::{Session, stop_distances};
-use crate::app::style::GRAB;
+use crate::app::session::Session;
+use crate::app::ui::style::GRAB;
+use crate::app::ui::widgets::arrows;
+use crate::app::words::fields::{info, stop_distances};
+use crate::app::words::numbers::{decimal, decimals, shown};
+use crate::scene::Stops;
 
 use super::ViewContext;
-use super::well::arrows;
 
 /// Steps of the slider of a stop that a drag tells apart.
 const FINE: f64 = 0.2;
@@ -123,4 +124,18 @@ fn hatching(wall: Rect, way: f32, stroke: Stroke) -> Vec<Shape> {
         Shape::line_segment([pos2(inner + way * 3.0, y), pos2(outer, (y + 6.0).min(wall.bottom()))], stroke)
     };
     (0..count.min(400)).map(line).collect()
+}
+
+/// Puts the stop of one side to a distance in mm from the middle.
+fn put_side(stops: &mut Stops, right: bool, mm: f64) {
+    match stops {
+        Stops::None => {}
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => *travel_limit_mm = mm,
+        Stops::Uneven { left_mm, right_mm, .. } => {
+            let own = if right { right_mm } else { left_mm };
+            if own.is_some() {
+                *own = Some(mm);
+            }
+        }
+    }
 }

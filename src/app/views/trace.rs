@@ -9,7 +9,7 @@ use egui_plot::{
     GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span, VLine,
 };
 
-use crate::app::fields::decimals_for;
+use crate::app::words::numbers::decimals_for;
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
 use crate::study::Watch;
 

@@ -6,7 +6,8 @@
 
 use eframe::egui::{self, Align2, CursorIcon, Pos2, Rangef, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::style::{BALL, GRAB};
+use crate::app::ui::style::{BALL, GRAB};
+use crate::app::ui::widgets::arrows;
 
 use super::labels::{ago, free_place, haloed};
 use super::legend::{LEGEND, Sign};
@@ -140,17 +141,6 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
         return true;
     }
     response.dragged()
-}
-
-/// Steps to the right that the arrow keys ask of what has the focus; they then do not move the focus itself.
-pub(in crate::app) fn arrows(ui: &Ui, id: egui::Id) -> f64 {
-    let filter = egui::EventFilter { horizontal_arrows: true, ..egui::EventFilter::default() };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
-    ui.input(|input| {
-        let presses = |key| f64::from(u32::try_from(input.num_presses(key)).unwrap_or(0));
-        let steps = presses(egui::Key::ArrowRight) - presses(egui::Key::ArrowLeft);
-        if input.modifiers.shift { 10.0 * steps } else { steps }
-    })
 }
 
 fn focus_ring(ui: &Ui, at: Pos2, stroke: Stroke) {

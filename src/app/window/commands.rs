@@ -5,18 +5,18 @@ use std::path::PathBuf;
 use eframe::egui;
 
 use crate::app::export::{self, Runs};
-use crate::app::hint;
-use crate::app::layouts::{Arrangement, Room, Tiling};
-use crate::app::leave::Next;
-use crate::app::menu::{self, Command};
-use crate::app::player::{Goal, SPEEDS};
-use crate::app::transport::EVENT_AHEAD;
+use crate::app::panels::hint;
+use crate::app::panels::transport::EVENT_AHEAD;
+use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::views::{Memory, View};
 use crate::dynamics::EventKind;
 use crate::scene::Layout;
 
 use super::Window;
 use super::files::Wanted;
+use super::layouts::{Arrangement, Room, Tiling};
+use super::leave::Next;
+use super::menu::{self, Command};
 
 /// How many periods of the motion an event is looked for.
 const PERIODS_AHEAD: f64 = 300.0;
@@ -79,7 +79,7 @@ impl Window {
                 None => self.say_nameless(),
             },
             Command::SaveMap => self.choose(Wanted::Map),
-            Command::CopyMapCommand => match self.session.map_command() {
+            Command::CopyMapCommand => match export::map_command_line(&self.session) {
                 Some(line) => {
                     ctx.copy_text(line);
                     self.tell("Copied: the command line of the map");

@@ -6,12 +6,13 @@ use std::sync::mpsc::channel;
 
 use eframe::egui::{self, Ui};
 
-use super::super::document::Editor;
-use super::super::leave::{self, Answer, Next};
-use super::super::menu::Command;
-use super::super::session::CannotRun;
-use super::super::style::STATUS;
+use crate::app::session::CannotRun;
+use crate::app::session::editor::Editor;
+use crate::app::ui::style::STATUS;
+
 use super::Window;
+use super::leave::{self, Answer, Next};
+use super::menu::Command;
 use super::typed::{Ended, Typed};
 
 /// How many of the scenes opened last are kept.

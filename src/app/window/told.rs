@@ -2,8 +2,8 @@
 
 use eframe::egui::{self, Align2, Area, Id, Order, Ui, accesskit::Live, vec2};
 
-use crate::app::player::Reached;
-use crate::app::widgets::{dialog, dialog_width};
+use crate::app::session::player::Reached;
+use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
 
 use super::Window;
 
@@ -76,13 +76,4 @@ impl Window {
             self.message = None;
         }
     }
-}
-
-/// The button that closes a message; it has the keyboard, so that Enter does.
-pub(in crate::app) fn close_ui(ui: &mut Ui) -> bool {
-    let button = ui.button("Close");
-    if ui.memory(|memory| memory.focused().is_none()) {
-        button.request_focus();
-    }
-    button.clicked()
 }

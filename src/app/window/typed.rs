@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Key, RichText, TextEdit, Ui};
 
-use crate::app::widgets::{dialog, dialog_width};
+use crate::app::ui::widgets::{dialog, dialog_width};
 
 use super::files::Wanted;
 

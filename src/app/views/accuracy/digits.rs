@@ -2,7 +2,7 @@
 
 use eframe::egui::{Align2, Grid, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
 
-use crate::app::style::Style;
+use crate::app::ui::style::Style;
 use crate::study::accuracy::scene::{
     AtTolerance, StepSize, Tolerances, duration, length_mm, moment, small_length, step_name,
 };

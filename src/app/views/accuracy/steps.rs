@@ -3,8 +3,8 @@
 use eframe::egui::{self, ComboBox, Rect, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Points};
 
-use crate::app::accuracy::Accuracy;
-use crate::app::style::Style;
+use crate::app::session::accuracy::Accuracy;
+use crate::app::ui::style::Style;
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{StepSize, step_name};
 

@@ -2,8 +2,8 @@
 
 use eframe::egui::{Align2, Painter, Pos2, Rect, Stroke, Vec2, emath::Rot2, epaint::TextShape, pos2, vec2};
 
-use crate::app::map::{Map, label};
-use crate::app::style::Style;
+use crate::app::session::map::{Map, label};
+use crate::app::ui::style::Style;
 use crate::output::Axis;
 
 /// Room for numbers and names beside the map, in points.

@@ -2,8 +2,8 @@
 
 use eframe::egui::{self, CursorIcon, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2};
 
-use crate::app::map::{Map, part};
-use crate::app::style::{GRAB, Style};
+use crate::app::session::map::{Map, part};
+use crate::app::ui::style::{GRAB, Style};
 use crate::scene::SweepAxis;
 
 use super::super::ViewContext;

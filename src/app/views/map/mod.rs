@@ -8,19 +8,19 @@ mod tools;
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::map::{Map, name_and_unit};
-use crate::app::status::speed;
-use crate::app::style::Style;
+use crate::app::session::map::{Map, name_and_unit};
+use crate::app::ui::style::Style;
+use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
 use crate::output::sweep_about;
 
 use super::{ViewContext, too_small_ui};
-use frame::Frame;
-use picture::{Picture, bar, lines};
-use quantity::{Scale, kind, kind_name};
 
+use frame::Frame;
 pub use hand::Hand;
+use picture::{Picture, bar, lines};
 pub use quantity::Quantity;
+use quantity::{Scale, kind, kind_name};
 
 /// Draws it. Whether something changed.
 pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
@@ -139,7 +139,7 @@ fn reading(map: &Map, column: usize, row: usize) -> String {
 
 /// `travel limit 1.5 mm` of a column's name and 1.5.
 fn named(column: &str, value: f64) -> String {
-    let number = crate::app::map::short(value);
+    let number = crate::app::session::map::short(value);
     match name_and_unit(column) {
         (name, Some(unit)) => format!("{name} {number} {unit}"),
         (name, None) => format!("{name} {number}"),

@@ -7,10 +7,10 @@ use eframe::egui::{
     vec2,
 };
 
-use crate::app::map::Map;
-use crate::app::status::Kind;
-use crate::app::style::Style;
-use crate::app::widgets::kind_shapes;
+use crate::app::session::map::Map;
+use crate::app::ui::style::Style;
+use crate::app::ui::widgets::kind_shapes;
+use crate::app::words::status::Kind;
 
 use super::frame::{Frame, upright};
 use super::quantity::{Look, Quantity, Scale};

@@ -1,7 +1,7 @@
 //! What can a map show, and which colour is which value?
 
-use crate::app::map::Map;
-use crate::app::status::Kind;
+use crate::app::session::map::Map;
+use crate::app::words::status::Kind;
 use crate::dynamics::Regime;
 use crate::output::{Axis, speed_unit};
 use crate::study::Cell;

@@ -3,11 +3,11 @@
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{self, Align2, ComboBox, Painter, PopupCloseBehavior, Rect, RichText, Ui, pos2, vec2};
 
-use crate::app::fields::Reach;
-use crate::app::knob::{Knob, refuse};
-use crate::app::map::{Map, name_and_unit};
-use crate::app::style::Style;
-use crate::app::widgets::kind_shapes;
+use crate::app::session::map::{Map, name_and_unit};
+use crate::app::ui::knob::{Knob, refuse};
+use crate::app::ui::style::Style;
+use crate::app::ui::widgets::kind_shapes;
+use crate::app::words::fields::Reach;
 use crate::scene::{SweepAxis, column_names};
 
 use super::super::ViewContext;
@@ -102,7 +102,7 @@ fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) 
         egui::Grid::new("ranges").num_columns(7).show(ui, |ui| {
             for (axis, role) in wanted.iter_mut().zip(["across", "up"]) {
                 ui.label(field_name(&axis.field));
-                let (_, unit) = crate::app::fields::name_and_unit(&axis.field);
+                let (_, unit) = crate::app::words::fields::name_and_unit(&axis.field);
                 let reach = Reach { low: axis.from, high: axis.to, step: axis.step };
                 let parts = [("from", &mut axis.from), ("to", &mut axis.to), ("step", &mut axis.step)];
                 for (part, value) in parts {

@@ -1,0 +1,199 @@
+//! What is changed seldom: the kind of shaking and its numbers, stops that differ, how long and how closely a run goes.
+//!
+//! What cannot be is not offered, or is greyed with the reason.
+
+use eframe::egui::{self, ComboBox, Ui};
+
+use crate::app::session::Session;
+use crate::scene::{Excitation, Stops};
+
+use super::controls::field_ui;
+
+/// Draws it. Whether something changed.
+pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let mut changed = kind_ui(ui, session);
+    changed |= excitation_ui(ui, session, width);
+    ui.separator();
+    changed |= uneven_ui(ui, session, width);
+    ui.separator();
+    changed | run_ui(ui, session, width)
+}
+
+/// Kinds that can be chosen, as they are called.
+const KINDS: [&str; 6] = ["none", "constant", "sine", "amplitude ramp", "chirp", "noise"];
+
+fn kind(excitation: &Excitation) -> &'static str {
+    match excitation {
+        Excitation::None => KINDS[0],
+        Excitation::Constant { .. } => KINDS[1],
+        Excitation::Sine { .. } => KINDS[2],
+        Excitation::AmplitudeRamp { .. } => KINDS[3],
+        Excitation::Chirp { .. } => KINDS[4],
+        Excitation::Noise { .. } => KINDS[5],
+        Excitation::Recorded { .. } => "recorded",
+        Excitation::Sum(_) => "sum",
+    }
+}
+
+/// Another kind of shaking, as strong and as fast as the present one where that has a meaning, else as `suiting`.
+fn of_kind(name: &str, from: &Excitation, suiting: &Excitation) -> Excitation {
+    let (own_f, own_g) = match suiting {
+        Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),
+        _ => (3.0, 0.5),
+    };
+    let (f, g) = match from {
+        Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),
+        Excitation::AmplitudeRamp { frequency_hz, to_g, .. } => (*frequency_hz, *to_g),
+        Excitation::Chirp { from_hz, to_hz, amplitude_g, .. } => (0.5 * (from_hz + to_hz), *amplitude_g),
+        Excitation::Noise { rms_g, low_hz, high_hz, .. } => (0.5 * (low_hz + high_hz), *rms_g),
+        Excitation::Constant { accel_g } => (own_f, *accel_g),
+        _ => (own_f, own_g),
+    };
+    match name {
+        "constant" => Excitation::Constant { accel_g: g },
+        "sine" => Excitation::Sine { frequency_hz: f, amplitude_g: g, phase_deg: 0.0 },
+        "amplitude ramp" => Excitation::AmplitudeRamp { frequency_hz: f, from_g: 0.0, to_g: g, over_s: 60.0 },
+        "chirp" => Excitation::Chirp { from_hz: 0.5 * f, to_hz: 2.0 * f, over_s: 60.0, amplitude_g: g },
+        "noise" => {
+            Excitation::Noise { rms_g: g.abs(), low_hz: 0.5 * f, high_hz: 2.0 * f, seed: 1, lines: 256 }
+        }
+        _ => Excitation::None,
+    }
+}
+
+fn kind_ui(ui: &mut Ui, session: &mut Session) -> bool {
+    let present = kind(&session.scene().excitation);
+    let mut wanted = present;
+    let name = ui.label("kind of shaking");
+    let combo = ComboBox::from_id_salt("kind of shaking").selected_text(present).show_ui(ui, |ui| {
+        for own in KINDS {
+            ui.selectable_value(&mut wanted, own, own);
+        }
+        for (own, why) in [
+            ("recorded", "A record is named in the scene file: excitation: Recorded(path: ..)."),
+            ("sum", "A sum of several is written in the scene file: excitation: Sum([..])."),
+        ] {
+            ui.add_enabled(false, egui::Button::selectable(own == present, own)).on_disabled_hover_text(why);
+        }
+    });
+    combo.response.labelled_by(name.id).on_hover_text("What moves the base.");
+    let suiting = session.suiting_sine();
+    wanted != present
+        && session.edit_once(|scene| scene.excitation = of_kind(wanted, &scene.excitation, &suiting))
+}
+
+fn excitation_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let paths: &[&'static str] = match &session.scene().excitation {
+        Excitation::Constant { .. } => &["excitation.accel_g"],
+        Excitation::Sine { .. } => &["excitation.phase_deg"],
+        Excitation::AmplitudeRamp { .. } => {
+            &["excitation.from_g", "excitation.to_g", "excitation.frequency_hz", "excitation.over_s"]
+        }
+        Excitation::Chirp { .. } => &["excitation.from_hz", "excitation.to_hz", "excitation.over_s"],
+        Excitation::Noise { .. } => &["excitation.low_hz", "excitation.high_hz"],
+        _ => &[],
+    };
+    paths.iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))
+}
+
+fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let stops = session.scene().stops;
+    let mut uneven = matches!(stops, Stops::Uneven { .. });
+    let tick = egui::Checkbox::new(&mut uneven, "different stops left and right");
+    let rigid = matches!(stops, Stops::Rigid { .. } | Stops::Uneven { .. });
+    let response = ui.add_enabled(rigid, tick);
+    let response =
+        response.on_hover_text("Each side has a distance and a restitution of its own, or is open.");
+    let why = match stops {
+        Stops::None => "There are no stops: switch them on first.",
+        _ => "These stops are compliant, and compliant stops are equal.",
+    };
+    let switched = response.on_disabled_hover_text(why).changed();
+    let mut changed = switched && session.edit_once(|scene| scene.stops = other_kind(scene.stops));
+    let Stops::Uneven { left_mm, right_mm, .. } = session.scene().stops else { return changed };
+    for (name, right, own, other) in
+        [("left stop is there", false, left_mm, right_mm), ("right stop is there", true, right_mm, left_mm)]
+    {
+        let mut there = own.is_some();
+        // without either there would be no stops, and that has a switch of its own
+        let free = own.is_none() || other.is_some();
+        let response = ui.add_enabled(free, egui::Checkbox::new(&mut there, name));
+        let response = response.on_hover_text("An open side limits nothing.");
+        let why = "One side has to have a stop; the switch Stops takes both away.";
+        if response.on_disabled_hover_text(why).changed() {
+            changed |= session.edit_once(|scene| {
+                if let Stops::Uneven { left_mm, right_mm, .. } = &mut scene.stops {
+                    *(if right { right_mm } else { left_mm }) = there.then_some(other.unwrap_or(1.5));
+                }
+            });
+        }
+    }
+    for path in ["stops.restitution_left", "stops.restitution_right"] {
+        changed |= field_ui(ui, session, path, width);
+    }
+    changed
+}
+
+/// Equal stops as stops that may differ, and back; back, both are as the right one, where it is there.
+fn other_kind(stops: Stops) -> Stops {
+    match stops {
+        Stops::Rigid { travel_limit_mm, restitution } => Stops::Uneven {
+            left_mm: Some(travel_limit_mm),
+            right_mm: Some(travel_limit_mm),
+            restitution_left: Some(restitution),
+            restitution_right: Some(restitution),
+        },
+        Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => Stops::Rigid {
+            travel_limit_mm: right_mm.or(left_mm).unwrap_or(1.5),
+            restitution: restitution_right.or(restitution_left).unwrap_or(0.36),
+        },
+        Stops::None | Stops::Hertz { .. } => stops,
+    }
+}
+
+/// Tolerances that can be chosen, as they are called.
+const TOLERANCES: [(f64, &str); 4] = [(1e-6, "1e-6"), (1e-9, "1e-9"), (1e-12, "1e-12"), (1e-14, "1e-14")];
+
+fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let mut changed = field_ui(ui, session, "run.duration_s", width);
+    let present = session.scene().run.tolerance;
+    let mut wanted = present;
+    let name = ui.label("tolerance");
+    let combo = ComboBox::from_id_salt("tolerance").selected_text(format!("{present:e}")).show_ui(ui, |ui| {
+        for (value, name) in TOLERANCES {
+            ui.selectable_value(&mut wanted, value, name);
+        }
+    });
+    let hover = "Error allowed in a step. Smaller: a little slower; a motion without rhythm takes another course, and \
+                 its averages stay.";
+    combo.response.labelled_by(name.id).on_hover_text(hover);
+    changed |= wanted != present && session.edit_once(|scene| scene.run.tolerance = wanted);
+    changed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Document, Scene, check};
+
+    #[test]
+    fn every_kind_of_every_preset_can_be_run() {
+        for preset in crate::scene::PRESETS {
+            let scene = Document::load(preset.name).unwrap().scene;
+            for name in KINDS {
+                let sine = Excitation::Sine { frequency_hz: 3.0, amplitude_g: 0.5, phase_deg: 0.0 };
+                let excitation = of_kind(name, &scene.excitation, &sine);
+                assert_eq!(kind(&excitation), name);
+                let changed = Scene { excitation, sweep: Vec::new(), ..scene.clone() };
+                assert!(check(&changed).faults.is_empty(), "{} {name}", preset.name);
+            }
+        }
+    }
+
+    #[test]
+    fn stops_that_differ_and_back() {
+        let stops = Stops::Rigid { travel_limit_mm: 2.0, restitution: 0.4 };
+        assert_eq!(other_kind(other_kind(stops)), stops);
+        assert_eq!(other_kind(Stops::None), Stops::None);
+    }
+}

@@ -1,0 +1,179 @@
+//! The hands on the scene: shaking, stops, and under More what is changed less often.
+
+use eframe::egui::{self, RichText, Ui};
+
+use crate::app::session::Session;
+use crate::app::ui::knob::{How, Knob, refuse};
+use crate::app::ui::widgets::hover_beside;
+use crate::app::words::fields::{self, FieldInfo};
+use crate::app::words::numbers::{decimals, shown};
+use crate::scene::{Damping, Excitation, Stops};
+
+use super::{advanced, geometry};
+
+/// The controls as a column. Whether something changed.
+pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) -> bool {
+    let width = (ui.available_width() - 84.0).max(80.0);
+    heading_ui(ui, "Shaking");
+    let mut changed = shaking_ui(ui, session, width);
+    ui.add_space(14.0);
+    changed |= stops_switch_ui(ui, session);
+    changed |= limit_ui(ui, session, width);
+    ui.add_space(14.0);
+    let arrow = if *more { "Less" } else { "More" };
+    let hover = "Restitution, preload, frequency, damping and mass.";
+    if ui.selectable_label(*more, RichText::new(arrow).strong()).on_hover_text(hover).clicked() {
+        *more = !*more;
+    }
+    if *more {
+        changed |= more_ui(ui, session, width);
+    }
+    changed
+}
+
+/// Shaking and stops as one row, where room is short; the rest opens beside the views. Whether something
+/// changed.
+pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) -> bool {
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        let hover = "Restitution, preload, frequency, damping and mass.";
+        let button = ui.selectable_label(*more, "More").on_hover_text(hover);
+        let escaped = *more && ui.input(|input| input.key_pressed(egui::Key::Escape));
+        if button.clicked() || escaped {
+            *more = !*more;
+        }
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            let sides = match session.scene().stops {
+                Stops::Uneven { left_mm, right_mm, .. } => left_mm.iter().chain(&right_mm).count(),
+                _ => 1,
+            };
+            let names = 330.0 + 110.0 * sides as f32;
+            let width = ((ui.available_width() - names) / (1 + sides) as f32).clamp(30.0, 260.0);
+            heading_ui(ui, "Shaking");
+            let mut changed = shaking_ui(ui, session, width);
+            ui.separator();
+            changed |= stops_switch_ui(ui, session);
+            changed | limit_ui(ui, session, width)
+        })
+        .inner
+    })
+    .inner
+}
+
+/// What is changed less often, as a column beside the views. Whether something changed.
+pub fn more_column_ui(ui: &mut Ui, session: &mut Session) -> bool {
+    egui::ScrollArea::vertical().show(ui, |ui| more_ui(ui, session, 150.0)).inner
+}
+
+fn heading_ui(ui: &mut Ui, text: &str) {
+    ui.label(RichText::new(text).heading());
+}
+
+/// The control of a number of the scene, or of the stops that come when they are switched on; none where there is no such
+/// number. Whether the scene changed.
+pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &'static str, width: f32) -> bool {
+    let (Some(field), Some(value)) = (fields::info(path), session.number(path)) else { return false };
+    let FieldInfo { name, unit, typed, hover, .. } = *field;
+    let reach = field.reach(session);
+    let turn = Knob { name, unit, reach, typed, hover, width }.ui(ui, value);
+    let mut changed = false;
+    if let Some(value) = turn.value {
+        match turn.how {
+            How::Pressed => session.press(path, ui.input(|input| input.time)),
+            How::Once | How::Dragged => session.end_presses(),
+        }
+        match session.set_number(path, value) {
+            Ok(own) => changed = own,
+            Err(why) => {
+                let value = shown(value, decimals(reach.step));
+                let space = if unit.is_empty() { "" } else { " " };
+                refuse(ui, name, format!("{value}{space}{unit} was not taken: {why}"));
+            }
+        }
+    }
+    if turn.ended || (turn.value.is_some() && turn.how == How::Once) {
+        session.end_gesture();
+    }
+    changed
+}
+
+fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let text = match &session.scene().excitation {
+        Excitation::Sine { .. } | Excitation::Chirp { .. } => {
+            return field_ui(ui, session, "excitation.amplitude_g", width);
+        }
+        Excitation::Noise { .. } => return field_ui(ui, session, "excitation.rms_g", width),
+        Excitation::None => {
+            let own = session.suiting_sine();
+            let Excitation::Sine { frequency_hz, amplitude_g, .. } = own else { return false };
+            let hover = format!("A sine of {frequency_hz} Hz and {amplitude_g} g.");
+            return ui.button("Shake it").on_hover_text(hover).clicked()
+                && session.edit_once(|scene| scene.excitation = own);
+        }
+        Excitation::AmplitudeRamp { from_g, to_g, over_s, .. } => {
+            format!("{from_g} to {to_g} g over {over_s} s")
+        }
+        Excitation::Recorded { path, .. } => format!("record {path}"),
+        Excitation::Constant { accel_g } => format!("constant {accel_g} g"),
+        Excitation::Sum(terms) => format!("sum of {} parts", terms.len()),
+    };
+    ui.label(text);
+    false
+}
+
+fn stops_switch_ui(ui: &mut Ui, session: &mut Session) -> bool {
+    let mut on = session.scene().stops != Stops::None;
+    let text = RichText::new("Stops").heading();
+    let hover = "Rigid walls that limit the travel of the mass on both sides.";
+    hover_beside(ui.checkbox(&mut on, text), hover).changed() && session.switch_stops(on)
+}
+
+/// The distance of the stops, or of each of them; while they are off, of those that come: moving it switches them on.
+fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let paths = ["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"];
+    paths.into_iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))
+}
+
+fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let mut changed = restitution_ui(ui, session, width);
+    changed |= geometry::preload_ui(ui, session, width);
+    if matches!(session.scene().excitation, Excitation::Sine { .. }) {
+        changed |= field_ui(ui, session, "excitation.frequency_hz", width);
+    }
+    changed |= damping_ui(ui, session, width);
+    changed |= field_ui(ui, session, "mass_g", width);
+    ui.add_space(8.0);
+    let hover = "What is changed seldom: sizes of the flexures, kind of shaking, uneven stops, run.";
+    let heading = RichText::new("Advanced").strong();
+    let advanced = egui::CollapsingHeader::new(heading).id_salt("advanced").show_unindented(ui, |ui| {
+        changed |= geometry::sizes_ui(ui, session, width);
+        ui.separator();
+        changed |= advanced::advanced_ui(ui, session, width);
+    });
+    advanced.header_response.on_hover_text(hover);
+    changed
+}
+
+fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    let why = match session.scene().stops {
+        Stops::Rigid { .. } => return field_ui(ui, session, "stops.restitution", width),
+        Stops::None => "There are no stops to rebound from: switch them on first.",
+        Stops::Hertz { .. } => {
+            "These stops are compliant: a faster impact keeps a smaller share of its speed."
+        }
+        Stops::Uneven { .. } => "The two stops have a restitution each, under Advanced.",
+    };
+    ui.add_enabled(false, egui::Label::new("restitution")).on_disabled_hover_text(why);
+    false
+}
+
+fn damping_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    match session.scene().damping {
+        Damping::Ratio(_) => field_ui(ui, session, "damping.xi", width),
+        Damping::Coefficient { .. } => field_ui(ui, session, "damping.c_n_s_per_m", width),
+        Damping::None => {
+            ui.add_enabled(false, egui::Label::new("no damping"))
+                .on_disabled_hover_text("The scene has none.");
+            false
+        }
+    }
+}

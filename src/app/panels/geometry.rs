@@ -1,0 +1,40 @@
+//! The hands on the flexures: preload, thickness, lengths, widths.
+
+use eframe::egui::{self, Ui};
+
+use crate::app::session::Session;
+use crate::scene::Mechanism;
+
+use super::controls::field_ui;
+
+/// The slider of the preload; for a mechanism without one greyed, with the reason. Whether something changed.
+pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    match session.scene().mechanism {
+        Mechanism::Flexures { .. } => field_ui(ui, session, "mechanism.preload_mm", width),
+        Mechanism::Table { .. } => {
+            absent_ui(ui, "preload", "The force comes from a table, which was made at one preload.")
+        }
+        _ => absent_ui(ui, "preload", "The force is given by a formula without a preload."),
+    }
+}
+
+/// The sliders of the other sizes. Whether something changed.
+pub fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+    if !matches!(session.scene().mechanism, Mechanism::Flexures { .. }) {
+        let why = "The mechanism of this scene is a force without flexures behind it.";
+        return absent_ui(ui, "sizes of flexures", why);
+    }
+    let sizes = [
+        "mechanism.thickness_mm",
+        "mechanism.parallel.length_mm",
+        "mechanism.parallel.width_mm",
+        "mechanism.buckling.length_mm",
+        "mechanism.buckling.width_mm",
+    ];
+    sizes.into_iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))
+}
+
+fn absent_ui(ui: &mut Ui, name: &str, why: &str) -> bool {
+    ui.add_enabled(false, egui::Label::new(name)).on_disabled_hover_text(why);
+    false
+}

@@ -1,0 +1,109 @@
+//! The line under the menu: what the mass does, as large as it fits.
+
+use eframe::egui::{self, RichText, Sense, Ui, Vec2};
+
+use crate::app::session::{OFFER_TO_STOP, Session};
+use crate::app::ui::style::{BODY, STATUS, STATUS_COMPACT, Style};
+use crate::app::ui::widgets::kind_shapes;
+use crate::app::words::announce::Announcer;
+use crate::app::words::meanings::meaning;
+
+/// Widest and highest in points of a line beside the sentence, and the size of its letters.
+const BESIDE: f32 = 236.0;
+const LINE: f32 = 17.0;
+const SMALL_LINE: f32 = 13.0;
+
+/// The line that says what the mass does.
+pub fn status_ui(
+    ui: &mut Ui,
+    session: &mut Session,
+    announcer: &mut Announcer,
+    style: &Style,
+    compact: bool,
+) {
+    let sentence = session.sentence();
+    if let Some(seconds) = announcer.take(&sentence, ui.input(|input| input.time)) {
+        ui.ctx().request_repaint_after_secs(seconds as f32);
+    }
+    announcer.ui(ui);
+    let size = if compact { STATUS_COMPACT } else { STATUS };
+    ui.horizontal_centered(|ui| {
+        let (rect, _) = ui.allocate_exact_size(Vec2::splat(size + 6.0), Sense::hover());
+        ui.painter().extend(kind_shapes(
+            sentence.kind,
+            rect.center(),
+            size * 0.42,
+            style.kind(sentence.kind),
+        ));
+        let settling = session.settling().map(|(gone, of)| format!("settling: {gone:.1} of {of:.1} s"));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            stop_ui(ui, session);
+            beside_ui(ui, session, style, settling);
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let text = sentence.whole();
+                let size = fitted(ui, &text, size);
+                let label = ui.add(egui::Label::new(RichText::new(text).size(size)).wrap());
+                if label.hovered() {
+                    let kind = meaning(&sentence.text).map_or_else(String::new, |text| format!("{text}\n\n"));
+                    label.on_hover_text(kind + &session.ways());
+                }
+            });
+        });
+    });
+}
+
+/// Offers to stop what the background has worked on for long.
+fn stop_ui(ui: &mut Ui, session: &mut Session) {
+    let Some(worked) = session.working() else { return };
+    if worked < OFFER_TO_STOP {
+        ui.ctx().request_repaint_after(OFFER_TO_STOP - worked);
+        return;
+    }
+    let hover = "The background has worked for so long on what this settles to, what it would take to cross and how accurate \
+                 the motion is. The motion goes on without it; the next change asks anew.";
+    let text = format!("Stop ({} s)", worked.as_secs());
+    ui.ctx().request_repaint_after_secs(1.0);
+    if ui.button(text).on_hover_text(hover).clicked() {
+        session.stop_working();
+    }
+}
+
+/// Beside the sentence: how accurate the motion is and, below, how far it has settled.
+fn beside_ui(ui: &mut Ui, session: &Session, style: &Style, settling: Option<String>) {
+    let trust = session.trust();
+    if trust.is_none() && settling.is_none() {
+        return;
+    }
+    let lines = usize::from(trust.is_some()) + usize::from(settling.is_some());
+    let height = lines as f32 * LINE;
+    ui.allocate_ui_with_layout(Vec2::new(BESIDE, height), egui::Layout::top_down(egui::Align::Max), |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let mut line = |text: String, hover: &str| {
+            let hover = meaning(&text).map_or_else(|| hover.to_owned(), |own| format!("{own}\n\n{hover}"));
+            let text = RichText::new(text).size(SMALL_LINE).color(style.faint());
+            ui.add(egui::Label::new(text).extend()).on_hover_text(hover);
+        };
+        if let Some((short, long)) = trust {
+            line(short, &long);
+        }
+        if let Some(settling) = settling {
+            line(settling, "Periods gone since your last change.");
+        }
+    });
+}
+
+/// In place of the sentence while the results are covered.
+pub fn covered_ui(ui: &mut Ui) {
+    ui.horizontal_centered(|ui| {
+        let text = "Covered: what do you expect? C shows it again.";
+        ui.label(RichText::new(text).size(STATUS_COMPACT));
+    });
+}
+
+/// The size at which a text stands in one line, or the smallest one, at which it takes two.
+fn fitted(ui: &Ui, text: &str, size: f32) -> f32 {
+    let font = egui::FontId::proportional(size);
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER);
+    let share = ui.available_width() / galley.size().x.max(1.0);
+    (size * share.min(1.0) - 0.05).clamp(BODY.min(size), size)
+}

@@ -1,0 +1,282 @@
+//! Time: play, pause, step, go to events, choose a speed, and scrub through what has been seen.
+
+use std::collections::VecDeque;
+
+use eframe::egui::{
+    self, Align2, Color32, ComboBox, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2,
+};
+
+use crate::app::session::Session;
+use crate::app::session::player::{Goal, SPEEDS};
+use crate::app::ui::style::Style;
+use crate::app::ui::widgets::{Icon, arrows, icon_button_ui};
+use crate::app::words::meanings::{explained, meaning};
+use crate::dynamics::{Event, EventKind};
+
+/// How far ahead in s of the motion an event is looked for.
+pub const EVENT_AHEAD: f64 = 5.0;
+
+/// Size of a button in points.
+const BUTTON: f32 = 32.0;
+
+/// Room in points for the time with what happens then, and for a way back from the past.
+const TIME: f32 = 250.0;
+
+/// Share of the room that the time has at most, where the window is narrow, and least room.
+const TIME_SHARE: f32 = 0.65;
+const LEAST_TIME: f32 = 150.0;
+
+/// Height in points of the legend below the bar, and of a transport that has room for it.
+const LEGEND: f32 = 15.0;
+const HIGH: f32 = 46.0;
+
+/// Width in points that the way back from the past takes in full.
+const BACK: f32 = 130.0;
+
+/// Heights in points of the time, and of it with the line below.
+const ONE_LINE: f32 = 20.0;
+const TWO_LINES: f32 = 36.0;
+
+/// Share of the bar by which an arrow key moves, with Shift ten of them.
+const KEY_SHARE: f64 = 0.002;
+
+/// Least distance in points between two ticks of events, of a few.
+const TICK: f32 = 5.0;
+
+/// The most events that are looked at for one tick.
+const MOST_EVENTS: usize = 64;
+
+/// Draws the transport; where results are covered, without what happened when. Whether something changed.
+pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
+    ui.horizontal_centered(|ui| {
+        let mut changed = false;
+        if icon_button_ui(ui, Icon::Restart, BUTTON, "restart", "From the start again").clicked() {
+            session.restart();
+            changed = true;
+        }
+        let previous = "To the event before: a release, a crossing, an impact (PageUp)";
+        if icon_button_ui(ui, Icon::PreviousEvent, BUTTON, "previous event", previous).clicked() {
+            changed |= session.player.seek_event(false, EVENT_AHEAD);
+        }
+        let playing = session.player.is_playing();
+        let (icon, name) = if playing { (Icon::Pause, "pause") } else { (Icon::Play, "play") };
+        let button = icon_button_ui(ui, icon, BUTTON + 6.0, name, "Play and pause (space)");
+        if button.clicked() {
+            session.player.set_playing(!playing);
+            changed = true;
+        }
+        let next = "To the next event (PageDown)";
+        if icon_button_ui(ui, Icon::NextEvent, BUTTON, "next event", next).clicked() {
+            changed |= session.player.seek_event(true, EVENT_AHEAD);
+        }
+        if icon_button_ui(ui, Icon::Step, BUTTON, "step", "A little further, then stand (full stop)")
+            .clicked()
+        {
+            session.player.step();
+            changed = true;
+        }
+        changed |= speed_ui(ui, session);
+        changed |= scrub_ui(ui, session, style, covered);
+        changed | time_ui(ui, session, style, covered)
+    })
+    .inner
+}
+
+fn speed_ui(ui: &mut Ui, session: &mut Session) -> bool {
+    let speed = session.player.speed;
+    let name =
+        SPEEDS.iter().find(|own| own.0 == speed).map_or_else(|| format!("{speed}"), |own| own.1.to_owned());
+    let mut changed = false;
+    let combo = ComboBox::from_id_salt("speed").width(96.0).selected_text(name).show_ui(ui, |ui| {
+        for (key, (value, name)) in (1..).zip(SPEEDS) {
+            let text = format!("{name}  ({key})");
+            changed |= ui.selectable_value(&mut session.player.speed, value, text).changed();
+        }
+    });
+    let response = combo.response.on_hover_text("Speed of the motion on the screen (keys 1 to 7)");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "speed"));
+    changed
+}
+
+/// One event for every stretch of time that has some, at least `least` seconds long: a crossing before a release, a
+/// release before an impact, and of several the first. The stretches are powers of two of a second and begin at
+/// multiples of themselves, so that the ticks stay while time goes on.
+fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Event> {
+    let stretch = least.max(f64::MIN_POSITIVE).log2().ceil().exp2();
+    let rank = |event: &Event| match event.kind {
+        EventKind::Crossing => 0,
+        EventKind::Release => 1,
+        EventKind::Impact | EventKind::Rest | EventKind::Contact | EventKind::Separate => 2,
+    };
+    let mut shown = Vec::new();
+    let mut number = (begin / stretch).floor();
+    while number * stretch <= end {
+        let first = events.partition_point(|event| event.t < number * stretch);
+        let Some(next) = events.get(first) else { break };
+        // over stretches with nothing in them
+        number = (next.t / stretch).floor().max(number) + 1.0;
+        let own = events.range(first..).take_while(|event| event.t < number * stretch);
+        shown.extend(own.take(MOST_EVENTS).min_by_key(|event| rank(event)));
+    }
+    shown
+}
+
+/// What stands for an event at a place on the bar: a line for an impact, a triangle for a release, a diamond
+/// for a crossing.
+fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
+    let convex = |points: &[(f32, f32)], color: Color32| {
+        let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();
+        Shape::convex_polygon(points, color, Stroke::NONE)
+    };
+    match kind {
+        EventKind::Crossing => {
+            let color = style.kind(crate::app::words::status::Kind::Interwell);
+            convex(&[(0.0, -10.0), (3.5, -6.0), (0.0, -2.0), (-3.5, -6.0)], color)
+        }
+        EventKind::Release | EventKind::Separate => {
+            convex(&[(0.0, -9.0), (3.5, -2.5), (-3.5, -2.5)], style.stop())
+        }
+        EventKind::Impact | EventKind::Contact | EventKind::Rest => {
+            Shape::line_segment([at - vec2(0.0, 7.0), at], Stroke::new(1.0, style.faint()))
+        }
+    }
+}
+
+/// What the signs mean, in a row.
+fn legend(painter: &Painter, style: &Style, row: Rect) {
+    let mut x = row.left() + 10.0;
+    let signs =
+        [(EventKind::Impact, "impact"), (EventKind::Release, "release"), (EventKind::Crossing, "crossing")];
+    for (kind, name) in signs {
+        painter.add(sign(kind, pos2(x, row.center().y + 5.0), style));
+        let at = pos2(x + 8.0, row.center().y);
+        x = painter.text(at, Align2::LEFT_CENTER, name, style.small(), style.faint()).right() + 18.0;
+    }
+}
+
+/// The remembered past as a bar with a sign for every event; dragging, or with the keyboard's focus the arrow
+/// keys, look at it.
+fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
+    let time = (TIME_SHARE * ui.available_width()).clamp(LEAST_TIME, TIME);
+    let width = (ui.available_width() - time).max(40.0);
+    let explains = !covered && ui.available_height() >= HIGH;
+    let height = if explains { BUTTON + LEGEND } else { BUTTON };
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::drag());
+    response.widget_info(|| egui::WidgetInfo::slider(true, session.player.time(), "time"));
+    let watch = session.player.watch();
+    let (begin, end) = (watch.begin(), watch.time());
+    let span = (end - begin).max(1e-9);
+    let middle = rect.top() + 0.5 * BUTTON;
+    let bar = Rect::from_center_size(pos2(rect.center().x, middle), vec2(rect.width() - 12.0, 5.0));
+    let screen_from_time = |t: f64| bar.left() + ((t - begin) / span) as f32 * bar.width();
+    let painter = ui.painter();
+    painter.rect_filled(bar, 2.0, style.grid());
+    if !covered {
+        for event in ticks(watch.events(), begin, end, f64::from(TICK / bar.width()) * span) {
+            painter.add(sign(event.kind, pos2(screen_from_time(event.t), bar.top()), style));
+        }
+    }
+    if explains {
+        legend(painter, style, rect.with_min_y(rect.bottom() - LEGEND));
+    }
+    let now = pos2(screen_from_time(session.player.time()), bar.center().y);
+    painter.circle(now, 7.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
+    let by_key = if response.has_focus() { arrows(ui, response.id) } else { 0.0 };
+    let mut wanted = None;
+    if let Some(pointer) = response.interact_pointer_pos() {
+        wanted = Some(begin + f64::from((pointer.x - bar.left()) / bar.width()) * span);
+    } else if by_key != 0.0 {
+        wanted = Some(session.player.time() + by_key * KEY_SHARE * span);
+    }
+    if let Some(t) = wanted {
+        session.player.seek(t);
+    }
+    let mut hover = "What has been seen: drag, or move with the arrow keys, to look at it again.".to_owned();
+    if !covered {
+        for (sign, name) in [("A line", "impact"), ("A triangle", "release"), ("A diamond", "crossing")] {
+            hover += &format!("\n{sign} stands for {name}: {}", meaning(name).unwrap_or_default());
+        }
+    }
+    response.on_hover_text(hover);
+    wanted.is_some()
+}
+
+/// The time that is shown, and below it what happens then or what is looked for; the way back from the past.
+fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
+    let player = &session.player;
+    let note = match player.goal() {
+        Some(Goal::Time(_)) => "going on; any key stops".to_owned(),
+        Some(Goal::First(kind, _)) => format!("looking for a {}; any key stops", kind.name()),
+        None if covered => String::new(),
+        None => player.event().map_or_else(String::new, words),
+    };
+    let time = format!("{:.3} s", player.time());
+    let is_past = player.is_past();
+    let mut back = false;
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let height = if note.is_empty() { ONE_LINE } else { TWO_LINES };
+        ui.add_space(((ui.available_height() - height) * 0.5).max(0.0));
+        ui.horizontal(|ui| {
+            ui.label(time);
+            if is_past {
+                let text = if ui.available_width() < BACK { "to now" } else { "past: go to now" };
+                let text = RichText::new(text).small();
+                let hover =
+                    "The past is shown, with the shaking and the stops of then. A click goes back to now.";
+                back = ui.small_button(text).on_hover_text(hover).clicked();
+            }
+        });
+        if !note.is_empty() {
+            let text = RichText::new(&note).small().color(style.faint());
+            explained(ui.add(egui::Label::new(text).truncate()), &note);
+        }
+    });
+    if back {
+        session.player.to_present();
+    }
+    back
+}
+
+/// What happened, in words: which side, how fast.
+fn words(event: &Event) -> String {
+    let side = event.side.name();
+    let speed = |v: f64| crate::app::words::status::speed(v.abs());
+    match event.kind {
+        EventKind::Impact => format!("impact, {side}, {} to {} mm/s", speed(event.v_in), speed(event.v_out)),
+        EventKind::Contact => format!("contact, {side}, {} mm/s", speed(event.v_in)),
+        EventKind::Separate => format!("release, {side}, {} mm/s", speed(event.v_out)),
+        EventKind::Rest => format!("comes to rest, {side}"),
+        EventKind::Release => format!("release, {side}"),
+        EventKind::Crossing => format!("crossing to the {side}, {} mm/s", speed(event.v_out)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::Side;
+
+    fn event(t: f64, kind: EventKind) -> Event {
+        Event { t, kind, side: Side::Left, v_in: 0.0, v_out: 0.0 }
+    }
+
+    #[test]
+    fn ticks_keep_their_distance_and_their_order() {
+        let kinds = [EventKind::Impact, EventKind::Impact, EventKind::Release, EventKind::Crossing];
+        let all = (0..4000).map(|i| event(f64::from(i) * 0.01, kinds[i as usize % 4]));
+        let all: VecDeque<Event> = all.collect();
+        let few = ticks(&all, 0.0, 40.0, 0.3);
+        // stretches of half a second, a crossing in each
+        assert_eq!(few.len(), 80);
+        assert!(few.iter().all(|event| event.kind == EventKind::Crossing));
+        assert!(few.windows(2).all(|pair| pair[1].t - pair[0].t > 0.3));
+        // later they are the same
+        let later = ticks(&all, 3.2, 40.0, 0.4);
+        assert!(later.iter().skip(1).all(|event| few.contains(event)));
+        // a lone impact is seen
+        let lone: VecDeque<Event> = [event(7.0, EventKind::Impact)].into();
+        assert_eq!(ticks(&lone, 0.0, 1e9, 1.0).len(), 1);
+        assert!(ticks(&VecDeque::new(), 0.0, 1.0, 0.1).is_empty());
+    }
+}

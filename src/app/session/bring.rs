@@ -1,0 +1,79 @@
+//! Files that a scene names, put beside the file that the scene is saved to.
+
+use std::path::{Path, PathBuf};
+
+use crate::output::write_file;
+use crate::scene::{FileError, Files, Scene, named_paths};
+
+/// Puts the table and the records of `scene` into the folder of `target` and names them as they are called
+/// there. A file that is there already is used where it holds the same, and never written over. Returns the
+/// names of the files that were written, and says on an error why one could not be.
+pub fn bring(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<String>, String> {
+    let mut written = Vec::new();
+    if files.folder.as_deref().is_some_and(|own| is_same(own, folder_of(target))) {
+        return Ok(written);
+    }
+    for path in named_paths(scene) {
+        if Path::new(path.as_str()).is_absolute() {
+            continue;
+        }
+        let text = match files.read(path) {
+            Err(FileError::Missing { embedded: true, .. }) => Files::default().read(path),
+            read => read,
+        };
+        let text = text.map_err(|error| format!("the scene names a file that cannot be read: {error}"))?;
+        let name = free_name(path, &text, target)?;
+        if !target.with_file_name(&name).exists() {
+            write_file(&target.with_file_name(&name), text.as_bytes())?;
+            written.push(name.clone());
+        }
+        *path = name;
+    }
+    Ok(written)
+}
+
+/// Has what a scene of the past names lie where it lay, once the scene was saved elsewhere: `now` is the
+/// scene that was saved, and `was` the same one before.
+pub fn follow(scene: &mut Scene, files: &Files, (was, now): (&mut Scene, &mut Scene)) {
+    let renamed: Vec<_> = named_paths(was).into_iter().zip(named_paths(now)).collect();
+    for path in named_paths(scene) {
+        let place = || files.place(path).and_then(|place| std::path::absolute(place).ok());
+        if let Some((_, name)) = renamed.iter().find(|own| own.0 == path) {
+            path.clone_from(name);
+        } else if let Some(place) = place().as_deref().and_then(Path::to_str) {
+            *path = place.to_owned();
+        }
+    }
+}
+
+/// The first of `a.csv`, `a-2.csv`, `a-3.csv` .. beside `target` that is free or holds this text.
+fn free_name(path: &str, text: &str, target: &Path) -> Result<String, String> {
+    let own = Path::new(path);
+    let part = |part: Option<&std::ffi::OsStr>| part.map(|part| part.to_string_lossy().into_owned());
+    let stem = part(own.file_stem()).ok_or_else(|| format!("`{path}` names no file"))?;
+    let ending = part(own.extension()).map_or_else(String::new, |ending| format!(".{ending}"));
+    let names = (1_u32..).map(|n| match n {
+        1 => format!("{stem}{ending}"),
+        n => format!("{stem}-{n}{ending}"),
+    });
+    let fits = |name: &String| {
+        let there = target.with_file_name(name);
+        there != target && (!there.exists() || std::fs::read(&there).is_ok_and(|own| own == text.as_bytes()))
+    };
+    names
+        .take(1000)
+        .find(fits)
+        .ok_or_else(|| format!("no name is free for `{path}` beside {}", target.display()))
+}
+
+fn folder_of(file: &Path) -> PathBuf {
+    file.parent().map_or_else(PathBuf::new, Path::to_path_buf)
+}
+
+fn is_same(a: &Path, b: PathBuf) -> bool {
+    let whole = |path: &Path| {
+        let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
+        path.canonicalize().ok()
+    };
+    whole(a).is_some_and(|a| whole(&b) == Some(a))
+}

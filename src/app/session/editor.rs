@@ -1,0 +1,318 @@
+//! What is being edited, where it is kept, and the way back.
+//!
+//! Undo is a stack of scenes: a scene is plain, comparable data of a few hundred bytes, and one gesture (a drag, a
+//! click, a number typed) is one step.
+
+use std::path::Path;
+
+use crate::output::write_file;
+use crate::scene::{Document, Files, Scene, SceneError, Source, Start, Stops, numeric_fields, write};
+
+use super::bring::{bring, follow};
+
+/// The most steps back that are kept.
+const MOST_STEPS: usize = 500;
+
+/// How messages call a scene that came as text.
+const PASTED: &str = "the pasted scene";
+
+/// The scene of the window.
+#[derive(Debug, Clone)]
+pub struct Editor {
+    /// The document; its scene is what is edited.
+    document: Document,
+    /// The scene as it was opened or last saved.
+    saved: Scene,
+    undo: Vec<Scene>,
+    redo: Vec<Scene>,
+    /// The scene at the begin of the gesture under way.
+    gesture: Option<Scene>,
+}
+
+impl Editor {
+    /// An editor on a scene.
+    pub fn new(document: Document) -> Self {
+        let saved = document.scene.clone();
+        Self { document, saved, undo: Vec::new(), redo: Vec::new(), gesture: None }
+    }
+
+    /// Opens a scene file or a built-in scene.
+    pub fn open(spec: &str) -> Result<Self, SceneError> {
+        Document::load(spec).map(Self::new)
+    }
+
+    /// An editor on a scene as text, which has no file.
+    pub fn from_text(text: &str) -> Result<Self, SceneError> {
+        Document::from_text(PASTED, text, Files::default()).map(Self::new)
+    }
+
+    /// What the command line calls the scene that was opened or last saved; none for one that has no such name.
+    pub fn origin(&self) -> Option<String> {
+        match &self.document.source {
+            Source::File(path) => Some(path.to_string_lossy().into_owned()),
+            Source::BuiltIn(name) => Some((*name).to_owned()),
+            Source::Text => None,
+        }
+    }
+
+    /// The document as it can be run and written: without axes of its sweep that name a field which the scene does not
+    /// have at the moment, such as the travel limit while the stops are off. The scene keeps them for when it has.
+    pub fn runnable(&self) -> Document {
+        runnable(&self.document)
+    }
+
+    /// The scene as text.
+    pub fn text(&self) -> Result<String, String> {
+        text_of(&self.runnable().scene)
+    }
+
+    /// Whether the file that the scene came from has comments, which are no part of a scene.
+    pub fn has_comments(&self) -> bool {
+        self.path().is_some() && crate::scene::has_comments(&self.document.text)
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.document.scene
+    }
+
+    /// The scene as it was opened or last saved: what stands in its file.
+    pub fn saved(&self) -> &Scene {
+        &self.saved
+    }
+
+    /// The document, for what needs its files and its places.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// The file that the scene is saved to.
+    pub fn path(&self) -> Option<&Path> {
+        match &self.document.source {
+            Source::File(path) => Some(path),
+            Source::BuiltIn(_) | Source::Text => None,
+        }
+    }
+
+    /// Whether there is something to save.
+    pub fn is_dirty(&self) -> bool {
+        self.document.scene != self.saved
+    }
+
+    /// Whether a gesture is under way.
+    pub fn in_gesture(&self) -> bool {
+        self.gesture.is_some()
+    }
+
+    /// Changes the scene as part of a gesture, which begins here if none is under way. Whether it changed.
+    pub fn edit(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
+        let before = self.document.scene.clone();
+        change(&mut self.document.scene);
+        keep_start_inside(&mut self.document.scene);
+        let changed = self.document.scene != before;
+        if changed {
+            self.gesture.get_or_insert(before);
+        }
+        changed
+    }
+
+    /// Ends the gesture: it is one step back, if it changed anything.
+    pub fn end_gesture(&mut self) {
+        let Some(before) = self.gesture.take().filter(|before| *before != self.document.scene) else {
+            return;
+        };
+        self.undo.push(before);
+        self.redo.clear();
+        let spare = self.undo.len().saturating_sub(MOST_STEPS);
+        self.undo.drain(..spare);
+    }
+
+    /// Changes the scene by one gesture of its own. Whether it changed.
+    pub fn edit_once(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
+        self.end_gesture();
+        let changed = self.edit(change);
+        self.end_gesture();
+        changed
+    }
+
+    /// Whether there is a step back.
+    pub fn can_undo(&self) -> bool {
+        !self.undo.is_empty() || self.gesture.is_some()
+    }
+
+    /// Whether there is a step forward again.
+    pub fn can_redo(&self) -> bool {
+        !self.redo.is_empty()
+    }
+
+    /// Goes a step back. Whether there was one.
+    pub fn undo(&mut self) -> bool {
+        self.end_gesture();
+        let Some(before) = self.undo.pop() else { return false };
+        self.redo.push(std::mem::replace(&mut self.document.scene, before));
+        true
+    }
+
+    /// Goes a step forward again. Whether there was one.
+    pub fn redo(&mut self) -> bool {
+        self.end_gesture();
+        let Some(after) = self.redo.pop() else { return false };
+        self.undo.push(std::mem::replace(&mut self.document.scene, after));
+        true
+    }
+
+    /// Back to the scene as it was opened or last saved; that, too, can be undone. Whether anything changed.
+    pub fn back_to_start(&mut self) -> bool {
+        let saved = self.saved.clone();
+        self.edit_once(|scene| *scene = saved)
+    }
+
+    /// Writes the scene to a file, which is then its own, and the files that it names beside it. Returns
+    /// the names of those that were written.
+    pub fn save_to(&mut self, path: &Path) -> Result<Vec<String>, String> {
+        self.end_gesture();
+        let mut document = self.document.clone();
+        let brought = bring(&mut document.scene, &document.files, path)?;
+        document.text = text_of(&runnable(&document).scene)?;
+        write_file(path, document.text.as_bytes())?;
+        (document.name, document.source) = (path.display().to_string(), Source::File(path.to_owned()));
+        let before = std::mem::replace(&mut document.files, Files::beside(path));
+        let mut now = document.scene.clone();
+        for scene in self.undo.iter_mut().chain(&mut self.redo) {
+            follow(scene, &before, (&mut self.document.scene, &mut now));
+        }
+        self.saved = document.scene.clone();
+        self.document = document;
+        Ok(brought)
+    }
+}
+
+/// See [`Editor::runnable`].
+fn runnable(document: &Document) -> Document {
+    let mut document = document.clone();
+    let fields = numeric_fields(&document.scene);
+    document.scene.sweep.retain(|axis| fields.contains(&axis.field));
+    document
+}
+
+/// A scene as text that reads back.
+fn text_of(scene: &Scene) -> Result<String, String> {
+    write(scene).map_err(|error| format!("the scene cannot be written as text: {error}"))
+}
+
+/// A start beyond a stop is no start: a stop that is moved over it carries it along.
+pub(in crate::app) fn keep_start_inside(scene: &mut Scene) {
+    let (left, right) = match scene.stops {
+        Stops::None => return,
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
+            (-travel_limit_mm, travel_limit_mm)
+        }
+        Stops::Uneven { left_mm, right_mm, .. } => {
+            (left_mm.map_or(f64::NEG_INFINITY, |mm| -mm), right_mm.unwrap_or(f64::INFINITY))
+        }
+    };
+    if let Start::At { x_mm, .. } = &mut scene.start {
+        if *x_mm > right {
+            *x_mm = right;
+        } else if *x_mm < left {
+            *x_mm = left;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn editor() -> Editor {
+        Editor::open("first-look").unwrap()
+    }
+
+    fn mass(editor: &Editor) -> f64 {
+        editor.scene().mass_g
+    }
+
+    #[test]
+    fn one_gesture_is_one_step() {
+        let mut editor = editor();
+        for step in 1..=20 {
+            assert!(editor.edit(|scene| scene.mass_g = 15.2 + f64::from(step)));
+        }
+        assert!(editor.in_gesture() && editor.is_dirty());
+        editor.end_gesture();
+        assert!(editor.edit_once(|scene| scene.mass_g = 50.0));
+        assert!(editor.undo());
+        assert_eq!(mass(&editor), 35.2);
+        assert!(editor.undo());
+        assert_eq!(mass(&editor), 15.2);
+        assert!(!editor.undo() && !editor.is_dirty());
+        assert!(editor.redo() && editor.redo() && !editor.redo());
+        assert_eq!(mass(&editor), 50.0);
+        // a new edit forgets the steps forward
+        editor.undo();
+        editor.edit_once(|scene| scene.mass_g = 1.0);
+        assert!(!editor.can_redo());
+    }
+
+    #[test]
+    fn a_gesture_that_comes_back_is_none() {
+        let mut editor = editor();
+        editor.edit(|scene| scene.mass_g = 16.0);
+        editor.edit(|scene| scene.mass_g = 15.2);
+        editor.end_gesture();
+        assert!(!editor.can_undo());
+        assert!(!editor.edit(|_| ()));
+    }
+
+    #[test]
+    fn back_to_start_can_be_undone() {
+        let mut editor = editor();
+        editor.edit_once(|scene| scene.mass_g = 16.0);
+        assert!(editor.back_to_start());
+        assert_eq!(mass(&editor), 15.2);
+        editor.undo();
+        assert_eq!(mass(&editor), 16.0);
+    }
+
+    #[test]
+    fn a_stop_takes_the_start_along() {
+        let mut editor = editor();
+        editor.edit_once(|scene| scene.start = Start::At { x_mm: 5.0, v_m_per_s: 0.1 });
+        editor.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 2.0, restitution: 0.3 });
+        assert_eq!(editor.scene().start, Start::At { x_mm: 2.0, v_m_per_s: 0.1 });
+    }
+
+    #[test]
+    fn saved_and_opened_it_is_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("own.ron");
+        let mut editor = editor();
+        editor.edit_once(|scene| scene.mass_g = 16.5);
+        editor.save_to(&path).unwrap();
+        assert!(!editor.is_dirty());
+        let again = Editor::open(path.to_str().unwrap()).unwrap();
+        assert_eq!(again.scene(), editor.scene());
+        assert_eq!(again.path(), Some(path.as_path()));
+        assert!(editor.save_to(&folder.path().join("no/such/folder.ron")).is_err());
+    }
+
+    #[test]
+    fn tables_go_where_the_scene_goes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("own.ron");
+        Editor::open("paper-table").unwrap().save_to(&path).unwrap();
+        let again = Editor::open(path.to_str().unwrap()).unwrap();
+        assert!(
+            crate::mechanics::Mechanism::build(&again.scene().mechanism, &again.document().files).is_ok()
+        );
+        assert_eq!(again.origin().as_deref(), path.to_str());
+    }
+
+    #[test]
+    fn as_text_and_back_it_is_the_same() {
+        let editor = editor();
+        let again = Editor::from_text(&editor.text().unwrap()).unwrap();
+        assert_eq!((again.scene(), again.origin()), (editor.scene(), None));
+        assert!(!again.has_comments() && Editor::from_text("no scene").is_err());
+    }
+}

@@ -1,0 +1,212 @@
+//! Which two fields does a map go over, and from where to where?
+
+use crate::app::words::numbers::{below, decimal, round_up};
+use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};
+use crate::study::{Column, Values};
+
+/// The fields that make a map worth looking at, by the ends of their paths.
+const FIELDS: [&str; 16] = [
+    "travel_limit_mm",
+    "amplitude_g",
+    "frequency_hz",
+    "restitution",
+    "damping.xi",
+    "preload_mm",
+    "mass_g",
+    "left_mm",
+    "right_mm",
+    "restitution_left",
+    "restitution_right",
+    "c_n_s_per_m",
+    "rms_g",
+    "thickness_mm",
+    "equilibrium_mm",
+    "barrier_mj",
+];
+
+/// Travel limit and amplitude of the prototype's map, for scenes of its size.
+const LIMITS_MM: (f64, f64, f64) = (0.5, 7.0, 0.125);
+const AMPLITUDES_G: (f64, f64, f64) = (0.0, 2.0, 0.02);
+
+/// Steps of an axis whose range follows from the present value.
+const STEPS: f64 = 40.0;
+
+/// The scene that a map is made of, with the axes' fields in it: from rest, and between the stops that would come if
+/// they were switched on, where an axis moves stops.
+pub fn ground(scene: &Scene, when_on: Stops, axes: &[SweepAxis]) -> Scene {
+    let mut ground = Scene {
+        start: Start::Rest,
+        title: String::new(),
+        notes: String::new(),
+        sweep: Vec::new(),
+        app: None,
+        ..scene.clone()
+    };
+    if ground.stops == Stops::None && axes.iter().any(|axis| axis.field.starts_with("stops.")) {
+        ground.stops = when_on;
+    }
+    ground
+}
+
+/// The fields of a scene that can be an axis, in the order in which they are offered.
+pub fn fields(scene: &Scene, when_on: Stops) -> Vec<String> {
+    let mut scene = scene.clone();
+    if scene.stops == Stops::None {
+        scene.stops = when_on;
+    }
+    let known: Vec<String> = numeric_fields(&scene)
+        .into_iter()
+        .filter(|path| !path.starts_with("app.") && FieldPath::new(path).get(&scene).is_some())
+        .collect();
+    let of = |name: &&str| {
+        let (dotted, name) = (format!(".{name}"), (*name).to_owned());
+        known
+            .iter()
+            .filter(move |path| **path == name || path.ends_with(&dotted))
+            .cloned()
+            .collect::<Vec<_>>()
+    };
+    FIELDS.iter().flat_map(of).collect()
+}
+
+/// The axes of a scene's map: its own two where both have even steps, else travel limit and amplitude, else the first two that it has.
+pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Option<[SweepAxis; 2]> {
+    let known = fields(scene, when_on);
+    if let [a, b] = scene.sweep.as_slice()
+        && a.values.is_empty()
+        && b.values.is_empty()
+        && [a, b]
+            .iter()
+            .all(|axis| FieldPath::new(&axis.field).get(&ground(scene, when_on, &scene.sweep)).is_some())
+    {
+        return Some([a.clone(), b.clone()]);
+    }
+    let first = known.iter().find(|path| path.ends_with("travel_limit_mm"));
+    let second = known.iter().find(|path| path.ends_with("amplitude_g") || path.ends_with("rms_g"));
+    let rest = || known.iter().filter(|path| Some(*path) != first && Some(*path) != second);
+    let a = first.or_else(|| rest().next())?;
+    let b = second.or_else(|| rest().find(|path| *path != a))?;
+    Some([a, b].map(|path| axis(path, scene, when_on, well_mm)))
+}
+
+/// An axis over a field, around its present value; `well_mm` is where the right-hand well lies.
+pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> SweepAxis {
+    let with_stops =
+        ground(scene, when_on, &[SweepAxis { field: path.to_owned(), step: 1.0, ..SweepAxis::default() }]);
+    let present = FieldPath::new(path).get(&with_stops).unwrap_or(1.0).abs();
+    let name = path.rsplit('.').next().unwrap_or(path);
+    let upward = |greatest: f64| {
+        let to = round_up(greatest);
+        let step = decimal(to / STEPS);
+        (decimal(4.0 * step), to, step)
+    };
+    let (from, to, step) = match name {
+        "travel_limit_mm" | "left_mm" | "right_mm" => match well_mm.filter(|mm| *mm > 0.0) {
+            Some(mm) if (6.0..=7.2).contains(&mm) => LIMITS_MM,
+            Some(mm) => upward(mm),
+            None => upward(2.0 * present),
+        },
+        "amplitude_g" | "rms_g" if (0.3..=AMPLITUDES_G.1).contains(&present) => AMPLITUDES_G,
+        "amplitude_g" | "rms_g" => {
+            let to = if present > 0.0 { round_up(2.0 * present) } else { AMPLITUDES_G.1 };
+            (0.0, to, decimal(to / 100.0))
+        }
+        "xi" => {
+            (0.0, round_up((2.0 * present).max(0.1)), decimal(round_up((2.0 * present).max(0.1)) / STEPS))
+        }
+        name if name.starts_with("restitution") => (0.0, 1.0, 1.0 / STEPS),
+        _ => upward(if present > 0.0 { 2.0 * present } else { 1.0 }),
+    };
+    SweepAxis { field: path.to_owned(), from, to, step, values: Vec::new() }
+}
+
+/// The part of an axis between two of its values, in as many steps as it has itself, on a round step.
+pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
+    let (from, to) = (from.min(to).max(axis.from), from.max(to).min(axis.to));
+    let cells = ((axis.to - axis.from) / axis.step).max(1.0);
+    let width = (to - from).max(1e-3 * (axis.to - axis.from));
+    let step = below(width / cells).min(axis.step);
+    let on_step = |value: f64| decimal((value / step).round() * step);
+    // at least a step, and never below what the axis begins with
+    let from = on_step(from).max(axis.from);
+    SweepAxis {
+        field: axis.field.clone(),
+        from,
+        to: on_step(to).max(decimal(from + step)),
+        step,
+        ..SweepAxis::default()
+    }
+}
+
+/// What a person calls a field, and its unit, where it has one: `travel limit` and `mm`. `column` is its name in a table.
+pub fn name_and_unit(column: &str) -> (String, Option<String>) {
+    let label = Column { name: column.to_owned(), values: Values::Words(Vec::new()) }.label();
+    match label.split_once(", ") {
+        Some((name, unit)) => (name.to_owned(), Some(unit.to_owned())),
+        None => (label, None),
+    }
+}
+
+/// The same as the name of an axis: `travel limit (mm)`.
+pub fn label(column: &str) -> String {
+    match name_and_unit(column) {
+        (name, Some(unit)) => format!("{name} ({unit})"),
+        (name, None) => name,
+    }
+}
+
+/// The `--over` argument of an axis.
+pub fn over(axis: &SweepAxis) -> String {
+    format!("{}={}:{}:{}", axis.field, axis.from, axis.to, axis.step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Document;
+
+    const ON: Stops = Stops::Rigid { travel_limit_mm: 1.5, restitution: 0.36 };
+
+    fn defaults(preset: &str) -> Option<String> {
+        let scene = Document::load(preset).unwrap().scene;
+        let axes = default_axes(&scene, ON, Some(6.9))?;
+        Some(axes.map(|axis| over(&axis)).join(" "))
+    }
+
+    #[test]
+    fn the_scenes_own_axes_come_first() {
+        let own = "stops.travel_limit_mm=0.5:7:0.25 excitation.amplitude_g=0:2:0.02";
+        assert_eq!(defaults("paper").as_deref(), Some(own));
+        let prototype = "stops.travel_limit_mm=0.5:7:0.125 excitation.amplitude_g=0:2:0.02";
+        assert_eq!(defaults("first-look").as_deref(), Some(prototype));
+        assert!(defaults("random-shaking").is_some_and(|axes| axes.contains("rms_g")));
+    }
+
+    #[test]
+    fn a_part_of_an_axis_has_as_many_cells() {
+        let axis =
+            SweepAxis { field: "a".to_owned(), from: 0.5, to: 7.0, step: 0.125, ..SweepAxis::default() };
+        let own = part(&axis, 2.51, 1.23);
+        assert_eq!((own.from, own.to, own.step), (1.24, 2.5, 0.02));
+        let tiny = part(&axis, 6.9999, 6.9999);
+        assert!(tiny.step > 0.0 && tiny.to > tiny.from);
+    }
+
+    #[test]
+    fn every_axis_that_is_offered_can_be_swept() {
+        for preset in crate::scene::PRESETS {
+            let document = Document::load(preset.name).unwrap();
+            let known = fields(&document.scene, ON);
+            assert!(!known.is_empty(), "{}", preset.name);
+            for path in known {
+                let axis = axis(&path, &document.scene, ON, Some(6.9));
+                let scene = ground(&document.scene, ON, std::slice::from_ref(&axis));
+                let read = crate::scene::Axis::from_scene(&axis, &scene);
+                let values = read.as_ref().map_or(0, |axis| axis.values.len());
+                assert!((20..=101).contains(&values), "{}: {} {values}", preset.name, over(&axis));
+                // written as an argument it is the same
+                assert_eq!(crate::scene::Axis::parse(&over(&axis), &scene).ok(), read.ok());
+            }
+        }
+    }
+}

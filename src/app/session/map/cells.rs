@@ -1,0 +1,164 @@
+//! The cells of a map, as far as they are known, and its lines.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::app::session::editor::Editor;
+use crate::app::words::fields::in_words;
+use crate::numeric::short;
+use crate::output::{header, rows};
+use crate::scene::SceneError;
+use crate::study::{Cell, Edges, Grid, Levels, STRIDES, Sweep, Table, first_crossing, first_crossing_edge};
+
+use super::{Question, over};
+
+/// The most cells of a map in the window.
+const MOST_CELLS: u64 = 200_000;
+
+/// A map as far as it is known.
+pub struct Map {
+    /// What it answers.
+    pub question: Question,
+    /// The cells across and up.
+    pub edges: [Edges; 2],
+    /// The least amplitude that frees the mass, in closed form, where that makes sense: `x` and `y` of its points.
+    pub release: Vec<(f64, f64)>,
+    /// Where the first crossing cells begin, as far as is known.
+    pub crossing: Vec<Vec<(f64, f64)>>,
+    pub(super) sweep: Arc<Sweep>,
+    pub(super) levels: Arc<Levels>,
+    pub(super) cells: Vec<Option<Cell>>,
+    pub(super) known: usize,
+    /// After how much work its lines were last drawn.
+    lines_after: Option<Duration>,
+    /// Time that has been worked on it.
+    pub took: Duration,
+    /// When it had every cell of its coarsest level, after so much work.
+    pub coarse_after: Option<Duration>,
+}
+
+impl Map {
+    /// The map of a question before its first cell, or why there is none.
+    pub(super) fn new(question: &Question, editor: &Editor) -> Result<Self, String> {
+        let mut document = editor.document().clone();
+        document.scene = question.scene.clone();
+        let words = |error: SceneError| in_words(&error.to_string(), &question.scene);
+        document.check().map_err(words)?;
+        let arguments = question.axes.each_ref().map(over);
+        let axes = document.axes(&arguments).map_err(words)?;
+        let grid = Grid::new(axes).map_err(|error| error.to_string())?;
+        if grid.cells() > MOST_CELLS {
+            return Err(format!(
+                "{} cells are more than the window makes ({MOST_CELLS}): take longer steps",
+                grid.cells()
+            ));
+        }
+        let [across, up] = grid.axes() else { return Err("a map has two axes".to_owned()) };
+        let edges = [across, up].map(|axis| Edges::new(&axis.values));
+        let cells = vec![None; grid.cells() as usize];
+        let levels = Arc::new(Levels::of(&grid));
+        let sweep = Arc::new(Sweep::new(&document.scene, &document.files, grid));
+        Ok(Self {
+            question: question.clone(),
+            edges,
+            release: Vec::new(),
+            crossing: Vec::new(),
+            sweep,
+            levels,
+            cells,
+            known: 0,
+            lines_after: None,
+            took: Duration::ZERO,
+            coarse_after: None,
+        })
+    }
+
+    /// How many cells there are.
+    pub fn len(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Whether there are none, which does not happen.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// How many cells are known.
+    pub fn known(&self) -> usize {
+        self.known
+    }
+
+    /// Whether every cell is known.
+    pub fn is_whole(&self) -> bool {
+        self.known == self.cells.len()
+    }
+
+    /// Whether every part of it shows something, be it coarse.
+    pub fn is_covered(&self) -> bool {
+        self.levels.whole(self.known).is_some()
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        self.sweep.grid()
+    }
+
+    /// Number of columns and rows.
+    pub fn size(&self) -> [usize; 2] {
+        [self.edges[0].values.len(), self.edges[1].values.len()]
+    }
+
+    /// The cell in a column and row, or the one that stands for it meanwhile, and whether it is its own.
+    pub fn cell(&self, column: usize, row: usize) -> Option<(&Cell, bool)> {
+        let index = (column * self.size()[1] + row) as u64;
+        let own = self.cells.get(index as usize)?.as_ref();
+        if let Some(own) = own {
+            return Some((own, true));
+        }
+        let levels = (0..STRIDES.len() - 1).rev();
+        let stand_in = |level| self.cells[self.levels.stand_in(index, level) as usize].as_ref();
+        levels.filter_map(stand_in).next().map(|cell| (cell, false))
+    }
+
+    /// The cells that have been run.
+    pub fn own_cells(&self) -> impl Iterator<Item = &Cell> {
+        self.cells.iter().flatten()
+    }
+
+    /// Length of the settled window in s.
+    pub fn window_s(&self) -> String {
+        let run = self.question.scene.run;
+        short(run.duration_s - run.settle_s.unwrap_or(0.5 * run.duration_s))
+    }
+
+    /// The rows of the sweep, with stand-ins where they are still to come.
+    fn table(&self) -> Table {
+        let [columns, rows] = self.size();
+        let cell = |i: usize| self.cell(i / rows, i % rows).map_or(Cell::NOT_RUN, |found| *found.0);
+        let cells: Vec<Cell> = (0..columns * rows).map(cell).collect();
+        self.sweep.table(0, &cells)
+    }
+
+    /// The map as the command line writes it, once it is whole.
+    pub fn csv(&self) -> Option<String> {
+        self.is_whole().then(|| {
+            let table = self.table();
+            header(&table) + &rows(&table, 0..usize::MAX)
+        })
+    }
+
+    /// Draws the line of first crossings anew, `worked` into the work; not for every part of a map that is large.
+    pub(super) fn draw_lines(&mut self, worked: Duration) {
+        let every = Duration::from_micros(10 * self.len() as u64);
+        if !self.is_whole() && self.lines_after.is_some_and(|last| worked < last + every) {
+            return;
+        }
+        self.lines_after = Some(worked);
+        let table = self.table();
+        let columns = self.grid().columns();
+        let names = (columns[0].as_str(), columns[1].as_str());
+        self.crossing = first_crossing(self.grid(), &table)
+            .map(|line| first_crossing_edge(&line, names, &self.edges[0], &self.edges[1]))
+            .unwrap_or_default();
+    }
+}

@@ -1,0 +1,116 @@
+//! Ranges of the sliders, from the scales of the scene.
+
+use crate::app::words::fields::{FieldInfo, Reach, Scale};
+use crate::app::words::numbers::{below, round_up};
+use crate::dynamics::STANDARD_GRAVITY;
+use crate::scene::{FieldPath, Mechanism, Stops};
+
+use super::Session;
+
+impl FieldInfo {
+    /// How far the slider goes in a scene: as in the prototype's, where that suits its scales, else by its own.
+    pub fn reach(&self, session: &Session) -> Reach {
+        let (low, high, step) = self.slider;
+        let saved = FieldPath::new(self.path).get(session.editor.saved());
+        let scales = &session.model().scales;
+        // of the prototype these are 2 g and 20 Hz
+        let own = match self.scale {
+            Scale::Fixed => None,
+            Scale::Value => saved.map(|value| 2.5 * value.abs()),
+            Scale::Push => Some(0.15 * high * scales.length / scales.time.powi(2) / STANDARD_GRAVITY),
+            Scale::Rate => Some(0.065 * high / (std::f64::consts::TAU * scales.time)),
+            Scale::Travel => return travel(session),
+            Scale::Preload => return preload(session).unwrap_or(Reach { low, high, step }),
+        };
+        let fits = saved.is_none_or(|value| (low..=high).contains(&value))
+            && match self.scale {
+                Scale::Push | Scale::Rate => own.is_none_or(|own| (0.25..=4.0).contains(&(own / high))),
+                Scale::Value => saved.is_none_or(|value| value == 0.0 || value.abs() > high / 200.0),
+                _ => true,
+            };
+        let Some(own) = own.filter(|own| !fits && *own > 0.0 && own.is_finite()) else {
+            return Reach { low, high, step };
+        };
+        let high_own = round_up(own.max(1.25 * saved.map_or(0.0, f64::abs)));
+        let low_own = if low < 0.0 { -high_own } else { low / high * high_own };
+        let step = below(high_own / 200.0);
+        Reach { low: (low_own / step).round() * step, high: high_own, step }
+    }
+}
+
+/// The slider of a stop: from near the middle to beyond the well.
+fn travel(session: &Session) -> Reach {
+    let (saved, limits) = (session.editor.saved(), [session.remembered_stops(), session.scene().stops]);
+    let well = session.model().mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
+    let furthest = |stops: &Stops| match *stops {
+        Stops::None => None,
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => Some(travel_limit_mm),
+        Stops::Uneven { left_mm, right_mm, .. } => left_mm.into_iter().chain(right_mm).reduce(f64::max),
+    };
+    let stops = || furthest(&saved.stops).or_else(|| limits.iter().find_map(furthest));
+    let size = well.filter(|mm| *mm > 0.0).or_else(stops).unwrap_or(10.0);
+    let step = below(size / 130.0);
+    Reach { low: 2.0 * step, high: (0.6 * size / step).round() * 2.0 * step, step }
+}
+
+/// The preload that the slider reaches, as a share of the shorter flexure.
+const MOST_PRELOAD: f64 = 0.2;
+
+fn preload(session: &Session) -> Option<Reach> {
+    let Mechanism::Flexures { parallel, buckling, .. } = &session.scene().mechanism else { return None };
+    let most = MOST_PRELOAD * parallel.length_mm.min(buckling.length_mm);
+    let step = below(most / 80.0);
+    Some(Reach { low: 0.0, high: (most / step).round() * step, step })
+}
+
+/// Stops that suit a scene that does not say which: where the prototype has them, in parts of the well's distance.
+pub fn suiting_limit(well_mm: Option<f64>) -> f64 {
+    match well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()) {
+        Some(mm) => format!("{:.1e}", 0.215 * mm).parse().unwrap_or(mm),
+        None => 1.5,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::app::session::editor::Editor;
+    use crate::app::words::fields::{FIELDS, info};
+
+    fn session(preset: &str) -> Session {
+        Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap()
+    }
+
+    #[test]
+    fn sliders_follow_the_scales_of_the_scene() {
+        let reach = |preset: &str, path: &str| info(path).unwrap().reach(&session(preset));
+        assert_eq!(reach("first-look", "excitation.amplitude_g"), Reach { low: 0.0, high: 2.0, step: 0.01 });
+        assert_eq!(reach("paper", "stops.travel_limit_mm"), Reach { low: 0.1, high: 8.6, step: 0.05 });
+        assert_eq!(reach("first-look", "excitation.frequency_hz"), Reach { low: 0.5, high: 20.0, step: 0.1 });
+        assert_eq!(reach("duffing", "excitation.amplitude_g"), Reach { low: 0.0, high: 0.07, step: 2e-4 });
+        assert_eq!(reach("duffing", "stops.travel_limit_mm"), Reach { low: 10.0, high: 1200.0, step: 5.0 });
+        assert_eq!(reach("duffing", "mass_g").high, 3000.0);
+        assert_eq!(reach("duffing", "run.duration_s").high, 4000.0);
+        // on its slider every number is at a place that a hand can reach
+        for preset in crate::scene::PRESETS {
+            let session = session(preset.name);
+            for field in FIELDS {
+                let (own, value) = (field.reach(&session), FieldPath::new(field.path).get(session.scene()));
+                assert!(own.low < own.high && own.step > 0.0, "{}: {own:?}", field.path);
+                let Some(value) = value else { continue };
+                assert!(
+                    value <= 1.3 * own.high && (value == 0.0 || value.abs() > own.high / 250.0),
+                    "{} {}: {value} {own:?}",
+                    preset.name,
+                    field.path
+                );
+            }
+        }
+        assert_eq!(
+            (suiting_limit(Some(6.9)), suiting_limit(Some(1000.0)), suiting_limit(None)),
+            (1.5, 220.0, 1.5)
+        );
+    }
+}

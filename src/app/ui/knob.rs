@@ -1,0 +1,288 @@
+//! A number of the scene that is dragged, stepped by keys, or typed.
+//!
+//! It is written only where a hand has changed it: to pass through it, or to leave it as it was typed, changes no digit.
+
+use std::cell::RefCell;
+
+use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Slider, Ui, pos2};
+
+use crate::app::words::fields::Reach;
+use crate::app::words::numbers::{decimal, decimals, exact, shown};
+
+use super::style::{COMPACT_BELOW, Style};
+use super::widgets::hover_beside;
+
+/// Room in points that a slider leaves for its number, and what is left of the slider for a long one.
+const NUMBER: f32 = 72.0;
+const LEAST_SLIDER: f32 = 30.0;
+
+/// For how long in s it is said why something was not taken, and how wide in points that may be.
+const SAID: f64 = 8.0;
+const WIDTH: f32 = 300.0;
+
+/// A slider with its number.
+#[derive(Debug, Clone, Copy)]
+pub struct Knob<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The unit after the number; none for a ratio.
+    pub unit: &'a str,
+    /// How far the slider goes; a typed number may lie outside.
+    pub reach: Reach,
+    /// Smallest and largest number that may be typed.
+    pub typed: (f64, f64),
+    /// What happens if it is increased.
+    pub hover: &'a str,
+    /// Width of the slider in points.
+    pub width: f32,
+}
+
+/// How a value was changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum How {
+    /// At once: typed, or set by a screen reader.
+    #[default]
+    Once,
+    /// By a press of an arrow key, of which more may follow.
+    Pressed,
+    /// On the way of a drag.
+    Dragged,
+}
+
+/// What was done to a knob.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Turn {
+    /// The new value, where it changed.
+    pub value: Option<f64>,
+    /// How.
+    pub how: How,
+    /// Whether a drag has ended.
+    pub ended: bool,
+}
+
+impl Knob<'_> {
+    /// Draws it and says what was done to it.
+    pub fn ui(&self, ui: &mut Ui, value: f64) -> Turn {
+        let least = decimals(self.reach.step);
+        // arrow keys are consumed by what they act on
+        let pressed = ui.input(|input| {
+            [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown]
+                .iter()
+                .any(|key| input.key_pressed(*key))
+        });
+        let name = hover_beside(ui.label(self.name), self.hover);
+        let mut turned = value;
+        let (slider, field, typed) = ui
+            .horizontal(|ui| {
+                let slider = self.slider_ui(ui, &mut turned, least).labelled_by(name.id);
+                let slid = turned != value;
+                let (field, typed) = self.number_ui(ui, &mut turned, least, !slid);
+                (slider, field.labelled_by(name.id), typed)
+            })
+            .inner;
+        let how = match (slider.dragged() || field.dragged(), pressed) {
+            (true, _) => How::Dragged,
+            (_, true) if !typed => How::Pressed,
+            _ => How::Once,
+        };
+        let ended = slider.drag_stopped() || field.drag_stopped();
+        let response = hover_beside(slider.union(field), self.hover);
+        let changed = turned != value && turned.is_finite();
+        if changed {
+            forget(ui);
+        }
+        said_ui(ui, self.name, &response);
+        Turn { value: changed.then_some(turned), how, ended }
+    }
+
+    /// The number alone, without a slider. The new number, where one was typed or dragged to.
+    pub fn alone_ui(&self, ui: &mut Ui, value: f64) -> Option<f64> {
+        let mut turned = value;
+        let (field, _) = self.number_ui(ui, &mut turned, 0, true);
+        ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(self.name));
+        said_ui(ui, self.name, &field);
+        let changed = turned != value && turned.is_finite();
+        if changed {
+            forget(ui);
+        }
+        changed.then_some(turned)
+    }
+
+    fn slider_ui(&self, ui: &mut Ui, value: &mut f64, least: usize) -> Response {
+        let (present, Reach { low, high, step }) = (*value, self.reach);
+        ui.spacing_mut().slider_width = self.slider_width(ui, present, least);
+        let slider = Slider::new(value, low.min(present)..=high.max(present))
+            .show_value(false)
+            .clamping(egui::SliderClamping::Never)
+            .smart_aim(false)
+            .step_by(step);
+        let slider = ui.add(slider);
+        if *value != present && !slider.dragged() && slider.has_focus() && ui.input(|i| i.modifiers.shift) {
+            *value = present + 10.0 * (*value - present);
+        }
+        // what a slider gives are multiples of its step
+        if *value != present && value.abs() < 1e12 * step {
+            *value = decimal((*value / step).round() * step);
+        }
+        slider
+    }
+
+    /// The number beside the slider. Its response, and whether a number was typed that can be taken.
+    fn number_ui(&self, ui: &mut Ui, value: &mut f64, least: usize, free: bool) -> (Response, bool) {
+        let (present, unit) = (*value, self.unit);
+        let editing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
+        let write = |own: f64| if editing { exact(own, least) } else { shown(own, least) };
+        let entered = RefCell::new(None);
+        let suffix = if unit.is_empty() || unit == "°" { unit.to_owned() } else { format!(" {unit}") };
+        let mut own = present;
+        let field = DragValue::new(&mut own)
+            .speed(self.reach.step)
+            .suffix(suffix)
+            .custom_formatter(|own, _| write(own))
+            .update_while_editing(false)
+            .custom_parser(|text| {
+                let text = text.trim();
+                // a number that was not touched is the number that it was
+                if text == shown(present, least) || text == exact(present, least) {
+                    return Some(present);
+                }
+                let number = self.parsed(text, present);
+                *entered.borrow_mut() = Some(number.clone());
+                number.ok()
+            });
+        let response = ui.add(field);
+        let entered = entered.into_inner();
+        let typed = matches!(entered, Some(Ok(_)));
+        match entered {
+            Some(Err(why)) => refuse(ui, self.name, why),
+            _ if own != present && free => {
+                let multiple = decimal((own / self.reach.step).round() * self.reach.step);
+                *value = if typed { own } else { multiple };
+            }
+            _ => {}
+        }
+        (response, typed)
+    }
+
+    /// A typed text as a number that may be taken, or why it is none.
+    fn parsed(&self, text: &str, present: f64) -> Result<f64, String> {
+        let unit = self.unit;
+        let space = if unit.is_empty() || unit == "°" { "" } else { " " };
+        let number = text.strip_suffix(unit).unwrap_or(text).trim().replace('−', "-");
+        let stays = format!("{} stays {}{space}{unit}.", self.name, shown(present, 0));
+        if number.is_empty() {
+            return Err(format!("No number was typed: {stays}"));
+        }
+        let Some(value) = number.parse::<f64>().ok().filter(|value| value.is_finite()) else {
+            let point = if number.contains(',') { " It takes a point, as in 1.5." } else { "" };
+            return Err(format!("“{}” is no number: {stays}{point}", clipped(&number)));
+        };
+        // what the scene came with is within
+        let (low, high) = (self.typed.0.min(present), self.typed.1.max(present));
+        if !(low..=high).contains(&value) {
+            return Err(format!(
+                "{}{space}{unit} was not taken: {} may be {} to {}{space}{unit}.",
+                shown(value, 0),
+                self.name,
+                shown(low, 0),
+                shown(high, 0)
+            ));
+        }
+        Ok(value)
+    }
+
+    /// What a long number takes more than the usual one, the slider has less: together they keep their room.
+    fn slider_width(&self, ui: &Ui, value: f64, least: usize) -> f32 {
+        let text = format!("{} {}", shown(value, least), self.unit);
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let text = ui.painter().layout_no_wrap(text, font, Color32::PLACEHOLDER).size().x;
+        let number = text + 2.0 * ui.spacing().button_padding.x;
+        (self.width - (number - NUMBER).max(0.0)).max(LEAST_SLIDER)
+    }
+}
+
+fn clipped(text: &str) -> String {
+    let short: String = text.chars().take(20).collect();
+    if short.len() < text.len() { format!("{short}..") } else { short }
+}
+
+/// What was asked of a control and not done.
+#[derive(Debug, Clone)]
+struct Refused {
+    /// The name of the control.
+    of: String,
+    why: String,
+    /// Time in s at which it was asked.
+    at: f64,
+}
+
+fn place() -> egui::Id {
+    egui::Id::unique("refused")
+}
+
+/// Says at a control why it stays as it is, for some seconds or until something else is taken.
+pub fn refuse(ui: &Ui, of: &str, why: String) {
+    let refused = Refused { of: of.to_owned(), why, at: ui.input(|input| input.time) };
+    ui.data_mut(|data| data.insert_temp(place(), refused));
+}
+
+fn forget(ui: &Ui) {
+    ui.data_mut(|data| data.remove::<Refused>(place()));
+}
+
+/// What was refused of this control: beside it, where there is a column of them, else below it.
+fn said_ui(ui: &Ui, of: &str, response: &Response) {
+    let Some(refused) = ui.data(|data| data.get_temp::<Refused>(place())).filter(|own| own.of == of) else {
+        return;
+    };
+    let left = SAID - (ui.input(|input| input.time) - refused.at);
+    if left <= 0.0 {
+        forget(ui);
+        return;
+    }
+    ui.ctx().request_repaint_after_secs(left as f32);
+    let (rect, window) = (response.rect, ui.ctx().content_rect());
+    let beside = window.width() >= COMPACT_BELOW && window.right() - rect.right() > WIDTH + 40.0;
+    let at = if beside {
+        pos2(rect.right() + 10.0, rect.top())
+    } else {
+        rect.left_bottom() + egui::vec2(0.0, 4.0)
+    };
+    let style = Style::of(ui.ctx(), false);
+    let area = egui::Area::new(place().with(of)).order(egui::Order::Tooltip).fixed_pos(at);
+    area.constrain(true).interactable(false).show(ui.ctx(), |ui| {
+        let frame = egui::Frame::popup(ui.style()).stroke(egui::Stroke::new(1.5, style.impact()));
+        frame.show(ui, |ui| {
+            ui.set_max_width(WIDTH);
+            ui.add(egui::Label::new(RichText::new(refused.why).color(style.ink())).wrap());
+        });
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn knob() -> Knob<'static> {
+        let reach = Reach { low: 0.0, high: 2.0, step: 0.01 };
+        Knob { name: "amplitude", unit: "g", reach, typed: (-10.0, 10.0), hover: "", width: 100.0 }
+    }
+
+    #[test]
+    fn a_text_is_a_number_or_says_why_not() {
+        let parsed = |text: &str| knob().parsed(text, 0.9);
+        assert_eq!(parsed("1.137"), Ok(1.137));
+        assert_eq!((parsed("1.5 g"), parsed("−2"), parsed("1e0")), (Ok(1.5), Ok(-2.0), Ok(1.0)));
+        for (text, why) in [
+            ("abc", "“abc” is no number: amplitude stays 0.9 g."),
+            ("1,5", "“1,5” is no number: amplitude stays 0.9 g. It takes a point, as in 1.5."),
+            ("", "No number was typed: amplitude stays 0.9 g."),
+            ("nan", "“nan” is no number: amplitude stays 0.9 g."),
+            ("1e9", "1e9 g was not taken: amplitude may be -10 to 10 g."),
+        ] {
+            assert_eq!(parsed(text), Err(why.to_owned()));
+        }
+        // what is there already may be typed again
+        assert_eq!(knob().parsed("50", 50.0), Ok(50.0));
+    }
+}

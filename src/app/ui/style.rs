@@ -1,0 +1,315 @@
+//! Which colour and which width means what?
+//!
+//! The hues are Okabe and Ito's (2008, "Color Universal Design"), one meaning each, and never a hue alone: every regime
+//! has a shape as well. Light, dark and projector differ in grounds, widths and zoom, not in meanings.
+
+use std::sync::Arc;
+
+use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId, Stroke, TextStyle, Theme};
+
+use crate::app::words::status::Kind;
+use crate::output::{Ink, viridis};
+
+/// Zoom of the projector mode.
+pub const PROJECTOR_ZOOM: f32 = 1.5;
+
+/// Width in points below which the window is laid out for a projector: two controls in a row, two views.
+pub const COMPACT_BELOW: f32 = 1000.0;
+
+/// Size in points of a window above which there is room for a tile more.
+pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);
+
+/// Text sizes in points.
+pub const SMALL: f32 = 11.5;
+/// Body text and buttons.
+pub const BODY: f32 = 14.0;
+/// The status sentence.
+pub const STATUS: f32 = 18.0;
+/// The status sentence where room is short.
+pub const STATUS_COMPACT: f32 = 16.0;
+
+/// Radius in points of the proof mass where it rides on a curve; stops are drawn as far outside their limit, so that it
+/// touches them when it should.
+pub const BALL: f32 = 9.0;
+
+/// How near in points a hand has to be to grab something.
+pub const GRAB: f32 = 14.0;
+
+/// Screen time in s in which the ring of an impact grows and fades.
+pub const RING_SECONDS: f64 = 0.3;
+
+const ORANGE: Color32 = Color32::from_rgb(230, 159, 0);
+const SKY: Color32 = Color32::from_rgb(86, 180, 233);
+const GREEN: Color32 = Color32::from_rgb(0, 158, 115);
+const BLUE: Color32 = Color32::from_rgb(0, 114, 178);
+const VERMILION: Color32 = Color32::from_rgb(213, 94, 0);
+const PURPLE: Color32 = Color32::from_rgb(204, 121, 167);
+
+/// The colours and widths of one appearance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Style {
+    /// Whether the ground is dark.
+    pub dark: bool,
+    /// Whether lines are to be seen from the last row.
+    pub projector: bool,
+}
+
+impl Style {
+    /// The style of what is shown now.
+    pub fn of(ctx: &egui::Context, projector: bool) -> Self {
+        Self { dark: ctx.theme() == Theme::Dark, projector }
+    }
+
+    fn pick(&self, light: Color32, dark: Color32) -> Color32 {
+        if self.dark { dark } else { light }
+    }
+
+    /// Text and axes.
+    pub fn ink(&self) -> Color32 {
+        self.pick(Color32::from_gray(25), Color32::from_gray(230))
+    }
+
+    /// What stands back: ticks, units, notes.
+    pub fn faint(&self) -> Color32 {
+        self.pick(Color32::from_gray(95), Color32::from_gray(165))
+    }
+
+    /// Edges of what can be pressed: three times as light or dark as the ground at least.
+    pub fn edge(&self) -> Color32 {
+        self.pick(Color32::from_gray(135), Color32::from_gray(118))
+    }
+
+    /// Grid lines.
+    pub fn grid(&self) -> Color32 {
+        self.pick(Color32::from_gray(225), Color32::from_gray(52))
+    }
+
+    /// The ground of a view.
+    pub fn ground(&self) -> Color32 {
+        self.pick(Color32::WHITE, Color32::from_gray(22))
+    }
+
+    /// The proof mass.
+    pub fn mass(&self) -> Color32 {
+        ORANGE
+    }
+
+    /// What is written about the proof mass.
+    pub fn mass_ink(&self) -> Color32 {
+        self.pick(Color32::from_rgb(140, 92, 0), ORANGE)
+    }
+
+    /// The outline of the proof mass.
+    pub fn mass_edge(&self) -> Color32 {
+        self.pick(Color32::from_rgb(122, 84, 0), Color32::from_rgb(255, 214, 128))
+    }
+
+    /// Stops.
+    pub fn stop(&self) -> Color32 {
+        self.pick(GREEN, Color32::from_rgb(40, 190, 145))
+    }
+
+    /// The base, its acceleration and its push.
+    pub fn base(&self) -> Color32 {
+        self.pick(Color32::from_rgb(30, 125, 180), SKY)
+    }
+
+    /// Force and potential of the mechanism.
+    pub fn curve(&self) -> Color32 {
+        self.ink()
+    }
+
+    /// The motion over time.
+    pub fn motion(&self) -> Color32 {
+        self.ink()
+    }
+
+    /// Time at rest on a stop.
+    pub fn rest_shade(&self) -> Color32 {
+        self.pick(Color32::from_gray(222), Color32::from_gray(58))
+    }
+
+    /// Impacts.
+    pub fn impact(&self) -> Color32 {
+        self.pick(VERMILION, Color32::from_rgb(240, 120, 40))
+    }
+
+    /// A kind of motion.
+    pub fn kind(&self, kind: Kind) -> Color32 {
+        match kind {
+            Kind::Resting | Kind::Other => self.pick(Color32::from_gray(105), Color32::from_gray(170)),
+            Kind::Intrawell => self.pick(BLUE, Color32::from_rgb(60, 160, 225)),
+            Kind::Irregular => self.pick(Color32::from_rgb(176, 84, 136), PURPLE),
+            Kind::Interwell | Kind::Crossing | Kind::Fault => self.impact(),
+        }
+    }
+
+    fn width(&self, points: f32) -> f32 {
+        // three pixels where it is projected, at its zoom
+        if self.projector { points.max(3.0 / PROJECTOR_ZOOM) } else { points }
+    }
+
+    /// The potential with the base's push, on which the mass rides.
+    pub fn tray_stroke(&self) -> Stroke {
+        Stroke::new(3.0, self.curve())
+    }
+
+    /// The potential without it.
+    pub fn ghost_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.2), self.faint())
+    }
+
+    /// The motion over time.
+    pub fn motion_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.6), self.motion())
+    }
+
+    /// What the base does, over time and as a push.
+    pub fn base_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.6), self.base())
+    }
+
+    /// The height of the barrier where energies are compared with it.
+    pub fn barrier_stroke(&self) -> Stroke {
+        Stroke::new(self.width(2.0), self.ink())
+    }
+
+    /// An impact: a tick in time, a jump of the velocity.
+    pub fn impact_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.5), self.impact())
+    }
+
+    /// A stop.
+    pub fn stop_stroke(&self) -> Stroke {
+        Stroke::new(self.width(2.0), self.stop())
+    }
+
+    /// Around what the keyboard acts on.
+    pub fn focus_stroke(&self) -> Stroke {
+        Stroke::new(self.width(2.0), self.base())
+    }
+
+    /// An arrow.
+    pub fn arrow_stroke(&self) -> Stroke {
+        Stroke::new(3.0, self.base())
+    }
+
+    /// Flexures.
+    pub fn flexure_stroke(&self) -> Stroke {
+        Stroke::new(self.width(2.0), self.ink())
+    }
+
+    /// Axis ticks and grid.
+    pub fn grid_stroke(&self) -> Stroke {
+        Stroke::new(1.0, self.grid())
+    }
+
+    /// The frame of the base.
+    pub fn frame_colour(&self) -> Color32 {
+        self.pick(Color32::from_gray(190), Color32::from_gray(85))
+    }
+
+    /// A share from 0 to 1 of a map's scale.
+    pub fn scale(&self, share: f64) -> Color32 {
+        let Ink(red, green, blue) = viridis(share);
+        Color32::from_rgb(red, green, blue)
+    }
+
+    /// What is not known yet.
+    pub fn panel(&self) -> Color32 {
+        self.pick(Color32::from_gray(246), Color32::from_gray(34))
+    }
+
+    /// Over a map that is not that of the scene.
+    pub fn veil(&self) -> Color32 {
+        self.pick(Color32::from_white_alpha(140), Color32::from_black_alpha(130))
+    }
+
+    /// Symbols over the colour of a kind of motion.
+    pub fn over_kind(&self) -> Color32 {
+        self.pick(Color32::WHITE, Color32::BLACK)
+    }
+
+    /// Hatching over what is at rest.
+    pub fn hatch_stroke(&self) -> Stroke {
+        Stroke::new(1.2, self.pick(Color32::from_gray(140), Color32::from_gray(125)))
+    }
+
+    /// Hatching over what has no value.
+    pub fn missing_stroke(&self) -> Stroke {
+        Stroke::new(1.2, self.faint())
+    }
+
+    /// The release over a map: its outline and itself.
+    pub fn release_strokes(&self) -> [Stroke; 2] {
+        let width = self.width(2.4);
+        [Stroke::new(width + 2.4, Color32::BLACK), Stroke::new(width, Color32::WHITE)]
+    }
+
+    /// The first crossing over a map: its outline and itself.
+    pub fn crossing_strokes(&self) -> [Stroke; 2] {
+        let width = self.width(2.4);
+        [Stroke::new(width + 2.4, Color32::WHITE), Stroke::new(width, VERMILION)]
+    }
+
+    /// Where the scene is on a map: an outline and the mark, which is the mass.
+    pub fn marker_strokes(&self) -> [Stroke; 2] {
+        let width = self.width(2.4);
+        [Stroke::new(width + 2.6, Color32::BLACK), Stroke::new(width, ORANGE)]
+    }
+
+    /// The cell under the pointer.
+    pub fn cell_stroke(&self) -> Stroke {
+        Stroke::new(self.width(2.0), self.ink())
+    }
+
+    /// Small text in a picture.
+    pub fn small(&self) -> FontId {
+        FontId::proportional(SMALL)
+    }
+
+    /// Body text in a picture.
+    pub fn body(&self) -> FontId {
+        FontId::proportional(BODY)
+    }
+}
+
+/// Fonts, text sizes and spacing of the window; to be called once.
+pub fn install(ctx: &egui::Context) {
+    let mut fonts = FontDefinitions::default();
+    let inter = FontData::from_static(include_bytes!("../../../assets/fonts/Inter-Regular.ttf"));
+    let strong = FontData::from_static(include_bytes!("../../../assets/fonts/Inter-SemiBold.ttf"));
+    fonts.font_data.insert("inter".into(), Arc::new(inter));
+    fonts.font_data.insert("inter-strong".into(), Arc::new(strong));
+    let proportional = fonts.families.entry(FontFamily::Proportional).or_default();
+    proportional.insert(0, "inter".into());
+    let mut heavy = proportional.clone();
+    heavy.insert(0, "inter-strong".into());
+    fonts.families.insert(strong_family(), heavy);
+    ctx.set_fonts(fonts);
+    ctx.all_styles_mut(|style| {
+        let dark = style.visuals.dark_mode;
+        let ink = Style { dark, projector: false };
+        style.text_styles = [
+            (TextStyle::Small, FontId::proportional(SMALL)),
+            (TextStyle::Body, FontId::proportional(BODY)),
+            (TextStyle::Button, FontId::proportional(BODY)),
+            (TextStyle::Monospace, FontId::monospace(BODY)),
+            (TextStyle::Heading, FontId::new(BODY, strong_family())),
+        ]
+        .into();
+        style.spacing.slider_width = 150.0;
+        style.spacing.item_spacing = egui::vec2(8.0, 6.0);
+        style.visuals.override_text_color = Some(ink.ink());
+        style.visuals.slider_trailing_fill = true;
+        // what can be pressed or ticked has an edge that is seen on every ground
+        style.visuals.widgets.inactive.bg_stroke = Stroke::new(1.0, ink.edge());
+        // what has the keyboard's focus has this frame, too
+        style.visuals.widgets.active.bg_stroke = ink.focus_stroke();
+    });
+}
+
+/// The family of headings and of what is to be read first.
+pub fn strong_family() -> FontFamily {
+    FontFamily::Name("strong".into())
+}

@@ -1,0 +1,173 @@
+//! Small things that several panels draw: hover texts, icons, the shapes of regimes.
+
+use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
+
+use crate::app::words::status::Kind;
+
+use super::style::COMPACT_BELOW;
+
+/// What waits for an answer, over everything else.
+pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
+    let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
+    egui::Modal::new(egui::Id::unique(id)).frame(frame)
+}
+
+/// Width in points of a dialog that wants `most`, where the window has room for it.
+pub fn dialog_width(ui: &Ui, most: f32) -> f32 {
+    (ui.ctx().content_rect().width() - 60.0).clamp(60.0, most)
+}
+
+/// A hover text that stands beside what it explains, where the window has a column of controls: below it would cover the
+/// next one. It stays away from what a hand has just changed, until the pointer comes back to it.
+pub fn hover_beside(response: Response, text: &str) -> Response {
+    let hushed = egui::Id::unique("hushed");
+    let own = Some(response.id);
+    let is_hushed = || response.ctx.data(|data| data.get_temp::<Option<egui::Id>>(hushed)).flatten() == own;
+    if response.changed() || response.dragged() || response.is_pointer_button_down_on() {
+        response.ctx.data_mut(|data| data.insert_temp(hushed, own));
+    } else if is_hushed() && !response.contains_pointer() {
+        response.ctx.data_mut(|data| data.insert_temp::<Option<egui::Id>>(hushed, None));
+    }
+    if is_hushed() {
+        return response;
+    }
+    if response.ctx.content_rect().width() < COMPACT_BELOW {
+        return response.on_hover_text(text);
+    }
+    let mut tooltip = egui::Tooltip::for_enabled(&response);
+    tooltip.popup = tooltip.popup.align(egui::RectAlign::RIGHT_START);
+    tooltip.show(|ui| ui.label(text));
+    response
+}
+
+/// The button that closes a message; it has the keyboard, so that Enter does.
+pub fn close_ui(ui: &mut Ui) -> bool {
+    let button = ui.button("Close");
+    if ui.memory(|memory| memory.focused().is_none()) {
+        button.request_focus();
+    }
+    button.clicked()
+}
+
+/// Steps to the right that the arrow keys ask of what has the focus; they then do not move the focus itself.
+pub fn arrows(ui: &Ui, id: egui::Id) -> f64 {
+    let filter = egui::EventFilter { horizontal_arrows: true, ..egui::EventFilter::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+    ui.input(|input| {
+        let presses = |key| f64::from(u32::try_from(input.num_presses(key)).unwrap_or(0));
+        let steps = presses(egui::Key::ArrowRight) - presses(egui::Key::ArrowLeft);
+        if input.modifiers.shift { 10.0 * steps } else { steps }
+    })
+}
+
+/// What a button shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Icon {
+    /// A triangle.
+    Play,
+    /// Two bars.
+    Pause,
+    /// A bar and a triangle to the left.
+    Restart,
+    /// A triangle and a bar: one step.
+    Step,
+    /// To the event before.
+    PreviousEvent,
+    /// To the event after.
+    NextEvent,
+    /// A square: one view over the whole window.
+    Fill,
+    /// Four squares: all views again.
+    Restore,
+}
+
+/// A button with an icon; `name` is what a screen reader and the tests call it.
+pub fn icon_button_ui(ui: &mut Ui, icon: Icon, size: f32, name: &str, hover: &str) -> Response {
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(size), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
+    let visuals = ui.style().interact(&response);
+    ui.painter().rect_filled(rect, 4.0, visuals.weak_bg_fill);
+    if response.has_focus() {
+        ui.painter().rect_stroke(rect, 4.0, visuals.fg_stroke, egui::StrokeKind::Inside);
+    }
+    let color = if ui.is_enabled() { visuals.fg_stroke.color } else { ui.visuals().weak_text_color() };
+    ui.painter().extend(icon_shapes(icon, rect.shrink(size * 0.28), color));
+    response.on_hover_text(hover)
+}
+
+fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
+    let triangle = |r: Rect, right: bool| {
+        let (tip, back) = if right { (r.right(), r.left()) } else { (r.left(), r.right()) };
+        let points = vec![pos2(tip, r.center().y), pos2(back, r.top()), pos2(back, r.bottom())];
+        Shape::convex_polygon(points, color, Stroke::NONE)
+    };
+    let bar = |x: f32, width: f32| {
+        let bar = Rect::from_min_max(pos2(x, rect.top()), pos2(x + width, rect.bottom()));
+        Shape::rect_filled(bar, 0.0, color)
+    };
+    let thin = rect.width() * 0.2;
+    let part = |from: f32, to: f32| {
+        let x = |share: f32| rect.left() + share * rect.width();
+        Rect::from_min_max(pos2(x(from), rect.top()), pos2(x(to), rect.bottom()))
+    };
+    let diamond = |x: f32| {
+        let (c, r) = (pos2(x, rect.center().y), rect.width() * 0.22);
+        let points = vec![c - vec2(0.0, r), c + vec2(r, 0.0), c + vec2(0.0, r), c - vec2(r, 0.0)];
+        Shape::convex_polygon(points, color, Stroke::NONE)
+    };
+    match icon {
+        Icon::Play => vec![triangle(rect, true)],
+        Icon::Pause => {
+            vec![bar(rect.left() + thin * 0.5, thin * 1.4), bar(rect.right() - thin * 1.9, thin * 1.4)]
+        }
+        Icon::Restart => vec![bar(rect.left(), thin), triangle(part(0.25, 1.0), false)],
+        Icon::Step => vec![triangle(part(0.0, 0.7), true), bar(rect.right() - thin, thin)],
+        Icon::PreviousEvent => {
+            vec![triangle(part(0.5, 1.0), false), diamond(rect.left() + rect.width() * 0.2)]
+        }
+        Icon::NextEvent => vec![triangle(part(0.0, 0.5), true), diamond(rect.right() - rect.width() * 0.2)],
+        Icon::Restore => [rect.left_top(), rect.right_top(), rect.left_bottom(), rect.right_bottom()]
+            .map(|corner| {
+                let part = Rect::from_two_pos(corner, rect.center() + (corner - rect.center()) * 0.24);
+                Shape::rect_stroke(part, 0.0, Stroke::new(1.5, color), egui::StrokeKind::Inside)
+            })
+            .to_vec(),
+        Icon::Fill => {
+            vec![Shape::rect_stroke(rect, 0.0, Stroke::new(1.5, color), egui::StrokeKind::Inside)]
+        }
+    }
+}
+
+/// The shape of a kind of motion: square, circle, diamond, double arrow.
+pub fn kind_shapes(kind: Kind, center: Pos2, radius: f32, color: Color32) -> Vec<Shape> {
+    let r = radius;
+    let polygon = |points: Vec<Pos2>| Shape::convex_polygon(points, color, Stroke::NONE);
+    match kind {
+        Kind::Resting | Kind::Other => {
+            vec![Shape::rect_filled(Rect::from_center_size(center, Vec2::splat(1.7 * r)), 0.0, color)]
+        }
+        Kind::Intrawell => vec![Shape::circle_filled(center, r, color)],
+        Kind::Irregular => vec![polygon(vec![
+            center + vec2(0.0, -1.2 * r),
+            center + vec2(1.2 * r, 0.0),
+            center + vec2(0.0, 1.2 * r),
+            center + vec2(-1.2 * r, 0.0),
+        ])],
+        Kind::Interwell | Kind::Crossing => {
+            let head = |way: f32| {
+                polygon(vec![
+                    center + vec2(way * 1.4 * r, 0.0),
+                    center + vec2(way * 0.4 * r, -0.9 * r),
+                    center + vec2(way * 0.4 * r, 0.9 * r),
+                ])
+            };
+            let shaft = [center - vec2(0.6 * r, 0.0), center + vec2(0.6 * r, 0.0)];
+            vec![head(-1.0), head(1.0), Shape::line_segment(shaft, Stroke::new(0.4 * r, color))]
+        }
+        Kind::Fault => vec![polygon(vec![
+            center + vec2(0.0, -r),
+            center + vec2(1.1 * r, 0.9 * r),
+            center + vec2(-1.1 * r, 0.9 * r),
+        ])],
+    }
+}

@@ -1,0 +1,337 @@
+//! Which views stand where? Trees of tiles for each layout, and for windows that are as small as a projector's.
+
+use eframe::egui::{self, Ui, Vec2, WidgetText};
+use egui_tiles::{
+    Container, Linear, LinearDir, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse,
+};
+
+use crate::app::ui::style::{BODY, COMPACT_BELOW, LARGE_FROM};
+use crate::app::views::{View, ViewContext, view_ui};
+use crate::scene::Layout;
+
+/// Shares of the window in the layout Look: left of 1030 points 590, of 584 points of height 340 on the
+/// right.
+const LEFT_SHARE: f32 = 590.0 / 1030.0;
+const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
+
+/// Share of the width that the map has in the layout Map.
+const MAP_SHARE: f32 = 640.0 / 1030.0;
+
+/// Share of the height that the mechanism has over the well.
+const MECHANISM_SHARE: f32 = 0.4;
+
+/// Share of the width that the first column of the layout Study has, and that one of two views has where room
+/// is short.
+const STUDY_COLUMN: f32 = 0.34;
+const COMPACT_SHARE: f32 = 0.5;
+
+/// How much room there is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Room {
+    /// A projector's: two groups of tabs.
+    Compact,
+    /// Four tiles, or six.
+    Wide,
+    /// A tile more.
+    Large,
+}
+
+impl Room {
+    /// The room in a window of that many points.
+    pub fn of(size: Vec2) -> Self {
+        if size.x < COMPACT_BELOW {
+            Self::Compact
+        } else if size.x > LARGE_FROM.x && size.y > LARGE_FROM.y {
+            Self::Large
+        } else {
+            Self::Wide
+        }
+    }
+}
+
+/// Which arrangement is on the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Arrangement {
+    /// One that comes with the program.
+    Layout(Layout),
+    /// The person's own.
+    Own,
+}
+
+/// The tiles of one arrangement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tiling {
+    tree: Tree<View>,
+    room: Room,
+}
+
+impl Tiling {
+    /// The tiles of a layout.
+    pub fn new(layout: Layout, room: Room) -> Self {
+        let tree = match room {
+            Room::Compact if layout == Layout::Map => tabs_tree(&views_of(layout)),
+            Room::Compact => compact_tree(&views_of(layout)),
+            Room::Wide | Room::Large => wide_tree(layout, room == Room::Large),
+        };
+        Self { tree, room }
+    }
+
+    /// The tiles of a person's own arrangement, as they were kept; where there is little room, the same views as tabs.
+    pub fn own(kept: &Tree<View>, room: Room) -> Self {
+        let tree = if room == Room::Compact {
+            let shown = |id: &TileId| kept.is_visible(*id);
+            let view = |own: (&TileId, &Tile<View>)| match own.1 {
+                Tile::Pane(view) => shown(own.0).then_some(*view),
+                Tile::Container(_) => None,
+            };
+            let shown: Vec<View> = kept.tiles.iter().filter_map(view).collect();
+            compact_tree(&View::ALL.into_iter().filter(|view| shown.contains(view)).collect::<Vec<_>>())
+        } else {
+            kept.clone()
+        };
+        Self { tree, room }
+    }
+
+    /// The tiles as they stand, to be kept. None where they stand for a small window.
+    pub fn kept(&self) -> Option<&Tree<View>> {
+        (self.room != Room::Compact).then_some(&self.tree)
+    }
+
+    /// The room that it was made for.
+    pub fn room(&self) -> Room {
+        self.room
+    }
+
+    /// Whether a view is shown somewhere.
+    pub fn shows(&self, view: View) -> bool {
+        self.tree.tiles.find_pane(&view).is_some_and(|id| self.tree.is_visible(id))
+    }
+
+    /// Shows or hides a view. One that has no place yet comes to those of its kind: below them, or where there is
+    /// little room as a tab.
+    pub fn show(&mut self, view: View, shown: bool) {
+        match self.tree.tiles.find_pane(&view) {
+            Some(id) => self.tree.set_visible(id, shown),
+            None if shown => {
+                let id = self.tree.tiles.insert_pane(view);
+                let place = self.place_for(view).or(self.tree.root());
+                if let Some(Tile::Container(container)) = place.and_then(|id| self.tree.tiles.get_mut(id)) {
+                    container.add_child(id);
+                }
+            }
+            None => return,
+        }
+        if shown && self.room == Room::Compact {
+            self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(own) if *own == view));
+        }
+    }
+
+    /// Brings the next of the tabs that share a place to the front: where `view` is, or the first place that
+    /// has several.
+    pub fn next_tab(&mut self, view: Option<View>) {
+        let tiles = &self.tree.tiles;
+        let next = view.into_iter().chain(View::ALL).find_map(|view| {
+            let place = tiles.parent_of(tiles.find_pane(&view)?)?;
+            let Some(Tile::Container(Container::Tabs(tabs))) = tiles.get(place) else { return None };
+            let shown: Vec<TileId> =
+                tabs.children.iter().copied().filter(|id| tiles.is_visible(*id)).collect();
+            let active = shown.iter().position(|id| Some(*id) == tabs.active)?;
+            (shown.len() > 1).then(|| (place, shown[(active + 1) % shown.len()]))
+        });
+        if let Some((place, tab)) = next
+            && let Some(Tile::Container(Container::Tabs(tabs))) = self.tree.tiles.get_mut(place)
+        {
+            tabs.set_active(tab);
+        }
+    }
+
+    /// The container that holds views of the same kind. Where room is short the mechanism stands among the
+    /// others.
+    fn place_for(&self, view: View) -> Option<TileId> {
+        let tiles = &self.tree.tiles;
+        let apart = |own: &View| self.room == Room::Compact && *own == View::Mechanism;
+        let alike = |own: &View| (own.is_along_x() && !apart(own)) == (view.is_along_x() && !apart(&view));
+        let neighbour = View::ALL.iter().filter(|own| alike(own)).find_map(|own| tiles.find_pane(own))?;
+        let mut place = tiles.parent_of(neighbour)?;
+        while self.room != Room::Compact
+            && let Some(Container::Tabs(_)) = tiles.get_container(place)
+        {
+            place = tiles.parent_of(place)?;
+        }
+        Some(place)
+    }
+
+    /// Draws the views. Whether one changed something; `fill` is set where a view asks for the whole window.
+    pub fn ui(&mut self, ui: &mut Ui, context: &mut ViewContext<'_>, fill: &mut Option<View>) -> bool {
+        let mut behavior = Behavior { context, changed: false, fill };
+        self.tree.ui(&mut behavior, ui);
+        behavior.changed
+    }
+}
+
+/// The views of a layout.
+fn views_of(layout: Layout) -> Vec<View> {
+    let look = [View::Well, View::Mechanism, View::Displacement, View::BeforeNow];
+    let study = [View::PhasePortrait, View::ForceCurve, View::Energy];
+    match layout {
+        Layout::Look => look.to_vec(),
+        Layout::Map => vec![View::Map, View::Well, View::BeforeNow],
+        Layout::Study => look.into_iter().chain(study).collect(),
+    }
+}
+
+fn wide_tree(layout: Layout, large: bool) -> Tree<View> {
+    match layout {
+        Layout::Look => look_tree(large),
+        Layout::Map => map_tree(),
+        Layout::Study => study_tree(large),
+    }
+}
+
+fn look_tree(large: bool) -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let mut pane = |view| tiles.insert_pane(view);
+    let (mechanism, well) = (pane(View::Mechanism), pane(View::Well));
+    let (displacement, card) = (pane(View::Displacement), pane(View::BeforeNow));
+    let phase = large.then(|| pane(View::PhasePortrait));
+    let left = pair(&mut tiles, LinearDir::Vertical, mechanism, well, MECHANISM_SHARE);
+    let right = match phase {
+        Some(phase) => tiles.insert_vertical_tile(vec![displacement, phase, card]),
+        None => pair(&mut tiles, LinearDir::Vertical, displacement, card, DISPLACEMENT_SHARE),
+    };
+    let root = pair(&mut tiles, LinearDir::Horizontal, left, right, LEFT_SHARE);
+    Tree::new(egui::Id::unique("wide"), root, tiles)
+}
+
+/// What has the displacement along it in two columns, what has not in the third.
+fn study_tree(large: bool) -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let mut pane = |view| tiles.insert_pane(view);
+    let (mechanism, well) = (pane(View::Mechanism), pane(View::Well));
+    let (phase, force) = (pane(View::PhasePortrait), pane(View::ForceCurve));
+    let (displacement, energy, card) = (pane(View::Displacement), pane(View::Energy), pane(View::BeforeNow));
+    let left = pair(&mut tiles, LinearDir::Vertical, mechanism, well, MECHANISM_SHARE);
+    let middle = tiles.insert_vertical_tile(vec![phase, force]);
+    let right = if large {
+        tiles.insert_vertical_tile(vec![displacement, energy, card])
+    } else {
+        let tabs = tiles.insert_tab_tile(vec![energy, card]);
+        tiles.insert_vertical_tile(vec![displacement, tabs])
+    };
+    let others = pair(&mut tiles, LinearDir::Horizontal, middle, right, 0.5);
+    let root = pair(&mut tiles, LinearDir::Horizontal, left, others, STUDY_COLUMN);
+    Tree::new(egui::Id::unique("wide"), root, tiles)
+}
+
+/// Two groups of tabs: the well and what else has the displacement along it, and the mechanism before what
+/// has not.
+fn compact_tree(views: &[View]) -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let is_first = |view: &&View| view.is_along_x() && **view != View::Mechanism;
+    let (along, others): (Vec<View>, Vec<View>) = views.iter().partition(is_first);
+    let mut groups: Vec<TileId> = Vec::new();
+    for group in [along, others] {
+        let panes: Vec<TileId> = group.into_iter().map(|view| tiles.insert_pane(view)).collect();
+        if !panes.is_empty() {
+            groups.push(tiles.insert_tab_tile(panes));
+        }
+    }
+    let root = match groups[..] {
+        [left, right] => pair(&mut tiles, LinearDir::Horizontal, left, right, COMPACT_SHARE),
+        _ => tiles.insert_horizontal_tile(groups),
+    };
+    Tree::new(egui::Id::unique("compact"), root, tiles)
+}
+
+/// One view at a time over the whole width.
+fn tabs_tree(views: &[View]) -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let panes = views.iter().map(|view| tiles.insert_pane(*view)).collect();
+    let root = tiles.insert_tab_tile(panes);
+    Tree::new(egui::Id::unique("compact map"), root, tiles)
+}
+
+/// The map, with the well and the card beside it.
+fn map_tree() -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let mut pane = |view| tiles.insert_pane(view);
+    let (map, well, card) = (pane(View::Map), pane(View::Well), pane(View::BeforeNow));
+    let right = pair(&mut tiles, LinearDir::Vertical, well, card, DISPLACEMENT_SHARE);
+    let root = pair(&mut tiles, LinearDir::Horizontal, map, right, MAP_SHARE);
+    Tree::new(egui::Id::unique("map"), root, tiles)
+}
+
+fn pair(tiles: &mut Tiles<View>, direction: LinearDir, first: TileId, second: TileId, share: f32) -> TileId {
+    let linear = Linear::new_binary(direction, [first, second], share);
+    tiles.insert_container(Container::Linear(linear))
+}
+
+struct Behavior<'a, 'b> {
+    context: &'a mut ViewContext<'b>,
+    changed: bool,
+    fill: &'a mut Option<View>,
+}
+
+impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
+    fn tab_title_for_pane(&mut self, view: &View) -> WidgetText {
+        egui::RichText::new(view.name()).size(BODY).into()
+    }
+
+    fn pane_ui(&mut self, ui: &mut Ui, _: TileId, view: &mut View) -> UiResponse {
+        self.changed |= view_ui(ui, *view, self.context);
+        UiResponse::None
+    }
+
+    fn tab_bar_height(&self, _: &egui::Style) -> f32 {
+        26.0
+    }
+
+    fn on_tab_button(
+        &mut self,
+        tiles: &mut Tiles<View>,
+        id: TileId,
+        button: egui::Response,
+    ) -> egui::Response {
+        match tiles.get_pane(&id) {
+            Some(view) => button.on_hover_text(view.about()),
+            None => button,
+        }
+    }
+
+    fn top_bar_right_ui(
+        &mut self,
+        tiles: &Tiles<View>,
+        ui: &mut Ui,
+        _: TileId,
+        tabs: &egui_tiles::Tabs,
+        _: &mut f32,
+    ) {
+        let Some(view) = tabs.active.and_then(|id| tiles.get_pane(&id)) else { return };
+        let name = format!("fill the window with {}", view.name());
+        let hover = "This view over the whole window (Z)";
+        if crate::app::ui::widgets::icon_button_ui(
+            ui,
+            crate::app::ui::widgets::Icon::Fill,
+            22.0,
+            &name,
+            hover,
+        )
+        .clicked()
+        {
+            *self.fill = Some(*view);
+        }
+    }
+
+    fn gap_width(&self, _: &egui::Style) -> f32 {
+        4.0
+    }
+
+    fn min_size(&self) -> f32 {
+        60.0
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        // every view keeps its title
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+}

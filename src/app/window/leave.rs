@@ -1,0 +1,83 @@
+//! What is asked before a scene that is not saved gives way to another, or to nothing.
+
+use eframe::egui::Ui;
+
+use crate::app::ui::widgets::{dialog, dialog_width};
+
+/// What is to come once the present scene may go.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Next {
+    /// A scene file or a built-in scene.
+    Open(String),
+    /// A scene as text.
+    Text(String),
+    /// A file that is still to be chosen.
+    Choose,
+    /// The window is closed.
+    Quit,
+}
+
+/// What was answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// Save first.
+    Save,
+    /// Let the changes go.
+    DontSave,
+    /// Stay.
+    Cancel,
+}
+
+/// Asks; none while there is no answer. The keyboard begins on Save, Escape stays.
+pub fn question_ui(ui: &Ui, title: &str) -> Option<Answer> {
+    let text = format!("{title} has changes that are not saved.");
+    choice_ui(ui, "unsaved", "Save the changes?", &text, ["Save", "Don't save"]).map(|choice| match choice {
+        Some(0) => Answer::Save,
+        Some(_) => Answer::DontSave,
+        None => Answer::Cancel,
+    })
+}
+
+/// Asks before a file that was written by hand is written over; none while there is no answer. Its comments are no part
+/// of a scene, and go.
+pub fn comments_ui(ui: &Ui, path: &str) -> Option<Answer> {
+    let text = format!(
+        "{path} has comments. They are no part of the scene, and saving over the file does not keep them; its \
+         title and notes stay."
+    );
+    let choice = choice_ui(ui, "comments", "Save without the comments?", &text, ["Save", "Save as..."]);
+    choice.map(|choice| match choice {
+        Some(0) => Answer::Save,
+        Some(_) => Answer::DontSave,
+        None => Answer::Cancel,
+    })
+}
+
+/// Two ways on, and Cancel, which is `Some(None)`.
+fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, ways: [&str; 2]) -> Option<Option<usize>> {
+    let answer = dialog(ui.ctx(), id).show(ui.ctx(), |ui: &mut Ui| {
+        ui.set_max_width(dialog_width(ui, 460.0));
+        ui.heading(heading);
+        ui.add_space(6.0);
+        ui.label(text);
+        ui.add_space(10.0);
+        ui.horizontal(|ui| {
+            let mut chosen = None;
+            for (i, way) in ways.into_iter().enumerate() {
+                let button = ui.button(way);
+                if i == 0 && ui.memory(|memory| memory.focused().is_none()) {
+                    button.request_focus();
+                }
+                if button.clicked() {
+                    chosen = Some(Some(i));
+                }
+            }
+            if ui.button("Cancel").clicked() {
+                chosen = Some(None);
+            }
+            chosen
+        })
+        .inner
+    });
+    if answer.inner.is_none() && answer.should_close() { Some(None) } else { answer.inner }
+}

@@ -1,0 +1,419 @@
+//! The window: panels around the tiles, commands carried out, time passed on.
+//!
+//! [`Window::ui`] needs no graphics and no display: tests drive it as it is.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
+use egui_tiles::Tree;
+
+use crate::app::panels::status_line::{covered_ui, status_ui};
+use crate::app::panels::{controls, hint, notes, transport};
+use crate::app::session::editor::Editor;
+use crate::app::session::{CannotRun, Session};
+use crate::app::task::{Latest, Wake};
+use crate::app::ui::settings::Settings;
+use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
+use crate::app::ui::widgets::{Icon, icon_button_ui};
+use crate::app::views::{self, Memory, View, ViewContext};
+use crate::app::words::announce::Announcer;
+use crate::scene::{Layout, PRESETS};
+
+use layouts::{Arrangement, Room, Tiling};
+use leave::Next;
+use menu::Command;
+
+/// Where the scenes opened last are kept between two starts of the program.
+pub const RECENT: &str = "recent";
+
+/// Height in points of the controls as a row, and width of the column that opens beside the views.
+const ROW: f32 = 28.0;
+const MORE: f32 = 276.0;
+
+/// Where the window's size in points is kept, at the zoom 1.
+pub const SIZE: &str = "size";
+/// Height in points of the line of the first minute.
+const HINT_ROW: f32 = 32.0;
+
+/// Where a person's own arrangement is kept.
+pub const OWN_KEY: &str = "arrangement";
+
+mod commands;
+mod files;
+pub mod layouts;
+pub mod leave;
+pub mod menu;
+mod place;
+mod release;
+mod shortcuts;
+mod told;
+mod typed;
+mod writing;
+
+use files::Chosen;
+use place::Place;
+use release::Later;
+use told::Told;
+use typed::Typed;
+
+/// Everything that the window shows.
+pub struct Window {
+    /// The open scene.
+    pub session: Session,
+    /// What a person wants whatever the scene.
+    pub settings: Settings,
+    tiling: Tiling,
+    arrangement: Arrangement,
+    /// A person's own arrangement, kept between two starts.
+    own: Option<Tree<View>>,
+    memory: Memory,
+    more: bool,
+    filled: Option<View>,
+    covered: bool,
+    /// A message that waits to be read: an error of a file, the notes of the scene, or what this program is.
+    message: Option<(String, String)>,
+    /// A short message that goes by itself.
+    told: Option<Told>,
+    /// Scene files that were opened or saved, the latest first.
+    pub recent: Vec<String>,
+    /// What waits for an answer about unsaved changes.
+    asked: Option<Next>,
+    /// What comes once the scene is saved.
+    after_save: Option<Next>,
+    /// A file with comments that is about to be written over.
+    over_comments: Option<PathBuf>,
+    /// The list of keys is shown.
+    shortcuts: bool,
+    /// What it would take to cross is shown.
+    ways: bool,
+    announcer: Announcer,
+    /// The changes may go: the window closes without another question.
+    leaving: bool,
+    /// What became of what is written elsewhere than in this thread: what was written, or the error.
+    written: (Sender<writing::Written>, Receiver<writing::Written>),
+    /// A whole run that is computed and written.
+    run: Latest<writing::Written>,
+    /// The size of the window on the screen.
+    place: Place,
+    /// The title that the window has.
+    titled: String,
+    dialog: Latest<Chosen>,
+    /// Whether files are asked for.
+    dialogs: bool,
+    /// A path that is typed where there is no dialog.
+    typed: Option<Typed>,
+    /// Input that waits for the next frame.
+    later: Later,
+    hint: hint::Hint,
+    /// The line of the first minute has been there.
+    hint_row: bool,
+    wake: Wake,
+    /// What was applied last, to be applied again only where it changes.
+    applied: Option<Settings>,
+}
+
+impl Window {
+    /// A window on a scene file or a built-in scene; the first preset where none is given.
+    pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+        let first = PRESETS.first().map_or("paper", |preset| preset.name);
+        Self::on(Editor::open(spec.unwrap_or(first))?, settings, wake)
+    }
+
+    /// The same; where the scene cannot be opened, on the first preset, with a message that says why.
+    pub fn start(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+        Self::open(spec, settings, Arc::clone(&wake)).or_else(|error| {
+            let mut window = Self::open(None, settings, wake)?;
+            window.say("This scene cannot be opened", error.to_string());
+            Ok(window)
+        })
+    }
+
+    fn on(editor: Editor, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+        let session = Session::new(editor, Arc::clone(&wake))?;
+        let layout = session.scene().app.as_ref().and_then(|app| app.layout).unwrap_or(Layout::Look);
+        Ok(Self {
+            hint: hint::Hint::for_scene(&session),
+            session,
+            settings,
+            tiling: Tiling::new(layout, Room::Wide),
+            arrangement: Arrangement::Layout(layout),
+            own: None,
+            memory: Memory::default(),
+            more: false,
+            filled: None,
+            covered: false,
+            message: None,
+            told: None,
+            recent: Vec::new(),
+            asked: None,
+            after_save: None,
+            over_comments: None,
+            leaving: false,
+            shortcuts: false,
+            ways: false,
+            announcer: Announcer::default(),
+            written: channel(),
+            run: Latest::default(),
+            place: Place::default(),
+            titled: String::new(),
+            dialog: Latest::default(),
+            dialogs: true,
+            typed: None,
+            later: Later::default(),
+            hint_row: false,
+            wake,
+            applied: None,
+        })
+    }
+
+    /// The message that waits to be read.
+    pub fn message(&self) -> Option<&str> {
+        self.message.as_ref().map(|message| message.1.as_str())
+    }
+
+    /// What was done since the last frame, before it is drawn.
+    pub fn logic(&mut self, ctx: &egui::Context) {
+        if self.applied != Some(self.settings) {
+            let dark = self.settings.dark && !self.settings.projector;
+            ctx.set_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light });
+            let zoom = if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 };
+            if self.applied.is_some_and(|applied| applied.projector != self.settings.projector)
+                || self.settings.projector
+            {
+                ctx.set_zoom_factor(zoom);
+            }
+            self.applied = Some(self.settings);
+        }
+        self.place.follow(ctx, if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 });
+        self.take_choice(ctx);
+        self.take_in(ctx);
+        // a view that is gone cannot let go of the mass itself
+        let free =
+            ctx.memory(|memory| memory.focused().is_none()) && !ctx.input(|input| input.pointer.any_down());
+        if free && self.session.player.is_held() {
+            self.session.player.let_go();
+            self.session.moved_by_hand();
+        }
+        self.session.poll();
+        if let Some(left) = self.session.follow_presses(ctx.input(|input| input.time)) {
+            ctx.request_repaint_after_secs(left as f32);
+        }
+        let seconds = ctx.input(|input| f64::from(input.stable_dt));
+        self.session.player.tick(seconds);
+        self.tell_reached();
+        if self.session.player.is_playing() {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Draws it all.
+    pub fn ui(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        if !self.waits_for_answer() {
+            self.keys(&ctx);
+        }
+        let style = Style::of(&ctx, self.settings.projector);
+        let room = Room::of(ctx.content_rect().size());
+        let compact = room == Room::Compact;
+        if room != self.tiling.room() {
+            self.arrange(room);
+        }
+        let fill = ui.visuals().panel_fill;
+        let frame = |x: i8, y: i8| Frame::new().fill(fill).inner_margin(Margin::symmetric(x, y));
+        let (bar, line, feet) = (frame(8, 2), frame(12, 4), frame(12, 4));
+        let mut asked = Vec::new();
+        Panel::top("menu").frame(bar).exact_size(32.0).show(ui, |ui| {
+            asked = menu::menu_ui(ui, &self.session, &self.tiling, self.settings, &self.recent);
+        });
+        let height = if compact { 40.0 } else { 44.0 };
+        Panel::top("status").frame(line).exact_size(height).show(ui, |ui| {
+            if self.covered {
+                covered_ui(ui);
+            } else {
+                status_ui(ui, &mut self.session, &mut self.announcer, &style, compact);
+            }
+        });
+        Panel::bottom("transport").frame(feet).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
+            transport::transport_ui(ui, &mut self.session, &style, self.covered);
+        });
+        if compact {
+            Panel::top("controls row").frame(line).show(ui, |ui| {
+                ui.set_height(ROW);
+                controls::row_ui(ui, &mut self.session, &mut self.more);
+            });
+            if self.more {
+                Panel::right("more").frame(line).resizable(false).exact_size(MORE).show(ui, |ui| {
+                    controls::more_column_ui(ui, &mut self.session);
+                });
+            }
+        } else {
+            let width = if ctx.content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
+            let column = frame(12, 10);
+            Panel::left("controls").frame(column).resizable(false).exact_size(width).show(ui, |ui| {
+                let bottom = ui.max_rect().bottom();
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    controls::column_ui(ui, &mut self.session, &mut self.more);
+                    if !self.covered && notes::notes_ui(ui, self.session.scene(), bottom) {
+                        asked.push(Command::Notes);
+                    }
+                });
+            });
+        }
+        let hinted = self.hint.is_shown(&self.session);
+        self.hint_row |= hinted;
+        if self.ways && !self.covered {
+            let ways = self.session.ways();
+            Panel::top("ways").frame(line).show(ui, |ui| ui.label(ways));
+        } else if self.hint_row {
+            // its room stays when it goes: the views below do not jump
+            let hinted = hinted && !self.covered;
+            let height = if hinted && self.hint.is_long() { 2.0 * HINT_ROW } else { HINT_ROW };
+            Panel::top("hint").frame(line).exact_size(height).show(ui, |ui| match hinted {
+                true => self.hint.ui(ui, &self.session),
+                false => {
+                    ui.label(
+                        RichText::new("H says what it would take to cross, F1 lists all keys.")
+                            .color(style.faint()),
+                    );
+                }
+            });
+        }
+        CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
+        self.memory.grab = false;
+        self.session.map.end_frame();
+        self.session.accuracy.end_frame();
+        self.session.player.end_frame();
+        for command in asked {
+            self.carry_out(&ctx, command);
+        }
+        self.questions_ui(ui, &ctx);
+        if self.shortcuts {
+            self.shortcuts = shortcuts::shortcuts_ui(ui);
+        }
+        self.message_ui(ui);
+        self.told_ui(ui);
+        focus_ui(&ctx, &style);
+    }
+
+    fn views_ui(&mut self, ui: &mut Ui, style: Style) {
+        let span = self.memory.span(&self.session);
+        let mut context = ViewContext {
+            session: &mut self.session,
+            style,
+            span,
+            memory: &mut self.memory,
+            reduce_motion: self.settings.reduce_motion,
+            covered: self.covered,
+            filled: self.filled.is_some(),
+        };
+        ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
+        let Some(view) = self.filled else {
+            self.tiling.ui(ui, &mut context, &mut self.filled);
+            // what a person does to an arrangement of their own stays
+            if self.arrangement == Arrangement::Own
+                && let Some(kept) = self.tiling.kept()
+                && self.own.as_ref() != Some(kept)
+            {
+                self.own = Some(kept.clone());
+            }
+            return;
+        };
+        let mut close = false;
+        ui.horizontal(|ui| {
+            ui.add_space(8.0);
+            ui.heading(view.name()).on_hover_text(view.about());
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                close = icon_button_ui(ui, Icon::Restore, 24.0, "all views", "All views again (Z or Esc)")
+                    .clicked();
+            });
+        });
+        views::view_ui(ui, view, &mut context);
+        if close {
+            self.filled = None;
+        }
+    }
+
+    /// A person's own arrangement of the views, where there is one.
+    pub fn own_arrangement(&self) -> Option<&Tree<View>> {
+        self.own.as_ref()
+    }
+
+    /// Takes over an arrangement that was kept.
+    pub fn set_own_arrangement(&mut self, own: Option<Tree<View>>) {
+        self.own = own;
+    }
+
+    /// Has the window be of a size that was kept: none at the first start.
+    pub fn restore_size(&mut self, size: Option<[f32; 2]>) {
+        self.place = Place::restored(size);
+    }
+
+    /// The size in points at the zoom 1 that is to be kept.
+    pub fn size(&self) -> Option<[f32; 2]> {
+        self.place.size()
+    }
+
+    /// What the traces share.
+    pub fn timeline(&self) -> &views::Timeline {
+        &self.memory.timeline
+    }
+
+    /// Whether the phase portrait shows a point a period and no path.
+    pub fn points_only(&self) -> bool {
+        self.memory.points_only
+    }
+
+    /// The views and where they stand.
+    pub fn tiling(&self) -> &Tiling {
+        &self.tiling
+    }
+}
+
+/// A ring around what has the keyboard's focus, whatever it is: nothing has it unseen.
+fn focus_ui(ctx: &egui::Context, style: &Style) {
+    let focused = ctx.memory(egui::Memory::focused).and_then(|id| ctx.read_response(id));
+    if let Some(response) = focused.filter(|_| !ctx.text_edit_focused()) {
+        let painter = ctx.layer_painter(response.layer_id).with_clip_rect(ctx.content_rect());
+        let rect = response.rect.expand(2.0);
+        painter.rect_stroke(rect, 4.0, style.focus_stroke(), egui::StrokeKind::Inside);
+    }
+}
+
+impl eframe::App for Window {
+    fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
+        Self::logic(self, ctx);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        Self::ui(self, ui);
+    }
+
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        if self.later.hold_back(input) {
+            ctx.request_repaint();
+        }
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        eframe::set_value(storage, eframe::APP_KEY, &self.settings);
+        eframe::set_value(storage, RECENT, &self.recent);
+        if let Some(size) = self.size() {
+            eframe::set_value(storage, SIZE, &size);
+        }
+        if let Some(own) = &self.own {
+            eframe::set_value(storage, OWN_KEY, own);
+        }
+    }
+
+    fn persist_egui_memory(&self) -> bool {
+        // what is open comes from the scene, not from the last time
+        false
+    }
+}
+
+/// Fonts and spacing; to be called once for a context.
+pub fn prepare(ctx: &egui::Context) {
+    style::install(ctx);
+}

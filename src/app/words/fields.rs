@@ -1,0 +1,235 @@
+//! Table of the numeric fields of a scene: name on the screen, unit, limits, range of the slider.
+
+use crate::scene::{Scene, Stops};
+
+/// What sets how far a slider goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Nothing of the scene.
+    Fixed,
+    /// The value that the scene was opened with.
+    Value,
+    /// The acceleration that the mechanism itself gives the mass.
+    Push,
+    /// The rate at which the mass swings by itself.
+    Rate,
+    /// The distance of the wells; without one that of the stops.
+    Travel,
+    /// The length of the shorter flexure; beyond a quarter of it the stable branch may end.
+    Preload,
+}
+
+/// A number of a scene and its control.
+#[derive(Debug)]
+pub struct FieldInfo {
+    /// Dotted path in the scene; a part of a sum has its index left out.
+    pub path: &'static str,
+    /// What its control is called.
+    pub name: &'static str,
+    /// Its unit; none for a ratio.
+    pub unit: &'static str,
+    /// Smallest and largest value and step of the slider, for a scene of the prototype's size.
+    pub slider: (f64, f64, f64),
+    /// What sets that range in another scene.
+    pub scale: Scale,
+    /// Smallest and largest value that may be typed.
+    pub typed: (f64, f64),
+    /// What happens if it is increased.
+    pub hover: &'static str,
+}
+
+/// The range of a slider and the step of the arrow keys.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// The left end.
+    pub low: f64,
+    /// The right end.
+    pub high: f64,
+    /// The step of the arrow keys.
+    pub step: f64,
+}
+
+const fn field(
+    path: &'static str,
+    name: &'static str,
+    unit: &'static str,
+    (slider, scale): ((f64, f64, f64), Scale),
+    typed: (f64, f64),
+    hover: &'static str,
+) -> FieldInfo {
+    FieldInfo { path, name, unit, slider, scale, typed, hover }
+}
+
+const G: (f64, f64) = (-1e4, 1e4);
+const HZ: (f64, f64) = (1e-2, 1e5);
+const BAND: (f64, f64) = (0.0, 1e5);
+const LENGTH: (f64, f64) = (1e-3, 1e4);
+const LIMIT: (f64, f64) = (1e-3, 1e6);
+const SHARE: (f64, f64) = (0.0, 1.0);
+const SECONDS: (f64, f64) = (0.01, 1e6);
+const PUSH: ((f64, f64, f64), Scale) = ((0.0, 2.0, 0.01), Scale::Push);
+const RATE: ((f64, f64, f64), Scale) = ((0.5, 20.0, 0.1), Scale::Rate);
+const STOP: ((f64, f64, f64), Scale) = ((0.1, 8.0, 0.05), Scale::Travel);
+const UNIT: ((f64, f64, f64), Scale) = ((0.0, 1.0, 0.01), Scale::Fixed);
+const LONG: ((f64, f64, f64), Scale) = ((10.0, 60.0, 0.1), Scale::Value);
+const WIDE: ((f64, f64, f64), Scale) = ((1.0, 60.0, 0.1), Scale::Value);
+const RAMP: ((f64, f64, f64), Scale) = ((1.0, 600.0, 1.0), Scale::Value);
+
+const LIMIT_HOVER: &str = "Increase: the stops move outward. Inside the wells the mass then rests lower on the hill: it takes more shaking to free \
+     it and travels further once it crosses.";
+const REBOUND_HOVER: &str =
+    "Increase: a rebound keeps more of the speed, so that the mass chatters for longer before it rests.";
+const SHAKING_HOVER: &str =
+    "Increase: the base pushes the mass harder. Beyond some amplitude it crosses to the other well.";
+const FASTER_HOVER: &str = "Increase: the pushes follow each other faster and last less long.";
+
+/// All of them, in the order of a scene.
+#[rustfmt::skip]
+pub static FIELDS: &[FieldInfo] = &[
+    field("mass_g", "mass", "g", ((1.0, 50.0, 0.1), Scale::Value), (1e-6, 1e9),
+        "Increase: a heavier mass is pushed harder by the same shaking and swings more slowly."),
+    field("mechanism.preload_mm", "preload", "mm", ((0.0, 5.0, 0.05), Scale::Preload), (0.0, 1e4),
+        "Increase: the flexures are pushed together further. The wells move apart and get deeper, so that it takes more \
+         shaking to cross; at 0 there is one well."),
+    field("mechanism.thickness_mm", "thickness", "mm", ((0.02, 0.5, 0.005), Scale::Value), LENGTH,
+        "Increase: forces grow with the third power of it, and the wells stay where they are."),
+    field("mechanism.parallel.length_mm", "parallel flexures, length", "mm", LONG, LENGTH,
+        "Increase: the parallel flexures give way more easily: the barrier grows, the wells move apart."),
+    field("mechanism.parallel.width_mm", "parallel flexures, width", "mm", WIDE, LENGTH,
+        "Increase: the parallel flexures are stiffer, which works against the two wells."),
+    field("mechanism.buckling.length_mm", "buckling flexure, length", "mm", LONG, LENGTH,
+        "Increase: the buckling flexure bulges more easily and pushes less: the barrier gets lower."),
+    field("mechanism.buckling.width_mm", "buckling flexure, width", "mm", WIDE, LENGTH,
+        "Increase: the buckling flexure pushes harder: the barrier grows."),
+    field("damping.xi", "damping ratio", "", ((0.0, 0.2, 0.001), Scale::Value), (0.0, 100.0),
+        "Increase: the motion dies away faster."),
+    field("damping.c_n_s_per_m", "damping", "N s/m", ((0.0, 0.2, 0.001), Scale::Value), (0.0, 1e6),
+        "Increase: the motion dies away faster."),
+    field("stops.travel_limit_mm", "at ±", "mm", STOP, LIMIT, LIMIT_HOVER),
+    field("stops.restitution", "restitution", "", UNIT, SHARE, REBOUND_HOVER),
+    field("stops.left_mm", "left", "mm", STOP, LIMIT, LIMIT_HOVER),
+    field("stops.right_mm", "right", "mm", STOP, LIMIT, LIMIT_HOVER),
+    field("stops.restitution_left", "left restitution", "", UNIT, SHARE, REBOUND_HOVER),
+    field("stops.restitution_right", "right restitution", "", UNIT, SHARE, REBOUND_HOVER),
+    field("excitation.accel_g", "acceleration", "g", ((-2.0, 2.0, 0.01), Scale::Push), G,
+        "Increase: the tray is tipped further to the left."),
+    field("excitation.frequency_hz", "frequency", "Hz", RATE, HZ, FASTER_HOVER),
+    field("excitation.amplitude_g", "amplitude", "g", PUSH, G, SHAKING_HOVER),
+    field("excitation.phase_deg", "phase", "°", ((-180.0, 180.0, 15.0), Scale::Fixed), (-1e4, 1e4),
+        "Increase: the shaking begins later in its cycle."),
+    field("excitation.from_g", "from", "g", ((0.0, 3.0, 0.01), Scale::Push), G,
+        "Increase: the ramp begins with harder shaking."),
+    field("excitation.to_g", "to", "g", ((0.0, 3.0, 0.01), Scale::Push), G,
+        "Increase: the ramp ends with harder shaking."),
+    field("excitation.over_s", "over", "s", RAMP, SECONDS, "Increase: the shaking changes more slowly."),
+    field("excitation.from_hz", "from", "Hz", ((0.0, 30.0, 0.1), Scale::Rate), BAND,
+        "Increase: the sweep begins at a higher frequency."),
+    field("excitation.to_hz", "to", "Hz", ((0.0, 30.0, 0.1), Scale::Rate), BAND,
+        "Increase: the sweep ends at a higher frequency."),
+    field("excitation.rms_g", "RMS", "g", ((0.0, 1.0, 0.01), Scale::Push), (0.0, 1e4), SHAKING_HOVER),
+    field("excitation.low_hz", "lowest", "Hz", ((0.0, 50.0, 0.1), Scale::Rate), BAND,
+        "Increase: the slow part of the shaking goes."),
+    field("excitation.high_hz", "highest", "Hz", ((0.1, 50.0, 0.1), Scale::Rate), HZ,
+        "Increase: faster shaking comes in."),
+    field("run.duration_s", "run length", "s", ((1.0, 120.0, 1.0), Scale::Value), SECONDS,
+        "Increase: what is said of the motion rests on more periods. The second half of the run counts, or what comes after \
+         the settling time of the scene."),
+];
+
+/// Fields that have no slider: what they are called.
+const OTHERS: [(&str, &str, &str); 13] = [
+    ("mechanism.young_gpa", "Young's modulus", "GPa"),
+    ("mechanism.linear_n_per_m", "linear stiffness", "N/m"),
+    ("mechanism.cubic_n_per_m3", "cubic stiffness", "N/m³"),
+    ("mechanism.equilibrium_mm", "wells at ±", "mm"),
+    ("mechanism.barrier_mj", "barrier", "mJ"),
+    ("mechanism.path", "table of the force", ""),
+    ("excitation.seed", "seed", ""),
+    ("excitation.lines", "lines of the noise", ""),
+    ("excitation.path", "record", ""),
+    ("start.x_mm", "start, displacement", "mm"),
+    ("start.v_m_per_s", "start, velocity", "m/s"),
+    ("run.settle_s", "settling time", "s"),
+    ("run.tolerance", "tolerance", ""),
+];
+
+/// The control of a field; none where it has none.
+pub fn info(path: &str) -> Option<&'static FieldInfo> {
+    let plain = without_index(path);
+    FIELDS.iter().find(|own| own.path == plain)
+}
+
+/// A path without the indices of parts of a sum.
+fn without_index(path: &str) -> String {
+    path.split('.').filter(|part| part.parse::<usize>().is_err()).collect::<Vec<_>>().join(".")
+}
+
+/// What a field is called on the screen, and its unit.
+pub fn name_and_unit(path: &str) -> (String, &'static str) {
+    let plain = without_index(path);
+    let known = info(path).map(|own| (own.name, own.unit));
+    let other = || OTHERS.iter().find(|own| own.0 == plain).map(|own| (own.1, own.2));
+    let Some((name, unit)) = known.or_else(other) else { return (path.to_owned(), "") };
+    let name = if plain == "stops.travel_limit_mm" { "stops at ±" } else { name };
+    let part = path.split('.').find_map(|part| part.parse::<usize>().ok());
+    (part.map_or_else(|| name.to_owned(), |index| format!("{name} of part {}", index + 1)), unit)
+}
+
+/// A sentence about a scene, in which each field is called what it is called on the screen.
+pub fn in_words(text: &str, scene: &Scene) -> String {
+    let mut paths = crate::scene::all_fields(scene);
+    // the longer ones first: one may be the beginning of another
+    paths.sort_by_key(|path| std::cmp::Reverse(path.len()));
+    let mut text = text.to_owned();
+    for path in paths.iter().filter(|path| path.contains('.') || *path == "mass_g") {
+        if text.contains(path.as_str()) {
+            text = text.replace(path.as_str(), &name_and_unit(path).0);
+        }
+    }
+    text
+}
+
+/// The stops of a scene in mm, left and right; none where a side is open.
+pub fn stop_distances(scene: &Scene) -> (Option<f64>, Option<f64>) {
+    match scene.stops {
+        Stops::None => (None, None),
+        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
+            (Some(-travel_limit_mm), Some(travel_limit_mm))
+        }
+        Stops::Uneven { left_mm, right_mm, .. } => (left_mm.map(|mm| -mm), right_mm),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_field_has_a_name_of_its_own() {
+        for preset in crate::scene::PRESETS {
+            let scene = crate::scene::Document::load(preset.name).unwrap().scene;
+            for path in crate::scene::numeric_fields(&scene) {
+                let own = name_and_unit(&path).0;
+                let seldom = [
+                    "poisson",
+                    "initial_bow",
+                    "yield",
+                    "coefficients",
+                    "app.",
+                    "count",
+                    "stops.",
+                    "tolerance",
+                ];
+                assert!(
+                    own != path || seldom.iter().any(|part| path.contains(part)),
+                    "{}: {path}",
+                    preset.name
+                );
+            }
+        }
+        assert_eq!(name_and_unit("excitation.1.amplitude_g"), ("amplitude of part 2".to_owned(), "g"));
+        let scene = crate::scene::Document::load("random-shaking").unwrap().scene;
+        let text = "excitation.high_hz = 1: must be above excitation.low_hz = 2";
+        assert_eq!(in_words(text, &scene), "highest = 1: must be above lowest = 2");
+    }
+}

@@ -1,0 +1,7 @@
+//! Text of the window: names of the fields, explanations of terms, the sentence that describes the motion.
+
+pub(super) mod announce;
+pub mod fields;
+pub(super) mod meanings;
+pub mod numbers;
+pub mod status;

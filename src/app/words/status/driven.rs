@@ -1,0 +1,315 @@
+//! The sentence of a mass that is shaken.
+
+use crate::app::words::fields::stop_distances;
+use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, Summary};
+use crate::scene::{Excitation, Scene, Stops};
+use crate::study::Thresholds;
+
+use super::numbers::{between, grams, limit_mm, mm, seconds, speed, times};
+use super::remedy::{amplitude, remedy};
+use super::{Kind, Sentence, ended};
+
+/// Forcing periods of a motion without a period that are seen before it is told of in the present tense.
+const SEEN_PERIODS: f64 = 5.0;
+
+/// A motion that settles within so many forcing periods does so at once, to the eye.
+const AT_ONCE: f64 = 5.0;
+
+/// What is told of.
+#[derive(Debug, Clone, Copy)]
+pub struct Told<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The model that moves.
+    pub model: &'a Model,
+    /// What its motion settles to.
+    pub summary: &'a Summary,
+    /// How much shaking it takes, where that is known.
+    pub thresholds: Option<&'a Thresholds>,
+    /// Live time in s at which the run of the summary began.
+    pub origin: f64,
+    /// The present live time in s.
+    pub now: f64,
+}
+
+impl Told<'_> {
+    /// Live time in s from which on the motion has been seen to do what is told of.
+    pub fn seen_from(&self) -> f64 {
+        let summary = self.summary;
+        let Some(period) = self.model.forcing_period.filter(|_| self.model.repeats()) else {
+            return self.origin + summary.window.1;
+        };
+        let periods = match (summary.regime, summary.settles_at) {
+            (Regime::Rest, Some(at)) => at / period,
+            (_, Some(at)) => at / period + f64::from(summary.period.unwrap_or(1)),
+            (_, None) => SEEN_PERIODS,
+        };
+        self.origin + periods * period
+    }
+
+    fn is_seen(&self) -> bool {
+        self.now >= self.seen_from()
+    }
+
+    /// Since when the motion settles, in words, where that is worth a word and still to come.
+    fn from(&self) -> String {
+        let period = self.model.forcing_period.unwrap_or(0.0);
+        let late = |at: &f64| *at > AT_ONCE * period && self.now < self.origin + *at;
+        match self.summary.settles_at.filter(late) {
+            Some(at) => format!(" from {} on", seconds(self.origin + at)),
+            None => String::new(),
+        }
+    }
+
+    /// What is not known of a motion that has not settled.
+    fn unsettled(&self) -> String {
+        match self.summary.settled {
+            Some(false) => format!(" Not settled after {}.", seconds(self.summary.window.1)),
+            _ => String::new(),
+        }
+    }
+}
+
+/// The words of a tense.
+struct Words {
+    stays: &'static str,
+    leaves: &'static str,
+    falls: &'static str,
+    crosses: &'static str,
+    swings: &'static str,
+    hits: &'static str,
+    moves: &'static str,
+    frees: &'static str,
+}
+
+const NOW: Words = Words {
+    stays: "stays",
+    leaves: "leaves",
+    falls: "falls",
+    crosses: "crosses",
+    swings: "swings",
+    hits: "hits",
+    moves: "moves",
+    frees: "never frees it",
+};
+const SOON: Words = Words {
+    stays: "will stay",
+    leaves: "will leave",
+    falls: "fall",
+    crosses: "will cross",
+    swings: "will swing",
+    hits: "hit",
+    moves: "will move",
+    frees: "will never free it",
+};
+
+/// A shaken mass, by what its motion settles to.
+pub fn driven(told: &Told) -> Sentence {
+    let Told { scene, model, summary, .. } = *told;
+    if summary.outcome != Outcome::Done {
+        return ended(model, summary.outcome);
+    }
+    if let (Excitation::AmplitudeRamp { .. }, Some(firsts)) = (&scene.excitation, &summary.firsts) {
+        return ramped(told, firsts);
+    }
+    let words = if told.is_seen() { &NOW } else { &SOON };
+    let (Some(rms), Some(reach), Some((low, high))) =
+        (summary.rms_velocity, summary.max_abs_x, summary.range)
+    else {
+        return Sentence::new(Kind::Other, "The run is too short to settle.");
+    };
+    // averages over a window of a motion that does not repeat are no last word
+    let about = if summary.period.is_some() || summary.regime == Regime::Rest { "" } else { "about " };
+    let rms = format!("RMS velocity {about}{} mm/s", speed(rms));
+    let range = between(low, high);
+    let side = match summary.side {
+        Some(Place::Left) => "left-hand",
+        _ => "right-hand",
+    };
+    let periods = summary.periods as f64;
+    let per_period = |count: u64| count as f64 / periods.max(1.0);
+    let from = told.from();
+    let (kind, text) = match summary.regime {
+        Regime::OneWell if model.mechanism.landscape.right_stable().is_none() => {
+            (Kind::Other, format!("No barrier: {} {range}; {rms}.", words.moves))
+        }
+        Regime::OneWell => {
+            let symmetric = (low + high).abs() < 0.02 * reach;
+            let swing = if symmetric { format!("±{} mm", mm(reach)) } else { range };
+            let text = format!("No barrier: one well, so nothing to cross; {} {swing}, {rms}.", words.swings);
+            (Kind::Other, text)
+        }
+        Regime::Rest if scene.stops == Stops::None => {
+            (Kind::Resting, format!("Resting{from}: {} where it is.", words.stays))
+        }
+        Regime::Rest => {
+            let push = amplitude(scene).map_or_else(|| "this".to_owned(), |g| format!("{} g", grams(g)));
+            let text =
+                format!("Resting{from}: {} pressed on the {side} stop; {push} {}.", words.stays, words.frees);
+            (Kind::Resting, text)
+        }
+        Regime::Crossing | Regime::Intrawell if !model.repeats() => {
+            return unrepeated(told, &rms, &range, side);
+        }
+        Regime::Intrawell if summary.releases > 0 => {
+            let every = match summary.release_periods {
+                all if all >= summary.periods => "every period".to_owned(),
+                some => format!("in {some} of {periods:.0} periods"),
+            };
+            let text = format!(
+                "Hopping{from}: {} the {side} stop {every} and {} back, never crossing; {rms}, {:.0} impacts a period.",
+                words.leaves,
+                words.falls,
+                per_period(summary.impacts)
+            );
+            (Kind::Intrawell, text)
+        }
+        Regime::Intrawell if summary.impacts > 0 => {
+            let impacts = times(per_period(summary.impacts));
+            let text = format!(
+                "Intrawell{from}: {} in the {side} well and {} its stop {impacts}; {rms}.",
+                words.stays, words.hits
+            );
+            (Kind::Intrawell, text)
+        }
+        Regime::Intrawell => {
+            (Kind::Intrawell, format!("Intrawell{from}: {} in the {side} well, {range}; {rms}.", words.stays))
+        }
+        Regime::Irregular if summary.crossing_periods >= summary.periods => {
+            let text = format!("Irregular: {} in every period, never twice alike; {rms}.", words.crosses);
+            (Kind::Irregular, text)
+        }
+        Regime::Irregular => {
+            let text = format!(
+                "Irregular: {} in {} of {periods:.0} periods, without a rhythm; {rms}, reach about {} mm.",
+                words.crosses,
+                summary.crossing_periods,
+                mm(reach)
+            );
+            (Kind::Irregular, text)
+        }
+        Regime::Interwell | Regime::Crossing => (Kind::Interwell, interwell(told, words, &rms, &range)),
+    };
+    let mut sentence = Sentence::new(kind, format!("{text}{}{}", told.unsettled(), untouched(told)));
+    if let Some(found) = told.thresholds {
+        sentence.remedy = remedy(scene, summary, found);
+    }
+    sentence
+}
+
+/// A motion that crosses and repeats.
+fn interwell(told: &Told, words: &Words, rms: &str, range: &str) -> String {
+    let Told { model, summary, .. } = *told;
+    let rate = summary.crossings as f64 / summary.periods.max(1) as f64;
+    let crosses = words.crosses;
+    let how = match summary.period {
+        Some(n) if n > 1 && summary.crossing_periods >= summary.periods => {
+            format!("{crosses} every period and repeats after {n} periods")
+        }
+        Some(n) if n > 1 => {
+            format!("{crosses} {:.0} times in {n} periods and then repeats", (rate * f64::from(n)).round())
+        }
+        Some(_) => format!("{crosses} {}", times(rate)),
+        None => format!("{crosses} {}, each time a little differently", times(rate)),
+    };
+    let (left, right) = model.stop_positions();
+    let equal = left.zip(right).filter(|(left, right)| *left == -*right);
+    let share = summary.impact_share.filter(|_| summary.impacts > 0).map(|share| share * 100.0);
+    let from = told.from();
+    match (equal, share) {
+        (Some((_, limit)), Some(share)) => format!(
+            "Interwell{from}: {how}, from stop to stop at ±{} mm; {rms}, impacts take {share:.0} % of the work.",
+            limit_mm(limit * 1e3)
+        ),
+        (None, Some(share)) => {
+            format!("Interwell{from}: {how}, {range}; {rms}, impacts take {share:.0} % of the work.")
+        }
+        _ => format!("Interwell{from}: {how}, reaching {} mm; {rms}.", mm(summary.max_abs_x.unwrap_or(0.0))),
+    }
+}
+
+/// A motion under a drive that has no period: what it does in the settled window.
+fn unrepeated(told: &Told, rms: &str, range: &str, side: &str) -> Sentence {
+    let summary = told.summary;
+    let (from, to) = (told.origin + summary.window.0, told.origin + summary.window.1);
+    let (seen, when) = (told.is_seen(), format!("from {} to {}", seconds(from), seconds(to)));
+    let (kind, text) = if summary.crossings == 0 {
+        let stays = if seen { "stayed" } else { "will stay" };
+        (Kind::Intrawell, format!("Intrawell: {stays} in the {side} well {when}, {range}; {rms}."))
+    } else {
+        let crosses = if seen { "Crossed" } else { "Will cross" };
+        let count = match summary.crossings {
+            1 => "once".to_owned(),
+            n => format!("{n} times"),
+        };
+        (Kind::Crossing, format!("{crosses} {count} {when}; {rms}."))
+    };
+    Sentence::new(kind, format!("{text}{}", untouched(told)))
+}
+
+/// A mass under an amplitude ramp: when it is freed, crosses, and crosses always.
+fn ramped(told: &Told, firsts: &Firsts) -> Sentence {
+    let Told { model, summary, origin, now, .. } = *told;
+    let end = origin + summary.window.1;
+    let at = |first: &First| {
+        let amplitude = first.amplitude.map(|own| own / crate::dynamics::STANDARD_GRAVITY);
+        let place = amplitude.map_or(String::new(), |g| format!("at {} g, ", grams(g)));
+        format!("{place}after {}", seconds(origin + first.t))
+    };
+    let passed = |first: &Option<First>| first.is_some_and(|first| now >= origin + first.t);
+    let kind = match firsts {
+        own if passed(&own.crossing) => Kind::Crossing,
+        own if own.release.is_some() && !passed(&own.release) => Kind::Resting,
+        _ if summary.regime == Regime::Rest => Kind::Resting,
+        _ => Kind::Intrawell,
+    };
+    let mut parts = Vec::new();
+    let stopped = summary.total_impacts > 0 || summary.rests > 0 || summary.regime == Regime::Rest;
+    match &firsts.release {
+        Some(first) => parts.push(format!("first released {}", at(first))),
+        None if stopped && model.stop_positions() != (None, None) && firsts.crossing.is_none() => {
+            parts.push("never released".to_owned());
+        }
+        None => {}
+    }
+    match (&firsts.crossing, &firsts.crossing_in_every_period) {
+        (Some(first), Some(always)) if first == always => {
+            parts.push(format!("crosses {}, and in every period from then on", at(first)));
+        }
+        (Some(first), always) => {
+            parts.push(format!("first crosses {}", at(first)));
+            parts.extend(
+                always.as_ref().map(|always| format!("in every period from {} on", at_time(origin, always))),
+            );
+        }
+        (None, _) => parts.push("never crosses".to_owned()),
+    }
+    let until = if firsts.crossing_in_every_period.is_some() {
+        String::new()
+    } else {
+        format!(" up to {}", seconds(end))
+    };
+    Sentence::new(kind, format!("Growing shaking: {}{until}.", parts.join("; ")))
+}
+
+fn at_time(origin: f64, first: &First) -> String {
+    let amplitude = first.amplitude.map(|own| own / crate::dynamics::STANDARD_GRAVITY);
+    let place = amplitude.map_or(String::new(), |g| format!("{} g, ", grams(g)));
+    format!("{place}{}", seconds(origin + first.t))
+}
+
+/// Stops that the motion never reaches.
+fn untouched(told: &Told) -> String {
+    let summary = told.summary;
+    let touched = summary.impacts > 0 || summary.rested_share.is_none_or(|share| share > 0.0);
+    let rests = summary.regime == Regime::Rest;
+    if touched || rests || told.model.stop_positions() == (None, None) {
+        return String::new();
+    }
+    match stop_distances(told.scene) {
+        (Some(left), Some(right)) if left == -right => {
+            format!(" Stops at ±{} mm are not touched.", limit_mm(right))
+        }
+        _ => " The stops are not touched.".to_owned(),
+    }
+}

@@ -1,0 +1,171 @@
+//! The sentence that says what the mass does.
+//!
+//! Its form is: name: what the mass does; number; what it would take. Every number comes from a run. What has not been seen on
+//! the screen yet is told in the future tense, and what is not known is said to be unknown.
+
+mod driven;
+mod numbers;
+mod remedy;
+
+use crate::dynamics::{Model, Outcome, Phase, Sample, Side};
+use crate::study::{Standing, standing};
+
+pub use driven::{Told, driven};
+use numbers::{energy, newtons};
+pub use numbers::{grams, mm, speed};
+pub use remedy::ways;
+
+/// What kind of motion a sentence is about: its colour and its shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// At rest, or pressed on a stop.
+    Resting,
+    /// Stays in a well.
+    Intrawell,
+    /// Crosses without rhythm.
+    Irregular,
+    /// Crosses and repeats.
+    Interwell,
+    /// Crosses under a drive that has no period.
+    Crossing,
+    /// Anything that has no such name.
+    Other,
+    /// The scene cannot be run, or the run has ended.
+    Fault,
+}
+
+/// What the status line says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Sentence {
+    /// What kind of motion it is.
+    pub kind: Kind,
+    /// The sentence.
+    pub text: String,
+    /// What it would take, said once it has been searched for; a lesson may keep it to itself.
+    pub remedy: String,
+}
+
+impl Sentence {
+    fn new(kind: Kind, text: impl Into<String>) -> Self {
+        Self { kind, text: text.into(), remedy: String::new() }
+    }
+
+    /// A scene that cannot be run; the first of its faults.
+    pub fn fault(error: &str) -> Self {
+        let first = error.lines().next().unwrap_or(error);
+        Self::new(Kind::Fault, format!("This scene cannot run: {first}"))
+    }
+
+    /// While the first answer is still to come.
+    pub fn waiting() -> Self {
+        Self::new(Kind::Other, "Working out what this settles to.")
+    }
+
+    /// The whole of it.
+    pub fn whole(&self) -> String {
+        if self.remedy.is_empty() { self.text.clone() } else { format!("{} {}", self.text, self.remedy) }
+    }
+}
+
+fn hand(side: Side) -> &'static str {
+    if side == Side::Left { "left-hand" } else { "right-hand" }
+}
+
+/// Share of the scene's accelerations below which a mass without speed is at rest.
+const STILL_PULL: f64 = 1e-3;
+
+/// Share of the mechanism's largest force below which it is said not to pull.
+const NO_PULL: f64 = 2e-3;
+
+/// The mass held by hand.
+pub fn held(model: &Model, state: &Sample) -> Sentence {
+    let force = model.mechanism.curve.force(state.x);
+    let middle = model.mechanism.landscape.barrier.map_or(0.0, |barrier| barrier.x);
+    let outward = (state.x - middle) * force < 0.0;
+    let largest = model.mechanism.landscape.extrema.iter().map(|own| own.force.abs()).fold(0.0, f64::max);
+    let (place, size) = (mm(state.x), force.abs());
+    let text = if size <= NO_PULL * largest || size == 0.0 {
+        format!("Held at {place} mm: nothing pulls.")
+    } else {
+        let way = if outward { "outwards" } else { "inwards" };
+        format!("Held at {place} mm: it pulls {way} with {}.", newtons(size))
+    };
+    Sentence::new(Kind::Other, text)
+}
+
+/// A run that has ended by itself.
+pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
+    let at = outcome.ended_at().unwrap_or(0.0);
+    let domain = model.mechanism.curve.domain();
+    let why = match outcome {
+        Outcome::LeftTable { .. } => {
+            let end = mm(domain.0.abs().min(domain.1));
+            if model.mechanism.flexures.is_some() {
+                return Sentence::new(
+                    Kind::Fault,
+                    format!(
+                        "The run ended at {at:.2} s: the mass went beyond what was solved of the flexures, which ends at \
+                         {end} mm. Set stops inside it, or shake less."
+                    ),
+                );
+            }
+            format!(
+                "the mass left the force table, which ends at {end} mm. Set stops inside it or extend the table."
+            )
+        }
+        Outcome::ImpactBudget { count, .. } => {
+            format!("{count} impacts are more than it may make. Lower the restitution.")
+        }
+        Outcome::StepBudget { .. } => {
+            "it took more work than it may take. Use a larger tolerance.".to_owned()
+        }
+        Outcome::NotFinite { .. } => {
+            "the mass went beyond all bounds. Set stops, or a force that holds it.".to_owned()
+        }
+        Outcome::Inaccurate { .. } => {
+            return Sentence::new(Kind::Fault, "The energy does not balance. Use a smaller tolerance.");
+        }
+        Outcome::Cancelled { .. } | Outcome::Done => "it was stopped.".to_owned(),
+    };
+    Sentence::new(Kind::Fault, format!("The run ended at {at:.2} s: {why}"))
+}
+
+/// Nothing shakes the base.
+pub fn unshaken(model: &Model, state: &Sample) -> Sentence {
+    let base = model.base_acceleration(state.t);
+    let pull = model.acceleration(state.x, state.v, base).abs() * model.scales.time / model.scales.speed;
+    let rests = state.phase != Phase::Free || pull < STILL_PULL;
+    let still = state.v.abs() < 1e-4 * model.scales.speed && rests;
+    let Some(Standing { side, pressed_n, energy_j, needed_j }) = standing(model, state) else {
+        let text = if still {
+            "At rest; nothing shakes it.".to_owned()
+        } else {
+            format!("Moving at {} mm/s; nothing shakes it.", speed(state.v.abs()))
+        };
+        return Sentence::new(if still { Kind::Resting } else { Kind::Other }, text);
+    };
+    let (hand, needed) = (hand(side), energy(needed_j));
+    let lift = format!("nothing shakes it. {needed} would lift it over the barrier.");
+    match pressed_n {
+        Some(force) => Sentence::new(
+            Kind::Resting,
+            format!("Pressed on the {hand} stop with {}; {lift}", newtons(force)),
+        ),
+        None if still && energy_j < 1e-3 * needed_j => {
+            Sentence::new(Kind::Resting, format!("At rest in the {hand} well; {lift}"))
+        }
+        None if energy_j < needed_j => {
+            let left = energy(energy_j);
+            let text =
+                format!("Ringing down in the {hand} well: {left} of energy left, {needed} needed to cross.");
+            Sentence::new(Kind::Intrawell, text)
+        }
+        None => {
+            let left = energy(energy_j);
+            let text = format!(
+                "Ringing down over both wells: {left} of energy left, below {needed} it stays in one."
+            );
+            Sentence::new(Kind::Other, text)
+        }
+    }
+}
