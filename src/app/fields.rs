@@ -63,6 +63,7 @@ const fn field(
 }
 
 const G: (f64, f64) = (-1e4, 1e4);
+const SIZE: (f64, f64) = (0.0, 1e4);
 const HZ: (f64, f64) = (1e-2, 1e5);
 const BAND: (f64, f64) = (0.0, 1e5);
 const LENGTH: (f64, f64) = (1e-3, 1e4);
@@ -116,19 +117,19 @@ pub static FIELDS: &[FieldInfo] = &[
     field("excitation.accel_g", "acceleration", "g", ((-2.0, 2.0, 0.01), Scale::Push), G,
         "Increase: the tray is tipped further to the left."),
     field("excitation.frequency_hz", "frequency", "Hz", RATE, HZ, FASTER_HOVER),
-    field("excitation.amplitude_g", "amplitude", "g", PUSH, G, SHAKING_HOVER),
+    field("excitation.amplitude_g", "amplitude", "g", PUSH, SIZE, SHAKING_HOVER),
     field("excitation.phase_deg", "phase", "°", ((-180.0, 180.0, 15.0), Scale::Fixed), (-1e4, 1e4),
         "Increase: the shaking begins later in its cycle."),
-    field("excitation.from_g", "from", "g", ((0.0, 3.0, 0.01), Scale::Push), G,
+    field("excitation.from_g", "from", "g", ((0.0, 3.0, 0.01), Scale::Push), SIZE,
         "Increase: the ramp begins with harder shaking."),
-    field("excitation.to_g", "to", "g", ((0.0, 3.0, 0.01), Scale::Push), G,
+    field("excitation.to_g", "to", "g", ((0.0, 3.0, 0.01), Scale::Push), SIZE,
         "Increase: the ramp ends with harder shaking."),
     field("excitation.over_s", "over", "s", RAMP, SECONDS, "Increase: the shaking changes more slowly."),
     field("excitation.from_hz", "from", "Hz", ((0.0, 30.0, 0.1), Scale::Rate), BAND,
         "Increase: the sweep begins at a higher frequency."),
     field("excitation.to_hz", "to", "Hz", ((0.0, 30.0, 0.1), Scale::Rate), BAND,
         "Increase: the sweep ends at a higher frequency."),
-    field("excitation.rms_g", "RMS", "g", ((0.0, 1.0, 0.01), Scale::Push), (0.0, 1e4), SHAKING_HOVER),
+    field("excitation.rms_g", "RMS", "g", ((0.0, 1.0, 0.01), Scale::Push), SIZE, SHAKING_HOVER),
     field("excitation.low_hz", "lowest", "Hz", ((0.0, 50.0, 0.1), Scale::Rate), BAND,
         "Increase: the slow part of the shaking goes."),
     field("excitation.high_hz", "highest", "Hz", ((0.1, 50.0, 0.1), Scale::Rate), HZ,
@@ -196,7 +197,7 @@ impl FieldInfo {
     pub fn reach(&self, session: &Session) -> Reach {
         let (low, high, step) = self.slider;
         let saved = FieldPath::new(self.path).get(session.editor.saved());
-        let scales = &session.model().scales;
+        let scales = session.opened();
         // of the prototype these are 2 g and 20 Hz
         let own = match self.scale {
             Scale::Fixed => None,
@@ -225,7 +226,7 @@ impl FieldInfo {
 /// The slider of a stop: from near the middle to beyond the well.
 fn travel(session: &Session) -> Reach {
     let (saved, limits) = (session.editor.saved(), [session.remembered_stops(), session.scene().stops]);
-    let well = session.model().mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
+    let well = session.opened().well_mm;
     let furthest = |stops: &Stops| match *stops {
         Stops::None => None,
         Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => Some(travel_limit_mm),
@@ -241,7 +242,9 @@ fn travel(session: &Session) -> Reach {
 const MOST_PRELOAD: f64 = 0.2;
 
 fn preload(session: &Session) -> Option<Reach> {
-    let Mechanism::Flexures { parallel, buckling, .. } = &session.scene().mechanism else { return None };
+    let Mechanism::Flexures { parallel, buckling, .. } = &session.editor.saved().mechanism else {
+        return None;
+    };
     let most = MOST_PRELOAD * parallel.length_mm.min(buckling.length_mm);
     let step = below(most / 80.0);
     Some(Reach { low: 0.0, high: (most / step).round() * step, step })

@@ -113,6 +113,12 @@ const COPY_COMMAND: KeyboardShortcut =
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C);
 const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
 
+/// A step back.
+pub const UNDO: KeyboardShortcut = command(Key::Z);
+
+/// What the way back to the scene as it was opened is called.
+const DISCARD: &str = "Discard changes";
+
 const NEXT_TAB: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Tab);
 
 /// The keys of the speeds, the slowest first.
@@ -173,9 +179,9 @@ pub fn menu_ui(
         });
         ui.menu_button("Edit", |ui| {
             let editor = &session.editor;
-            item(ui, &mut asked, "Undo", Some(command(Key::Z)), editor.can_undo(), Command::Undo);
+            item(ui, &mut asked, "Undo", Some(UNDO), editor.can_undo(), Command::Undo);
             item(ui, &mut asked, "Redo", Some(REDO), editor.can_redo(), Command::Redo);
-            item(ui, &mut asked, "Back to start", Some(plain(Key::Home)), true, Command::BackToStart);
+            item(ui, &mut asked, DISCARD, Some(plain(Key::Home)), true, Command::BackToStart);
             ui.separator();
             item(ui, &mut asked, "Copy the scene as text", Some(command(Key::C)), true, Command::CopyScene);
             item(ui, &mut asked, "Paste a scene", Some(command(Key::V)), true, Command::PasteScene);
@@ -193,9 +199,9 @@ pub fn menu_ui(
         });
         ui.add_space(16.0);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let hover =
-                "Scene and views as opened or last saved, from time 0 (Home). The scene comes back with undo.";
-            if ui.button("Back to start").on_hover_text(hover).clicked() {
+            let hover = "The scene as it was opened or last saved, its views, and time 0 (Home). Undo brings the changes \
+                         back.";
+            if ui.button(DISCARD).on_hover_text(hover).clicked() {
                 asked.push(Command::BackToStart);
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -312,7 +318,7 @@ pub fn keys(ctx: &egui::Context, settings: Settings, filled: bool) -> Vec<Comman
     on(COPY_COMMAND, Command::CopyCommand);
     on(REDO, Command::Redo);
     on(command(Key::Y), Command::Redo);
-    on(command(Key::Z), Command::Undo);
+    on(UNDO, Command::Undo);
     on(command(Key::S), Command::Save);
     on(command(Key::O), Command::Open);
     on(command(Key::Q), Command::Quit);

@@ -16,7 +16,7 @@ const GROUPS: [(&str, &[(&str, &str)]); 4] = [
             ("1 to 7", "speed, from 1/1000 of real time to 100 times"),
             ("R, X", "to the next release, the next crossing"),
             ("End", "to the end of the run"),
-            ("Home", "back to the start: scene, view and time"),
+            ("Home", "discard your changes: scene, view and time as opened"),
         ],
     ),
     (

@@ -64,7 +64,7 @@ pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: 
         let (icon, name) = if playing { (Icon::Pause, "pause") } else { (Icon::Play, "play") };
         let button = icon_button_ui(ui, icon, BUTTON + 6.0, name, "Play and pause (space)");
         if button.clicked() {
-            session.player.set_playing(!playing);
+            session.play_or_pause();
             changed = true;
         }
         let next = "To the next event (PageDown)";

@@ -263,20 +263,16 @@ impl Window {
         }
         let hinted = self.hint.is_shown(&self.session);
         self.hint_row |= hinted;
-        if self.ways && !self.covered {
-            let ways = self.session.ways();
-            Panel::top("ways").frame(line).show(ui, |ui| ui.label(ways));
-        } else if self.hint_row {
+        let shows_ways = self.ways && !self.covered;
+        if shows_ways || self.hint_row {
             // its room stays when it goes: the views below do not jump
-            let hinted = hinted && !self.covered;
-            let height = if hinted && self.hint.is_long() { 2.0 * HINT_ROW } else { HINT_ROW };
-            Panel::top("hint").frame(line).exact_size(height).show(ui, |ui| match hinted {
+            let panel = Panel::top("hint").frame(line).min_size(HINT_ROW);
+            panel.show(ui, |ui| match hinted && !self.covered {
+                _ if shows_ways => ways_ui(ui, &self.session.ways(), hinted, &style),
                 true => self.hint.ui(ui, &self.session),
                 false => {
-                    ui.label(
-                        RichText::new("H says what it would take to cross, F1 lists all keys.")
-                            .color(style.faint()),
-                    );
+                    let text = "H says what it would take to cross, F1 lists all keys.";
+                    ui.label(RichText::new(text).color(style.faint()));
                 }
             });
         }
@@ -369,6 +365,16 @@ impl Window {
     pub fn tiling(&self) -> &Tiling {
         &self.tiling
     }
+}
+
+/// What it would take to cross; where it stands in place of the lesson, how that comes back.
+fn ways_ui(ui: &mut Ui, ways: &str, hinted: bool, style: &Style) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(ways);
+        if hinted {
+            ui.label(RichText::new("H: back to the lesson").color(style.faint()));
+        }
+    });
 }
 
 /// A ring around what has the keyboard's focus, whatever it is: nothing has it unseen.

@@ -95,16 +95,19 @@ impl Window {
                 self.session.redo();
             }
             Command::BackToStart => {
+                let changed = self.session.editor.is_dirty();
                 self.session.back_to_start();
                 self.filled = None;
                 self.memory = Memory::default();
                 self.hint = hint::Hint::for_scene(&self.session);
+                self.ways = false;
+                if changed {
+                    let undo = ctx.format_shortcut(&menu::UNDO);
+                    self.tell(format!("Your changes are discarded; {undo} brings them back"));
+                }
                 self.arrange(self.tiling.room());
             }
-            Command::PlayPause => {
-                let playing = self.session.player.is_playing();
-                self.session.player.set_playing(!playing);
-            }
+            Command::PlayPause => self.session.play_or_pause(),
             Command::Step => self.session.player.step(),
             Command::PreviousEvent => {
                 self.session.player.seek_event(false, EVENT_AHEAD);
