@@ -108,7 +108,7 @@ pub static FIELDS: &[FieldInfo] = &[
         "Increase: the motion dies away faster."),
     field("damping.c_n_s_per_m", "damping", "N s/m", ((0.0, 0.2, 0.001), Scale::Value), (0.0, 1e6),
         "Increase: the motion dies away faster."),
-    field("stops.travel_limit_mm", "at ±", "mm", STOP, LIMIT, LIMIT_HOVER),
+    field("stops.travel_limit_mm", "travel limit ±", "mm", STOP, LIMIT, LIMIT_HOVER),
     field("stops.restitution", "restitution", "", UNIT, SHARE, REBOUND_HOVER),
     field("stops.left_mm", "left", "mm", STOP, LIMIT, LIMIT_HOVER),
     field("stops.right_mm", "right", "mm", STOP, LIMIT, LIMIT_HOVER),
@@ -173,7 +173,6 @@ pub fn name_and_unit(path: &str) -> (String, &'static str) {
     let known = info(path).map(|own| (own.name, own.unit));
     let other = || OTHERS.iter().find(|own| own.0 == plain).map(|own| (own.1, own.2));
     let Some((name, unit)) = known.or_else(other) else { return (path.to_owned(), "") };
-    let name = if plain == "stops.travel_limit_mm" { "stops at ±" } else { name };
     let part = path.split('.').find_map(|part| part.parse::<usize>().ok());
     (part.map_or_else(|| name.to_owned(), |index| format!("{name} of part {}", index + 1)), unit)
 }

@@ -117,7 +117,9 @@ impl Hint {
             (Stage::Compare, true, true, Some(false)) => {
                 ("Now move the stops.", "Where must they stand so that it crosses at this shaking?")
             }
-            (Stage::Compare, true, true, None) => ("Now with stops.", "Does it cross, and what does it cost?"),
+            (Stage::Compare, true, true, None) => {
+                ("Now with stops.", "Does it cross, and what does it cost?")
+            }
             (Stage::Move { .. }, true, true, Some(false)) => (
                 "Now it does not cross.",
                 "What did your last change do? Undo it (Ctrl+Z), or move the stops.",

@@ -274,13 +274,16 @@ fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings
         asked.push(Command::Set(wanted));
     }
     ui.separator();
-    for view in View::ALL {
-        let mut shown = tiling.shows(view);
-        if ui.checkbox(&mut shown, view.name()).clicked() {
-            asked.push(Command::Show(view, shown));
-        }
-    }
-    ui.separator();
+    ui.menu_button("Views", |ui| {
+        scroll_ui(ui, |ui| {
+            for view in View::ALL {
+                let mut shown = tiling.shows(view);
+                if ui.checkbox(&mut shown, view.name()).on_hover_text(view.about()).clicked() {
+                    asked.push(Command::Show(view, shown));
+                }
+            }
+        });
+    });
     item(ui, asked, "The next tab", Some(NEXT_TAB), true, Command::NextTab);
     item(ui, asked, "One view over the window", Some(plain(Key::Z)), true, Command::Fill);
     item(ui, asked, "Cover the results", Some(plain(Key::C)), true, Command::Cover);
@@ -290,7 +293,9 @@ fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings
 
 /// What may be longer than the window is high.
 fn scroll_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
-    let room = (ui.ctx().content_rect().bottom() - ui.cursor().top() - 16.0).max(120.0);
+    let window = ui.ctx().content_rect();
+    // a menu that opens low down is moved up
+    let room = (window.bottom() - ui.cursor().top().min(0.3 * window.bottom()) - 16.0).max(120.0);
     // a menu takes no more than 400 points by itself
     ui.set_max_height(room);
     egui::ScrollArea::vertical().max_height(room).show(ui, contents);

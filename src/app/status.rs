@@ -11,10 +11,10 @@ use crate::dynamics::{Model, Outcome, Phase, Sample, Side};
 use crate::study::{Standing, standing};
 
 pub use driven::{Told, driven};
-pub use numbers::{grams, mm, speed};
+pub use numbers::{grams, mm_beside, seconds, speed};
 pub use remedy::ways;
 
-use numbers::{energy, newtons};
+use numbers::{energy, mm, newtons};
 
 /// What kind of motion a sentence is about: its colour and its shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,8 +105,8 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
                 return Sentence::new(
                     Kind::Fault,
                     format!(
-                        "The run ended at {at:.2} s: the mass went beyond what was solved of the flexures, which ends at \
-                         {end} mm. Set stops inside it, or shake less."
+                        "The run ended at {at:.2} s: the mass went further than the flexures were computed, {end} mm. Set \
+                         stops inside that, or shake less."
                     ),
                 );
             }

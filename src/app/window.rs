@@ -34,6 +34,9 @@ const MORE: f32 = 276.0;
 
 /// Where the window's size in points is kept, at the zoom 1.
 pub const SIZE: &str = "size";
+/// Height in points of a window that has no room for a line that says little.
+const LOW: f32 = 440.0;
+
 /// Height in points of the line of the first minute.
 const HINT_ROW: f32 = 32.0;
 
@@ -84,8 +87,8 @@ pub struct Window {
     after_save: Option<Next>,
     /// A file with comments that is about to be written over.
     over_comments: Option<PathBuf>,
-    /// The list of keys is shown.
-    shortcuts: bool,
+    /// The list of keys is shown, since this time in s.
+    shortcuts: Option<f64>,
     /// What it would take to cross is shown.
     ways: bool,
     announcer: Announcer,
@@ -151,7 +154,7 @@ impl Window {
             after_save: None,
             over_comments: None,
             leaving: false,
-            shortcuts: false,
+            shortcuts: None,
             ways: false,
             announcer: Announcer::default(),
             written: channel(),
@@ -227,7 +230,7 @@ impl Window {
         Panel::top("menu").frame(bar).exact_size(32.0).show(ui, |ui| {
             asked = menu::menu_ui(ui, &self.session, &self.tiling, self.settings, &self.recent);
         });
-        let height = if compact { 40.0 } else { 44.0 };
+        let height = status_line::height(ui, &self.session, compact);
         Panel::top("status").frame(line).exact_size(height).show(ui, |ui| {
             if self.covered {
                 covered_ui(ui);
@@ -264,7 +267,8 @@ impl Window {
         let hinted = self.hint.is_shown(&self.session);
         self.hint_row |= hinted;
         let shows_ways = self.ways && !self.covered;
-        if shows_ways || self.hint_row {
+        let has_room = ctx.content_rect().height() > LOW;
+        if shows_ways || (self.hint_row && (has_room || hinted && !self.covered)) {
             // its room stays when it goes: the views below do not jump
             let panel = Panel::top("hint").frame(line).min_size(HINT_ROW);
             panel.show(ui, |ui| match hinted && !self.covered {
@@ -285,9 +289,7 @@ impl Window {
             self.carry_out(&ctx, command);
         }
         self.questions_ui(ui, &ctx);
-        if self.shortcuts {
-            self.shortcuts = shortcuts::shortcuts_ui(ui);
-        }
+        self.shortcuts = self.shortcuts.filter(|opened| shortcuts::shortcuts_ui(ui, *opened));
         self.message_ui(ui);
         self.told_ui(ui);
         focus_ui(&ctx, &style);

@@ -28,7 +28,7 @@ impl Window {
             || self.asked.is_some()
             || self.over_comments.is_some()
             || self.typed.is_some()
-            || self.shortcuts
+            || self.shortcuts.is_some()
     }
 
     /// Does what the keyboard asks for. On the way to a goal every key gives it up, and does nothing else.
@@ -158,7 +158,7 @@ impl Window {
             Command::Grab => self.memory.grab = true,
             Command::Ways => self.ways = !self.ways,
             Command::Notes => self.message = Some(self.notes()),
-            Command::Shortcuts => self.shortcuts = true,
+            Command::Shortcuts => self.shortcuts = Some(ctx.input(|input| input.time)),
             Command::About => self.message = Some(about()),
         }
     }
