@@ -27,6 +27,13 @@ pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Settled> {
     (!cancelled).then_some(Settled { summary: run.summary })
 }
 
+/// Whether a run of `model` gets through its first `seconds`.
+pub fn lasts(model: &Model, seconds: f64) -> bool {
+    let mut model = model.clone();
+    (model.duration, model.settle) = (seconds, 0.0);
+    model.run(&Request::default()).summary.outcome == Outcome::Done
+}
+
 /// Where a mass stands, or swings, that nothing shakes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Standing {

@@ -11,6 +11,9 @@ use crate::scene::{Damping, Excitation, Stops};
 
 use super::{advanced, geometry};
 
+/// Width in points of a row of controls that has no room for a heading.
+const NARROW: f32 = 640.0;
+
 /// The controls as a column. Whether something changed.
 pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) -> bool {
     let width = (ui.available_width() - 84.0).max(80.0);
@@ -46,9 +49,13 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) -> bool {
                 Stops::Uneven { left_mm, right_mm, .. } => left_mm.iter().chain(&right_mm).count(),
                 _ => 1,
             };
-            let names = 330.0 + 110.0 * sides as f32;
+            // where room is short the name of the number has to do
+            let is_narrow = ui.available_width() < NARROW;
+            let names = if is_narrow { 330.0 } else { 395.0 } + 110.0 * sides as f32;
             let width = ((ui.available_width() - names) / (1 + sides) as f32).clamp(30.0, 260.0);
-            heading_ui(ui, "Shaking");
+            if !is_narrow {
+                heading_ui(ui, "Shaking");
+            }
             let mut changed = shaking_ui(ui, session, width);
             ui.separator();
             changed |= stops_switch_ui(ui, session);
@@ -123,7 +130,8 @@ fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
 fn stops_switch_ui(ui: &mut Ui, session: &mut Session) -> bool {
     let mut on = session.scene().stops != Stops::None;
     let text = RichText::new("Stops").heading();
-    let hover = "Rigid walls that limit the travel of the mass on both sides.";
+    let hover =
+        "Rigid walls that limit the travel of the mass on both sides. A mass beyond them is set on the stop.";
     hover_beside(ui.checkbox(&mut on, text), hover).changed() && session.switch_stops(on)
 }
 

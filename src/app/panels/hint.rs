@@ -6,7 +6,7 @@ use crate::app::session::Session;
 use crate::app::ui::style::strong_family;
 use crate::app::words::status::grams;
 use crate::dynamics::EventKind;
-use crate::scene::Stops;
+use crate::scene::{Excitation, Stops};
 
 /// How far in mm the stops are moved before the trade-off counts as tried.
 const TRIED_MM: f64 = 0.3;
@@ -47,7 +47,7 @@ impl Hint {
 
     /// Whether it is to be shown; goes on to the next stage once one is done.
     pub fn is_shown(&mut self, session: &Session) -> bool {
-        if self.stage == Stage::Done {
+        if self.stage == Stage::Done || session.model().mechanism.landscape.barrier.is_none() {
             return false;
         }
         // Crossings are rare and recent: a look at the last events is enough. One by hand does not count.
@@ -83,48 +83,69 @@ impl Hint {
         session.amplitude_g().is_some_and(|g| g.abs() <= self.opened_g.abs() * (1.0 + 1e-9))
     }
 
-    /// Whether it takes two lines.
-    pub fn is_long(&self) -> bool {
-        self.stage == Stage::Answer
-    }
-
-    /// What it says: what there is, and what to try.
+    /// What it says: what there is, and what to try. What it says of the motion is what the present scene settles to; where
+    /// that is not known, it says nothing of it.
     pub fn text(&self, session: &Session) -> (&'static str, String) {
-        let opened = grams(self.opened_g);
-        match (self.stage, limit_mm(session).is_some(), self.is_as_opened(session)) {
+        let (opened, crosses) = (grams(self.opened_g), session.crosses());
+        let (as_opened, alone) = (self.is_as_opened(session), self.is_alone(session));
+        let wait = "Wait for it, or press X to go there.";
+        let outward = "Then move the stops outward: how far does that help?";
+        let (first, then): (_, &str) = match (self.stage, limit_mm(session).is_some(), as_opened, crosses) {
+            (Stage::Cross, _, _, Some(true)) => ("Now it will cross.", wait),
             (Stage::Cross, ..) => (
                 "Make it cross to the other side.",
-                "Two things help: shake harder, or put stops near the middle.".to_owned(),
+                "Two things help: shake harder, or put stops near the middle.",
             ),
-            (Stage::Compare, false, false) => (
-                "Harder shaking made it cross.",
-                format!("Now go back to {opened} g and switch the stops on: what is gained, what does it cost?"),
+            (Stage::Compare | Stage::Move { .. }, false, false, _) => {
+                let first = match crosses {
+                    Some(true) if alone => "Harder shaking made it cross.",
+                    _ => "Now with stops.",
+                };
+                let then = "switch the stops on: what is gained, what does it cost?";
+                return (first, format!("Now go back to {opened} g and {then}"));
+            }
+            (Stage::Compare | Stage::Move { .. }, false, true, _) => {
+                ("Now with stops.", "Switch them on at this shaking: does it cross, and what does it cost?")
+            }
+            (Stage::Compare | Stage::Move { .. }, true, false, _) => {
+                let still = if crosses == Some(true) { " still" } else { "" };
+                let then = format!("Go back to {opened} g and leave the stops on: does it{still} cross?");
+                return ("Now with less shaking.", then);
+            }
+            (Stage::Compare, true, true, Some(true)) => ("Between these stops it will cross.", wait),
+            (Stage::Compare, true, true, Some(false)) => {
+                ("Now move the stops.", "Where must they stand so that it crosses at this shaking?")
+            }
+            (Stage::Compare, true, true, None) => {
+                ("Now with stops.", "Does it cross, and what does it cost?")
+            }
+            (Stage::Move { .. }, true, true, Some(false)) => (
+                "Now it does not cross.",
+                "What did your last change do? Undo it (Ctrl+Z), or move the stops.",
             ),
-            (Stage::Compare, false, true) => (
-                "Now with stops.",
-                "Switch them on at this shaking: does it cross, and what does it cost?".to_owned(),
-            ),
-            (Stage::Compare, true, false) => (
-                "Now with less shaking.",
-                format!("Go back to {opened} g and leave the stops on: does it still cross?"),
-            ),
-            (Stage::Compare, true, true) => (
-                "Now move the stops.",
-                "Where must they stand so that it crosses at this shaking?".to_owned(),
-            ),
-            (Stage::Move { .. }, ..) => (
-                "Between these stops it crossed, without more shaking.",
-                "Compare before and now. Then move the stops outward: how far does that help?".to_owned(),
-            ),
-            (Stage::Answer, ..) => (
-                "What stops do, and why:",
-                "a stop near the middle holds the mass high on the barrier, so that a weaker push carries it over; but \
-                 the mass travels less. Further out the mechanism presses the mass harder against the stop, and the same \
-                 push no longer frees it or carries it over."
-                    .to_owned(),
-            ),
-            (Stage::Done, ..) => ("", String::new()),
+            (Stage::Move { .. }, true, true, crosses) => {
+                let first = match crosses {
+                    Some(_) if alone => "Between these stops it crossed, without more shaking.",
+                    Some(_) => "Between these stops it crosses.",
+                    None => "Now with stops.",
+                };
+                return (first, format!("Compare before and now. {outward}"));
+            }
+            (Stage::Answer, ..) => return ("What stops do, and why:", answer(session)),
+            (Stage::Done, ..) => ("", ""),
+        };
+        (first, then.to_owned())
+    }
+
+    /// Whether the shaking and the stops are all that differs from the scene as it was opened.
+    fn is_alone(&self, session: &Session) -> bool {
+        let mut own = session.scene().clone();
+        let opened = session.editor.saved();
+        own.stops = opened.stops;
+        if let Excitation::Sine { amplitude_g, .. } = &mut own.excitation {
+            *amplitude_g = self.opened_g;
         }
+        own == *opened
     }
 
     /// Draws it.
@@ -139,6 +160,34 @@ impl Hint {
             }
         });
     }
+}
+
+/// What stops do between these wells, wherever they stand.
+fn answer(session: &Session) -> String {
+    let mut text = "a stop near the middle holds the mass high on the barrier, so that a weaker push carries it over; \
+                    but the mass travels less. Further out the mechanism presses the mass harder against the stop"
+        .to_owned();
+    text += &match hardest_mm(session) {
+        Some(mm) => format!(", most of all at ±{mm:.1} mm, and from there to the well less again."),
+        None => ", and near the well less again.".to_owned(),
+    };
+    if session.crosses() == Some(false) {
+        text += " Here the push is too weak to carry it over.";
+    }
+    text
+}
+
+/// Where between the middle and the wells the mechanism presses the mass outwards hardest, in mm, if on both sides alike.
+fn hardest_mm(session: &Session) -> Option<f64> {
+    let landscape = &session.model().mechanism.landscape;
+    let barrier = landscape.barrier?;
+    let side = |low: f64, high: f64| {
+        let between = landscape.extrema.iter().filter(|own| own.x > low && own.x < high);
+        let mut places = between.map(|own| own.x.abs() * 1e3);
+        places.next().filter(|_| places.next().is_none())
+    };
+    let (left, right) = (side(barrier.left_well, barrier.x)?, side(barrier.x, barrier.right_well)?);
+    ((left - right).abs() < 0.01 * right).then_some(right)
 }
 
 /// The travel limit of stops alike on both sides.

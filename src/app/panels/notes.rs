@@ -1,6 +1,6 @@
 //! The notes of the scene in the column of the controls, as far as there is room.
 
-use eframe::egui::{FontSelection, RichText, Ui, text::LayoutJob};
+use eframe::egui::{Color32, FontSelection, RichText, Ui};
 
 use crate::scene::Scene;
 
@@ -13,21 +13,30 @@ const LEAST: f32 = 120.0;
 pub fn notes_ui(ui: &mut Ui, scene: &Scene, bottom: f32) -> bool {
     let notes = scene.notes.trim();
     let room = bottom - ui.cursor().top();
-    if notes.is_empty() || room < LEAST {
+    if notes.is_empty() {
         return false;
     }
+    let hover = "All that the scene says about itself";
     ui.add_space(14.0);
+    if room < LEAST {
+        return ui.button("About this scene").on_hover_text(hover).clicked();
+    }
     ui.label(RichText::new("About this scene").heading());
     let font = FontSelection::Default.resolve(ui.style());
-    let row = ui.fonts_mut(|fonts| fonts.row_height(&font));
-    let mut job = LayoutJob::simple(notes.to_owned(), font, ui.visuals().text_color(), ui.available_width());
-    let is_whole = ui.fonts_mut(|fonts| fonts.layout_job(job.clone())).size().y <= room - HEADING;
-    if is_whole {
-        ui.label(job);
+    let width = ui.available_width();
+    let height = |text: &str| {
+        let (text, font) = (text.to_owned(), font.clone());
+        ui.fonts_mut(|fonts| fonts.layout(text, font, Color32::PLACEHOLDER, width)).size().y
+    };
+    if height(notes) <= room - HEADING {
+        ui.label(notes);
         return false;
     }
-    job.wrap.max_rows = (((room - HEADING - MORE) / row) as usize).max(1);
-    let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
-    ui.label(galley);
-    ui.button("Read on").on_hover_text("All that the scene says about itself").clicked()
+    // as many whole sentences as there is room for
+    let ends = notes.match_indices(['.', ';', ':']).map(|(at, _)| at + 1);
+    let ends: Vec<usize> = ends.filter(|at| notes[*at..].starts_with(char::is_whitespace)).collect();
+    let count = ends.partition_point(|end| height(&notes[..*end]) <= room - HEADING - MORE);
+    let end = count.checked_sub(1).and_then(|last| ends.get(last)).copied().unwrap_or(0);
+    ui.label(&notes[..end]);
+    ui.button("Read on").on_hover_text(hover).clicked()
 }

@@ -8,10 +8,36 @@ use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::announce::Announcer;
 use crate::app::words::meanings::meaning;
 
+/// What a part of the sentence means.
+const SPARE: &str =
+    "\n\nTo spare: how much weaker the shaking may become before, from rest, it no longer crosses.";
+
 /// Widest and highest in points of a line beside the sentence, and the size of its letters.
 const BESIDE: f32 = 236.0;
 const LINE: f32 = 17.0;
 const SMALL_LINE: f32 = 13.0;
+
+/// Width in points of a window that has no room beside the sentence: what stands there is under the pointer.
+const NARROW: f32 = 640.0;
+
+/// Room in points that the line leaves around its text, and beside its icon.
+const MARGIN: f32 = 10.0;
+const ICON: f32 = 14.0;
+
+/// Height in points of the line: more where the sentence, as small as it may be, takes more than two rows.
+pub fn height(ui: &Ui, session: &Session, compact: bool) -> f32 {
+    let (least, size) = if compact { (40.0, STATUS_COMPACT) } else { (44.0, STATUS) };
+    let width = ui.available_width() - 24.0 - size - ICON;
+    let beside = if is_narrow(ui) { 0.0 } else { BESIDE + 16.0 };
+    let font = egui::FontId::proportional(BODY);
+    let text = session.sentence().whole();
+    let galley = ui.painter().layout(text, font, egui::Color32::PLACEHOLDER, width - beside);
+    (galley.size().y + MARGIN).max(least)
+}
+
+fn is_narrow(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() < NARROW
+}
 
 /// The line that says what the mass does.
 pub fn status_ui(
@@ -35,17 +61,25 @@ pub fn status_ui(
             size * 0.42,
             style.kind(sentence.kind),
         ));
-        let settling = session.settling().map(|(gone, of)| format!("settling: {gone:.1} of {of:.1} s"));
+        let settling = match session.was_set_on_stop() {
+            true => Some("The mass was set on the stop".to_owned()),
+            false => session.settling().map(|(gone, of)| format!("settling: {:.1} s to go", of - gone)),
+        };
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             stop_ui(ui, session);
-            beside_ui(ui, session, style, settling);
+            if !is_narrow(ui) {
+                beside_ui(ui, session, style, settling);
+            }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let text = sentence.whole();
                 let size = fitted(ui, &text, size);
                 let label = ui.add(egui::Label::new(RichText::new(text).size(size)).wrap());
                 if label.hovered() {
                     let kind = meaning(&sentence.text).map_or_else(String::new, |text| format!("{text}\n\n"));
-                    label.on_hover_text(kind + &session.ways());
+                    let trust = session.trust().filter(|_| is_narrow(ui));
+                    let trust = trust.map_or_else(String::new, |(short, _)| format!("\n\n{short}"));
+                    let spare = if sentence.remedy.contains("to spare") { SPARE } else { "" };
+                    label.on_hover_text(format!("{kind}{}{spare}{trust}", session.ways()));
                 }
             });
         });
@@ -87,7 +121,7 @@ fn beside_ui(ui: &mut Ui, session: &Session, style: &Style, settling: Option<Str
             line(short, &long);
         }
         if let Some(settling) = settling {
-            line(settling, "Periods gone since your last change.");
+            line(settling, "What is left of it since your last change.");
         }
     });
 }

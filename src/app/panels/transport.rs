@@ -43,8 +43,9 @@ const KEY_SHARE: f64 = 0.002;
 /// Least distance in points between two ticks of events, of a few.
 const TICK: f32 = 5.0;
 
-/// The most events that are looked at for one tick.
-const MOST_EVENTS: usize = 64;
+/// Places in points below the top of the bar's room: of the three rows of signs, and of the bar.
+const ROWS: [f32; 3] = [4.5, 13.5, 27.5];
+const BAR: f32 = 20.0;
 
 /// Draws the transport; where results are covered, without what happened when. Whether something changed.
 pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
@@ -62,7 +63,7 @@ pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: 
         let (icon, name) = if playing { (Icon::Pause, "pause") } else { (Icon::Play, "play") };
         let button = icon_button_ui(ui, icon, BUTTON + 6.0, name, "Play and pause (space)");
         if button.clicked() {
-            session.player.set_playing(!playing);
+            session.play_or_pause();
             changed = true;
         }
         let next = "To the next event (PageDown)";
@@ -98,47 +99,41 @@ fn speed_ui(ui: &mut Ui, session: &mut Session) -> bool {
     changed
 }
 
-/// One event for every stretch of time that has some, at least `least` seconds long: a crossing before a release, a
-/// release before an impact, and of several the first. The stretches are powers of two of a second and begin at
-/// multiples of themselves, so that the ticks stay while time goes on.
-fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Event> {
-    let stretch = least.max(f64::MIN_POSITIVE).log2().ceil().exp2();
-    let rank = |event: &Event| match event.kind {
+/// The row of the bar in which an event stands: crossings over releases over the bar, impacts below it.
+fn row(kind: EventKind) -> usize {
+    match kind {
         EventKind::Crossing => 0,
-        EventKind::Release => 1,
-        EventKind::Impact | EventKind::Rest | EventKind::Contact | EventKind::Separate => 2,
-    };
-    let mut shown = Vec::new();
-    let mut number = (begin / stretch).floor();
-    while number * stretch <= end {
-        let first = events.partition_point(|event| event.t < number * stretch);
-        let Some(next) = events.get(first) else { break };
-        // over stretches with nothing in them
-        number = (next.t / stretch).floor().max(number) + 1.0;
-        let own = events.range(first..).take_while(|event| event.t < number * stretch);
-        shown.extend(own.take(MOST_EVENTS).min_by_key(|event| rank(event)));
+        EventKind::Release | EventKind::Separate => 1,
+        EventKind::Impact | EventKind::Rest | EventKind::Contact => 2,
     }
-    shown
 }
 
-/// What stands for an event at a place on the bar: a line for an impact, a triangle for a release, a diamond
-/// for a crossing.
+/// Of each row the first event in every stretch of time, at least `least` seconds long, that has some. The stretches are
+/// powers of two of a second and begin at multiples of themselves, so that the signs stay while time goes on.
+fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Event> {
+    let stretch = least.max(f64::MIN_POSITIVE).log2().ceil().exp2();
+    let mut last = [f64::NAN; 3];
+    let is_first = |event: &&Event| {
+        let number = (event.t / stretch).floor();
+        number != std::mem::replace(&mut last[row(event.kind)], number)
+    };
+    let seen = events.iter().filter(|event| (begin..=end).contains(&event.t));
+    seen.filter(is_first).copied().collect()
+}
+
+/// What stands for an event around a place: a line for an impact, a triangle for a release, a diamond for a crossing.
 fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
     let convex = |points: &[(f32, f32)], color: Color32| {
         let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();
         Shape::convex_polygon(points, color, Stroke::NONE)
     };
-    match kind {
-        EventKind::Crossing => {
+    match row(kind) {
+        0 => {
             let color = style.kind(crate::app::words::status::Kind::Interwell);
-            convex(&[(0.0, -10.0), (3.5, -6.0), (0.0, -2.0), (-3.5, -6.0)], color)
+            convex(&[(0.0, -4.0), (3.5, 0.0), (0.0, 4.0), (-3.5, 0.0)], color)
         }
-        EventKind::Release | EventKind::Separate => {
-            convex(&[(0.0, -9.0), (3.5, -2.5), (-3.5, -2.5)], style.stop())
-        }
-        EventKind::Impact | EventKind::Contact | EventKind::Rest => {
-            Shape::line_segment([at - vec2(0.0, 7.0), at], Stroke::new(1.0, style.faint()))
-        }
+        1 => convex(&[(0.0, -3.5), (3.5, 3.0), (-3.5, 3.0)], style.stop()),
+        _ => Shape::line_segment([at - vec2(0.0, 3.5), at + vec2(0.0, 3.5)], style.impact_stroke()),
     }
 }
 
@@ -148,7 +143,7 @@ fn legend(painter: &Painter, style: &Style, row: Rect) {
     let signs =
         [(EventKind::Impact, "impact"), (EventKind::Release, "release"), (EventKind::Crossing, "crossing")];
     for (kind, name) in signs {
-        painter.add(sign(kind, pos2(x, row.center().y + 5.0), style));
+        painter.add(sign(kind, pos2(x, row.center().y), style));
         let at = pos2(x + 8.0, row.center().y);
         x = painter.text(at, Align2::LEFT_CENTER, name, style.small(), style.faint()).right() + 18.0;
     }
@@ -166,14 +161,14 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) ->
     let watch = session.player.watch();
     let (begin, end) = (watch.begin(), watch.time());
     let span = (end - begin).max(1e-9);
-    let middle = rect.top() + 0.5 * BUTTON;
-    let bar = Rect::from_center_size(pos2(rect.center().x, middle), vec2(rect.width() - 12.0, 5.0));
+    let bar = Rect::from_center_size(pos2(rect.center().x, rect.top() + BAR), vec2(rect.width() - 12.0, 4.0));
     let screen_from_time = |t: f64| bar.left() + ((t - begin) / span) as f32 * bar.width();
     let painter = ui.painter();
     painter.rect_filled(bar, 2.0, style.grid());
     if !covered {
         for event in ticks(watch.events(), begin, end, f64::from(TICK / bar.width()) * span) {
-            painter.add(sign(event.kind, pos2(screen_from_time(event.t), bar.top()), style));
+            let at = pos2(screen_from_time(event.t), rect.top() + ROWS[row(event.kind)]);
+            painter.add(sign(event.kind, at, style));
         }
     }
     if explains {
@@ -267,13 +262,16 @@ mod tests {
         let all = (0..4000).map(|i| event(f64::from(i) * 0.01, kinds[i as usize % 4]));
         let all: VecDeque<Event> = all.collect();
         let few = ticks(&all, 0.0, 40.0, 0.3);
-        // stretches of half a second, a crossing in each
-        assert_eq!(few.len(), 80);
-        assert!(few.iter().all(|event| event.kind == EventKind::Crossing));
-        assert!(few.windows(2).all(|pair| pair[1].t - pair[0].t > 0.3));
+        // stretches of half a second, in each of them one of every kind
+        assert_eq!(few.len(), 240);
+        for kind in [EventKind::Crossing, EventKind::Release, EventKind::Impact] {
+            let own: Vec<&Event> = few.iter().filter(|event| event.kind == kind).collect();
+            assert_eq!(own.len(), 80);
+            assert!(own.windows(2).all(|pair| pair[1].t - pair[0].t > 0.3));
+        }
         // later they are the same
         let later = ticks(&all, 3.2, 40.0, 0.4);
-        assert!(later.iter().skip(1).all(|event| few.contains(event)));
+        assert!(later.iter().skip(3).all(|event| few.contains(event)));
         // a lone impact is seen
         let lone: VecDeque<Event> = [event(7.0, EventKind::Impact)].into();
         assert_eq!(ticks(&lone, 0.0, 1e9, 1.0).len(), 1);

@@ -10,7 +10,7 @@ use crate::app::task::{Latest, Wake};
 use crate::dynamics::Model;
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{
-    StepSize, Tolerances, Trust, Unfit, lasting, step_size, tolerances, trust,
+    Course, StepSize, Tolerances, Trust, Unfit, lasting, moment, small_length, step_size, tolerances, trust,
 };
 
 /// The step that is looked at first: a frame of a screen, as games take.
@@ -38,6 +38,30 @@ pub struct Accuracy {
     stepped: Latest<Result<StepSize, Unfit>>,
     /// A person has stopped what was being worked out.
     stopped: bool,
+}
+
+/// The error of the path, or up to when it is to be relied on, in a few words.
+fn short(trust: &Trust, from: f64) -> String {
+    match trust.course {
+        Course::Kept => format!("Path error {}", small_length(trust.error, trust.travel)),
+        Course::Chaotic { until, .. } => format!("Chaotic: path reliable up to {}", moment(from + until)),
+        Course::Sensitive { until } | Course::Coarse { until } => {
+            format!("Path reliable up to {}", moment(from + until))
+        }
+    }
+}
+
+/// What that means, how it is known, and whether the sentence beside it hangs on it.
+fn long(trust: &Trust, from: f64) -> String {
+    let hangs = match (trust.course, trust.same_regime) {
+        (Course::Kept, _) => "",
+        (_, true) => {
+            " This is about the path, where the mass is at an instant: both runs come to the same regime, which does not hang \
+             on it."
+        }
+        (_, false) => " The two runs also come to different regimes, so that the regime hangs on it.",
+    };
+    format!("{}{hangs}", trust.long(from))
 }
 
 impl Default for Accuracy {
@@ -110,7 +134,9 @@ impl Accuracy {
     pub(super) fn words(&self) -> Option<(String, String)> {
         let (_, from) = self.origin.as_ref()?;
         let trust = self.trust.newest()?;
-        Some((trust.short(*from)?, trust.long(*from)))
+        // a run that ended early has other things to say
+        trust.short(*from)?;
+        Some((short(trust, *from), long(trust, *from)))
     }
 
     /// Asks, for a view, what digits and steps cost in `model`; to be asked anew in every frame. Where a hand still changes

@@ -17,10 +17,10 @@ use std::time::Duration;
 
 use crate::app::task::{Latest, Wake};
 use crate::app::words::status::{self, Sentence, Told};
-use crate::dynamics::Model;
+use crate::dynamics::{Model, Outcome};
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
 use crate::scene::{self, Excitation, Scene, Stops};
-use crate::study::{Settled, Thresholds};
+use crate::study::{self, Settled, Thresholds};
 
 use accuracy::Accuracy;
 pub use build::CannotRun;
@@ -42,6 +42,31 @@ pub const OFFER_TO_STOP: Duration = Duration::from_secs(2);
 
 /// Time in s within which another press of an arrow key belongs to the same gesture.
 const PRESSES: f64 = 1.0;
+
+/// Share of a period for which a motion has to go on to be worth going on with.
+const MOMENT: f64 = 0.02;
+
+/// Share of the length scale by which a change has to carry the mass to be worth a word.
+const CARRIED: f64 = 0.02;
+
+/// Scales of a scene that set how far its sliders go: those of the scene as it was opened, so that no slider jumps
+/// while another one is moved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OpenedScales {
+    /// Length in m and time in s.
+    pub length: f64,
+    /// See there.
+    pub time: f64,
+    /// Distance of the right-hand well from the middle in mm.
+    pub well_mm: Option<f64>,
+}
+
+impl OpenedScales {
+    fn of(model: &Model) -> Self {
+        let well_mm = model.mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
+        Self { length: model.scales.length, time: model.scales.time, well_mm }
+    }
+}
 
 /// A side of the card Before / now.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,6 +111,10 @@ pub struct Session {
     changed_at: f64,
     /// Whether that was a hand on the mass.
     by_hand: bool,
+    /// Whether the last change carried the mass to a stop.
+    carried: bool,
+    /// The scales that the sliders keep while the scene is open.
+    opened: OpenedScales,
     /// Live time in s at which the run begins that is asked what the motion settles to.
     asked_from: f64,
     /// The motion is no longer the run of the scene from its start: something was changed on its way.
@@ -112,6 +141,7 @@ impl Session {
         let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.pace()));
         let player = Player::new(&model, speed);
         let remembered_stops = first_stops(&scene, &model);
+        let opened = OpenedScales::of(&model);
         let mut session = Self {
             editor,
             model: Arc::new(model),
@@ -130,6 +160,8 @@ impl Session {
             mechanism,
             changed_at: 0.0,
             by_hand: false,
+            carried: false,
+            opened,
             asked_from: 0.0,
             continued: false,
             remembered_stops,
@@ -285,12 +317,23 @@ impl Session {
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
         (self.changed_at, self.continued, self.by_hand) = (0.0, false, false);
+        self.carried = false;
         self.ask_settled();
+    }
+
+    /// Plays or pauses; a motion that has ended begins again from its start.
+    pub fn play_or_pause(&mut self) {
+        let playing = self.player.is_playing();
+        if !playing && !self.player.is_past() && self.player.ended().is_some() {
+            self.restart();
+        }
+        self.player.set_playing(!playing);
     }
 
     /// The mass has been moved by hand: what it settles to is asked anew.
     pub fn moved_by_hand(&mut self) {
         (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, true);
+        self.carried = false;
         self.ask_settled();
     }
 
@@ -323,13 +366,11 @@ impl Session {
             Ok(model) => {
                 self.fault = None;
                 self.model = Arc::new(model);
-                self.player.change(&self.model);
-                (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, false);
+                self.go_on();
                 if !differ_in_amplitude_alone(&before, &self.built) {
                     self.thresholds.clear();
                 }
                 self.stops_that_cross.clear();
-                self.ask_settled();
             }
             Err(error) => {
                 self.fault = Some(why(&error, self.editor.scene()));
@@ -339,6 +380,45 @@ impl Session {
                 self.stops_that_cross.clear();
             }
         }
+    }
+
+    /// Lets the motion go on from its present state by the model; one that has ended, and could not go on from there,
+    /// begins again.
+    fn go_on(&mut self) {
+        let (ended, before) = (self.player.ended().is_some(), self.player.watch().now().x);
+        self.player.change(&self.model);
+        if ended && !self.can_go_on() {
+            return self.restart();
+        }
+        let now = self.player.watch().now().x;
+        let (left, right) = self.model.stop_positions();
+        let is_far = (now - before).abs() > CARRIED * self.model.scales.length;
+        self.carried = is_far && [left, right].contains(&Some(now));
+        (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, false);
+        self.ask_settled();
+    }
+
+    /// Whether the motion goes on for a moment at least from its present state.
+    fn can_go_on(&self) -> bool {
+        let Some(model) = self.player.watch().from_here() else { return false };
+        study::lasts(&model, MOMENT * model.pace())
+    }
+
+    /// Whether the last change carried the mass to a stop, and it has not moved on for long.
+    pub fn was_set_on_stop(&self) -> bool {
+        let gone = self.player.watch().time() - self.changed_at;
+        self.carried && (self.settling().is_some() || gone < self.model.pace())
+    }
+
+    /// The scales of the scene as it was opened.
+    pub fn opened(&self) -> OpenedScales {
+        self.opened
+    }
+
+    /// Whether what the motion settles to crosses the barrier; none while that is not known.
+    pub fn crosses(&self) -> Option<bool> {
+        let summary = &self.settled.current()?.summary;
+        (self.fault.is_none() && summary.outcome == Outcome::Done).then_some(summary.crossings > 0)
     }
 
     fn build(&mut self) -> Result<Model, CannotRun> {
@@ -392,7 +472,8 @@ impl Session {
 
     /// How far the motion has come, after a change, towards what the sentence tells of: seconds gone, and of how many.
     pub fn settling(&self) -> Option<(f64, f64)> {
-        let told = self.told().filter(|_| self.model.is_shaken() && self.changed_at > 0.0)?;
+        let goes = self.model.is_shaken() && self.player.ended().is_none();
+        let told = self.told().filter(|_| goes && self.changed_at > 0.0)?;
         let (gone, of) = (told.now - told.origin, told.seen_from() - told.origin);
         (gone < of).then_some((gone, of))
     }

@@ -12,7 +12,7 @@ impl FieldInfo {
     pub fn reach(&self, session: &Session) -> Reach {
         let (low, high, step) = self.slider;
         let saved = FieldPath::new(self.path).get(session.editor.saved());
-        let scales = &session.model().scales;
+        let scales = session.opened();
         // of the prototype these are 2 g and 20 Hz
         let own = match self.scale {
             Scale::Fixed => None,
@@ -41,7 +41,7 @@ impl FieldInfo {
 /// The slider of a stop: from near the middle to beyond the well.
 fn travel(session: &Session) -> Reach {
     let (saved, limits) = (session.editor.saved(), [session.remembered_stops(), session.scene().stops]);
-    let well = session.model().mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
+    let well = session.opened().well_mm;
     let furthest = |stops: &Stops| match *stops {
         Stops::None => None,
         Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => Some(travel_limit_mm),
@@ -57,7 +57,9 @@ fn travel(session: &Session) -> Reach {
 const MOST_PRELOAD: f64 = 0.2;
 
 fn preload(session: &Session) -> Option<Reach> {
-    let Mechanism::Flexures { parallel, buckling, .. } = &session.scene().mechanism else { return None };
+    let Mechanism::Flexures { parallel, buckling, .. } = &session.editor.saved().mechanism else {
+        return None;
+    };
     let most = MOST_PRELOAD * parallel.length_mm.min(buckling.length_mm);
     let step = below(most / 80.0);
     Some(Reach { low: 0.0, high: (most / step).round() * step, step })

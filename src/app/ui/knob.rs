@@ -173,8 +173,12 @@ impl Knob<'_> {
         if number.is_empty() {
             return Err(format!("No number was typed: {stays}"));
         }
-        let Some(value) = number.parse::<f64>().ok().filter(|value| value.is_finite()) else {
-            let point = if number.contains(',') { " It takes a point, as in 1.5." } else { "" };
+        let read = |text: &str| text.parse::<f64>().ok().filter(|value| value.is_finite());
+        let Some(value) = read(&with_point(&number)) else {
+            let point = match read(&number.replace(',', "")) {
+                Some(_) if number.contains(',') => " Write it with a point or without a comma.",
+                _ => "",
+            };
             return Err(format!("“{}” is no number: {stays}{point}", clipped(&number)));
         };
         // what the scene came with is within
@@ -199,6 +203,15 @@ impl Knob<'_> {
         let number = text + 2.0 * ui.spacing().button_padding.x;
         (self.width - (number - NUMBER).max(0.0)).max(LEAST_SLIDER)
     }
+}
+
+/// A number with a point where a single comma can only be that: not one before three digits, which may stand for thousands.
+fn with_point(number: &str) -> String {
+    let Some((whole, part)) = number.split_once(',') else { return number.to_owned() };
+    let digits = part.chars().take_while(char::is_ascii_digit).count();
+    let is_thousands = digits == 3 && whole.trim_matches(['-', '+', '0']) != "";
+    let is_plain = digits > 0 && !part.contains([',', '.']) && !whole.contains('.');
+    if is_plain && !is_thousands { format!("{whole}.{part}") } else { number.to_owned() }
 }
 
 fn clipped(text: &str) -> String {
@@ -273,9 +286,23 @@ mod tests {
         let parsed = |text: &str| knob().parsed(text, 0.9);
         assert_eq!(parsed("1.137"), Ok(1.137));
         assert_eq!((parsed("1.5 g"), parsed("−2"), parsed("1e0")), (Ok(1.5), Ok(-2.0), Ok(1.0)));
+        // a comma that can only stand for a point
+        for (text, value) in
+            [("1,2", 1.2), ("0,125", 0.125), ("-1,5 g", -1.5), ("1,2345", 1.2345), ("2,5e-1", 0.25)]
+        {
+            assert_eq!(parsed(text), Ok(value));
+        }
         for (text, why) in [
             ("abc", "“abc” is no number: amplitude stays 0.9 g."),
-            ("1,5", "“1,5” is no number: amplitude stays 0.9 g. It takes a point, as in 1.5."),
+            (
+                "1,5,2",
+                "“1,5,2” is no number: amplitude stays 0.9 g. Write it with a point or without a comma.",
+            ),
+            (
+                "1,234",
+                "“1,234” is no number: amplitude stays 0.9 g. Write it with a point or without a comma.",
+            ),
+            ("a,5", "“a,5” is no number: amplitude stays 0.9 g."),
             ("", "No number was typed: amplitude stays 0.9 g."),
             ("nan", "“nan” is no number: amplitude stays 0.9 g."),
             ("1e9", "1e9 g was not taken: amplitude may be -10 to 10 g."),

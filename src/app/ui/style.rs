@@ -300,6 +300,9 @@ pub fn install(ctx: &egui::Context) {
         .into();
         style.spacing.slider_width = 150.0;
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
+        // what can be scrolled shows it
+        style.spacing.scroll =
+            egui::style::ScrollStyle { bar_width: 7.0, ..egui::style::ScrollStyle::solid() };
         style.visuals.override_text_color = Some(ink.ink());
         style.visuals.slider_trailing_fill = true;
         // what can be pressed or ticked has an edge that is seen on every ground

@@ -138,12 +138,13 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
     }
 }
 
-/// The shape of a kind of motion: square, circle, diamond, double arrow.
+/// The shape of a kind of motion: square, circle, diamond, double arrow; a ring where it has no name.
 pub fn kind_shapes(kind: Kind, center: Pos2, radius: f32, color: Color32) -> Vec<Shape> {
     let r = radius;
     let polygon = |points: Vec<Pos2>| Shape::convex_polygon(points, color, Stroke::NONE);
     match kind {
-        Kind::Resting | Kind::Other => {
+        Kind::Other => vec![Shape::circle_stroke(center, 0.8 * r, Stroke::new(0.35 * r, color))],
+        Kind::Resting => {
             vec![Shape::rect_filled(Rect::from_center_size(center, Vec2::splat(1.7 * r)), 0.0, color)]
         }
         Kind::Intrawell => vec![Shape::circle_filled(center, r, color)],

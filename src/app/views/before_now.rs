@@ -5,17 +5,22 @@ use eframe::egui::{self, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
 use crate::app::session::Card;
 use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::fields::name_and_unit;
-use crate::app::words::meanings::explained;
+use crate::app::words::fields::stop_distances;
+use crate::app::words::meanings::{explained, meaning};
 use crate::app::words::numbers::{decimals_for, exact, shown};
-use crate::app::words::status::{Kind, grams, mm, speed};
+use crate::app::words::status::{Kind, grams, mm_beside, seconds, speed};
 use crate::dynamics::{Outcome, Regime};
 use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};
 use crate::study::Settled;
 
 use super::ViewContext;
 
-/// Height in points of a row, and of the heading.
-const ROW: f32 = 26.0;
+/// Height in points of a row, and the room between two: most, and least.
+const ROW: f32 = 20.0;
+const APART: (f32, f32) = (6.0, 1.0);
+
+/// Rows that are always there: the heading, motion, RMS velocity, reach, and from where it crosses.
+const ALWAYS: usize = 5;
 
 /// Draws it. Whether something changed.
 pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
@@ -35,24 +40,32 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
     let before = context.session.before_card();
     let mut rows = before.map_or_else(Vec::new, |before| changes(&before.scene, &now.scene));
     // shaking and stops stay to be seen where there is room for what has not changed
-    let room = (ui.available_height() / ROW) as usize;
+    let height = ui.available_height();
+    let room = (height / (ROW + APART.1)) as usize;
     for (i, (name, text)) in
         [("shaking", shaking as fn(&Scene) -> String), ("stops", stops)].into_iter().enumerate()
     {
         let own = before.map_or_else(dash, |before| text(&before.scene));
-        if rows.iter().all(|row| row.name != name) && rows.len() + 5 < room {
+        if rows.iter().all(|row| row.name != name) && rows.len() + ALWAYS < room {
             let at = rows.len().min(i);
             rows.insert(at, Row { name: name.to_owned(), before: own, now: text(&now.scene) });
         }
     }
     let columns = ui.available_width() / 3.0 - 12.0;
-    Grid::new("before and now").num_columns(3).min_col_width(columns).spacing([8.0, 6.0]).show(ui, |ui| {
+    let count = (rows.len() + ALWAYS) as f32;
+    let apart = ((height - count * ROW) / (count - 1.0)).clamp(APART.1, APART.0);
+    let grid = Grid::new("before and now").num_columns(3).min_col_width(columns).spacing([8.0, apart]);
+    grid.show(ui, |ui| {
         ui.label("");
         ui.label(RichText::new("before").color(style.faint()));
         ui.label(RichText::new("now").heading());
         ui.end_row();
         let row_ui = |ui: &mut Ui, row: &Row| {
-            explained(ui.label(RichText::new(&row.name).color(style.faint())), &row.name);
+            let name = ui.label(RichText::new(&row.name).color(style.faint()));
+            match now.settled.as_ref().filter(|_| row.name == RMS) {
+                Some(settled) => name.on_hover_text(rms_words(settled)),
+                None => explained(name, &row.name),
+            };
             ui.label(&row.before);
             ui.label(RichText::new(&row.now).heading());
             ui.end_row();
@@ -70,14 +83,16 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
         };
         row_ui(
             ui,
-            &both("RMS velocity", &|card| {
+            &both(RMS, &|card| {
                 value(card, |s| s.summary.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))
             }),
         );
         row_ui(
             ui,
             &both("reach", &|card| {
-                value(card, |s| s.summary.max_abs_x.map(|reach| format!("{} mm", mm(reach))))
+                let (left, right) = stop_distances(&card.scene);
+                let stops = (left.map(|mm| mm * 1e-3), right.map(|mm| mm * 1e-3));
+                value(card, |s| s.summary.max_abs_x.map(|reach| format!("{} mm", mm_beside(reach, stops))))
             }),
         );
         row_ui(ui, &both("crosses from", &crosses_from));
@@ -88,6 +103,16 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
         let text = "Change something: the state before it stays here to compare.";
         ui.label(RichText::new(text).color(style.faint()));
     }
+}
+
+/// The row of the RMS velocity.
+const RMS: &str = "RMS velocity";
+
+/// What the RMS velocity is, and over which time it was taken.
+fn rms_words(settled: &Settled) -> String {
+    let (from, to) = settled.summary.window;
+    let time = format!("from {} to {} after the start or the last change", seconds(from), seconds(to));
+    format!("{}\n\nHere it was taken {time}.", meaning(RMS).unwrap_or_default())
 }
 
 /// A row of the card.

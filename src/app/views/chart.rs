@@ -127,7 +127,7 @@ impl Chart {
 
     /// What the lines mean, above the picture; what has no room before `right` is left out.
     pub fn legend(&self, ui: &Ui, style: &Style, right: f32, entries: &[(Sign, &str)]) {
-        legend(&ui.painter().with_clip_rect(self.area), style, self.area, right, entries);
+        legend(ui, style, self.area, right, entries);
     }
 
     /// Equilibria where the vertical axis is 0: filled where stable, hollow where not.

@@ -58,8 +58,8 @@ impl Scale {
         let stretch = span.scale(rect) / self.along;
         match stretch {
             s if (s - 1.0).abs() < 0.02 => "true scale".to_owned(),
-            s if s < 9.95 => format!("sideways {s:.1}×"),
-            s => format!("sideways {s:.0}×"),
+            s if s < 9.95 => format!("drawn {s:.1}× wider"),
+            s => format!("drawn {s:.0}× wider"),
         }
     }
 

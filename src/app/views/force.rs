@@ -1,7 +1,7 @@
 //! The force curve: what holds the mass at x, against what pushes it.
 //!
-//! The curve is dV/dx, the force that would hold the mass there. The base pushes it with -m a_b, a level line that moves
-//! up and down. Where the line is above the curve the mass is driven to the right, where it is below to the left; on a
+//! The curve is dV/dx, the force that would hold the mass there: the mechanism pulls the other way. The base pushes the
+//! mass with -m a_b, a level line that moves up and down. Both act on the mass, and are positive to the right. Where the line is above the curve the mass is driven to the right, where it is below to the left; on a
 //! stop it is released when the line passes the curve at the stop.
 
 use eframe::egui::{Align2, Painter, Sense, Shape, Stroke, Ui, pos2, vec2};
@@ -11,7 +11,7 @@ use crate::app::words::numbers::three;
 use crate::dynamics::STANDARD_GRAVITY;
 
 use super::chart::Chart;
-use super::labels::haloed;
+use super::labels::plated;
 use super::legend::Sign;
 use super::ranges::{axis_end, room_for_push};
 use super::stops::stops_beside_ui;
@@ -58,7 +58,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     }
     let state = context.session.player.state();
     let push = -model.mass * state.base_accel;
-    let mut legend = vec![(Sign::Line(style.tray_stroke()), "force of the mechanism")];
+    let mut legend = vec![(Sign::Line(style.tray_stroke()), "holds the mass there")];
     if model.is_shaken() {
         legend.push((Sign::Line(style.arrow_stroke()), "push of the base"));
         let at = chart.screen_from_world(state.x, push);
@@ -69,13 +69,15 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     releases(&painter, context, &chart);
     let at = chart.screen_from_world(state.x, own.force(state.x));
     painter.circle(at, BALL - 2.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
-    chart.numbers(ui, &style, "force (N)", 1.0);
+    chart.numbers(ui, &style, "force to the right (N)", 1.0);
     chart.legend(ui, &style, area.right(), &legend);
     if let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) {
         let (x, _) = chart.world_from_screen(pointer);
         let force = context.session.shown().mechanism.curve.force(x);
         if force.is_finite() {
-            chart.readout(ui, &style, &format!("{} N at {} mm", three(force), three(x * 1e3)));
+            let way = if force < 0.0 { " to the left" } else { " to the right" };
+            let text = format!("{} N{way} holds it at {} mm", three(force.abs()), three(x * 1e3));
+            chart.readout(ui, &style, &text);
         }
     }
     changed
@@ -145,9 +147,10 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
         let text = format!("frees at {} g", three(force.abs() / (model.mass * STANDARD_GRAVITY)));
         let room = if way > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };
         let outwards = if room > LABEL { -inwards.signum() } else { inwards.signum() };
-        let align = if outwards > 0.0 { Align2::LEFT_CENTER } else { Align2::RIGHT_CENTER };
+        let align = if outwards > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_BOTTOM };
         let off = if room > LABEL { BESIDE } else { BESIDE + LINE * MARK };
-        let beyond = pos2(at.x + outwards * off, at.y);
-        haloed(painter, &style, (beyond, align), &text, (style.small(), style.faint()));
+        // on the line of the mark, which does not cross it, and over the curve and the push
+        let beyond = pos2(at.x + outwards * off, at.y - 2.0);
+        plated(painter, &style, (beyond, align), &text, (style.small(), style.faint()));
     }
 }

@@ -1,8 +1,9 @@
 //! What lines and marks mean, in a row over a picture.
 
-use eframe::egui::{Color32, Painter, Rect, Shape, Stroke, pos2, vec2};
+use eframe::egui::{Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::ui::style::Style;
+use crate::app::words::meanings::explained;
 
 /// Height in points of the row.
 pub const LEGEND: f32 = 22.0;
@@ -11,6 +12,15 @@ pub const LEGEND: f32 = 22.0;
 const SIGN: f32 = 18.0;
 const GAP: f32 = 6.0;
 const APART: f32 = 14.0;
+
+/// What long entries are called where room is short.
+const SHORT: [(&str, &str); 5] = [
+    ("potential with the push", "with the push"),
+    ("the mechanism's own", "without"),
+    ("holds the mass there", "holds it"),
+    ("push of the base", "push"),
+    ("at rest on a stop", "at rest"),
+];
 
 /// An entry of the legend.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,11 +55,17 @@ impl Sign {
     }
 }
 
-/// The entries in the upper row of `area`; what has no room before `right` is left out.
-pub fn legend(painter: &Painter, style: &Style, area: Rect, right: f32, entries: &[(Sign, &str)]) {
+/// The entries in the upper row of `area`, in their short words where there is no room before `right` for all of the long
+/// ones; what has no room even so is left out. Each says under the pointer what it means.
+pub fn legend(ui: &Ui, style: &Style, area: Rect, right: f32, entries: &[(Sign, &str)]) {
+    let painter = ui.painter().with_clip_rect(area);
+    let written = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.faint());
+    let wide: f32 = entries.iter().map(|(_, text)| SIGN + GAP + written(text).size().x + APART).sum();
+    let is_wide = area.left() + 8.0 + wide - APART <= right - 4.0;
     let (mut x, y) = (area.left() + 8.0, area.top() + 0.5 * LEGEND);
-    for (sign, text) in entries {
-        let galley = painter.layout_no_wrap((*text).to_owned(), style.small(), style.faint());
+    for (sign, name) in entries {
+        let short = SHORT.iter().find(|(long, _)| long == name).map_or(*name, |own| own.1);
+        let galley = written(if is_wide { name } else { short });
         let (width, height) = (galley.size().x, galley.size().y);
         if x + SIGN + GAP + width > right - 4.0 {
             break;
@@ -57,6 +73,8 @@ pub fn legend(painter: &Painter, style: &Style, area: Rect, right: f32, entries:
         let rect = Rect::from_min_max(pos2(x, y - 5.0), pos2(x + SIGN, y + 5.0));
         painter.extend(sign.shapes(rect));
         painter.galley(pos2(x + SIGN + GAP, y - 0.5 * height), galley, style.faint());
+        let whole = Rect::from_min_max(rect.min, pos2(x + SIGN + GAP + width, rect.max.y));
+        explained(ui.interact(whole, ui.scope_id().with(("legend", name)), Sense::hover()), name);
         x += SIGN + GAP + width + APART;
     }
 }

@@ -14,7 +14,7 @@ use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 use crate::mechanics::ForceCurve;
 
 use super::flexures::{CLAMP, Place, Scale, bulge_words, clamp, state_at};
-use super::labels::{ago, haloed};
+use super::labels::{ago, haloed, plated};
 use super::stops::{WALL, stops_beside_ui};
 use super::well::mass_ui;
 use super::{Span, ViewContext, too_small_ui};
@@ -86,8 +86,8 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
     changed
 }
 
-/// What the parts are called, each once: a flexure at its clamp, the mass on the side to which the flexure
-/// does not bow, a stop at its foot on the outer side.
+/// What the parts are called, each once: a flexure at its clamp and the mass, each on the side to which the flexure does
+/// not go from there; a stop at its foot on the outer side, or where there is no room on the inner one.
 fn names(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
@@ -98,36 +98,61 @@ fn names(
     if rect.width() < NAMED.x || rect.height() < NAMED.y {
         return;
     }
-    let style = context.style;
-    let put = |at: Pos2, align: Align2, name: &str| {
+    let (style, model) = (context.style, context.session.shown());
+    let width = |name: &str| painter.layout_no_wrap(name.to_owned(), style.small(), style.faint()).size().x;
+    // to the right of a place, or to the left of another
+    let put = |right: bool, (x_right, x_left): (f32, f32), y: f32, below: bool, name: &str| {
+        let fits = |right: bool| match right {
+            true => x_right + width(name) < rect.right(),
+            false => x_left - width(name) > rect.left(),
+        };
+        let right = if fits(right) { right } else { !right };
+        let align = match (right, below) {
+            (true, true) => Align2::LEFT_TOP,
+            (true, false) => Align2::LEFT_BOTTOM,
+            (false, true) => Align2::RIGHT_TOP,
+            (false, false) => Align2::RIGHT_BOTTOM,
+        };
+        let at = pos2(if right { x_right } else { x_left }, y);
         haloed(painter, &style, (at, align), name, (style.small(), style.faint()));
     };
-    let zero = context.span.screen_from_world(0.0, rect);
-    put(pos2(zero - 8.0, top + 5.0), Align2::RIGHT_TOP, "flexure");
+    let (at_clamp, at_mass) = leaves_right(context);
+    let barrier = model.mechanism.landscape.barrier.map_or(0.0, |barrier| barrier.x);
+    if model.mechanism.flexures.is_some() {
+        let zero = context.span.screen_from_world(0.0, rect);
+        put(!at_clamp, (zero + 8.0, zero - 8.0), top + 5.0, true, "flexure");
+    } else if Schematic::of(&model.mechanism.curve, context.span) == Schematic::Spring {
+        let foot = context.span.screen_from_world(barrier, rect);
+        put(body.center().x < foot, (foot + 10.0, foot - 10.0), top + 5.0, true, "spring");
+    }
     // over the stops, whose room it may need
     let y = walls.0.min(body.top()) - 4.0;
-    let (at, align) = if bows_right(context) {
-        (pos2(body.left() - 2.0, y), Align2::RIGHT_BOTTOM)
-    } else {
-        (pos2(body.right() + 2.0, y), Align2::LEFT_BOTTOM)
-    };
-    put(at, align, "mass");
-    let (left, right) = context.session.shown().stop_positions();
+    put(!at_mass, (body.right() + 2.0, body.left() - 2.0), y, false, "mass");
+    let (left, right) = model.stop_positions();
     let stop = left.map(|x| (x, -1.0)).or(right.map(|x| (x, 1.0)));
     if let Some((x, way)) = stop {
-        let x = context.span.screen_from_world(x, rect) + way * (BALL + WALL + 5.0);
-        let align = if way < 0.0 { Align2::RIGHT_BOTTOM } else { Align2::LEFT_BOTTOM };
-        put(pos2(x, walls.1), align, "stop");
+        let face = context.span.screen_from_world(x, rect) + way * BALL;
+        let sides = [face, face + way * WALL];
+        let (low, high) = (sides[0].min(sides[1]), sides[0].max(sides[1]));
+        put(way > 0.0, (high + 5.0, low - 5.0), walls.1, false, "stop");
     }
 }
 
-/// Whether the flexure over the mass bows to the right; a sketched one does.
-fn bows_right(context: &ViewContext<'_>) -> bool {
-    let bent = context.memory.bent.as_ref().filter(|_| context.session.shown().mechanism.flexures.is_some());
-    let Some(line) = bent.and_then(|bent| bent.lines.get(1)) else { return true };
-    let across = |i: usize| line.points.get(i).map_or(0.0, |point| point[2]);
-    let last = line.points.len().saturating_sub(1);
-    across(last / 2) >= 0.5 * (across(0) + across(last))
+/// Whether the flexure over the mass goes to the right from its clamp, and from the mass. A spring leaves the mass to the
+/// side of the barrier.
+fn leaves_right(context: &ViewContext<'_>) -> (bool, bool) {
+    let model = context.session.shown();
+    let bent = context.memory.bent.as_ref().filter(|_| model.mechanism.flexures.is_some());
+    let Some(line) = bent.and_then(|bent| bent.lines.get(1)).filter(|line| line.points.len() > 8) else {
+        let barrier = model.mechanism.landscape.barrier.map_or(0.0, |barrier| barrier.x);
+        let left_of_it = context.session.player.state().x < barrier;
+        return (!left_of_it, left_of_it);
+    };
+    let near = line.points.len() / 6;
+    let ends = [(0, near), (line.points.len() - 1, line.points.len() - 1 - near)];
+    let goes = ends.map(|(end, near)| (line.points[end][1], line.points[near][2] > line.points[end][2]));
+    // the clamp is the end that is further along
+    if goes[0].0 > goes[1].0 { (goes[0].1, goes[1].1) } else { (goes[1].1, goes[0].1) }
 }
 
 /// What a word of the drawing means, while the pointer rests on it.
@@ -165,7 +190,7 @@ fn bent_ui(
     let words = bulge_words(&bent);
     // beside the feet of the flexures, where these never are
     let at = pos2(rect.left() + 12.0, place.bottom - 5.0);
-    let place = painter.text(at, Align2::LEFT_BOTTOM, &words, style.body(), style.ink());
+    let place = plated(painter, &style, (at, Align2::LEFT_BOTTOM), &words, (style.body(), style.ink()));
     explain(ui, place, &words);
     let words = scale.words(context.span, rect);
     Some((scale.middle(&bent), words))
@@ -192,11 +217,11 @@ impl Schematic {
 
     fn words(self, force: f64) -> String {
         match self {
-            Self::Spring => "a spring of this force, not to scale; seen from the base".to_owned(),
-            Self::Mass { pulled: false } => "a free mass, seen from the base".to_owned(),
+            Self::Spring => "a spring of this force, not to scale".to_owned(),
+            Self::Mass { pulled: false } => "a free mass".to_owned(),
             Self::Mass { pulled: true } => {
                 let way = if force > 0.0 { "left" } else { "right" };
-                format!("a steady force of {} N to the {way}, seen from the base", three(force.abs()))
+                format!("a steady force of {} N to the {way}", three(force.abs()))
             }
         }
     }
@@ -270,22 +295,31 @@ fn words_ui(
     base_accel: f64,
 ) {
     let style = context.style;
-    let mut at = rect.left_top() + vec2(10.0, 4.0);
-    let mut put = |text: String, color: Color32| {
-        let place = painter.text(at, Align2::LEFT_TOP, &text, style.small(), color);
-        explain(ui, place, &text);
-        at.x = place.right() + 14.0;
-    };
+    // what can be spared first comes last
+    let mut all =
+        vec![("seen from the base".to_owned(), style.faint(), 0), (words.to_owned(), style.faint(), 1)];
     if let Some(ago) = ago(context.session) {
-        put(ago, style.ink());
+        all.insert(0, (ago, style.ink(), 2));
     }
-    put("seen from the base".to_owned(), style.faint());
-    put(words.to_owned(), style.faint());
     if context.session.shown().is_shaken() {
         // hundredths, and more only where these say nothing
         let most = context.session.shown().largest_push() / STANDARD_GRAVITY;
         let decimals = if most < 0.1 { decimals_for(most) } else { 2 };
-        put(format!("push {:.decimals$} g", (base_accel / STANDARD_GRAVITY).abs()), style.base());
+        let push = (base_accel / STANDARD_GRAVITY).abs();
+        all.push((format!("push {push:.decimals$} g"), style.base(), 3));
+    }
+    let width = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.ink()).size().x;
+    let needed = |all: &[(String, Color32, u8)]| all.iter().map(|own| width(&own.0) + 14.0).sum::<f32>();
+    while needed(&all) > rect.width() - 6.0
+        && let Some(least) = all.iter().map(|own| own.2).min()
+    {
+        all.retain(|own| own.2 > least);
+    }
+    let mut at = rect.left_top() + vec2(10.0, 4.0);
+    for (text, color, _) in all {
+        let place = painter.text(at, Align2::LEFT_TOP, &text, style.small(), color);
+        explain(ui, place, &text);
+        at.x = place.right() + 14.0;
     }
     inset(ui, painter, context, Rect::from_min_max(pos2(at.x, rect.top()), rect.max), base_accel);
 }
@@ -368,8 +402,8 @@ mod tests {
             let curve = &session.model().mechanism.curve;
             Schematic::of(curve, Span::of(&session, (0.0, 0.0))).words(curve.force(0.0))
         };
-        assert_eq!(words("bouncing-ball"), "a steady force of 9.81 N to the left, seen from the base");
-        assert_eq!(words("elastic-box"), "a free mass, seen from the base");
+        assert_eq!(words("bouncing-ball"), "a steady force of 9.81 N to the left");
+        assert_eq!(words("elastic-box"), "a free mass");
         for preset in ["duffing", "monostable", "nominal-cubic", "paper-table"] {
             assert!(words(preset).starts_with("a spring"), "{preset}");
         }

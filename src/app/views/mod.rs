@@ -44,7 +44,7 @@ pub enum View {
     BeforeNow,
     /// Velocity over displacement.
     PhasePortrait,
-    /// The force of the mechanism over displacement.
+    /// The force that holds the mass against the mechanism, over displacement.
     ForceCurve,
     /// Where the energy went.
     Energy,
@@ -102,8 +102,8 @@ impl View {
                  needs just the energy to stand on the barrier. Click to let the motion go on from a state."
             }
             Self::ForceCurve => {
-                "The force that would hold the mass at a place. Where the push is above the curve it drives the mass to the \
-                 right, below it to the left; a mass on a stop is freed when the push passes the mark there. Filled: stable. \
+                "The force that would hold the mass at a place, positive to the right; the mechanism pulls with as much the other \
+                 way. Where the push is above the curve it drives the mass to the right, below it to the left; a mass on a stop is freed when the push passes the mark there. Filled: stable. \
                  Hollow: unstable. Diamond: a kink, where the stiffness jumps."
             }
             Self::Energy => {

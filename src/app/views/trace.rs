@@ -252,7 +252,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
         );
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }
-    legend(&painter, &style, area, right, &entries);
+    legend(&ui, &style, area, right, &entries);
     false
 }
 

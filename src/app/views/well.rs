@@ -66,7 +66,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     changed |= mass_ui(ui, context, ball, rect);
     let painter = ui.painter().with_clip_rect(rect);
     painter.circle(ball, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
-    legend(&ui.painter().with_clip_rect(area), context, area);
+    legend(ui, context, area);
     changed
 }
 
@@ -221,7 +221,7 @@ pub(super) fn x_axis(painter: &egui::Painter, context: &ViewContext<'_>, rect: R
     }
 }
 
-fn legend(painter: &egui::Painter, context: &ViewContext<'_>, area: Rect) {
+fn legend(ui: &Ui, context: &ViewContext<'_>, area: Rect) {
     let style = context.style;
     let entries = [
         (Sign::Line(style.tray_stroke()), "potential with the push"),
@@ -231,7 +231,8 @@ fn legend(painter: &egui::Painter, context: &ViewContext<'_>, area: Rect) {
     let mut right = area.right();
     if let Some(ago) = ago(context.session) {
         let at = (pos2(area.right() - 8.0, y), Align2::RIGHT_CENTER);
-        right = haloed(painter, &style, at, &ago, (style.small(), style.ink())).left();
+        let painter = ui.painter().with_clip_rect(area);
+        right = haloed(&painter, &style, at, &ago, (style.small(), style.ink())).left();
     }
-    super::legend::legend(painter, &style, area, right, &entries);
+    super::legend::legend(ui, &style, area, right, &entries);
 }

@@ -28,7 +28,7 @@ impl Window {
             || self.asked.is_some()
             || self.over_comments.is_some()
             || self.typed.is_some()
-            || self.shortcuts
+            || self.shortcuts.is_some()
     }
 
     /// Does what the keyboard asks for. On the way to a goal every key gives it up, and does nothing else.
@@ -95,16 +95,19 @@ impl Window {
                 self.session.redo();
             }
             Command::BackToStart => {
+                let changed = self.session.editor.is_dirty();
                 self.session.back_to_start();
                 self.filled = None;
                 self.memory = Memory::default();
                 self.hint = hint::Hint::for_scene(&self.session);
+                self.ways = false;
+                if changed {
+                    let undo = ctx.format_shortcut(&menu::UNDO);
+                    self.tell(format!("Your changes are discarded; {undo} brings them back"));
+                }
                 self.arrange(self.tiling.room());
             }
-            Command::PlayPause => {
-                let playing = self.session.player.is_playing();
-                self.session.player.set_playing(!playing);
-            }
+            Command::PlayPause => self.session.play_or_pause(),
             Command::Step => self.session.player.step(),
             Command::PreviousEvent => {
                 self.session.player.seek_event(false, EVENT_AHEAD);
@@ -155,7 +158,7 @@ impl Window {
             Command::Grab => self.memory.grab = true,
             Command::Ways => self.ways = !self.ways,
             Command::Notes => self.message = Some(self.notes()),
-            Command::Shortcuts => self.shortcuts = true,
+            Command::Shortcuts => self.shortcuts = Some(ctx.input(|input| input.time)),
             Command::About => self.message = Some(about()),
         }
     }

@@ -113,6 +113,12 @@ const COPY_COMMAND: KeyboardShortcut =
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C);
 const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
 
+/// A step back.
+pub const UNDO: KeyboardShortcut = command(Key::Z);
+
+/// What the way back to the scene as it was opened is called.
+const DISCARD: &str = "Discard changes";
+
 const NEXT_TAB: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Tab);
 
 /// The keys of the speeds, the slowest first.
@@ -173,9 +179,9 @@ pub fn menu_ui(
         });
         ui.menu_button("Edit", |ui| {
             let editor = &session.editor;
-            item(ui, &mut asked, "Undo", Some(command(Key::Z)), editor.can_undo(), Command::Undo);
+            item(ui, &mut asked, "Undo", Some(UNDO), editor.can_undo(), Command::Undo);
             item(ui, &mut asked, "Redo", Some(REDO), editor.can_redo(), Command::Redo);
-            item(ui, &mut asked, "Back to start", Some(plain(Key::Home)), true, Command::BackToStart);
+            item(ui, &mut asked, DISCARD, Some(plain(Key::Home)), true, Command::BackToStart);
             ui.separator();
             item(ui, &mut asked, "Copy the scene as text", Some(command(Key::C)), true, Command::CopyScene);
             item(ui, &mut asked, "Paste a scene", Some(command(Key::V)), true, Command::PasteScene);
@@ -193,9 +199,9 @@ pub fn menu_ui(
         });
         ui.add_space(16.0);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let hover =
-                "Scene and views as opened or last saved, from time 0 (Home). The scene comes back with undo.";
-            if ui.button("Back to start").on_hover_text(hover).clicked() {
+            let hover = "The scene as it was opened or last saved, its views, and time 0 (Home). Undo brings the changes \
+                         back.";
+            if ui.button(DISCARD).on_hover_text(hover).clicked() {
                 asked.push(Command::BackToStart);
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -268,13 +274,16 @@ fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings
         asked.push(Command::Set(wanted));
     }
     ui.separator();
-    for view in View::ALL {
-        let mut shown = tiling.shows(view);
-        if ui.checkbox(&mut shown, view.name()).clicked() {
-            asked.push(Command::Show(view, shown));
-        }
-    }
-    ui.separator();
+    ui.menu_button("Views", |ui| {
+        scroll_ui(ui, |ui| {
+            for view in View::ALL {
+                let mut shown = tiling.shows(view);
+                if ui.checkbox(&mut shown, view.name()).on_hover_text(view.about()).clicked() {
+                    asked.push(Command::Show(view, shown));
+                }
+            }
+        });
+    });
     item(ui, asked, "The next tab", Some(NEXT_TAB), true, Command::NextTab);
     item(ui, asked, "One view over the window", Some(plain(Key::Z)), true, Command::Fill);
     item(ui, asked, "Cover the results", Some(plain(Key::C)), true, Command::Cover);
@@ -284,7 +293,9 @@ fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings
 
 /// What may be longer than the window is high.
 fn scroll_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
-    let room = (ui.ctx().content_rect().bottom() - ui.cursor().top() - 16.0).max(120.0);
+    let window = ui.ctx().content_rect();
+    // a menu that opens low down is moved up
+    let room = (window.bottom() - ui.cursor().top().min(0.3 * window.bottom()) - 16.0).max(120.0);
     // a menu takes no more than 400 points by itself
     ui.set_max_height(room);
     egui::ScrollArea::vertical().max_height(room).show(ui, contents);
@@ -312,7 +323,7 @@ pub fn keys(ctx: &egui::Context, settings: Settings, filled: bool) -> Vec<Comman
     on(COPY_COMMAND, Command::CopyCommand);
     on(REDO, Command::Redo);
     on(command(Key::Y), Command::Redo);
-    on(command(Key::Z), Command::Undo);
+    on(UNDO, Command::Undo);
     on(command(Key::S), Command::Save);
     on(command(Key::O), Command::Open);
     on(command(Key::Q), Command::Quit);

@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
 use egui_tiles::Tree;
 
-use crate::app::panels::status_line::{covered_ui, status_ui};
+use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, hint, notes, transport};
 use crate::app::session::editor::Editor;
 use crate::app::session::{CannotRun, Session};
@@ -34,6 +34,9 @@ const MORE: f32 = 276.0;
 
 /// Where the window's size in points is kept, at the zoom 1.
 pub const SIZE: &str = "size";
+/// Height in points of a window that has no room for a line that says little.
+const LOW: f32 = 440.0;
+
 /// Height in points of the line of the first minute.
 const HINT_ROW: f32 = 32.0;
 
@@ -84,8 +87,8 @@ pub struct Window {
     after_save: Option<Next>,
     /// A file with comments that is about to be written over.
     over_comments: Option<PathBuf>,
-    /// The list of keys is shown.
-    shortcuts: bool,
+    /// The list of keys is shown, since this time in s.
+    shortcuts: Option<f64>,
     /// What it would take to cross is shown.
     ways: bool,
     announcer: Announcer,
@@ -151,7 +154,7 @@ impl Window {
             after_save: None,
             over_comments: None,
             leaving: false,
-            shortcuts: false,
+            shortcuts: None,
             ways: false,
             announcer: Announcer::default(),
             written: channel(),
@@ -227,7 +230,7 @@ impl Window {
         Panel::top("menu").frame(bar).exact_size(32.0).show(ui, |ui| {
             asked = menu::menu_ui(ui, &self.session, &self.tiling, self.settings, &self.recent);
         });
-        let height = if compact { 40.0 } else { 44.0 };
+        let height = status_line::height(ui, &self.session, compact);
         Panel::top("status").frame(line).exact_size(height).show(ui, |ui| {
             if self.covered {
                 covered_ui(ui);
@@ -263,20 +266,17 @@ impl Window {
         }
         let hinted = self.hint.is_shown(&self.session);
         self.hint_row |= hinted;
-        if self.ways && !self.covered {
-            let ways = self.session.ways();
-            Panel::top("ways").frame(line).show(ui, |ui| ui.label(ways));
-        } else if self.hint_row {
+        let shows_ways = self.ways && !self.covered;
+        let has_room = ctx.content_rect().height() > LOW;
+        if shows_ways || (self.hint_row && (has_room || hinted && !self.covered)) {
             // its room stays when it goes: the views below do not jump
-            let hinted = hinted && !self.covered;
-            let height = if hinted && self.hint.is_long() { 2.0 * HINT_ROW } else { HINT_ROW };
-            Panel::top("hint").frame(line).exact_size(height).show(ui, |ui| match hinted {
+            let panel = Panel::top("hint").frame(line).min_size(HINT_ROW);
+            panel.show(ui, |ui| match hinted && !self.covered {
+                _ if shows_ways => ways_ui(ui, &self.session.ways(), hinted, &style),
                 true => self.hint.ui(ui, &self.session),
                 false => {
-                    ui.label(
-                        RichText::new("H says what it would take to cross, F1 lists all keys.")
-                            .color(style.faint()),
-                    );
+                    let text = "H says what it would take to cross, F1 lists all keys.";
+                    ui.label(RichText::new(text).color(style.faint()));
                 }
             });
         }
@@ -289,9 +289,7 @@ impl Window {
             self.carry_out(&ctx, command);
         }
         self.questions_ui(ui, &ctx);
-        if self.shortcuts {
-            self.shortcuts = shortcuts::shortcuts_ui(ui);
-        }
+        self.shortcuts = self.shortcuts.filter(|opened| shortcuts::shortcuts_ui(ui, *opened));
         self.message_ui(ui);
         self.told_ui(ui);
         focus_ui(&ctx, &style);
@@ -369,6 +367,16 @@ impl Window {
     pub fn tiling(&self) -> &Tiling {
         &self.tiling
     }
+}
+
+/// What it would take to cross; where it stands in place of the lesson, how that comes back.
+fn ways_ui(ui: &mut Ui, ways: &str, hinted: bool, style: &Style) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(ways);
+        if hinted {
+            ui.label(RichText::new("H: back to the lesson").color(style.faint()));
+        }
+    });
 }
 
 /// A ring around what has the keyboard's focus, whatever it is: nothing has it unseen.

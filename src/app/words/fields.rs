@@ -61,6 +61,7 @@ const fn field(
 }
 
 const G: (f64, f64) = (-1e4, 1e4);
+const SIZE: (f64, f64) = (0.0, 1e4);
 const HZ: (f64, f64) = (1e-2, 1e5);
 const BAND: (f64, f64) = (0.0, 1e5);
 const LENGTH: (f64, f64) = (1e-3, 1e4);
@@ -105,7 +106,7 @@ pub static FIELDS: &[FieldInfo] = &[
         "Increase: the motion dies away faster."),
     field("damping.c_n_s_per_m", "damping", "N s/m", ((0.0, 0.2, 0.001), Scale::Value), (0.0, 1e6),
         "Increase: the motion dies away faster."),
-    field("stops.travel_limit_mm", "at ±", "mm", STOP, LIMIT, LIMIT_HOVER),
+    field("stops.travel_limit_mm", "travel limit ±", "mm", STOP, LIMIT, LIMIT_HOVER),
     field("stops.restitution", "restitution", "", UNIT, SHARE, REBOUND_HOVER),
     field("stops.left_mm", "left", "mm", STOP, LIMIT, LIMIT_HOVER),
     field("stops.right_mm", "right", "mm", STOP, LIMIT, LIMIT_HOVER),
@@ -114,19 +115,19 @@ pub static FIELDS: &[FieldInfo] = &[
     field("excitation.accel_g", "acceleration", "g", ((-2.0, 2.0, 0.01), Scale::Push), G,
         "Increase: the tray is tipped further to the left."),
     field("excitation.frequency_hz", "frequency", "Hz", RATE, HZ, FASTER_HOVER),
-    field("excitation.amplitude_g", "amplitude", "g", PUSH, G, SHAKING_HOVER),
+    field("excitation.amplitude_g", "amplitude", "g", PUSH, SIZE, SHAKING_HOVER),
     field("excitation.phase_deg", "phase", "°", ((-180.0, 180.0, 15.0), Scale::Fixed), (-1e4, 1e4),
         "Increase: the shaking begins later in its cycle."),
-    field("excitation.from_g", "from", "g", ((0.0, 3.0, 0.01), Scale::Push), G,
+    field("excitation.from_g", "from", "g", ((0.0, 3.0, 0.01), Scale::Push), SIZE,
         "Increase: the ramp begins with harder shaking."),
-    field("excitation.to_g", "to", "g", ((0.0, 3.0, 0.01), Scale::Push), G,
+    field("excitation.to_g", "to", "g", ((0.0, 3.0, 0.01), Scale::Push), SIZE,
         "Increase: the ramp ends with harder shaking."),
     field("excitation.over_s", "over", "s", RAMP, SECONDS, "Increase: the shaking changes more slowly."),
     field("excitation.from_hz", "from", "Hz", ((0.0, 30.0, 0.1), Scale::Rate), BAND,
         "Increase: the sweep begins at a higher frequency."),
     field("excitation.to_hz", "to", "Hz", ((0.0, 30.0, 0.1), Scale::Rate), BAND,
         "Increase: the sweep ends at a higher frequency."),
-    field("excitation.rms_g", "RMS", "g", ((0.0, 1.0, 0.01), Scale::Push), (0.0, 1e4), SHAKING_HOVER),
+    field("excitation.rms_g", "RMS", "g", ((0.0, 1.0, 0.01), Scale::Push), SIZE, SHAKING_HOVER),
     field("excitation.low_hz", "lowest", "Hz", ((0.0, 50.0, 0.1), Scale::Rate), BAND,
         "Increase: the slow part of the shaking goes."),
     field("excitation.high_hz", "highest", "Hz", ((0.1, 50.0, 0.1), Scale::Rate), HZ,
@@ -170,7 +171,6 @@ pub fn name_and_unit(path: &str) -> (String, &'static str) {
     let known = info(path).map(|own| (own.name, own.unit));
     let other = || OTHERS.iter().find(|own| own.0 == plain).map(|own| (own.1, own.2));
     let Some((name, unit)) = known.or_else(other) else { return (path.to_owned(), "") };
-    let name = if plain == "stops.travel_limit_mm" { "stops at ±" } else { name };
     let part = path.split('.').find_map(|part| part.parse::<usize>().ok());
     (part.map_or_else(|| name.to_owned(), |index| format!("{name} of part {}", index + 1)), unit)
 }

@@ -1,7 +1,7 @@
 //! Words of the window that need a sentence, and that sentence: what a label says under the pointer.
 
 /// Words in small letters, and what they mean.
-const MEANINGS: [(&str, &str); 19] = [
+const MEANINGS: &[(&str, &str)] = &[
     (
         "bulge",
         "How far the buckled flexure bows sideways between its two ends. It is largest with the mass in \
@@ -12,7 +12,7 @@ const MEANINGS: [(&str, &str); 19] = [
         "The buckled flexure is pulled straight: it has no bow left to give, and the force rises steeply \
          from here on.",
     ),
-    ("sideways", "How many times more the drawing is stretched across the flexures than along them."),
+    ("drawn", "How many times more the drawing is stretched across the flexures than along them."),
     ("true scale", "Lengths along and across the flexures are drawn alike."),
     (
         "schematic",
@@ -32,7 +32,9 @@ const MEANINGS: [(&str, &str); 19] = [
     ),
     (
         "crosses from",
-        "The least shaking at this frequency whose settled motion, begun at rest, crosses the barrier.",
+        "The least shaking at this frequency whose settled motion, begun at rest, crosses the barrier between \
+         these stops, or without any. Stops near the middle lower it; stops further out, up to the wells, can \
+         raise it above that without stops, since every impact takes energy.",
     ),
     (
         "release",
@@ -54,8 +56,8 @@ const MEANINGS: [(&str, &str); 19] = [
     ("hopping", "It leaves its stop and falls back on the same one, without crossing."),
     (
         "rms velocity",
-        "The root of the mean square of the velocity relative to the base, of the settled motion. The \
-         mean power that damping takes grows with its square.",
+        "The root of the mean square of the velocity relative to the base, over the second half of the run or \
+         whatever the scene takes for settled. The mean power that damping takes grows with its square.",
     ),
     (
         "settling",
@@ -67,6 +69,26 @@ const MEANINGS: [(&str, &str); 19] = [
         "Two motions that begin almost alike part quickly, so that rounding errors grow too: a single \
          path is right only up to some time, while averages hold for longer.",
     ),
+    (
+        "separatrix",
+        "The states with just the energy to stand on top of the barrier: inside either loop the mass stays in \
+         its well, outside it crosses, as long as nothing shakes it.",
+    ),
+    ("once a period", "The state once a forcing period, always at the same phase of the shaking."),
+    ("at rest on a stop", "The mechanism presses the mass on its stop, harder than the push pulls."),
+    ("impacts", "The mass strikes a stop and rebounds; what it loses of its speed goes into the stop."),
+    ("stops", "Where the stops stand: the travel limit on either side."),
+    (
+        "potential with the push",
+        "The mechanism's potential, tipped by the push of the base: the mass moves as a ball on it.",
+    ),
+    ("the mechanism's own", "The potential of the mechanism without any push."),
+    (
+        "holds the mass there",
+        "The force that would hold the mass at each place, positive to the right. The mechanism pulls with as \
+         much the other way.",
+    ),
+    ("push of the base", "What the mass feels because the base accelerates, positive to the right."),
 ];
 
 /// What a label means, by its first words: whatever follows, such as a number, does not count.
@@ -95,15 +117,16 @@ mod tests {
         let all = [
             "bulge 5.2 mm",
             "taut: no bulge left",
-            "sideways 16×",
+            "drawn 16× wider",
             "reach",
             "crosses from",
             "Release",
             "Intrawell: stays in the right-hand well",
             "interwell",
             "RMS velocity",
-            "settling: 2 of 5 periods",
-            "Chaotic: trust it up to about 4.0 s",
+            "settling: 0.6 s to go",
+            "separatrix",
+            "Chaotic: path reliable up to 4.0 s",
         ];
         for label in all {
             let text = meaning(label).unwrap_or_else(|| panic!("{label}"));

@@ -33,12 +33,12 @@ pub fn first_look(text: &mut Text) {
     }
     text.says("between 5.65 and 7.28 mm");
     text.says("of 17 to 18 mm/s");
-    text.says("irregularly at first, for seconds or minutes");
+    text.says("irregularly at first, for some seconds or even minutes");
     for tolerance in TOLERANCES {
         let own = settled("first-look", &["excitation.amplitude_g=1.3", tolerance]);
         crosses(&own);
         within(own.settles_at.unwrap(), 3.0..600.0);
-        text.says(&format!("then over and back in every period, at {:.0} mm/s", rms(&own)));
+        text.says(&format!("goes over and back once in every period, at {:.0} mm/s", rms(&own)));
     }
     text.says("At 1.3 g it crosses");
     let at = |limit: f64| settled("first-look", &[&stopped(limit)]);
@@ -50,6 +50,10 @@ pub fn first_look(text: &mut Text) {
     assert!(at(1.95).regime == Regime::Intrawell && at(1.95).releases > 0);
     assert_eq!(at(2.1).regime, Regime::Rest);
     text.says("at 1.95 mm the mass only hops, at 2.1 mm it rests");
+    let from = |changes: &[&str]| least(Onset::Crossing, "first-look", changes, 1.0..1.4);
+    text.says(&format!("From rest it crosses from {:.2} g on", from(&[])));
+    let wide = from(&[&stopped(7.0)]);
+    text.says(&format!("at 7 mm, take energy at every impact: with them it crosses from {wide:.2} g on"));
 }
 
 pub fn paper(text: &mut Text) {
@@ -77,7 +81,7 @@ pub fn paper(text: &mut Text) {
     let softer = ["mechanism.preload_mm=2.5"];
     let [stiff, soft] = [&[][..], &softer[..]].map(|changes| barrier(&preset("paper", changes).mechanism));
     let crosses_from = from(&softer, 0.5..1.0);
-    text.says(&format!("(mechanism.preload_mm=2.5) lowers the barrier from {stiff:.3} to {soft:.3} mJ"));
+    text.says(&format!("lowers the barrier from {stiff:.3} to {soft:.3} mJ"));
     text.says(&format!("with the same stops the mass then crosses from {crosses_from:.2} g on"));
     text.says("A preload of 2.5 mm in place of 2.7");
 }

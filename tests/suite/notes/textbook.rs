@@ -34,7 +34,10 @@ pub fn monostable(text: &mut Text) {
     let stops = "stops=Rigid(travel_limit_mm: 1.5, restitution: 0.36)";
     let own = settled("monostable", &[stops]);
     let share = 100.0 * own.impact_share.unwrap();
-    text.says(&format!("({stops}) it is {:.0} mm/s, and impacts take {share:.0} % of the work", rms(&own)));
+    text.says(&format!(
+        "a restitution of 0.36 it is {:.0} mm/s, and impacts take {share:.0} % of the work",
+        rms(&own)
+    ));
     text.says("With stops at 1.5 mm");
     let swing =
         |frequency: f64| reach(&settled("monostable", &[&format!("excitation.frequency_hz={frequency}")]));
@@ -62,7 +65,7 @@ pub fn bouncing_ball(text: &mut Text) {
     near_relative(rests / lands, 9.0, 1e-9);
     let (lands, rests) = times(&["stops.restitution_left=0.5"]);
     near_relative(rests / lands, 3.0, 1e-9);
-    text.says(&format!("With restitution_left=0.5 it rests after three times the fall, {rests:.4} s"));
+    text.says(&format!("With a restitution of 0.5 it rests after three times the fall, {rests:.4} s"));
 }
 
 pub fn elastic_box(text: &mut Text) {
@@ -81,7 +84,7 @@ pub fn elastic_box(text: &mut Text) {
     near(own.summary.ledger.unwrap().stored_j, 0.0, 1e-15);
     let lossy = run(&preset("elastic-box", &["stops.restitution=0.9"])).events[0];
     let share = 100.0 * (1.0 - lossy.v_out.powi(2) / lossy.v_in.powi(2));
-    text.says(&format!("of 0.9 (stops.restitution=0.9) each impact takes {share:.0} % of the energy"));
+    text.says(&format!("of 0.9 each impact takes {share:.0} % of the energy"));
 }
 
 pub fn duffing(text: &mut Text) {

@@ -205,7 +205,7 @@ fn plot_ui(ui: &mut Ui, style: &Style, area: Rect, known: &StepSize, stops: [Opt
         (Sign::Line(style.motion_stroke()), "true"),
         (Sign::Dashed(style.impact_stroke()), known.scheme.name()),
     ];
-    legend(&ui.painter().with_clip_rect(area), style, area, area.right(), &entries);
+    legend(ui, style, area, area.right(), &entries);
     let rows = f64::from((area.height() / 40.0).clamp(2.0, 6.0));
     let columns = f64::from((area.width() / 80.0).clamp(2.0, 8.0));
     let is_low = area.height() < LOW;

@@ -1,6 +1,8 @@
 //! Where on the screen is a value of the map's axes?
 
-use eframe::egui::{Align2, Painter, Pos2, Rect, Stroke, Vec2, emath::Rot2, epaint::TextShape, pos2, vec2};
+use eframe::egui::{
+    Align2, FontId, Painter, Pos2, Rect, Stroke, Vec2, emath::Rot2, epaint::TextShape, pos2, vec2,
+};
 
 use crate::app::session::map::{Map, label};
 use crate::app::ui::style::Style;
@@ -79,13 +81,18 @@ impl Frame {
         }
         let below = pos2(self.rect.center().x, self.rect.bottom() + BOTTOM - 2.0);
         painter.text(below, Align2::CENTER_BOTTOM, &self.x.label, style.body(), style.ink());
-        upright(painter, style, pos2(self.rect.left() - LEFT + 10.0, self.rect.center().y), &self.y.label);
+        let (beside, room) = (pos2(self.rect.left() - LEFT + 10.0, self.rect.center().y), self.rect.height());
+        upright(painter, style, (beside, room), &self.y.label);
     }
 }
 
-/// Text that reads upwards, with its middle at `at`.
-pub fn upright(painter: &Painter, style: &Style, at: Pos2, text: &str) {
-    let galley = painter.layout_no_wrap(text.to_owned(), style.body(), style.ink());
+/// Text that reads upwards, with its middle at a place; where it has not so much room it is written small, or its unit
+/// alone.
+pub fn upright(painter: &Painter, style: &Style, (at, room): (Pos2, f32), text: &str) {
+    let unit = text.rsplit_once('(').map_or("", |(_, unit)| unit.trim_end_matches(')'));
+    let written = |text: &str, font: FontId| painter.layout_no_wrap(text.to_owned(), font, style.ink());
+    let all = [written(text, style.body()), written(text, style.small()), written(unit, style.small())];
+    let Some(galley) = all.into_iter().find(|galley| galley.size().x <= room + TOP) else { return };
     let half: Vec2 = Rot2::from_angle(-std::f32::consts::FRAC_PI_2) * (0.5 * galley.size());
     let shape = TextShape::new(at - half, galley, style.ink());
     painter.add(shape.with_angle(-std::f32::consts::FRAC_PI_2));

@@ -219,7 +219,7 @@ pub fn bar(painter: &Painter, frame: &Frame, scale: &Scale, style: &Style) {
         painter.line_segment([at, at + vec2(4.0, 0.0)], stroke);
         painter.text(at + vec2(7.0, 0.0), Align2::LEFT_CENTER, text, style.small(), style.ink());
     }
-    upright(painter, style, pos2(rect.right() + 44.0, rect.center().y), &axis.label);
+    upright(painter, style, (pos2(rect.right() + 44.0, rect.center().y), rect.height()), &axis.label);
 }
 
 /// The mark of a motion that had not settled.

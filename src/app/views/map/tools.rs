@@ -20,6 +20,9 @@ const NARROW: f32 = 740.0;
 /// Width in points from which on the legend stands beside what was run.
 const WIDE: f32 = 760.0;
 
+/// Height in points from which on it is said what was run.
+const LOW: f32 = 220.0;
+
 /// Title, choices, progress. Whether something changed.
 pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     ui.add_space(2.0);
@@ -185,11 +188,14 @@ pub fn legend(
     let left = area.left() + 12.0;
     let (mut x, mut y) = (left, area.top() + 0.5 * ROW);
     let text = |at, words: &str| painter.text(at, Align2::LEFT_CENTER, words, style.small(), style.faint());
-    let after = text(pos2(x, y), about).right() + 18.0;
-    if area.width() > WIDE {
-        x = after;
-    } else {
-        y += ROW;
+    // a low map needs the room more
+    if area.height() > LOW {
+        let after = text(pos2(x, y), about).right() + 18.0;
+        if area.width() > WIDE {
+            x = after;
+        } else {
+            y += ROW;
+        }
     }
     let mut entry = |words: &str, sample: &dyn Fn(Rect)| {
         let width = painter.layout_no_wrap(words.to_owned(), style.small(), style.faint()).size().x;
@@ -245,7 +251,7 @@ pub fn legend(
         }
     };
     if !map.release.is_empty() {
-        entry("release (closed form)", &|rect| line(rect, style.release_strokes(), true));
+        entry("release: comes off the stop", &|rect| line(rect, style.release_strokes(), true));
     }
     if !map.crossing.is_empty() {
         entry("first crossing", &|rect| line(rect, style.crossing_strokes(), false));

@@ -5,7 +5,7 @@ use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, Summary};
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
-use super::numbers::{between, grams, limit_mm, mm, seconds, speed, times};
+use super::numbers::{between, grams, limit_mm, mm_beside, seconds, speed, times};
 use super::remedy::{amplitude, remedy};
 use super::{Kind, Sentence, ended};
 
@@ -121,7 +121,8 @@ pub fn driven(told: &Told) -> Sentence {
     // averages over a window of a motion that does not repeat are no last word
     let about = if summary.period.is_some() || summary.regime == Regime::Rest { "" } else { "about " };
     let rms = format!("RMS velocity {about}{} mm/s", speed(rms));
-    let range = between(low, high);
+    let stops = model.stop_positions();
+    let range = between(low, high, stops);
     let side = match summary.side {
         Some(Place::Left) => "left-hand",
         _ => "right-hand",
@@ -135,7 +136,7 @@ pub fn driven(told: &Told) -> Sentence {
         }
         Regime::OneWell => {
             let symmetric = (low + high).abs() < 0.02 * reach;
-            let swing = if symmetric { format!("±{} mm", mm(reach)) } else { range };
+            let swing = if symmetric { format!("±{} mm", mm_beside(reach, stops)) } else { range };
             let text = format!("No barrier: one well, so nothing to cross; {} {swing}, {rms}.", words.swings);
             (Kind::Other, text)
         }
@@ -184,7 +185,7 @@ pub fn driven(told: &Told) -> Sentence {
                 "Irregular: {} in {} of {periods:.0} periods, without a rhythm; {rms}, reach about {} mm.",
                 words.crosses,
                 summary.crossing_periods,
-                mm(reach)
+                mm_beside(reach, stops)
             );
             (Kind::Irregular, text)
         }
@@ -224,7 +225,10 @@ fn interwell(told: &Told, words: &Words, rms: &str, range: &str) -> String {
         (None, Some(share)) => {
             format!("Interwell{from}: {how}, {range}; {rms}, impacts take {share:.0} % of the work.")
         }
-        _ => format!("Interwell{from}: {how}, reaching {} mm; {rms}.", mm(summary.max_abs_x.unwrap_or(0.0))),
+        _ => format!(
+            "Interwell{from}: {how}, reaching {} mm; {rms}.",
+            mm_beside(summary.max_abs_x.unwrap_or(0.0), (left, right))
+        ),
     }
 }
 

@@ -11,8 +11,8 @@ use crate::dynamics::{Model, Outcome, Phase, Sample, Side};
 use crate::study::{Standing, standing};
 
 pub use driven::{Told, driven};
-use numbers::{energy, newtons};
-pub use numbers::{grams, mm, speed};
+use numbers::{energy, mm, newtons};
+pub use numbers::{grams, mm_beside, seconds, speed};
 pub use remedy::ways;
 
 /// What kind of motion a sentence is about: its colour and its shape.
@@ -104,8 +104,8 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
                 return Sentence::new(
                     Kind::Fault,
                     format!(
-                        "The run ended at {at:.2} s: the mass went beyond what was solved of the flexures, which ends at \
-                         {end} mm. Set stops inside it, or shake less."
+                        "The run ended at {at:.2} s: the mass went further than the flexures were computed, {end} mm. Set \
+                         stops inside that, or shake less."
                     ),
                 );
             }

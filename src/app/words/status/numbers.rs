@@ -68,14 +68,28 @@ pub fn energy(j: f64) -> String {
     if mj == 0.0 || mj >= 0.1 { format!("{mj:.2} mJ") } else { format!("{} mJ", significant(mj, 3)) }
 }
 
-/// A range in mm, `5.6 and 7.3 mm`, with as many decimals as tell its ends apart.
-pub fn between(low: f64, high: f64) -> String {
+/// A length in mm beside the stops, left and right, in m: as [`mm`], or with as many more decimals as keep it on its side of
+/// them.
+pub fn mm_beside(m: f64, stops: (Option<f64>, Option<f64>)) -> String {
+    let (left, right) = stops;
+    let all = [left.map(f64::abs), right.map(f64::abs)];
+    let is_beyond = |m: f64, stop: &f64| m.abs() > stop * (1.0 + 1e-6);
+    let is_true = |text: &str| {
+        let written = text.parse::<f64>().unwrap_or(m * 1e3) * 1e-3;
+        all.iter().flatten().all(|stop| is_beyond(written, stop) == is_beyond(m, stop))
+    };
+    let longer = (2..=6).map(|decimals| format!("{:.decimals$}", m * 1e3 + 0.0));
+    std::iter::once(mm(m)).chain(longer).find(|text| is_true(text)).unwrap_or_else(|| mm(m))
+}
+
+/// A range in mm between stops in m, `5.6 and 7.3 mm`, with as many decimals as tell its ends apart.
+pub fn between(low: f64, high: f64, stops: (Option<f64>, Option<f64>)) -> String {
     let text = |m: f64, decimals: usize| format!("{:.decimals$}", m * 1e3 + 0.0);
     let apart = |decimals: &usize| text(low, *decimals) != text(high, *decimals);
     match (1..=6).find(apart) {
-        Some(1) => format!("between {} and {} mm", mm(low), mm(high)),
+        Some(1) => format!("between {} and {} mm", mm_beside(low, stops), mm_beside(high, stops)),
         Some(decimals) => format!("between {} and {} mm", text(low, decimals), text(high, decimals)),
-        None => format!("at {} mm", mm(high)),
+        None => format!("at {} mm", mm_beside(high, stops)),
     }
 }
 
@@ -126,9 +140,29 @@ mod tests {
 
     #[test]
     fn the_ends_of_a_range_differ() {
-        assert_eq!(between(5.61e-3, 7.29e-3), "between 5.6 and 7.3 mm");
-        assert_eq!(between(6.0012e-3, 6.0037e-3), "between 6.001 and 6.004 mm");
-        assert_eq!(between(-1.000_01, -1.0), "between -1000.01 and -1000.00 mm");
-        assert_eq!(between(2e-3, 2e-3), "at 2.0 mm");
+        let open = (None, None);
+        assert_eq!(between(5.61e-3, 7.29e-3, open), "between 5.6 and 7.3 mm");
+        assert_eq!(between(6.0012e-3, 6.0037e-3, open), "between 6.001 and 6.004 mm");
+        assert_eq!(between(-1.000_01, -1.0, open), "between -1000.01 and -1000.00 mm");
+        assert_eq!(between(2e-3, 2e-3, open), "at 2.0 mm");
+    }
+
+    #[test]
+    fn a_length_stays_on_its_side_of_a_stop() {
+        let stops = |mm: f64| (Some(-mm * 1e-3), Some(mm * 1e-3));
+        assert_eq!(
+            (mm_beside(2.25e-3, stops(2.25)), mm_beside(6.875e-3, stops(6.875))),
+            ("2.25".into(), "6.875".into())
+        );
+        assert_eq!(
+            (mm_beside(-2.25e-3, stops(2.25)), mm_beside(1.5e-3, stops(1.5))),
+            ("-2.25".into(), "1.5".into())
+        );
+        // a compliant stop gives way
+        assert_eq!(
+            (mm_beside(1.52e-3, stops(1.5)), mm_beside(7.9e-3, (None, None))),
+            ("1.52".into(), "7.9".into())
+        );
+        assert_eq!(between(-2.25e-3, 1.11e-3, stops(2.25)), "between -2.25 and 1.1 mm");
     }
 }

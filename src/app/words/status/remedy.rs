@@ -20,7 +20,7 @@ const NARROW: f64 = 1.03;
 /// How far above the least amplitude that crosses the gaps end, where there are any.
 fn gaps(found: &Thresholds, from: f64) -> String {
     match found.without_gap {
-        Some(whole) if whole > NARROW * from => format!(", without a gap from {} g", grams(whole)),
+        Some(whole) if whole > NARROW * from => format!(", with gaps up to {} g", grams(whole)),
         None => ", with gaps above it".to_owned(),
         Some(_) => String::new(),
     }

@@ -80,6 +80,8 @@ pub struct Trust {
     pub course: Course,
     /// How the run ended: what was compared ends with it.
     pub outcome: Outcome,
+    /// Whether both runs come to the same regime.
+    pub same_regime: bool,
 }
 
 /// Runs `model` twice, at its own tolerance and at a hundredth of it, and compares the displacements.
@@ -111,6 +113,7 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
         travel: beside.travel,
         course,
         outcome: own.summary.outcome,
+        same_regime: own.summary.regime == better.summary.regime,
     })
 }
 
