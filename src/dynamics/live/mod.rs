@@ -12,11 +12,10 @@
 mod kernel;
 mod phase;
 
+use crate::dynamics::model::Model;
+use crate::dynamics::result::{Event, EventKind, Outcome, Phase, Sample, Side};
+use crate::dynamics::state::{Checkpoint, Contact};
 use kernel::{Kernel, Sums};
-
-use super::model::Model;
-use super::motion::{Carried, Contact};
-use super::result::{Event, EventKind, Outcome, Phase, Sample, Side};
 
 /// Longest live run in kernel time units: some years of the prototype. The clock of an undriven scene is
 /// still the one that [`Model::run`] has.
@@ -62,8 +61,8 @@ pub struct Live {
     shifts: Vec<f64>,
     now: f64,
     /// The begin of the step in which the present time lies, and its end.
-    tail: Carried<f64>,
-    head: Carried<f64>,
+    tail: Checkpoint<f64>,
+    head: Checkpoint<f64>,
     /// Events of that step that are still to come.
     coming: Vec<Event>,
     /// Energies up to the tail, and of the step from there to the head.
@@ -174,18 +173,18 @@ impl Live {
         self.sample(&carried)
     }
 
-    fn sample(&self, carried: &Carried<f64>) -> Sample {
+    fn sample(&self, carried: &Checkpoint<f64>) -> Sample {
         Sample {
             t: self.now,
-            x: carried.x,
-            v: carried.v / self.kernel.unit(),
+            x: carried.state.x,
+            v: carried.state.v / self.kernel.unit(),
             base_accel: self.kernel.base(carried),
-            phase: carried.phase(),
+            phase: carried.state.phase(),
         }
     }
 
     /// The state at the present time and the energies from the tail to there.
-    fn present(&self) -> (Carried<f64>, Sums) {
+    fn present(&self) -> (Checkpoint<f64>, Sums) {
         self.kernel.present(&self.model, &self.tail, &self.head, self.now).unwrap_or((self.head, self.ahead))
     }
 
@@ -194,8 +193,8 @@ impl Live {
         let (carried, sums) = self.present();
         let mut ledger = self.past;
         ledger.add(&sums, &self.model);
-        let v = carried.v / self.kernel.unit();
-        ledger.stored_j = energy(&self.model, (carried.x, v)) - self.start_energy;
+        let v = carried.state.v / self.kernel.unit();
+        ledger.stored_j = energy(&self.model, (carried.state.x, v)) - self.start_energy;
         ledger
     }
 
@@ -228,7 +227,7 @@ impl Live {
 
     fn go_on(&mut self, mut next: Model, wanted: (f64, f64), was: Phase, into: &mut Passage) {
         let (carried, sums) = self.present();
-        let before = energy(&self.model, (carried.x, carried.v / self.kernel.unit()));
+        let before = energy(&self.model, (carried.state.x, carried.state.v / self.kernel.unit()));
         self.past.add(&sums, &self.model);
         // Where a stop was pressed in, it stays so: only what a stop is moved over is carried along.
         let depth = self.model.pressed_depth(wanted.0).filter(|_| was != Phase::Free);
@@ -241,7 +240,7 @@ impl Live {
         self.kernel = Kernel::new(&self.model);
         let (start, mut happened) = self.kernel.start(&self.model, self.now);
         // Resting on is no event, and letting go is one.
-        let rests = start.phase();
+        let rests = start.state.phase();
         match was {
             Phase::Free => {}
             _ if was == rests && gave == gives => {
@@ -272,8 +271,8 @@ impl Live {
         (model.duration, model.settle) = self.asked;
         phase::advance(&mut model.drive, self.now);
         let (carried, _) = self.present();
-        model.start = (carried.x, carried.v / self.kernel.unit());
-        model.motionless = carried.contact == Contact::Motionless;
+        model.start = (carried.state.x, carried.state.v / self.kernel.unit());
+        model.motionless = carried.state.contact == Contact::Motionless;
         Some(model)
     }
 }
