@@ -15,10 +15,10 @@ mod series;
 mod state;
 mod step;
 
-pub use live::{Live, LiveLedger, Passage};
+pub use live::{Live, LiveLedger, LiveOutput};
 pub use model::Model;
-pub(crate) use model::excitation::BaseTone;
 pub use model::excitation::STANDARD_GRAVITY;
+pub(crate) use model::excitation::TonePart;
 pub use model::scales::Scales;
 pub(crate) use model::stops::StopAt;
 pub use result::*;

@@ -1,6 +1,6 @@
 //! One motion: its state, what makes its steps, and what records them.
 //!
-//! The run is a chain of free flights in one arena each and of rests on a stop. A step of a flight is a
+//! The run is a chain of free flights in one mode each and of rests on a stop. A step of a flight is a
 //! Taylor series (`series`); its polynomial is also the dense output, and contacts, breaks and crossings are
 //! roots of it, found with none missed. Chosen for that, and for its cost: on the nominal cubic without stops
 //! six more digits cost 1.8 times the time (`benches/work_precision.rs` prints error and cost), where a
@@ -24,7 +24,7 @@ use super::clock::{Clock, Instant};
 use super::drive::Drive;
 use super::equation::Equation;
 use super::model::Model;
-use super::record::events::Told;
+use super::record::events::Call;
 use super::record::log::Log;
 use super::record::recorder::Recorder;
 use super::result::Request;
@@ -63,7 +63,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
     ) -> Self {
         let unit = equation.unit;
         let (x, v) = (T::of(model.start.0), T::of(model.start.1 * unit));
-        let arena = equation.arena_at(x, model.mechanism.curve.piece_index(model.start.0));
+        let mode = equation.mode_at(x, model.mechanism.curve.piece_index(model.start.0));
         let contact = if model.motionless { Contact::Motionless } else { Contact::Free };
         let settings = Settings::new(model, unit, tolerance);
         let mut record = Recorder::new(model, clock, unit, settings.order, request, (x, v));
@@ -73,7 +73,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         record.samples_per_look = stepper.costs.samples_per_look();
         Self {
             stepper,
-            state: MotionState::new((x, v), arena, contact),
+            state: MotionState::new((x, v), mode, contact),
             record,
             log: None,
             steps: 0,
@@ -104,7 +104,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
     }
 
     /// Tells the recorder what happened, and keeps it where a log is kept.
-    pub fn tell(&mut self, told: Told<T>) {
+    pub fn tell(&mut self, told: Call<T>) {
         if let Some(log) = &mut self.log {
             log.add(told);
         }

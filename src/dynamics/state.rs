@@ -30,9 +30,9 @@ pub(crate) enum Contact {
     /// At rest in an equilibrium that nothing disturbs.
     Motionless,
     /// Pressing in the compliant stop of this end.
-    Pressing(End),
+    Compressing(End),
     /// Behind its surface, with the stop not following: it would have to pull.
-    Trailed(End),
+    Clipped(End),
 }
 
 /// How far a mass has pressed in a compliant stop.
@@ -41,7 +41,7 @@ pub(crate) struct Depth<T> {
     /// Root of the depth; 0 outside.
     pub root: T,
     /// The stop began or ceased to trail right here.
-    pub turned: bool,
+    pub clip_changed: bool,
 }
 
 /// Everything that the next step depends on. The drive's rolling state is no part of it: it only keeps
@@ -54,12 +54,12 @@ pub(crate) struct MotionState<T, E = ()> {
     pub x: T,
     pub v: T,
     pub extra: E,
-    pub arena: usize,
+    pub mode: usize,
     /// Segment of the drive.
     pub segment: usize,
     pub touch: Option<Touch>,
     pub contact: Contact,
-    /// When a release turned out to be none.
+    /// When a release clip_changed out to be none.
     pub refused: Option<Instant<T>>,
     /// Whether the mass has been handed across a break without moving.
     pub turned_back: bool,
@@ -68,29 +68,29 @@ pub(crate) struct MotionState<T, E = ()> {
 
 impl<T: Scalar> MotionState<T> {
     /// At time 0 in the drive's first segment.
-    pub fn new((x, v): (T, T), arena: usize, contact: Contact) -> Self {
+    pub fn new((x, v): (T, T), mode: usize, contact: Contact) -> Self {
         Self {
             at: Instant { cycle: 0, phase: T::zero() },
             x,
             v,
             extra: (),
-            arena,
+            mode,
             segment: 0,
             touch: None,
             contact,
             refused: None,
             turned_back: false,
-            depth: Depth { root: T::zero(), turned: false },
+            depth: Depth { root: T::zero(), clip_changed: false },
         }
     }
 
     /// What a sample here is.
     pub fn phase(&self) -> Phase {
         match self.contact {
-            Contact::Resting(End::Low) | Contact::Pressing(End::Low) | Contact::Trailed(End::Low) => {
+            Contact::Resting(End::Low) | Contact::Compressing(End::Low) | Contact::Clipped(End::Low) => {
                 Phase::LeftStop
             }
-            Contact::Resting(End::High) | Contact::Pressing(End::High) | Contact::Trailed(End::High) => {
+            Contact::Resting(End::High) | Contact::Compressing(End::High) | Contact::Clipped(End::High) => {
                 Phase::RightStop
             }
             // The stops stand on both sides of 0.
@@ -100,8 +100,8 @@ impl<T: Scalar> MotionState<T> {
         }
     }
 
-    /// Its mirror image where `arenas` is their number and no stop is compliant.
-    pub fn mirrored(self, arenas: usize) -> Self {
+    /// Its mirror image where `modes` is their number and no stop is compliant.
+    pub fn mirrored(self, modes: usize) -> Self {
         let minus = |value: T| T::zero() - value;
         let contact = match self.contact {
             Contact::Resting(end) => Contact::Resting(end.other()),
@@ -110,18 +110,18 @@ impl<T: Scalar> MotionState<T> {
         Self {
             x: minus(self.x),
             v: minus(self.v),
-            arena: arenas - 1 - self.arena,
+            mode: modes - 1 - self.mode,
             touch: self.touch.map(|touch| Touch { end: touch.end.other(), ..touch }),
             contact,
             ..self
         }
     }
 
-    /// The mass crosses an end of its arena into the next one.
+    /// The mass crosses an end of its mode into the next one.
     pub fn enter(&mut self, end: End) {
         match end {
-            End::Low => self.arena -= 1,
-            End::High => self.arena += 1,
+            End::Low => self.mode -= 1,
+            End::High => self.mode += 1,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Passage from one piece of the force curve to the next.
+//! LiveOutput from one piece of the force curve to the next.
 
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
@@ -7,18 +7,18 @@ use crate::dynamics::state::{BY_ACCELERATION, BY_SPEED, HELD, Touch};
 use crate::numeric::Scalar;
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
-    /// The mass passes the break at `end` of its arena.
+    /// The mass passes the break at `end` of its mode.
     pub fn enter_neighbour(&mut self, end: End) {
         self.state.enter(end);
         self.state.touch = Some(Touch { end: end.other(), order: BY_SPEED });
     }
 
-    /// The mass stands on the break at `end` of its arena with no speed: the first derivative of its motion that is
+    /// The mass stands on the break at `end` of its mode with no speed: the first derivative of its motion that is
     /// not 0 (to the rounding of its terms) chooses the side; where none is, it stays on this one.
     pub fn balance(&mut self, end: End) {
         let sign = end.sign::<T>();
-        let arena = self.stepper.arena(&self.state);
-        let (force, _, rounding) = arena.force.value(arena.end(end).0 - arena.origin);
+        let mode = self.stepper.mode(&self.state);
+        let (force, _, rounding) = mode.force.value(mode.end(end).0 - mode.origin);
         self.stepper.seed(&self.state);
         let a = &self.stepper.series.a;
         let rates = [-(sign * (force + a[0])), -(sign * a[1]), -(sign * a[2])];

@@ -26,19 +26,19 @@ const NUDGE: f64 = 1.0;
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// Whether the run begins with the mass beyond the surface of a stop, where it then is.
-    pub fn start_pressed_in(&mut self) -> bool {
+    pub fn start_inside_a_stop(&mut self) -> bool {
         for end in [End::Low, End::High] {
             let (sign, level) = (end.sign::<T>(), self.stepper.equation.surface(end));
             let Some(depth) = level.map(|level| sign * (self.state.x - level)).filter(|d| *d > T::zero())
             else {
                 continue;
             };
-            self.state.depth = Depth { root: depth.sqrt(), turned: false };
+            self.state.depth = Depth { root: depth.sqrt(), clip_changed: false };
             self.record.touch(&self.state.at, end.side(), self.state.v, false);
             if self.state.contact == Contact::Free {
                 let loss = self.stepper.equation.compliant.map_or(T::zero(), |stop| stop.loss);
                 let pulls = T::of(1.0) + loss * (sign * self.state.v) < T::zero();
-                self.state.contact = if pulls { Contact::Trailed(end) } else { Contact::Pressing(end) };
+                self.state.contact = if pulls { Contact::Clipped(end) } else { Contact::Compressing(end) };
             }
             return true;
         }
@@ -67,8 +67,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let speed = speed.larger(least);
         self.state.v = end.sign::<T>() * speed;
         self.state.enter(end);
-        self.state.depth = Depth { root: T::zero(), turned: false };
-        self.state.contact = Contact::Pressing(end);
+        self.state.depth = Depth { root: T::zero(), clip_changed: false };
+        self.state.contact = Contact::Compressing(end);
         self.state.touch = None;
         self.stepper.work.add_impacts(1);
         self.record.touch(&self.state.at, end.side(), self.state.v, true);
@@ -76,23 +76,23 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
 
     /// One step of contact with the stop of `end`; `left` is the time to the end of the run.
     #[inline(never)]
-    pub fn press_in(&mut self, end: End, left: T) -> Flow {
+    pub fn contact_step(&mut self, end: End, left: T) -> Flow {
         if self.stepper.pass_segment_end(&mut self.state) {
             return None;
         }
         let stop = self.stepper.equation.compliant?;
         let new = || Box::new(Penetration::new(stop, self.stepper.equation.most_products()));
         let mut path = self.stepper.penetration.take().unwrap_or_else(new);
-        let flow = self.press_along(end, left, &mut path);
+        let flow = self.take_contact_step(end, left, &mut path);
         self.stepper.penetration = Some(path);
         flow
     }
 
-    fn press_along(&mut self, end: End, left: T, path: &mut Penetration<T>) -> Flow {
+    fn take_contact_step(&mut self, end: End, left: T, path: &mut Penetration<T>) -> Flow {
         let Some(step) = self.stepper.choose_contact_step(&self.state, end, left, path) else {
             return Some(Outcome::NotFinite { at: self.stepper.seconds(&self.state) });
         };
-        let arena = self.stepper.arena(&self.state);
+        let mode = self.stepper.mode(&self.state);
         let sign = end.sign::<T>();
         let ContactStep { whole, length, duration, reached, arrival } = step;
         let mut root = path.root_at(length).larger(T::zero());
@@ -102,9 +102,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         match reached {
             Reached::Time => {}
             Reached::Surface => (root, x) = (T::zero(), surface),
-            Reached::Turn => speed = T::of(-1.0) / self.stepper.equation.compliant?.loss,
+            Reached::ClipChange => speed = T::of(-1.0) / self.stepper.equation.compliant?.loss,
             Reached::End(at) => {
-                x = arena.end(at).0;
+                x = mode.end(at).0;
                 root = (sign * (x - surface)).sqrt();
             }
         }
@@ -116,13 +116,13 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let bound = displacement[1..path.known()].iter().fold(T::zero(), |sum, c| sum + c.abs());
         let view = StepView {
             path: &*path,
-            origin: arena.origin,
+            origin: mode.origin,
             at: self.state.at,
             whole,
             length,
             duration,
             bound,
-            limits: (arena.low, arena.high),
+            limits: (mode.low, mode.high),
             x,
             v: sign * speed,
         };
@@ -134,15 +134,15 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             None => self.stepper.clock.advance(&self.state.at, duration),
         };
         (self.state.x, self.state.v) = (x, sign * speed);
-        self.state.depth = Depth { root, turned: reached == Reached::Turn };
+        self.state.depth = Depth { root, clip_changed: reached == Reached::ClipChange };
         self.state.touch = None;
         match reached {
             Reached::Time => {}
             Reached::Surface => self.leave_stop(end),
-            Reached::Turn => {
+            Reached::ClipChange => {
                 self.state.contact = match self.state.contact {
-                    Contact::Trailed(end) => Contact::Pressing(end),
-                    _ => Contact::Trailed(end),
+                    Contact::Clipped(end) => Contact::Compressing(end),
+                    _ => Contact::Clipped(end),
                 };
             }
             Reached::End(at) => return self.reach_within(at),
@@ -163,9 +163,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
     }
 
-    /// The mass has reached the end of its arena deep in a stop: a break, or the end of the known curve.
+    /// The mass has reached the end of its mode deep in a stop: a break, or the end of the known curve.
     fn reach_within(&mut self, at: End) -> Flow {
-        if self.stepper.arena(&self.state).end(at).1 == EndKind::Unknown {
+        if self.stepper.mode(&self.state).end(at).1 == EndKind::Unknown {
             return Some(Outcome::LeftTable { at: self.stepper.seconds(&self.state) });
         }
         let outward = at.sign::<T>() * self.state.v;

@@ -1,4 +1,4 @@
-//! What happens where the mass is at an end of its arena: a stop, a break or the end of the curve.
+//! What happens where the mass is at an end of its mode: a stop, a break or the end of the curve.
 
 mod breaks;
 mod compliant;
@@ -15,15 +15,15 @@ use crate::numeric::Scalar;
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// Decides what a start on a surface is.
     pub fn place_at_start(&mut self) {
-        if self.stepper.equation.compliant.is_some() && self.start_pressed_in() {
+        if self.stepper.equation.compliant.is_some() && self.start_inside_a_stop() {
             return;
         }
         if self.state.contact != Contact::Free {
             return;
         }
-        let arena = self.stepper.arena(&self.state);
+        let mode = self.stepper.mode(&self.state);
         for end in [End::Low, End::High] {
-            let (level, kind) = arena.end(end);
+            let (level, kind) = mode.end(end);
             if self.state.x != level || kind == EndKind::Unknown {
                 continue;
             }
@@ -49,10 +49,10 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
     }
 
-    /// The mass has reached an end of its arena; `at_once` where the step began there and led outward.
+    /// The mass has reached an end of its mode; `at_once` where the step began there and led outward.
     pub fn reach(&mut self, end: End, at_once: bool) -> Flow {
         let outward = end.sign::<T>() * self.state.v;
-        let (level, kind) = self.stepper.arena(&self.state).end(end);
+        let (level, kind) = self.stepper.mode(&self.state).end(end);
         match kind {
             EndKind::Stop if outward > T::zero() => self.strike(end, outward),
             EndKind::Stop if at_once => {

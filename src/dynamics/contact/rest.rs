@@ -1,10 +1,10 @@
 //! Rest on a rigid stop, and the release that ends it.
 
 use crate::dynamics::clock::Instant;
-use crate::dynamics::drive::{Drive, Fall, Press, Span};
+use crate::dynamics::drive::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::equation::End;
 use crate::dynamics::motion::Motion;
-use crate::dynamics::record::events::Told;
+use crate::dynamics::record::events::Call;
 use crate::dynamics::result::Phase;
 use crate::dynamics::state::{BY_ACCELERATION, BY_JERK, Contact, Label, MotionState, Touch, UNDECIDED};
 use crate::dynamics::step::stepper::Stepper;
@@ -19,8 +19,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// leaves. The first derivative of the pressing acceleration that is not 0 (to the rounding of its terms) decides; if
     /// none is, nothing presses, and it stays there, free.
     pub fn leaves(&mut self, end: End) -> Option<Touch> {
-        let rates = self.stepper.press(&self.state, end);
-        let rounding = self.stepper.press_rounding(end);
+        let rates = self.stepper.contact_acceleration(&self.state, end);
+        let rounding = self.stepper.contact_acceleration_rounding(end);
         self.state.v = T::zero();
         for (order, rate) in (BY_ACCELERATION..).zip(rates) {
             let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
@@ -47,13 +47,13 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// From now on the mass rests on the stop of `end`.
     pub fn begin_rest(&mut self, end: End) {
         self.state.contact = Contact::Resting(end);
-        self.tell(Told::Rest { at: self.state.at, side: end.side() });
+        self.tell(Call::Rest { at: self.state.at, side: end.side() });
     }
 
     /// The mass stands still until `until`.
     pub fn stand(&mut self, until: Instant<T>, phase: Phase) {
         let MotionState { at, x, v, .. } = self.state;
-        self.tell(Told::Stand { at, until, state: (x, v), phase });
+        self.tell(Call::Stand { at, until, state: (x, v), phase });
         self.state.at = until;
     }
 
@@ -68,28 +68,28 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             from = self.stepper.clock.advance(&from, self.stepper.clock.period() * T::of(PAST_A_TOUCH));
         }
         let threshold = self.stepper.equation.stop(end).map_or(T::zero(), |s| s.press);
-        let press = Press { threshold, sign: end.sign::<T>() };
+        let press = ContactAcceleration { threshold, sign: end.sign::<T>() };
         let since = self.searched.take().filter(|(segment, _)| *segment == self.state.segment);
         let since = since.map_or(from, |(_, since)| since);
         let span = Span { from, until, segment: self.state.segment, since };
-        let Stepper { drive, clock, roll, .. } = &mut self.stepper;
-        let (fall, work) = drive.next_fall(clock, &span, press, roll);
+        let Stepper { drive, clock, cursor, .. } = &mut self.stepper;
+        let (fall, work) = drive.next_release(clock, &span, press, cursor);
         self.stepper.work.add(self.stepper.costs.check + work);
         match fall {
-            Fall::At(fall, turn) => {
+            ReleaseRoot::At(fall, turn) => {
                 self.stand(fall, phase);
                 self.release(end, BY_JERK);
                 self.label = turn.filter(|_| self.recurs).map(|turn| Label { end, turn, phase: fall.phase });
             }
-            Fall::NotBefore(later) => {
+            ReleaseRoot::NotBefore(later) => {
                 self.searched = Some((self.state.segment, since));
                 self.stand(later, phase);
             }
-            Fall::Never => {
+            ReleaseRoot::Never => {
                 self.stand(until, phase);
                 if self.stepper.pass_segment_end(&mut self.state) {
-                    let press = self.stepper.press(&self.state, end)[0];
-                    if press < -self.stepper.press_rounding(end) {
+                    let press = self.stepper.contact_acceleration(&self.state, end)[0];
+                    if press < -self.stepper.contact_acceleration_rounding(end) {
                         self.release(end, BY_ACCELERATION);
                     }
                 }
@@ -98,7 +98,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     }
 
     fn release(&mut self, end: End, order: usize) {
-        self.tell(Told::Release { at: self.state.at, side: end.side() });
+        self.tell(Call::Release { at: self.state.at, side: end.side() });
         self.state.contact = Contact::Free;
         self.state.touch = Some(Touch { end, order });
     }

@@ -3,7 +3,7 @@
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
 use crate::dynamics::motion::Motion;
-use crate::dynamics::record::events::Told;
+use crate::dynamics::record::events::Call;
 use crate::dynamics::result::Phase;
 use crate::dynamics::state::{BY_SPEED, Touch};
 use crate::numeric::Scalar;
@@ -20,7 +20,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.stepper.work.add_impacts(1);
         // 0 - keeps a rebound of 0 from being -0
         let (v_in, v_out) = (sign * speed, T::zero() - sign * rebound);
-        self.tell(Told::Impact { at: self.state.at, side: end.side(), v_in, v_out });
+        self.tell(Call::Impact { at: self.state.at, side: end.side(), v_in, v_out });
         if rebound > T::zero() {
             self.state.v = -(sign * rebound);
             self.state.touch = Some(Touch { end, order: BY_SPEED });
@@ -62,7 +62,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         if self.stepper.clock.between(&until, &limit) <= T::zero() {
             return false;
         }
-        self.tell(Told::Chatter { at: self.state.at, v: speed });
+        self.tell(Call::Chatter { at: self.state.at, v: speed });
         self.stand(until, Phase::Free);
         self.state.v = T::zero();
         self.steps += 1;

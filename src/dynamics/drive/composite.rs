@@ -4,7 +4,7 @@ use super::chirp::{Chirp, ChirpState, next_chirp};
 use super::record::{Record, value_and_slope};
 use super::release::Search;
 use super::tone::Tone;
-use super::{Drive, Fall, Press, Span};
+use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, SEEDED, Tail};
 use crate::numeric::Scalar;
@@ -33,31 +33,31 @@ pub(crate) struct Composite<T> {
 
 /// What continues the series of a composite drive.
 #[derive(Debug, Clone)]
-pub(crate) struct Rolling<T> {
+pub(crate) struct Cursor<T> {
     /// For each tone the last two coefficients of its sine, its amplitude and growth.
     tones: Vec<[T; 4]>,
     chirps: Vec<ChirpState<T>>,
 }
 
-impl<T> Default for Rolling<T> {
+impl<T> Default for Cursor<T> {
     fn default() -> Self {
         Self { tones: Vec::new(), chirps: Vec::new() }
     }
 }
 
 impl<T: Scalar> Tail<T> for Composite<T> {
-    type Rolling = Rolling<T>;
+    type Cursor = Cursor<T>;
 
-    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling) {
+    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], cursor: &mut Self::Cursor) {
         let mut sum = T::zero();
-        for (tone, [before, last, amplitude, growth]) in self.tones.iter().zip(&mut roll.tones) {
+        for (tone, [before, last, amplitude, growth]) in self.tones.iter().zip(&mut cursor.tones) {
             let next = tone.curvature() * *before * inverse[k];
             sum += *amplitude * next + *growth * *last;
             (*before, *last) = (*last, next);
         }
-        if !roll.chirps.is_empty() {
+        if !cursor.chirps.is_empty() {
             let share = inverse[k] * T::of((k - 1) as f64); // 1/k
-            for state in &mut roll.chirps {
+            for state in &mut cursor.chirps {
                 next_chirp(state, share);
                 sum += state.amplitude * state.sine[1];
             }
@@ -73,11 +73,11 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         at: &Instant<T>,
         segment: usize,
         a: &mut [T; ROOM],
-        roll: &mut Self::Rolling,
+        cursor: &mut Self::Cursor,
     ) {
         // Clearing keeps the room: nothing is allocated after the first call.
-        roll.tones.clear();
-        roll.chirps.clear();
+        cursor.tones.clear();
+        cursor.chirps.clear();
         let mut sums = [self.constant, T::zero(), T::zero(), T::zero()];
         for tone in &self.tones {
             let (s, d) = tone.unit(at);
@@ -90,7 +90,7 @@ impl<T: Scalar> Drive<T> for Composite<T> {
                     *sum += growth * unit[k - 1];
                 }
             }
-            roll.tones.push([unit[2], unit[3], amplitude, growth]);
+            cursor.tones.push([unit[2], unit[3], amplitude, growth]);
         }
         for chirp in &self.chirps {
             let (s, c, rate, growth) = chirp.state(clock, at, segment);
@@ -102,7 +102,7 @@ impl<T: Scalar> Drive<T> for Composite<T> {
                 next_chirp(&mut state, T::of(1.0) / T::of(k as f64));
                 *sum += amplitude * state.sine[1];
             }
-            roll.chirps.push(state);
+            cursor.chirps.push(state);
         }
         let (value, slope) = value_and_slope(&self.records, clock, at, segment);
         sums[0] += value;
@@ -134,7 +134,7 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         at: &Instant<T>,
         segment: usize,
         by_series: impl Fn() -> T,
-        _: &mut Self::Rolling,
+        _: &mut Self::Cursor,
     ) -> T {
         if self.tones.len() > FEW_TONES || !self.chirps.is_empty() {
             return by_series();
@@ -147,20 +147,20 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         self.segment_ends.get(segment).copied()
     }
 
-    fn next_fall(
+    fn next_release(
         &self,
         clock: &Clock<T>,
         span: &Span<T>,
-        press: Press<T>,
-        roll: &mut Self::Rolling,
-    ) -> (Fall<T>, u64) {
+        press: ContactAcceleration<T>,
+        cursor: &mut Self::Cursor,
+    ) -> (ReleaseRoot<T>, u64) {
         if press.threshold - press.sign * self.constant > self.reach {
-            return (Fall::Never, 0);
+            return (ReleaseRoot::Never, 0);
         }
         let mut search = Search::new(self, clock, press, span.segment);
         (search.fastest, search.reach) = (self.fastest, self.reach);
         search.common_cycles = self.common_cycles.filter(|_| span.segment >= self.segment_ends.len());
         search.parts = self.tones.len() + 4 * self.chirps.len() + self.records.len();
-        search.first(span, roll)
+        search.first(span, cursor)
     }
 }

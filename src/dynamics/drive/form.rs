@@ -8,7 +8,7 @@ use super::record::{Line, Record};
 use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::model::Model;
-use crate::dynamics::model::excitation::BaseTone;
+use crate::dynamics::model::excitation::TonePart;
 use crate::numeric::{Ratio, Scalar};
 use crate::scene;
 
@@ -37,7 +37,7 @@ pub(crate) enum Form<T> {
 
 /// The simplest form that this model's drive has.
 pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
-    let drive = &model.drive;
+    let drive = &model.excitation;
     let unit = clock.unit();
     match drive.tones.as_slice() {
         _ if !(drive.chirps.is_empty() && drive.records.is_empty()) => {
@@ -50,7 +50,7 @@ pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
 }
 
 pub(crate) fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
-    let frequency = model.drive.fastest().unwrap_or_else(|| {
+    let frequency = model.excitation.fastest().unwrap_or_else(|| {
         // Without a drive: so short a cycle that its phase is exact, a power of two of the time unit, and not so
         // many cycles that they could not be counted.
         let units = model.duration / unit;
@@ -60,15 +60,15 @@ pub(crate) fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
 }
 
 fn still<T: Scalar>(model: &Model, unit: f64) -> Still<T> {
-    Still { acceleration: T::of(model.drive.constant * (unit * unit)) }
+    Still { acceleration: T::of(model.excitation.constant * (unit * unit)) }
 }
 
 fn sine<T: Scalar>(model: &Model, unit: f64) -> Sine<T> {
-    let drive = &model.drive;
+    let drive = &model.excitation;
     Sine { tone: tone(&drive.tones[0], drive.tones[0].frequency, unit, usize::MAX) }
 }
 
-fn tone<T: Scalar>(tone: &BaseTone, fastest: f64, unit: f64, holds_from_segment: usize) -> Tone<T> {
+fn tone<T: Scalar>(tone: &TonePart, fastest: f64, unit: f64, holds_from_segment: usize) -> Tone<T> {
     let square = unit * unit;
     Tone {
         amplitude: T::of(tone.amplitude * square),
@@ -86,7 +86,7 @@ fn tone<T: Scalar>(tone: &BaseTone, fastest: f64, unit: f64, holds_from_segment:
 }
 
 fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite<T> {
-    let drive = &model.drive;
+    let drive = &model.excitation;
     let square = unit * unit;
     let ramps = drive.tones.iter().filter_map(|t| t.ramp.map(|r| r.1));
     let chirps = drive.chirps.iter().map(|c| c.over);
@@ -113,7 +113,7 @@ fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite
         holds_from_segment: holds_from(chirp.over),
     });
     let records = drive.records.iter().map(|record| lines(record, model, unit, clock, segment));
-    let largest = |tone: &BaseTone| tone.amplitude.abs().max(tone.ramp.map_or(0.0, |r| r.0.abs()));
+    let largest = |tone: &TonePart| tone.amplitude.abs().max(tone.ramp.map_or(0.0, |r| r.0.abs()));
     let reach = drive.tones.iter().map(largest).sum::<f64>()
         + drive.chirps.iter().map(|c| c.amplitude.abs()).sum::<f64>()
         + drive.records.iter().map(|r| r.peak()).sum::<f64>();

@@ -38,13 +38,13 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
         at: &Instant<T>,
         segment: usize,
         a: &mut [T; ROOM],
-        roll: &mut Self::Rolling,
+        cursor: &mut Self::Cursor,
     );
 
     /// a(t) at `at`.
     fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
         let mut a = [T::zero(); ROOM];
-        self.seed(clock, at, segment, &mut a, &mut Self::Rolling::default());
+        self.seed(clock, at, segment, &mut a, &mut Self::Cursor::default());
         a[0]
     }
 
@@ -56,7 +56,7 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
         at: &Instant<T>,
         segment: usize,
         by_series: impl Fn() -> T,
-        roll: &mut Self::Rolling,
+        cursor: &mut Self::Cursor,
     ) -> T;
 
     /// The instant at which segment `segment` ends, where one follows.
@@ -64,18 +64,18 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
 
     /// The next instant in the span at which the press, positive now, changes sign, and the work that it took to find it.
     /// The span lies within one segment.
-    fn next_fall(
+    fn next_release(
         &self,
         clock: &Clock<T>,
         span: &Span<T>,
-        press: Press<T>,
-        roll: &mut Self::Rolling,
-    ) -> (Fall<T>, u64);
+        press: ContactAcceleration<T>,
+        cursor: &mut Self::Cursor,
+    ) -> (ReleaseRoot<T>, u64);
 }
 
 /// When the press on a stop ends.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Fall<T> {
+pub(crate) enum ReleaseRoot<T> {
     /// It changes sign here. Where the drive repeats and this root was computed from the drive alone, with the cycle of
     /// the clock within the common period: a root of equal cycle and phase is the same.
     At(Instant<T>, Option<i64>),
@@ -85,7 +85,7 @@ pub(crate) enum Fall<T> {
     NotBefore(Instant<T>),
 }
 
-impl<T: Scalar> Fall<T> {
+impl<T: Scalar> ReleaseRoot<T> {
     /// At `fall` where that lies before the end of the span.
     pub fn within(clock: &Clock<T>, fall: Instant<T>, turn: Option<i64>, until: &Instant<T>) -> Self {
         if clock.between(&fall, until) > T::zero() { Self::At(fall, turn) } else { Self::Never }
@@ -104,7 +104,7 @@ pub(crate) struct Span<T> {
 
 /// The outward acceleration of a mass at rest on a stop: threshold - sign a(t).
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Press<T> {
+pub(crate) struct ContactAcceleration<T> {
     /// What the mechanism contributes.
     pub threshold: T,
     /// -1 on the left stop, 1 on the right one.
@@ -118,7 +118,7 @@ pub(crate) struct Still<T> {
 }
 
 impl<T: Scalar> Tail<T> for Still<T> {
-    type Rolling = ();
+    type Cursor = ();
     const ZERO_FROM: usize = 1;
 
     #[inline]
@@ -137,8 +137,14 @@ impl<T: Scalar> Drive<T> for Still<T> {
     fn segment_end(&self, _: usize) -> Option<Instant<T>> {
         None
     }
-    fn next_fall(&self, _: &Clock<T>, _: &Span<T>, _: Press<T>, (): &mut ()) -> (Fall<T>, u64) {
-        (Fall::Never, 0)
+    fn next_release(
+        &self,
+        _: &Clock<T>,
+        _: &Span<T>,
+        _: ContactAcceleration<T>,
+        (): &mut (),
+    ) -> (ReleaseRoot<T>, u64) {
+        (ReleaseRoot::Never, 0)
     }
 }
 

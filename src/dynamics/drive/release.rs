@@ -3,7 +3,7 @@
 //! The search walks ahead in strides. Over each the contact acceleration is a polynomial, the series of the drive, and
 //! its first root is the release. A stride in which it has none is passed.
 
-use super::{Drive, Fall, Press, Span};
+use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, SEEDED};
 use crate::numeric::{PolynomialRoots, Scalar};
@@ -29,7 +29,7 @@ const SAME_ROOT: f64 = 1e-12;
 pub(super) struct Search<'a, T: Scalar, D: Drive<T>> {
     pub drive: &'a D,
     pub clock: &'a Clock<T>,
-    pub press: Press<T>,
+    pub press: ContactAcceleration<T>,
     pub segment: usize,
     /// Angular frequency of the fastest part of the drive that moves; 0 without one.
     pub fastest: T,
@@ -50,7 +50,7 @@ struct Stride<T> {
 }
 
 impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
-    pub fn new(drive: &'a D, clock: &'a Clock<T>, press: Press<T>, segment: usize) -> Self {
+    pub fn new(drive: &'a D, clock: &'a Clock<T>, press: ContactAcceleration<T>, segment: usize) -> Self {
         let zero = T::zero();
         let mut inverse = [zero; ROOM];
         for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
@@ -72,7 +72,7 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
     }
 
     /// The first release in the span, and the work that it took to find it.
-    pub fn first(&mut self, span: &Span<T>, roll: &mut D::Rolling) -> (Fall<T>, u64) {
+    pub fn first(&mut self, span: &Span<T>, cursor: &mut D::Cursor) -> (ReleaseRoot<T>, u64) {
         let Span { from, until, since, .. } = *span;
         let clock = self.clock;
         let stride_work = STRIDE_WORK + STRIDE_WORK_OF_A_PART * self.parts as u64;
@@ -84,10 +84,10 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
             work += stride_work;
             let left = clock.between(&at, &until);
             if left <= T::zero() {
-                return (Fall::Never, work);
+                return (ReleaseRoot::Never, work);
             }
             let h = if turning { longest.smaller(left) } else { left };
-            let Stride { g, order } = self.stride(&at, h, roll);
+            let Stride { g, order } = self.stride(&at, h, cursor);
             // Below 0 by no more than rounding it only touches: the way to the bottom of a parabola.
             let rounding = (self.press.threshold.abs() + self.reach) * T::of(8.0 * T::EPSILON);
             let touches = |slope: T, curvature: T| {
@@ -99,7 +99,7 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
                 let Some(s) = press.first() else {
                     at = clock.advance(&at, h);
                     if self.common_cycles.is_some_and(|cycles| at.cycle > since.cycle + cycles) {
-                        return (Fall::Never, work); // one common period without a root: there is none
+                        return (ReleaseRoot::Never, work); // one common period without a root: there is none
                     }
                     continue;
                 };
@@ -115,22 +115,22 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
                 at = clock.advance(&at, T::of(2.0) * rounding / slope * h);
             } else {
                 let fall = clock.advance(&at, s * h);
-                let own = self.own_root(&fall, roll);
+                let own = self.own_root(&fall, cursor);
                 let own = own.filter(|(own, _)| clock.between(&from, own) > T::zero());
                 let (fall, turn) = own.map_or((fall, None), |(own, turn)| (own, Some(turn)));
-                return (Fall::within(clock, fall, turn, &until), work);
+                return (ReleaseRoot::within(clock, fall, turn, &until), work);
             }
         }
-        (Fall::NotBefore(at), work)
+        (ReleaseRoot::NotBefore(at), work)
     }
 
     /// The contact acceleration over a stride of length `h` from `at`.
-    fn stride(&mut self, at: &Instant<T>, h: T, roll: &mut D::Rolling) -> Stride<T> {
-        let Self { drive, a, inverse, press: Press { threshold, sign }, .. } = self;
-        drive.seed(self.clock, at, self.segment, a, roll);
+    fn stride(&mut self, at: &Instant<T>, h: T, cursor: &mut D::Cursor) -> Stride<T> {
+        let Self { drive, a, inverse, press: ContactAcceleration { threshold, sign }, .. } = self;
+        drive.seed(self.clock, at, self.segment, a, cursor);
         let order = if self.fastest > T::zero() { STRIDE_ORDER } else { 1 };
         for k in SEEDED..=order {
-            drive.extend(k, a, inverse, roll);
+            drive.extend(k, a, inverse, cursor);
         }
         let mut g = [T::zero(); STRIDE_ORDER + 1];
         let mut power = T::of(1.0);
@@ -145,7 +145,7 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
     /// The root near `fall`, computed from the drive alone, and the clock's cycle within the common period: whenever
     /// the search that found it began, it is the same number. None where the drive does not repeat, or by more than
     /// rounding.
-    fn own_root(&mut self, fall: &Instant<T>, roll: &mut D::Rolling) -> Option<(Instant<T>, i64)> {
+    fn own_root(&mut self, fall: &Instant<T>, cursor: &mut D::Cursor) -> Option<(Instant<T>, i64)> {
         let cycles = self.common_cycles?;
         if !(self.fastest > T::zero()) {
             return None;
@@ -155,7 +155,7 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
         let stride = clock.period() * T::of(0.25);
         let quarter = (fall.phase / stride).floor().smaller(T::of(3.0));
         let start = Instant { cycle: fall.cycle, phase: quarter * stride };
-        let Stride { g, order } = self.stride(&start, stride, roll);
+        let Stride { g, order } = self.stride(&start, stride, cursor);
         let near = clock.between(&start, fall) / stride;
         let mut found = None;
         PolynomialRoots::new(&g[..=order]).each_sign_change(|s| {

@@ -1,6 +1,6 @@
 //! What does one tone do, and when does it let go of a mass on a stop?
 
-use super::{Drive, Fall, Press, Span};
+use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, Tail};
 use crate::numeric::{DoubleDouble, Number, Ratio, Scalar};
@@ -102,11 +102,11 @@ pub(crate) type Looked<T> = Option<(Instant<T>, (T, T))>;
 
 /// The series of a tone of this curvature, -(2 pi frequency)^2.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Swing<T> {
+pub(crate) struct Harmonic<T> {
     pub curvature: T,
 }
 
-impl<T: Number> Swing<T> {
+impl<T: Number> Harmonic<T> {
     /// The first coefficients from value and time derivative.
     #[inline(always)]
     pub fn seed(self, value: T, slope: T, a: &mut [T; ROOM]) {
@@ -117,8 +117,8 @@ impl<T: Number> Swing<T> {
     }
 }
 
-impl<T: Number> Tail<T> for Swing<T> {
-    type Rolling = ();
+impl<T: Number> Tail<T> for Harmonic<T> {
+    type Cursor = ();
 
     #[inline(always)]
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], (): &mut ()) {
@@ -145,11 +145,11 @@ impl<T: Scalar> Sine<T> {
 
 impl<T: Scalar> Tail<T> for Sine<T> {
     /// A step begins where the check of the last one looked.
-    type Rolling = Looked<T>;
+    type Cursor = Looked<T>;
 
     #[inline(always)]
-    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], _: &mut Self::Rolling) {
-        Swing { curvature: self.tone.curvature() }.extend(k, a, inverse, &mut ());
+    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], _: &mut Self::Cursor) {
+        Harmonic { curvature: self.tone.curvature() }.extend(k, a, inverse, &mut ());
     }
 }
 
@@ -157,7 +157,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
     const ODD: bool = true;
 
     #[inline(always)]
-    fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Rolling) {
+    fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Cursor) {
         let (s, d) = match last {
             Some((when, unit)) if when == at => *unit,
             _ => {
@@ -166,7 +166,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
                 unit
             }
         };
-        let swing = Swing { curvature: self.tone.curvature() };
+        let swing = Harmonic { curvature: self.tone.curvature() };
         swing.seed(self.tone.amplitude * s, self.tone.amplitude * d, a);
     }
 
@@ -177,7 +177,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         at: &Instant<T>,
         _: usize,
         _: impl Fn() -> T,
-        last: &mut Self::Rolling,
+        last: &mut Self::Cursor,
     ) -> T {
         let unit = self.unit(at);
         *last = Some((*at, unit));
@@ -188,18 +188,18 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         None
     }
 
-    fn next_fall(
+    fn next_release(
         &self,
         clock: &Clock<T>,
         &Span { from, until, .. }: &Span<T>,
-        Press { threshold, sign }: Press<T>,
-        _: &mut Self::Rolling,
-    ) -> (Fall<T>, u64) {
+        ContactAcceleration { threshold, sign }: ContactAcceleration<T>,
+        _: &mut Self::Cursor,
+    ) -> (ReleaseRoot<T>, u64) {
         // threshold - b sin = 0 with sin rising through it (b > 0) or falling (b < 0).
         let b = self.tone.amplitude * sign;
         let height = threshold / b.abs();
         if !(height.abs() < T::of(1.0)) {
-            return (Fall::Never, 0); // never reached, or touched without a change of sign
+            return (ReleaseRoot::Never, 0); // never reached, or touched without a change of sign
         }
         let mut turns = T::of(height.to_f64().asin() / std::f64::consts::TAU);
         for _ in 0..3 {
@@ -231,6 +231,6 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         } else {
             (Instant { cycle: from.cycle + 1, phase }, Some(0))
         };
-        (Fall::within(clock, fall, turn, &until), 0)
+        (ReleaseRoot::within(clock, fall, turn, &until), 0)
     }
 }

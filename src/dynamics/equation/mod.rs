@@ -1,8 +1,8 @@
 //! What does the integrator run on? The model in kernel units: time in a power of two of a second, mass 1.
 //!
-//! Each piece of the force curve becomes an *arena*: the interval in which the mass moves under one
+//! Each piece of the force curve becomes an *mode*: the interval in which the mass moves under one
 //! polynomial, and what stands at its two ends (a stop, a break behind which the next piece begins, the end
-//! of the known curve). The arena is the mode of the motion.
+//! of the known curve). The mode is the mode of the motion.
 
 pub(crate) mod force;
 
@@ -15,7 +15,7 @@ use force::PieceForce;
 /// Stands in for an end that does not exist; far, yet safe to compute with.
 pub(crate) const FAR: f64 = 1e200;
 
-/// What stands at an end of an arena.
+/// What stands at an end of a mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum EndKind {
     /// A rigid stop.
@@ -28,7 +28,7 @@ pub(crate) enum EndKind {
     Unknown,
 }
 
-/// One end of an arena: low (left) or high (right).
+/// One end of a mode: low (left) or high (right).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum End {
     Low,
@@ -78,7 +78,7 @@ impl<T: Scalar> Compliant<T> {
 
 /// The interval in which one polynomial rules.
 #[derive(Debug, Clone)]
-pub(crate) struct Arena<T> {
+pub(crate) struct Mode<T> {
     /// The piece of the force curve that it lies in.
     pub piece: usize,
     pub force: PieceForce<T>,
@@ -89,7 +89,7 @@ pub(crate) struct Arena<T> {
     pub high_kind: EndKind,
 }
 
-impl<T: Scalar> Arena<T> {
+impl<T: Scalar> Mode<T> {
     #[inline]
     pub fn end(&self, end: End) -> (T, EndKind) {
         match end {
@@ -116,7 +116,7 @@ pub(crate) struct Stop<T> {
 pub(crate) struct Equation<T> {
     /// c/m.
     pub damping: T,
-    pub arenas: Vec<Arena<T>>,
+    pub modes: Vec<Mode<T>>,
     pub left: Option<Stop<T>>,
     pub right: Option<Stop<T>>,
     /// What the two stops are made of, where they are compliant.
@@ -125,25 +125,25 @@ pub(crate) struct Equation<T> {
     pub unit: f64,
 }
 
-/// The arenas with the surface of a compliant stop at `x` between two of them; a curve that ends there or before has
+/// The modes with the surface of a compliant stop at `x` between two of them; a curve that ends there or before has
 /// no stop.
-fn cut<T: Scalar>(arenas: Vec<Arena<T>>, x: T) -> Vec<Arena<T>> {
-    let mut parts = Vec::with_capacity(arenas.len() + 1);
-    let last = arenas.len() - 1;
-    for (index, mut arena) in arenas.into_iter().enumerate() {
-        if arena.low < x && x < arena.high {
-            let beyond = Arena { low: x, low_kind: EndKind::Compliant, ..arena.clone() };
-            (arena.high, arena.high_kind) = (x, EndKind::Compliant);
-            parts.extend([arena, beyond]);
+fn cut<T: Scalar>(modes: Vec<Mode<T>>, x: T) -> Vec<Mode<T>> {
+    let mut parts = Vec::with_capacity(modes.len() + 1);
+    let last = modes.len() - 1;
+    for (index, mut mode) in modes.into_iter().enumerate() {
+        if mode.low < x && x < mode.high {
+            let beyond = Mode { low: x, low_kind: EndKind::Compliant, ..mode.clone() };
+            (mode.high, mode.high_kind) = (x, EndKind::Compliant);
+            parts.extend([mode, beyond]);
             continue;
         }
-        if arena.low == x && index > 0 {
-            arena.low_kind = EndKind::Compliant;
+        if mode.low == x && index > 0 {
+            mode.low_kind = EndKind::Compliant;
         }
-        if arena.high == x && index < last {
-            arena.high_kind = EndKind::Compliant;
+        if mode.high == x && index < last {
+            mode.high_kind = EndKind::Compliant;
         }
-        parts.push(arena);
+        parts.push(mode);
     }
     parts
 }
@@ -159,7 +159,7 @@ impl<T: Scalar> Equation<T> {
         let left_stop = model.stops.as_ref().and_then(|s| s.left);
         let right_stop = model.stops.as_ref().and_then(|s| s.right);
         let rigid = |stop: Option<StopAt>| stop.filter(|_| compliant.is_none());
-        let mut arenas: Vec<Arena<T>> = Vec::with_capacity(curve.pieces().len());
+        let mut modes: Vec<Mode<T>> = Vec::with_capacity(curve.pieces().len());
         for (index, piece) in curve.pieces().iter().enumerate() {
             let (left, right) = curve.piece_interval(index);
             let coefficients: Vec<T> = piece.coefficients.iter().map(|c| T::of(*c) * square).collect();
@@ -177,7 +177,7 @@ impl<T: Scalar> Equation<T> {
                 end(left, index == 0, rigid(left_stop), left_stop.is_some_and(|s| s.x >= left));
             let (high, high_kind) =
                 end(right, last, rigid(right_stop), right_stop.is_some_and(|s| s.x <= right));
-            arenas.push(Arena {
+            modes.push(Mode {
                 piece: index,
                 force: PieceForce::new(coefficients, odd),
                 origin: T::of(piece.origin),
@@ -189,8 +189,8 @@ impl<T: Scalar> Equation<T> {
         }
         let stop = |at: Option<StopAt>, sign: T| {
             at.map(|s| {
-                let arena = &arenas[curve.piece_index(s.x).min(arenas.len() - 1)];
-                let (f, slope, size) = arena.force.value(T::of(s.x) - arena.origin);
+                let mode = &modes[curve.piece_index(s.x).min(modes.len() - 1)];
+                let (f, slope, size) = mode.force.value(T::of(s.x) - mode.origin);
                 Stop {
                     restitution: T::of(s.restitution),
                     press: -(sign * f),
@@ -203,45 +203,38 @@ impl<T: Scalar> Equation<T> {
         let right = stop(right_stop, T::of(1.0));
         if compliant.is_some() {
             for at in [left_stop, right_stop].into_iter().flatten() {
-                arenas = cut(arenas, T::of(at.x));
+                modes = cut(modes, T::of(at.x));
             }
         }
-        Self {
-            damping: T::of(model.damping * unit) / T::of(model.mass),
-            arenas,
-            left,
-            right,
-            compliant,
-            unit,
-        }
+        Self { damping: T::of(model.damping * unit) / T::of(model.mass), modes, left, right, compliant, unit }
     }
 
     /// The most products of series that a piece's force takes beyond the first.
     pub fn most_products(&self) -> usize {
-        self.arenas.iter().map(|arena| arena.force.products()).max().unwrap_or(0)
+        self.modes.iter().map(|mode| mode.force.products()).max().unwrap_or(0)
     }
 
-    /// The arena of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant stop the one
+    /// The mode of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant stop the one
     /// outside it.
-    pub fn arena_at(&self, x: T, piece: usize) -> usize {
+    pub fn mode_at(&self, x: T, piece: usize) -> usize {
         if self.compliant.is_none() {
             return piece;
         }
-        let surface = |end: End, arena: &Arena<T>| arena.end(end) == (x, EndKind::Compliant);
-        let holds = |arena: &Arena<T>| arena.piece == piece && arena.low <= x && x <= arena.high;
+        let surface = |end: End, mode: &Mode<T>| mode.end(end) == (x, EndKind::Compliant);
+        let holds = |mode: &Mode<T>| mode.piece == piece && mode.low <= x && x <= mode.high;
         let middle = x < T::zero();
-        let outside = |arena: &Arena<T>| surface(if middle { End::Low } else { End::High }, arena);
-        let found = self.arenas.iter().position(outside).or(self.arenas.iter().position(holds));
+        let outside = |mode: &Mode<T>| surface(if middle { End::Low } else { End::High }, mode);
+        let found = self.modes.iter().position(outside).or(self.modes.iter().position(holds));
         found.unwrap_or(piece)
     }
 
     /// Displacement of the surface of the compliant stop of `end`.
     pub fn surface(&self, end: End) -> Option<T> {
-        let surface = |arena: &&Arena<T>| {
-            // The arena outside it: the surface is its end on that side.
-            arena.end(end).1 == EndKind::Compliant && (arena.end(end).0 < T::zero()) == (end == End::Low)
+        let surface = |mode: &&Mode<T>| {
+            // The mode outside it: the surface is its end on that side.
+            mode.end(end).1 == EndKind::Compliant && (mode.end(end).0 < T::zero()) == (end == End::Low)
         };
-        self.arenas.iter().find(surface).map(|arena| arena.end(end).0)
+        self.modes.iter().find(surface).map(|mode| mode.end(end).0)
     }
 
     /// The stop at an end.

@@ -1,12 +1,12 @@
 //! What do the lanes hold in common while they fly, and how do they go on by one step?
 
 use crate::dynamics::clock::Instant;
-use crate::dynamics::drive::tone::{Sine, Swing};
+use crate::dynamics::drive::tone::{Harmonic, Sine};
 use crate::dynamics::equation::force::PieceForce;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::event_free::MARGIN;
 use crate::dynamics::series::{Endpoint, Series, natural_steps, polynomial};
-use crate::dynamics::step::chord::{Chord, ROOM_BESIDE};
+use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::numeric::{CompensatedSum, GaussLegendre, Lanes, Number, Scalar};
 
 /// One motion under a sine, without a ledger.
@@ -19,8 +19,8 @@ pub(crate) struct Columns<const W: usize> {
     /// Steps taken and passages of the top since a lane was filled.
     flown: Lanes<W>,
     crossed: Lanes<W>,
-    // what stays while a lane is in one arena of one run
-    /// Which run and which arena that is.
+    // what stays while a lane is in one mode of one run
+    /// Which run and which mode that is.
     of: [(usize, usize); W],
     force: PieceForce<Lanes<W>>,
     origin: Lanes<W>,
@@ -46,7 +46,7 @@ pub(crate) struct Columns<const W: usize> {
     /// Whether the time up to there lies in the settled window.
     pub inside: [bool; W],
     // what changes with each step
-    /// -1 or 1 on the low or high end of the arena, leaving it by its speed; else 0.
+    /// -1 or 1 on the low or high end of the mode, leaving it by its speed; else 0.
     touch: Lanes<W>,
     x: Lanes<W>,
     v: Lanes<W>,
@@ -192,8 +192,8 @@ impl<const W: usize> Columns<W> {
     /// Takes a motion into the air, as number `index` of the runs; false where the others fly under a force of another
     /// shape.
     pub fn fill(&mut self, lane: usize, index: usize, motion: &Flight) -> bool {
-        let arena = motion.stepper.arena(&motion.state);
-        let (count, odd) = (arena.force.coefficients().len(), arena.force.is_odd());
+        let mode = motion.stepper.mode(&motion.state);
+        let (count, odd) = (mode.force.coefficients().len(), mode.force.is_odd());
         if self.force.coefficients().len() != count || self.force.is_odd() != odd {
             if self.flying.contains(&true) {
                 return false;
@@ -201,15 +201,15 @@ impl<const W: usize> Columns<W> {
             self.force = PieceForce::new(vec![Lanes([0.0; W]); count], odd);
             self.of = [(usize::MAX, 0); W];
         }
-        let glide = motion.record.glide(&motion.state.at, &motion.stepper.end);
-        if self.of[lane] != (index, motion.state.arena) {
-            self.of[lane] = (index, motion.state.arena);
-            for (degree, own) in arena.force.coefficients().iter().enumerate() {
+        let chord = motion.record.begin_event_free(&motion.state.at, &motion.stepper.end);
+        if self.of[lane] != (index, motion.state.mode) {
+            self.of[lane] = (index, motion.state.mode);
+            for (degree, own) in mode.force.coefficients().iter().enumerate() {
                 self.force.coefficient_mut(degree).0[lane] = *own;
             }
             let (tone, settings) = (&motion.stepper.drive.tone, &motion.stepper.settings);
-            self.origin.0[lane] = arena.origin;
-            (self.low_end.0[lane], self.high_end.0[lane]) = (arena.low, arena.high);
+            self.origin.0[lane] = mode.origin;
+            (self.low_end.0[lane], self.high_end.0[lane]) = (mode.low, mode.high);
             self.damping.0[lane] = motion.stepper.equation.damping;
             self.curvature.0[lane] = tone.curvature();
             self.amplitude.0[lane] = tone.amplitude;
@@ -221,19 +221,19 @@ impl<const W: usize> Columns<W> {
             self.allowed.0[lane] = settings.residual_of_a_full_step();
             self.period.0[lane] = motion.stepper.clock.period();
         }
-        self.barrier.0[lane] = glide.barrier.unwrap_or(f64::NAN);
-        self.side.0[lane] = f64::from(glide.side);
-        self.border.set(lane, &glide.border);
+        self.barrier.0[lane] = chord.barrier.unwrap_or(f64::NAN);
+        self.side.0[lane] = f64::from(chord.side);
+        self.border.set(lane, &chord.border);
         self.kept[lane] = motion.log.is_some();
-        self.inside[lane] = glide.inside;
-        (self.low.0[lane], self.high.0[lane]) = (glide.low, glide.high);
-        self.squared.set(lane, &glide.squared);
-        self.covered.set(lane, &glide.covered);
+        self.inside[lane] = chord.inside;
+        (self.low.0[lane], self.high.0[lane]) = (chord.low, chord.high);
+        self.squared.set(lane, &chord.squared);
+        self.covered.set(lane, &chord.covered);
         self.touch.0[lane] = motion.state.touch.map_or(0.0, |touch| touch.end.sign());
         (self.x.0[lane], self.v.0[lane]) = (motion.state.x, motion.state.v);
         self.at.set(lane, &motion.state.at);
         (self.value.0[lane], self.slope.0[lane]) =
-            motion.stepper.drive.looked(&motion.state.at, &motion.stepper.roll);
+            motion.stepper.drive.looked(&motion.state.at, &motion.stepper.cursor);
         self.flown.0[lane] = 0.0;
         self.crossed.0[lane] = 0.0;
         self.flying[lane] = true;
@@ -261,15 +261,15 @@ impl<const W: usize> Columns<W> {
         motion.stepper.evaluations += flown;
         (motion.state.x, motion.state.v) = (self.x.0[lane], self.v.0[lane]);
         motion.state.at = self.at.get(lane);
-        motion.stepper.roll = Some((motion.state.at, (self.value.0[lane], self.slope.0[lane])));
+        motion.stepper.cursor = Some((motion.state.at, (self.value.0[lane], self.slope.0[lane])));
         motion.state.turned_back = false;
         motion.state.touch = None;
-        motion.record.end_glide(
+        motion.record.end_event_free(
             (self.low.0[lane], self.high.0[lane]),
             self.squared.get(lane),
             self.covered.get(lane),
         );
-        motion.record.end_glide_crossings(self.side.0[lane] as i8, self.crossed.0[lane] as u64);
+        motion.record.end_event_free_crossings(self.side.0[lane] as i8, self.crossed.0[lane] as u64);
     }
 
     /// Tries one step in all lanes, and takes it where nothing happens.
@@ -281,7 +281,7 @@ impl<const W: usize> Columns<W> {
         order: usize,
         tolerance_log2: f64,
     ) -> Trial<W> {
-        let swing = Swing { curvature: self.curvature };
+        let swing = Harmonic { curvature: self.curvature };
         swing.seed(self.amplitude * self.value, self.amplitude * self.slope, &mut series.a);
         series.begin(self.x - self.origin, self.v);
         series.extend_to(order, &self.force, self.damping, &swing, &mut ());
@@ -304,7 +304,7 @@ impl<const W: usize> Columns<W> {
         let residual = (self.force.at(end.y) + sum).abs() * length;
 
         let mut squared = Lanes([0.0; W]);
-        let bend = polynomial::bend(&series.y[..=order], length);
+        let bend = polynomial::chord_deviation(&series.y[..=order], length);
         if self.inside.contains(&true) {
             squared = polynomial::integrals::<_, false>(&series.y[..=order], &[], rule, squared, length).0;
         }
@@ -319,22 +319,22 @@ impl<const W: usize> Columns<W> {
             let held = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
 
             let (bound, limits) = (end.bound.0[lane], (self.low_end.0[lane], self.high_end.0[lane]));
-            let glide = Chord { start: start.0[lane], end: x.0[lane], bound, bend: bend.0[lane], limits };
-            let (clear_low, clear_high) = glide.is_clear();
+            let chord = Chord { start: start.0[lane], end: x.0[lane], bound, bend: bend.0[lane], limits };
+            let (clear_low, clear_high) = chord.is_clear();
             let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
             let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
             // from a surface: its own speed leads further away than all the rest can lead back
-            let leaves = 2.0 * self.v.0[lane].abs() * length > bound * ROOM_BESIDE;
+            let leaves = 2.0 * self.v.0[lane].abs() * length > bound * CLEARANCE;
             let clear_low = clear_low | (leaves & (self.touch.0[lane] < 0.0));
             let clear_high = clear_high | (leaves & (self.touch.0[lane] > 0.0));
             let clear = clear_low & clear_high;
-            let (low, high, turns) = glide.extremes((self.low.0[lane], self.high.0[lane]));
+            let (low, high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
 
             // Without a top to cross, what compares with it is NaN and says no.
             let (top, side, inside) = (self.barrier.0[lane], self.side.0[lane], self.inside[lane]);
-            let (from, to) = ((glide.start - top) * side, (glide.end - top) * side);
-            let (near, onto, passed) = ((glide.start - top).abs() <= bound, to == 0.0, to < 0.0);
-            let monotone = 8.0 * glide.bend < self.v.0[lane].abs() * length;
+            let (from, to) = ((chord.start - top) * side, (chord.end - top) * side);
+            let (near, onto, passed) = ((chord.start - top).abs() <= bound, to == 0.0, to < 0.0);
+            let monotone = 8.0 * chord.bend < self.v.0[lane].abs() * length;
             // outside the window only their number counts
             let countable = !inside & (length + length < left);
             let clear_of_top =
@@ -362,7 +362,7 @@ impl<const W: usize> Columns<W> {
             self.crossed.0[lane] += if crosses { 1.0 } else { 0.0 };
             self.flown.0[lane] += if taken { 1.0 } else { 0.0 };
             set(&mut self.touch.0[lane], 0.0, taken);
-            set(&mut self.x.0[lane], glide.end, taken);
+            set(&mut self.x.0[lane], chord.end, taken);
             set(&mut self.v.0[lane], end.v.0[lane], taken);
             set(&mut self.at.cycle.0[lane], at.cycle.0[lane], taken);
             set(&mut self.at.phase.0[lane], at.phase.0[lane], taken);

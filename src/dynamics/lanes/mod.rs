@@ -254,7 +254,7 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
             let alone = &mut motion.stepper.series;
             alone.measured = self.columns.inside[lane].then(|| (trial.length.0[lane], trial.squared.0[lane]));
             motion.stepper.evaluations += 1;
-            motion.stepper.roll = Some(trial.drive_at_end(lane));
+            motion.stepper.cursor = Some(trial.drive_at_end(lane));
             motion.take(&Step { length: trial.length.0[lane], arrival: None, end: trial.end(lane) })
         } else {
             motion.fly(left)
@@ -269,18 +269,18 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
         let Some(own) = &mut self.lanes[lane] else { return };
         let motion = &mut own.motion;
         copy_lane(&self.series, lane, self.order, &mut motion.stepper.series);
-        let arena = motion.stepper.arena(&motion.state);
+        let mode = motion.stepper.mode(&motion.state);
         let (length, end) = (trial.length.0[lane], trial.end(lane));
         let view = StepView {
             path: &motion.stepper.series,
-            origin: arena.origin,
+            origin: mode.origin,
             at: motion.state.at,
             whole: length,
             length,
             duration: length,
             bound: end.bound,
-            limits: (arena.low, arena.high),
-            x: end.y + arena.origin,
+            limits: (mode.low, mode.high),
+            x: end.y + mode.origin,
             v: end.v,
         };
         if let Some(log) = &mut motion.log {

@@ -20,7 +20,7 @@ impl Model {
     /// A typical period in s of a drive that has none: of the middle of a noise's band, of the fast end of a chirp, and of
     /// how often a record passes its mean.
     fn rhythm(&self) -> Option<f64> {
-        let drive = &self.drive;
+        let drive = &self.excitation;
         let noises = drive.noises.iter().map(|noise| 2.0 / (noise.low + noise.high));
         let chirps = drive.chirps.iter().map(|chirp| 1.0 / chirp.from.max(chirp.to));
         let records =
@@ -59,7 +59,7 @@ impl Model {
 
     /// The largest acceleration of the base in m/s^2 that a picture makes room for.
     pub fn largest_push(&self) -> f64 {
-        let drive = &self.drive;
+        let drive = &self.excitation;
         let tones = drive.tones.iter().filter(|tone| !tone.noise);
         let tones = tones.map(|tone| tone.amplitude.abs().max(tone.ramp.map_or(0.0, |ramp| ramp.0.abs())));
         let noises = drive.noises.iter().map(|noise| NOISE_ROOM * noise.rms);
@@ -74,7 +74,7 @@ impl Model {
 
     /// Amplitude in m/s^2 and angular frequency in 1/s of the drive, where it is a single sine and nothing else.
     pub fn single_sine(&self) -> Option<(f64, f64)> {
-        let drive = &self.drive;
+        let drive = &self.excitation;
         let alone = drive.constant == 0.0 && drive.chirps.is_empty() && drive.records.is_empty();
         match drive.tones.as_slice() {
             [tone] if alone && tone.ramp.is_none() && !tone.noise => {

@@ -34,7 +34,7 @@ impl Model {
             }
             None => absent.push("stops"),
         }
-        let drive = &self.drive;
+        let drive = &self.excitation;
         let excitation_lines = lines.len();
         if drive.constant != 0.0 {
             lines.push(format!("constant base acceleration of {} m/s^2", short(drive.constant)));

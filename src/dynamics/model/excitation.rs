@@ -31,18 +31,18 @@ pub(crate) enum Rhythm {
 
 /// Base acceleration in SI: a constant, tones, chirps and records; its parts add up.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct BaseMotion {
+pub(crate) struct ExcitationParts {
     pub constant: f64,
-    pub tones: Vec<BaseTone>,
-    pub chirps: Vec<BaseChirp>,
+    pub tones: Vec<TonePart>,
+    pub chirps: Vec<ChirpPart>,
     pub records: Vec<Arc<Record>>,
     /// What each noise among the tones is.
-    pub noises: Vec<BaseNoise>,
+    pub noises: Vec<NoisePart>,
 }
 
 /// amplitude sin(2 pi frequency t + phase). SI.
 #[derive(Debug, Clone)]
-pub(crate) struct BaseTone {
+pub(crate) struct TonePart {
     pub amplitude: f64,
     pub frequency: f64,
     /// Phase in turns beyond the quarter, 0 <= phase < 1.
@@ -57,7 +57,7 @@ pub(crate) struct BaseTone {
 
 /// amplitude sin(2 pi (from t + (to - from) t^2/(2 over))), then holding `to`. SI.
 #[derive(Debug, Clone)]
-pub(crate) struct BaseChirp {
+pub(crate) struct ChirpPart {
     pub amplitude: f64,
     pub from: f64,
     pub to: f64,
@@ -66,7 +66,7 @@ pub(crate) struct BaseChirp {
 
 /// What a noise was made from. SI.
 #[derive(Debug, Clone)]
-pub(crate) struct BaseNoise {
+pub(crate) struct NoisePart {
     pub rms: f64,
     pub low: f64,
     pub high: f64,
@@ -74,7 +74,7 @@ pub(crate) struct BaseNoise {
     pub lines: u64,
 }
 
-impl BaseMotion {
+impl ExcitationParts {
     /// Fails where a record has not been read.
     pub fn new(excitation: &Excitation) -> Result<Self, Fault> {
         let mut motion = Self::default();
@@ -93,7 +93,7 @@ impl BaseMotion {
                 let rest = reduced - 90.0 * quarters;
                 let quarters = quarters as i64 & 3;
                 let amplitude = amplitude_g * STANDARD_GRAVITY;
-                self.tones.push(BaseTone {
+                self.tones.push(TonePart {
                     amplitude: if quarters >= 2 { -amplitude } else { amplitude },
                     frequency: *frequency_hz,
                     phase: rest / 360.0,
@@ -102,7 +102,7 @@ impl BaseMotion {
                     noise: false,
                 });
             }
-            Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s } => self.tones.push(BaseTone {
+            Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s } => self.tones.push(TonePart {
                 amplitude: to_g * STANDARD_GRAVITY,
                 frequency: *frequency_hz,
                 phase: 0.0,
@@ -110,7 +110,7 @@ impl BaseMotion {
                 ramp: Some((from_g * STANDARD_GRAVITY, *over_s)),
                 noise: false,
             }),
-            Excitation::Chirp { from_hz, to_hz, over_s, amplitude_g } => self.chirps.push(BaseChirp {
+            Excitation::Chirp { from_hz, to_hz, over_s, amplitude_g } => self.chirps.push(ChirpPart {
                 amplitude: amplitude_g * STANDARD_GRAVITY,
                 from: *from_hz,
                 to: *to_hz,
@@ -118,7 +118,7 @@ impl BaseMotion {
             }),
             Excitation::Noise { rms_g, low_hz, high_hz, seed, lines } => {
                 let rms = rms_g * STANDARD_GRAVITY;
-                self.noise(BaseNoise { rms, low: *low_hz, high: *high_hz, seed: *seed, lines: *lines });
+                self.noise(NoisePart { rms, low: *low_hz, high: *high_hz, seed: *seed, lines: *lines });
             }
             Excitation::Recorded { path: file, record } => match record {
                 Some(record) => self.records.push(Arc::clone(record)),
@@ -142,7 +142,7 @@ impl BaseMotion {
     /// Sines f_k = low + (k + u_k) (high - low)/lines, each of amplitude rms sqrt(2/lines), phases and u_k
     /// uniform in \[0, 1) from ChaCha8 seeded with `seed`: for each line first u, then the phase, each from the
     /// upper 53 bits of 64. Stable across versions and machines, the same for any duration.
-    fn noise(&mut self, noise: BaseNoise) {
+    fn noise(&mut self, noise: NoisePart) {
         let mut random = ChaCha8Rng::seed_from_u64(noise.seed);
         let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         let lines = noise.lines as f64;
@@ -152,7 +152,7 @@ impl BaseMotion {
             let phase = uniform();
             // a line at 0 Hz would be a constant
             let frequency = frequency.max(f64::MIN_POSITIVE);
-            self.tones.push(BaseTone {
+            self.tones.push(TonePart {
                 amplitude,
                 frequency,
                 phase,
@@ -186,7 +186,7 @@ impl BaseMotion {
     pub fn ramped_amplitude(&self, t: f64) -> Option<f64> {
         let alone = self.constant == 0.0 && self.chirps.is_empty() && self.records.is_empty();
         match self.tones.as_slice() {
-            [BaseTone { amplitude, ramp: Some((from, over)), .. }] if alone => {
+            [TonePart { amplitude, ramp: Some((from, over)), .. }] if alone => {
                 Some((from + (amplitude - from) * (t / over).min(1.0)).abs())
             }
             _ => None,

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::mechanics::{Hertz, Mechanism};
 use crate::scene::{Damping, Fault, Scene, Start};
-use excitation::{BaseMotion, Rhythm};
+use excitation::{ExcitationParts, Rhythm};
 use scales::{Scales, scales};
 use start::{fault, start_state};
 use stops::{StopAt, StopPair};
@@ -42,7 +42,7 @@ pub struct Model {
     pub(crate) stops: Option<StopPair>,
     /// What the stops are made of, where they are compliant.
     pub compliant: Option<Hertz>,
-    pub(crate) drive: BaseMotion,
+    pub(crate) excitation: ExcitationParts,
     pub(crate) start: (f64, f64),
     /// At rest in an equilibrium with nothing to move it.
     pub(crate) motionless: bool,
@@ -96,9 +96,9 @@ impl Model {
                 (0.0, 0.0)
             }
         };
-        let drive = BaseMotion::new(&scene.excitation).unwrap_or_else(|found| {
+        let drive = ExcitationParts::new(&scene.excitation).unwrap_or_else(|found| {
             faults.push(found);
-            BaseMotion::default()
+            ExcitationParts::default()
         });
         let periods = drive.fastest().unwrap_or(0.0) * scene.run.duration_s;
         if periods > MOST_PERIODS {
@@ -134,7 +134,7 @@ impl Model {
             stops,
             compliant,
             rhythm: drive.rhythm(common),
-            drive,
+            excitation: drive,
             start,
             motionless,
             crossing_level,
@@ -179,7 +179,7 @@ impl Model {
 
     /// Whether the base moves at all.
     pub fn is_shaken(&self) -> bool {
-        !self.drive.is_still()
+        !self.excitation.is_still()
     }
 
     /// Begin of the settled window in s.
@@ -200,7 +200,7 @@ impl Model {
 
     /// Time in s at which the last amplitude ramp of the drive ends; none without one.
     pub fn ramp_end(&self) -> Option<f64> {
-        self.drive.tones.iter().filter_map(|tone| tone.ramp.map(|ramp| ramp.1)).reduce(f64::max)
+        self.excitation.tones.iter().filter_map(|tone| tone.ramp.map(|ramp| ramp.1)).reduce(f64::max)
     }
 
     /// Whether the drive repeats: a sine, or several with a common period.

@@ -19,7 +19,7 @@
 //! or it rests. L then falls with that room, and is the room itself where it is a ten-thousandth of L; w rises to the rate
 //! at which drive and start speed move the mass as far.
 
-use super::excitation::BaseMotion;
+use super::excitation::ExcitationParts;
 use super::stops::StopPair;
 use crate::mechanics::{Hertz, Mechanism};
 use crate::scene::Scene;
@@ -127,7 +127,7 @@ pub(crate) fn scales(
     scene: &Scene,
     mass: f64,
     mechanism: &Mechanism,
-    drive: &BaseMotion,
+    drive: &ExcitationParts,
     start: (f64, f64),
     (stops, compliant): (Option<StopPair>, Option<Hertz>),
 ) -> Scales {

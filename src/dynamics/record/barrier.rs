@@ -15,7 +15,7 @@ pub(crate) fn side_of<T: Scalar>(x: T, top: T) -> i8 {
 }
 
 /// The passages of the top within one step.
-pub(crate) struct Passages<'a, T> {
+pub(crate) struct StepCrossings<'a, T> {
     /// The side that the mass comes from.
     pub from: i8,
     /// One at the very start: the top was reached at the end of the last step.
@@ -26,7 +26,7 @@ pub(crate) struct Passages<'a, T> {
     end: i8,
 }
 
-impl<'a, T: Scalar> Passages<'a, T> {
+impl<'a, T: Scalar> StepCrossings<'a, T> {
     /// Of the step whose displacement from the top has these coefficients, its length being 1; a motion that `from` 0 starts
     /// on the top comes from the side that it leaves to. None where it stays on the top.
     pub fn new(g: &'a mut [T], from: i8, end: i8) -> Option<Self> {

@@ -1,6 +1,6 @@
 //! Recording of the crossings of the barrier within a step.
 
-use super::barrier::Passages;
+use super::barrier::StepCrossings;
 use super::recorder::Recorder;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::result::{EventKind, Side};
@@ -13,7 +13,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     pub fn crossings<P: Path<T>>(&mut self, step: &StepView<T, P>, gap: T, end_side: i8) {
         let mut g = step.path.scaled(step.whole);
         g[0] = gap;
-        let Some(passages) = Passages::new(&mut g[..step.path.known()], self.barrier_side, end_side) else {
+        let Some(passages) = StepCrossings::new(&mut g[..step.path.known()], self.barrier_side, end_side)
+        else {
             return;
         };
         self.barrier_side = passages.from;

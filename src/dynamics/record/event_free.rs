@@ -10,7 +10,7 @@ pub(crate) const MARGIN: f64 = 1e-9;
 
 /// What changes in a record while nothing happens, and up to when that may go on.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Gliding<T> {
+pub(crate) struct EventFree<T> {
     /// The end of the run, a border of the settled window or a strobe, whichever comes first.
     pub border: Instant<T>,
     /// Whether the time up to there is in the settled window.
@@ -34,7 +34,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     }
 
     /// What it is to be told of steps after `at` on which nothing happens, up to `end`.
-    pub fn glide(&self, at: &Instant<T>, end: &Instant<T>) -> Gliding<T> {
+    pub fn begin_event_free(&self, at: &Instant<T>, end: &Instant<T>) -> EventFree<T> {
         let until = |border: &Instant<T>| self.clock.between(at, border);
         let (from, to) = (&self.window.0, &self.window.1);
         let mut border = *end;
@@ -45,7 +45,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             }
         }
         let inside = until(from) <= T::zero() && until(to) > T::zero();
-        Gliding {
+        EventFree {
             border,
             inside,
             listed: self.lists_crossings(),
@@ -59,14 +59,19 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     }
 
     /// Takes in what such steps have changed.
-    pub fn end_glide(&mut self, (low, high): (T, T), squared: CompensatedSum<T>, covered: CompensatedSum<T>) {
+    pub fn end_event_free(
+        &mut self,
+        (low, high): (T, T),
+        squared: CompensatedSum<T>,
+        covered: CompensatedSum<T>,
+    ) {
         (self.low, self.high) = (low, high);
         self.settled.squared_velocity = squared;
         self.covered = covered;
     }
 
     /// The same of passages of the top before the settled window, and on which side they have led.
-    pub fn end_glide_crossings(&mut self, side: i8, count: u64) {
+    pub fn end_event_free_crossings(&mut self, side: i8, count: u64) {
         self.barrier_side = side;
         self.counts.total_crossings += count;
     }

@@ -8,7 +8,7 @@ use crate::numeric::Scalar;
 
 /// A recorder call other than a step. Velocities are signed, in kernel units.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Told<T> {
+pub(crate) enum Call<T> {
     /// The mass stands still in this state (at rest on a stop, in an equilibrium, or in the last, unresolved bounces
     /// of a chatter: with phase free, and with the speed at its first instant).
     Stand {
@@ -38,7 +38,7 @@ pub(crate) enum Told<T> {
     },
 }
 
-impl<T: Scalar> Told<T> {
+impl<T: Scalar> Call<T> {
     /// The same at other instants.
     pub fn when(self, instant: impl Fn(&Instant<T>) -> Instant<T>) -> Self {
         match self {
@@ -76,13 +76,13 @@ impl<T: Scalar> Told<T> {
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     /// Takes in what happened; `base` is the acceleration of the base in m/s^2.
-    pub fn tell(&mut self, told: &Told<T>, base: impl FnMut(&Instant<T>) -> f64) {
+    pub fn tell(&mut self, told: &Call<T>, base: impl FnMut(&Instant<T>) -> f64) {
         match told {
-            Told::Stand { at, until, state, phase } => self.stand(at, until, *state, *phase, base),
-            Told::Impact { at, side, v_in, v_out } => self.impact(at, *side, *v_in, *v_out),
-            Told::Chatter { at, v } => self.chatter_sum(at, *v),
-            Told::Rest { at, side } => self.rest(at, *side),
-            Told::Release { at, side } => self.release(at, *side),
+            Call::Stand { at, until, state, phase } => self.stand(at, until, *state, *phase, base),
+            Call::Impact { at, side, v_in, v_out } => self.impact(at, *side, *v_in, *v_out),
+            Call::Chatter { at, v } => self.chatter_sum(at, *v),
+            Call::Rest { at, side } => self.rest(at, *side),
+            Call::Release { at, side } => self.release(at, *side),
         }
     }
 

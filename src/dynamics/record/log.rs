@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::events::Told;
+use super::events::Call;
 use super::laps::Totals;
 use super::recorder::Recorder;
 use crate::dynamics::clock::{Clock, Instant};
@@ -18,7 +18,7 @@ const MOST_ENTRIES: usize = 1 << 15;
 #[derive(Debug, Clone)]
 enum Entry<T: Copy> {
     Step(Kept<T>),
-    Told(Told<T>),
+    Call(Call<T>),
 }
 
 /// A step of flight; its coefficients lie in the log.
@@ -115,8 +115,8 @@ impl<T: Scalar> Log<T> {
         self.entries.len() < MOST_ENTRIES
     }
 
-    pub fn add(&mut self, told: Told<T>) {
-        self.entries.push(Entry::Told(told));
+    pub fn add(&mut self, told: Call<T>) {
+        self.entries.push(Entry::Call(told));
     }
 
     /// Keeps a step, where it is one in time.
@@ -221,15 +221,15 @@ impl<T: Scalar> Log<T> {
                     };
                     record.step(&view, &mut base);
                 }
-                Entry::Told(told) => record.tell(&told.when(|at| later.instant(at)), &mut base),
+                Entry::Call(told) => record.tell(&told.when(|at| later.instant(at)), &mut base),
             }
         }
         entries.len()
     }
 
     /// Appends the mirror image of everything from mark `first` on, later by half a cycle of the clock and `cycles`
-    /// whole ones; `arenas` is their number.
-    pub fn append_mirrored(&mut self, first: usize, cycles: i64, arenas: usize, clock: &Clock<T>) {
+    /// whole ones; `modes` is their number.
+    pub fn append_mirrored(&mut self, first: usize, cycles: i64, modes: usize, clock: &Clock<T>) {
         let half = clock.period() * T::of(0.5);
         let instant = |at: &Instant<T>| {
             let at = clock.advance(at, half);
@@ -240,7 +240,7 @@ impl<T: Scalar> Log<T> {
         let from = self.marks[first].entries;
         for index in first..marks {
             let Mark { point: Checkpoint { state, barrier_side }, entries: before } = self.marks[index];
-            let state = MotionState { at: instant(&state.at), refused: None, ..state.mirrored(arenas) };
+            let state = MotionState { at: instant(&state.at), refused: None, ..state.mirrored(modes) };
             self.marks.push(Mark {
                 point: Checkpoint { state, barrier_side: -barrier_side },
                 entries: before + entries - from,
@@ -263,7 +263,7 @@ impl<T: Scalar> Log<T> {
                         ..step
                     })
                 }
-                Entry::Told(told) => Entry::Told(told.when(instant).mirrored()),
+                Entry::Call(told) => Entry::Call(told.when(instant).mirrored()),
             };
             self.entries.push(mirrored);
         }

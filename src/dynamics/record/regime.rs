@@ -16,7 +16,7 @@ const STANDARD_ERRORS: f64 = 3.0;
 
 /// What a lap of a motion that comes back has told, kept to be told again.
 #[derive(Debug, Clone, Copy)]
-enum Told {
+enum Call {
     Strobe(Strobe),
     Crossing { time: f64, side: Side, seconds: f64 },
     Release { time: f64, seconds: f64 },
@@ -88,7 +88,7 @@ pub(crate) struct Judge {
     firsts: Firsts,
     /// Forcing period of the last crossing of the whole run.
     last_crossing: Option<i64>,
-    tape: Option<Vec<Told>>,
+    tape: Option<Vec<Call>>,
 }
 
 impl Judge {
@@ -118,7 +118,7 @@ impl Judge {
         self.rhythm == Rhythm::Changing
     }
 
-    fn keep(&mut self, told: Told) {
+    fn keep(&mut self, told: Call) {
         if let Some(tape) = &mut self.tape {
             tape.push(told);
         }
@@ -126,7 +126,7 @@ impl Judge {
 
     /// A stroboscopic state; the integral of the squared velocity and the number of crossings since the window's begin.
     pub fn strobe(&mut self, state: Strobe, squared_velocity: f64, crossings: u64) {
-        self.keep(Told::Strobe(state));
+        self.keep(Call::Strobe(state));
         let number = self.strobes.seen();
         self.strobes.tell(state);
         if number > self.from && number <= self.from + self.periods {
@@ -139,7 +139,7 @@ impl Judge {
 
     /// A crossing into the well on `side`; `seconds` since the run's begin.
     pub fn crossing(&mut self, time: f64, side: Side, seconds: f64) {
-        self.keep(Told::Crossing { time, side, seconds });
+        self.keep(Call::Crossing { time, side, seconds });
         if self.rhythm == Rhythm::Changing {
             let first = First { t: seconds, amplitude: None };
             self.firsts.crossing.get_or_insert(first);
@@ -161,7 +161,7 @@ impl Judge {
 
     /// A release from rest on a stop.
     pub fn release(&mut self, time: f64, seconds: f64) {
-        self.keep(Told::Release { time, seconds });
+        self.keep(Call::Release { time, seconds });
         if self.rhythm == Rhythm::Changing {
             self.firsts.release.get_or_insert(First { t: seconds, amplitude: None });
         }
@@ -207,9 +207,9 @@ impl Judge {
             let later = (lap * periods) as f64;
             for entry in tape.get(from..to).unwrap_or_default() {
                 match *entry {
-                    Told::Strobe(state) => self.strobe(state, self.last.0, self.last.1),
-                    Told::Crossing { time, side, seconds } => self.crossing(time + later, side, seconds),
-                    Told::Release { time, seconds } => self.release(time + later, seconds),
+                    Call::Strobe(state) => self.strobe(state, self.last.0, self.last.1),
+                    Call::Crossing { time, side, seconds } => self.crossing(time + later, side, seconds),
+                    Call::Release { time, seconds } => self.release(time + later, seconds),
                 }
             }
         }

@@ -119,7 +119,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             && step.length == step.whole
             && let Some((y, _)) = step.path.in_time()
         {
-            chord.bend = polynomial::bend(y, step.length);
+            chord.bend = polynomial::chord_deviation(y, step.length);
             (_, _, turns) = chord.extremes((low, high));
         }
         (self.low, self.high) = (low, high);

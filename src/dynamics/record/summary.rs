@@ -107,7 +107,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             () => Place::Both,
         });
         let (crossing_periods, release_periods) = self.judge.periods_with();
-        let ramped = |t: f64| self.model.drive.ramped_amplitude(t);
+        let ramped = |t: f64| self.model.excitation.ramped_amplitude(t);
         Run {
             samples: std::mem::take(&mut self.samples),
             events: self.events.take().unwrap_or_default(),

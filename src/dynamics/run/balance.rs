@@ -25,14 +25,14 @@ const STILL: f64 = 1e-12;
 
 /// Where a motion has been and how fast, in m and m/s.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Reach {
+pub(super) struct Excursion {
     pub low: f64,
     pub high: f64,
     pub speed: f64,
 }
 
 /// The outcome of a run that ended with the one that it has.
-pub(super) fn judged(model: &Model, run: &Run, reach: Reach) -> Outcome {
+pub(super) fn judged(model: &Model, run: &Run, reach: Excursion) -> Outcome {
     let summary = &run.summary;
     if summary.outcome != Outcome::Done {
         return summary.outcome;
@@ -62,7 +62,7 @@ pub(super) fn judged(model: &Model, run: &Run, reach: Reach) -> Outcome {
 }
 
 /// What the rounding of places and forces makes of an energy, in J.
-fn rounding(model: &Model, Reach { low, high, .. }: Reach, steps: u64) -> f64 {
+fn rounding(model: &Model, Excursion { low, high, .. }: Excursion, steps: u64) -> f64 {
     let curve = &model.mechanism.curve;
     let largest = |of: &dyn Fn(f64) -> f64| of(low).abs().max(of(high).abs());
     let terms = largest(&|x| curve.stiffness(x) * x) * (high - low) + largest(&|x| curve.force(x) * x);

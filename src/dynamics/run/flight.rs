@@ -24,21 +24,21 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
         self.stepper.seed(&self.state);
         self.stepper.evaluations += 1;
-        let flight = match self.stepper.pressed_back(&self.state) {
+        let flight = match self.stepper.pressed_rebound(&self.state) {
             Some((end, rates)) if self.sum_chatter(end, rates) => return None,
             Some((end, rates)) => self.stepper.short_flight(&self.state, end, rates),
             None => None,
         };
         let (stepper, state) = (&mut self.stepper, &self.state);
-        let arena = stepper.arena(state);
-        stepper.series.begin(state.x - arena.origin, state.v);
+        let mode = stepper.mode(state);
+        stepper.series.begin(state.x - mode.origin, state.v);
         if let Some(flight) = flight {
             if let Some((end, length, landing)) = stepper.rebound(state, flight, left) {
-                let on_the_stop = (arena.end(end).0, landing.v);
+                let on_the_stop = (mode.end(end).0, landing.v);
                 return self.arrive((length, length), landing.bound, on_the_stop, None, Some(end));
             }
             stepper.seed(state);
-            stepper.series.begin(state.x - arena.origin, state.v);
+            stepper.series.begin(state.x - mode.origin, state.v);
         }
         let step = stepper.choose_step(state, flight, left);
         self.take_any(step)
@@ -54,15 +54,15 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
 
     /// Goes along a step of flight up to its end or the first surface.
     pub fn take(&mut self, &Step { length: h, arrival, end }: &Step<T>) -> Flow {
-        let arena = self.stepper.arena(&self.state);
+        let mode = self.stepper.mode(&self.state);
         match self.stepper.find_exit(&self.state, h, &end) {
             Some((s, exit)) => {
                 self.stepper.work.add(ARRIVAL);
-                let (length, level) = (s * h, arena.end(exit).0);
+                let (length, level) = (s * h, mode.end(exit).0);
                 let on_the_end = (level, self.stepper.series.velocity(length));
                 self.arrive((h, length), end.bound, on_the_end, None, Some(exit))
             }
-            None => self.arrive((h, h), end.bound, (end.y + arena.origin, end.v), arrival, None),
+            None => self.arrive((h, h), end.bound, (end.y + mode.origin, end.v), arrival, None),
         }
     }
 
@@ -76,7 +76,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         arrival: Option<Instant<T>>,
         touched: Option<End>,
     ) -> Flow {
-        let (arena, zero) = (self.stepper.arena(&self.state), T::zero());
+        let (mode, zero) = (self.stepper.mode(&self.state), T::zero());
         if !(x.is_finite() && v.is_finite()) {
             return Some(Outcome::NotFinite { at: self.stepper.seconds(&self.state) });
         }
@@ -84,13 +84,13 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.stepper.work.add(self.stepper.costs.step);
         let view = StepView {
             path: &self.stepper.series,
-            origin: arena.origin,
+            origin: mode.origin,
             at: self.state.at,
             whole: h,
             length,
             duration: length,
             bound,
-            limits: (arena.low, arena.high),
+            limits: (mode.low, mode.high),
             x,
             v,
         };

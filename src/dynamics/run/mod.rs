@@ -16,7 +16,7 @@ use crate::dynamics::result::{Outcome, Request, Run};
 use crate::dynamics::state::{Contact, Flow};
 use crate::dynamics::step::work::{IMPACT_BUDGET, WORK_BUDGET};
 use crate::numeric::{DoubleDouble, Scalar};
-use event_free::Flown;
+use event_free::FastPath;
 
 impl Model {
     /// Runs the model once.
@@ -79,14 +79,14 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 Err(outcome) => break outcome,
             };
             let flow = match self.event_free_steps() {
-                Flown::On => None,
-                Flown::To(step) => self.take(&step),
-                Flown::Before(length) => {
+                FastPath::On => None,
+                FastPath::To(step) => self.take(&step),
+                FastPath::Before(length) => {
                     let left = self.stepper.left(&self.state);
                     let step = self.stepper.shorten(&self.state, length, left);
                     self.take_any(step)
                 }
-                Flown::Not => self.proceed(left),
+                FastPath::Not => self.proceed(left),
             };
             if let Some(outcome) = flow.or_else(|| self.spent()) {
                 break outcome;
@@ -157,7 +157,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 None
             }
             Contact::Free => self.fly(left),
-            Contact::Pressing(end) | Contact::Trailed(end) => self.press_in(end, left),
+            Contact::Compressing(end) | Contact::Clipped(end) => self.contact_step(end, left),
         }
     }
 }

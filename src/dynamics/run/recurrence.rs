@@ -124,7 +124,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         if !(self.stepper.clock.between(&back, &self.stepper.end) > T::zero()) {
             return;
         }
-        log.append_mirrored(first, cycles / 2, self.stepper.equation.arenas.len(), &self.stepper.clock);
+        log.append_mirrored(first, cycles / 2, self.stepper.equation.modes.len(), &self.stepper.clock);
         self.replay(&log, (middle, None), Later(0));
         self.resume(&log.point_later(first, Later(cycles)));
         let like = self.like(first, &log, before);

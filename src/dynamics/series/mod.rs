@@ -73,7 +73,7 @@ impl<T: Number> Series<T> {
         force: &PieceForce<T>,
         damping: T,
         drive: &D,
-        roll: &mut D::Rolling,
+        cursor: &mut D::Cursor,
     ) {
         let Self { y, a, forces, inverse, .. } = self;
         let known = self.known - 2..order.min(MAX_ORDER) - 1; // the bound spares a look at each index
@@ -85,7 +85,7 @@ impl<T: Number> Series<T> {
                     (y, a, inverse),
                     damping,
                     drive,
-                    roll,
+                    cursor,
                     #[inline(always)]
                     $force,
                 )
@@ -111,8 +111,8 @@ impl<T: Number> Series<T> {
     }
 
     /// Adds coefficient `k` of the drive, at or above [`SEEDED`]; once each and in ascending order.
-    pub(crate) fn extend_drive<D: Tail<T>>(&mut self, k: usize, drive: &D, roll: &mut D::Rolling) {
-        drive.extend(k, &mut self.a, &self.inverse, roll);
+    pub(crate) fn extend_drive<D: Tail<T>>(&mut self, k: usize, drive: &D, cursor: &mut D::Cursor) {
+        drive.extend(k, &mut self.a, &self.inverse, cursor);
     }
 
     /// The state at time `t` into the step, and a bound of the way up to there.
@@ -156,9 +156,9 @@ impl<T: Scalar> Series<T> {
         force: &PieceForce<T>,
         damping: T,
         drive: &D,
-        roll: &mut D::Rolling,
+        cursor: &mut D::Cursor,
     ) {
-        self.extend_to(order, force, damping, drive, roll);
+        self.extend_to(order, force, damping, drive, cursor);
     }
 
     /// The longest step whose first neglected term in the velocity stays below `tolerance` times `speed`, at most `cap`.
@@ -215,7 +215,7 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
     (y, a, inverse): (&mut [T; ROOM], &mut [T; ROOM], &[T; ROOM]),
     damping: T,
     drive: &D,
-    roll: &mut D::Rolling,
+    cursor: &mut D::Cursor,
     mut force: impl FnMut(usize, &[T; ROOM], Option<T>) -> T,
 ) {
     each_order::<0>(
@@ -224,7 +224,7 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
         #[inline(always)]
         |k| {
             if k >= SEEDED {
-                drive.extend(k, a, inverse, roll);
+                drive.extend(k, a, inverse, cursor);
             }
             let base = if k < D::ZERO_FROM { Some(a[k]) } else { None };
             let drag = damping * T::whole(k + 1) * y[k + 1];

@@ -12,11 +12,11 @@ pub(crate) const SEEDED: usize = 4;
 /// How the series of a drive goes on.
 pub(crate) trait Tail<T: Number> {
     /// State carried along a series.
-    type Rolling: Default;
+    type Cursor: Default;
 
     /// From here on all coefficients are 0, and are not added: an addition of nothing takes its time too.
     const ZERO_FROM: usize = usize::MAX;
 
     /// Fills a\[k\], k >= `SEEDED`, once each and in ascending order; `inverse[n]` is 1/(n(n-1)).
-    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], roll: &mut Self::Rolling);
+    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], cursor: &mut Self::Cursor);
 }

@@ -42,7 +42,7 @@ pub(crate) fn slope<T: Scalar>(y: &[T], t: T) -> T {
 /// A bound of how far the displacement leaves, within a step of length `h`, the chord between its ends: an eighth of the
 /// square of the length times the largest acceleration.
 #[inline(always)]
-pub(crate) fn bend<T: Number>(y: &[T], h: T) -> T {
+pub(crate) fn chord_deviation<T: Number>(y: &[T], h: T) -> T {
     let (mut sum, mut power) = (T::zero(), h);
     for (k, c) in y.iter().enumerate().skip(2) {
         power = power * h;

@@ -74,15 +74,15 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if let (2, Some(Touch { order: BY_JERK.., .. })) = (self.series.known, state.touch) {
             self.push(state);
         }
-        let arena = self.arena(state);
+        let mode = self.mode(state);
         let order = self.settings.order;
-        self.series.extend(order, &arena.force, self.equation.damping, self.drive, &mut self.roll);
+        self.series.extend(order, &mode.force, self.equation.damping, self.drive, &mut self.cursor);
     }
 
     fn push(&mut self, state: &MotionState<T>) {
-        let arena = self.arena(state);
+        let mode = self.mode(state);
         let next = self.series.known;
-        self.series.extend(next, &arena.force, self.equation.damping, self.drive, &mut self.roll);
+        self.series.extend(next, &mode.force, self.equation.damping, self.drive, &mut self.cursor);
         if self.series.known == 3
             && let Some(Touch { order: BY_JERK.., .. }) = state.touch
         {
@@ -94,16 +94,16 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// speed; false where the full order is not enough for that.
     pub fn expand_for(&mut self, state: &MotionState<T>, flight: T) -> bool {
         let negligible = state.v.abs() * T::of(self.settings.tolerance * 0.1);
-        let arena = self.arena(state);
+        let mode = self.mode(state);
         let (order, damping) = (self.settings.order, self.equation.damping);
-        let Self { series, drive, roll, .. } = self;
+        let Self { series, drive, cursor, .. } = self;
         let mut known = series.known;
         let mut power = T::of(1.0);
         let mut small = 0;
         while known <= order {
             if known == series.known {
                 // the first few are always needed; a drive goes on once for each of the others
-                series.extend(known.max(FEW).min(order), &arena.force, damping, *drive, roll);
+                series.extend(known.max(FEW).min(order), &mode.force, damping, *drive, cursor);
             }
             power = power * flight;
             if known >= 3 {
@@ -127,12 +127,12 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         h: T,
         &Endpoint { y, v, acceleration, .. }: &Endpoint<T>,
     ) -> bool {
-        let arena = self.arena(state);
+        let mode = self.mode(state);
         let at = self.clock.advance(&state.at, h);
         let series = &self.series;
-        let base = self.drive.value(&self.clock, &at, state.segment, || series.base(h), &mut self.roll);
+        let base = self.drive.value(&self.clock, &at, state.segment, || series.base(h), &mut self.cursor);
         let sum = (acceleration + self.equation.damping * v) + base;
-        let residual = (arena.force.at(y) + sum).abs() * h;
+        let residual = (mode.force.at(y) + sum).abs() * h;
         let order = self.series.known - 1;
         let speed = if order < self.settings.order { state.v.abs() } else { self.settings.speed };
         let allowed = T::of(RESIDUAL * order as f64 * self.settings.tolerance) * speed;
@@ -140,7 +140,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             return true;
         }
         // larger than asked for: rounding?
-        let (_, _, rounding) = arena.force.value(y);
+        let (_, _, rounding) = mode.force.value(y);
         let size = acceleration.abs() + (self.equation.damping * v).abs() + base.abs();
         residual <= (rounding + size * T::of(T::EPSILON)) * h * T::of(ROUNDINGS)
     }

@@ -1,9 +1,9 @@
-//! The chord of a step of free flight: how far the step keeps from the ends of its arena, and where its extremes are.
+//! The chord of a step of free flight: how far the step keeps from the ends of its mode, and where its extremes are.
 
 use crate::numeric::Scalar;
 
 /// How much further than a bound asks a step must stay away from a surface that it is clear of: rounding never decides it.
-pub(crate) const ROOM_BESIDE: f64 = 1.0625;
+pub(crate) const CLEARANCE: f64 = 1.0625;
 
 /// Where a step of free flight goes.
 pub(crate) struct Chord<T> {
@@ -12,17 +12,17 @@ pub(crate) struct Chord<T> {
     pub end: T,
     /// Bound of |x - x(start)|.
     pub bound: T,
-    /// Bound of how far it leaves the chord between its ends, as [`taylor::bend`](crate::dynamics::series::polynomial::bend) gives it.
+    /// Bound of how far it leaves the chord between its ends, as [`chord_deviation`](crate::dynamics::series::polynomial::chord_deviation) gives it.
     pub bend: T,
-    /// Ends of the arena.
+    /// Ends of the mode.
     pub limits: (T, T),
 }
 
 impl<T: Scalar> Chord<T> {
-    /// Whether the step stays clear of the low and of the high end of the arena, as far as its chord can tell.
+    /// Whether the step stays clear of the low and of the high end of the mode, as far as its chord can tell.
     #[inline(always)]
     pub fn is_clear(&self) -> (bool, bool) {
-        let bend = self.bend * T::of(ROOM_BESIDE);
+        let bend = self.bend * T::of(CLEARANCE);
         let low = self.start.smaller(self.end) - bend > self.limits.0;
         let high = self.start.larger(self.end) + bend < self.limits.1;
         (low, high)

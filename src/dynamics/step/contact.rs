@@ -30,7 +30,7 @@ pub(crate) enum Reached {
     /// Where it was chosen to, or at the end of the run or the drive's segment.
     Time,
     Surface,
-    Turn,
+    ClipChange,
     End(End),
 }
 
@@ -53,7 +53,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         left: T,
         path: &mut Penetration<T>,
     ) -> Option<ContactStep<T>> {
-        let arena = self.arena(state);
+        let mode = self.mode(state);
         let damping = self.equation.damping;
         let order = (self.settings.order + CONTACT_ORDERS).min(MAX_ORDER);
         let sign = end.sign::<T>();
@@ -61,14 +61,14 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             root: state.depth.root,
             speed: sign * state.v,
             sign,
-            surface: self.equation.surface(end)? - arena.origin,
-            trails: matches!(state.contact, Contact::Trailed(_)),
+            surface: self.equation.surface(end)? - mode.origin,
+            clipped: matches!(state.contact, Contact::Clipped(_)),
         };
-        self.drive.seed(&self.clock, &state.at, state.segment, path.seeded(), &mut self.roll);
+        self.drive.seed(&self.clock, &state.at, state.segment, path.seeded(), &mut self.cursor);
         self.evaluations += 1;
         self.work.add(self.costs.contact);
         let mut levels = FEWEST_LEVELS.min(D::ZERO_FROM);
-        path.expand(&start, order, levels, &arena.force, damping);
+        path.expand(&start, order, levels, &mode.force, damping);
         // As far as the speed of the step's start would bring it in the longest time.
         let (u, w) = (start.root.to_f64(), start.speed.abs().to_f64());
         let longest = self.settings.longest;
@@ -89,13 +89,13 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             let mut length = share * whole;
             let mut duration = path.time(length);
             if levels < D::ZERO_FROM && levels < order {
-                let neglected = path.neglected_drive(self.drive, &mut self.roll, duration);
+                let neglected = path.neglected_drive(self.drive, &mut self.cursor, duration);
                 if neglected > T::of(tolerance) * speed {
                     // A drive as fast as the contact: all its terms.
                     self.work.add(self.costs.contact);
                     levels = order;
-                    path.extend_drive(levels, self.drive, &mut self.roll);
-                    path.expand(&start, order, levels, &arena.force, damping);
+                    path.extend_drive(levels, self.drive, &mut self.cursor);
+                    path.expand(&start, order, levels, &mode.force, damping);
                     whole = T::of(path.natural_step(settings.0, settings.1, cap));
                     continue;
                 }
@@ -111,7 +111,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             if let Some(border) = border {
                 until(self.clock.between(&state.at, &border), border);
             }
-            let residual = path.residual(length, &arena.force, damping);
+            let residual = path.residual(length, &mode.force, damping);
             let rounding = residual.size * T::of(T::EPSILON * ROUNDINGS);
             if residual.error.abs() * length <= allowed || residual.error.abs() <= rounding {
                 return Some(ContactStep { whole, length, duration, reached, arrival });
@@ -131,11 +131,11 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             }
         };
         earlier(path.separation(whole), Reached::Surface);
-        earlier(path.turn(whole, state.depth.turned), Reached::Turn);
-        let arena = self.arena(state);
+        earlier(path.turn(whole, state.depth.clip_changed), Reached::ClipChange);
+        let mode = self.mode(state);
         let n = path.known();
         for at in [End::Low, End::High] {
-            let (level, kind) = arena.end(at);
+            let (level, kind) = mode.end(at);
             let touch = state.touch.filter(|touch| touch.end == at);
             if kind == EndKind::Compliant || touch.is_some_and(|touch| touch.order == HELD) {
                 continue;

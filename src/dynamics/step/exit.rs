@@ -10,7 +10,7 @@ use crate::dynamics::state::{BY_SPEED, HELD, MotionState};
 use crate::numeric::{PolynomialRoots, Scalar};
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// The first contact with an end of the arena within the step, as a share of it; of the step's end is known how it
+    /// The first contact with an end of the mode within the step, as a share of it; of the step's end is known how it
     /// lies in the piece.
     pub fn find_exit(
         &self,
@@ -19,25 +19,25 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         &Endpoint { y: end, bound, .. }: &Endpoint<T>,
     ) -> Option<(T, End)> {
         let zero = T::zero();
-        let arena = self.arena(state);
+        let mode = self.mode(state);
         let n = self.series.known;
         let mut first: Option<(T, End)> = None;
         let mut scaled = None;
         if state.touch.is_none() {
-            let limits = (arena.low, arena.high);
+            let limits = (mode.low, mode.high);
             let near = !(state.x - limits.0 > bound && limits.1 - state.x > bound);
             if !near {
                 return None;
             }
-            let (y, to) = (&self.series.y[..n], end + arena.origin);
-            let bend = polynomial::bend(y, h);
+            let (y, to) = (&self.series.y[..n], end + mode.origin);
+            let bend = polynomial::chord_deviation(y, h);
             if (Chord { start: state.x, end: to, bound, bend, limits }).is_clear() == (true, true) {
                 return None;
             }
         }
         for end in [End::Low, End::High] {
             let sign = end.sign::<T>();
-            let gap = sign * (arena.end(end).0 - state.x);
+            let gap = sign * (mode.end(end).0 - state.x);
             let touch = state.touch.filter(|t| t.end == end);
             if touch.map_or(gap > bound, |touch| touch.order == HELD) {
                 continue;

@@ -57,7 +57,7 @@ pub(crate) struct StepView<'a, T, P = Series<T>> {
     pub duration: T,
     /// Bound of |x - x(start)| over the step.
     pub bound: T,
-    /// Ends of the arena: x never passes them.
+    /// Ends of the mode: x never passes them.
     pub limits: (T, T),
     /// State at the end of what is kept.
     pub x: T,
@@ -65,7 +65,7 @@ pub(crate) struct StepView<'a, T, P = Series<T>> {
 }
 
 impl<T: Scalar, P: Path<T>> StepView<'_, T, P> {
-    /// Displacement at a parameter of the step, never beyond the arena by the rounding of its origin.
+    /// Displacement at a parameter of the step, never beyond the mode by the rounding of its origin.
     pub fn x_at(&self, t: T) -> T {
         let x = self.path.position(t) + self.origin;
         x.larger(self.limits.0).smaller(self.limits.1)

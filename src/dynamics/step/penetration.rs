@@ -36,7 +36,7 @@ pub(crate) struct Penetration<T> {
     pub speed: [T; ROOM],
     /// Time since the step's start.
     time: [T; ROOM],
-    /// Force of the stop over stiffness: u^3 (1 + a w); 0 where the stop trails behind.
+    /// Force of the stop over stiffness: u^3 (1 + a w); 0 where the stop clipped behind.
     push: [T; ROOM],
     depth: [T; ROOM],
     cube: [T; ROOM],
@@ -56,7 +56,7 @@ pub(crate) struct Penetration<T> {
     /// Displacement of the untouched stop from the piece's origin.
     surface: T,
     /// The stop does not push: it would have to pull.
-    trails: bool,
+    clipped: bool,
 }
 
 /// Where a step of contact begins.
@@ -66,7 +66,7 @@ pub(crate) struct Start<T> {
     pub speed: T,
     pub sign: T,
     pub surface: T,
-    pub trails: bool,
+    pub clipped: bool,
 }
 
 /// The equation of motion at one instant of contact.
@@ -99,7 +99,7 @@ impl<T: Scalar> Penetration<T> {
             stop,
             sign: T::of(1.0),
             surface: T::zero(),
-            trails: false,
+            clipped: false,
         }
     }
 
@@ -110,9 +110,9 @@ impl<T: Scalar> Penetration<T> {
     }
 
     /// Makes `levels` terms of the base's acceleration over time known.
-    pub fn extend_drive<D: Drive<T>>(&mut self, levels: usize, drive: &D, roll: &mut D::Rolling) {
+    pub fn extend_drive<D: Drive<T>>(&mut self, levels: usize, drive: &D, cursor: &mut D::Cursor) {
         while self.known_drive < levels {
-            self.inner.extend_drive(self.known_drive, drive, roll);
+            self.inner.extend_drive(self.known_drive, drive, cursor);
             self.known_drive += 1;
         }
     }
@@ -128,7 +128,7 @@ impl<T: Scalar> Penetration<T> {
         damping: T,
     ) {
         let order = order.min(MAX_ORDER);
-        (self.order, self.levels, self.trails) = (order, levels, start.trails);
+        (self.order, self.levels, self.clipped) = (order, levels, start.clipped);
         (self.sign, self.surface) = (start.sign, start.surface);
         self.root[0] = start.root;
         self.speed[0] = start.speed;
@@ -137,7 +137,7 @@ impl<T: Scalar> Penetration<T> {
             self.depth[k] = convolve(&self.root, &self.root, k);
             let displacement = self.sign * self.depth[k];
             self.inner.y[k] = if k == 0 { self.surface + displacement } else { displacement };
-            if start.trails {
+            if start.clipped {
                 self.push[k] = T::zero();
             } else {
                 self.cube[k] = convolve(&self.root, &self.depth, k);
@@ -196,13 +196,13 @@ impl<T: Scalar> Penetration<T> {
     }
 
     /// Speed that the first terms of the drive that are not composed would make over `time`.
-    pub fn neglected_drive<D: Drive<T>>(&mut self, drive: &D, roll: &mut D::Rolling, time: T) -> T {
+    pub fn neglected_drive<D: Drive<T>>(&mut self, drive: &D, cursor: &mut D::Cursor, time: T) -> T {
         let mut made = T::zero();
         let mut power = T::of(1.0);
         for _ in 0..self.levels {
             power = power * time;
         }
-        self.extend_drive(self.levels + 2, drive, roll);
+        self.extend_drive(self.levels + 2, drive, cursor);
         for k in self.levels..self.levels + 2 {
             power = power * time;
             made = made.larger(self.inner.a[k].abs() * power / T::of((k + 1) as f64));
@@ -254,13 +254,13 @@ impl<T: Scalar> Penetration<T> {
         let mut g = self.powers(&self.speed, h);
         for c in &mut g[..n] {
             *c = *c * self.stop.loss;
-            if self.trails {
+            if self.clipped {
                 *c = -*c;
             }
         }
-        g[0] += if self.trails { T::of(-1.0) } else { T::of(1.0) };
+        g[0] += if self.clipped { T::of(-1.0) } else { T::of(1.0) };
         let from = usize::from(passed);
-        // On the wrong side it is there by rounding: it turned where it only touched, and goes on so.
+        // On the wrong side it is there by rounding: it clip_changed where it only touched, and goes on so.
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { None }
     }
 
@@ -274,7 +274,7 @@ impl<T: Scalar> Penetration<T> {
         let base = self.inner.a[..self.levels].iter().rev().fold(T::zero(), |sum, c| sum * time + *c);
         let (f, _, rounding) = force.value(self.surface + self.sign * (u * u));
         let one = T::of(1.0);
-        let pushed = if self.trails {
+        let pushed = if self.clipped {
             T::zero()
         } else {
             self.stop.stiffness * (u * u * u) * (one + self.stop.loss * w)
@@ -285,9 +285,9 @@ impl<T: Scalar> Penetration<T> {
         Residual { error: slope - u * acceleration, size: size + u.abs() * rounding / T::of(T::EPSILON) }
     }
 
-    /// Energy over mass that the stop keeps over (from, to): by its loss, or, where it trails, what it had stored.
+    /// Energy over mass that the stop keeps over (from, to): by its loss, or, where it clipped, what it had stored.
     pub fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        if self.trails {
+        if self.clipped {
             return self.stored(self.root_at(from)) - self.stored(self.root_at(to));
         }
         let length = to - from;

@@ -23,7 +23,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             None => true,
             Some(Touch { order: BY_SPEED, .. }) => {
                 self.seed(state);
-                self.pressed_back(state)
+                self.pressed_rebound(state)
                     .is_none_or(|(end, rates)| self.short_flight(state, end, rates).is_none())
             }
             Some(_) => false,
@@ -32,12 +32,12 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
 
     /// Whether the mass has just been thrown off a stop that it is pressed on, and off which: with the outward acceleration
     /// with which it is pressed there and its first two derivatives. Expects the drive to be seeded.
-    pub fn pressed_back(&self, state: &MotionState<T>) -> Option<(End, [T; 3])> {
+    pub fn pressed_rebound(&self, state: &MotionState<T>) -> Option<(End, [T; 3])> {
         let Some(Touch { end, order: BY_SPEED }) = state.touch else { return None };
-        if !matches!(self.arena(state).end(end).1, EndKind::Stop | EndKind::Compliant) {
+        if !matches!(self.mode(state).end(end).1, EndKind::Stop | EndKind::Compliant) {
             return None;
         }
-        let rates = self.seeded_press(end);
+        let rates = self.seeded_contact_acceleration(end);
         (rates[0] > T::zero()).then_some((end, rates))
     }
 
@@ -56,7 +56,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// a search. Expects the series to be begun.
     pub fn rebound(&mut self, state: &MotionState<T>, flight: T, left: T) -> Option<(End, T, Endpoint<T>)> {
         let Some(Touch { end, order: BY_SPEED }) = state.touch else { return None };
-        let (level, kind) = self.arena(state).end(end);
+        let (level, kind) = self.mode(state).end(end);
         let border = self.drive.segment_end(state.segment);
         let before = |border| flight < self.clock.between(&state.at, &border);
         if kind != EndKind::Stop || !(flight < left) || !border.is_none_or(before) {
@@ -68,7 +68,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let length = self.parabola_like(end.sign(), flight)?;
         let landing = self.series.state(length);
         // Nowhere near the other end.
-        let (other, _) = self.arena(state).end(end.other());
+        let (other, _) = self.mode(state).end(end.other());
         if !((other - level).abs() > landing.bound) || !self.step_holds(state, length, &landing) {
             return None;
         }

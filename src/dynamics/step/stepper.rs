@@ -5,7 +5,7 @@ use super::settings::Settings;
 use super::work::{Costs, Work};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::drive::{Drive, base_at};
-use crate::dynamics::equation::{Arena, End, Equation};
+use crate::dynamics::equation::{End, Equation, Mode};
 use crate::dynamics::series::{Endpoint, Series};
 use crate::dynamics::state::MotionState;
 use crate::numeric::Scalar;
@@ -20,7 +20,7 @@ pub(crate) struct Stepper<'a, T: Scalar, D: Drive<T>> {
     pub clock: Clock<T>,
     pub settings: Settings<T>,
     pub series: Series<T>,
-    pub roll: D::Rolling,
+    pub cursor: D::Cursor,
     /// Workspace of contact with a compliant stop, made at the first.
     pub penetration: Option<Box<Penetration<T>>>,
     /// The end of the run.
@@ -55,7 +55,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
             costs: Costs::new(settings.order, equation.most_products(), drive),
             settings,
             series: Series::new(equation.most_products()),
-            roll: D::Rolling::default(),
+            cursor: D::Cursor::default(),
             penetration: None,
             end,
             evaluations: 0,
@@ -64,14 +64,14 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     }
 
     #[inline]
-    pub fn arena(&self, state: &MotionState<T>) -> &'a Arena<T> {
-        &self.equation.arenas[state.arena]
+    pub fn mode(&self, state: &MotionState<T>) -> &'a Mode<T> {
+        &self.equation.modes[state.mode]
     }
 
     /// Fills the first coefficients of the drive.
     #[inline]
     pub fn seed(&mut self, state: &MotionState<T>) {
-        self.drive.seed(&self.clock, &state.at, state.segment, &mut self.series.a, &mut self.roll);
+        self.drive.seed(&self.clock, &state.at, state.segment, &mut self.series.a, &mut self.cursor);
     }
 
     /// Acceleration of the base in m/s^2 at instants within a segment of the drive.
@@ -108,20 +108,20 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     }
 
     /// Outward acceleration of a mass held at the stop of `end`, and its first two time derivatives.
-    pub fn press(&mut self, state: &MotionState<T>, end: End) -> [T; 3] {
+    pub fn contact_acceleration(&mut self, state: &MotionState<T>, end: End) -> [T; 3] {
         self.seed(state);
-        self.seeded_press(end)
+        self.seeded_contact_acceleration(end)
     }
 
     /// The same, where the drive has been seeded.
-    pub fn seeded_press(&self, end: End) -> [T; 3] {
+    pub fn seeded_contact_acceleration(&self, end: End) -> [T; 3] {
         let (a, sign) = (&self.series.a, end.sign::<T>());
         let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.press);
         [stop - sign * a[0], -(sign * a[1]), -(sign * a[2] * T::of(2.0))]
     }
 
     /// What rounding may make of it.
-    pub fn press_rounding(&self, end: End) -> T {
+    pub fn contact_acceleration_rounding(&self, end: End) -> T {
         let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.press_rounding);
         stop + self.series.a[0].abs() * T::of(4.0 * T::EPSILON)
     }
