@@ -119,7 +119,7 @@ fn portrait_from(model: &Model, (settle, end): (f64, f64)) -> f64 {
 }
 
 fn shown_from(model: &Model, end: f64) -> f64 {
-    let repeats = model.drive.tones.iter().all(|tone| tone.ramp.is_none());
+    let repeats = model.excitation.tones.iter().all(|tone| tone.ramp.is_none());
     match model.forcing_period {
         Some(period) if repeats && end > BAND_PERIODS * period => end - SHOWN_PERIODS * period,
         _ => 0.0,

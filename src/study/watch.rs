@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use crate::dynamics::{Event, EventKind, Live, LiveLedger, Model, Outcome, Passage, Phase, Sample, Side};
+use crate::dynamics::{Event, EventKind, Live, LiveLedger, LiveOutput, Model, Outcome, Phase, Sample, Side};
 
 use super::models::{Held, Models};
 
@@ -56,7 +56,7 @@ impl Watch {
             now,
             step: sampling_step(model),
         };
-        own.take(Passage { samples: vec![now], events: Vec::new() });
+        own.take(LiveOutput { samples: vec![now], events: Vec::new() });
         own.advance(0.0);
         own
     }
@@ -86,7 +86,7 @@ impl Watch {
         let count = ((to / step).floor() - first + 1.0).max(0.0) as u32;
         let times = (0..count).map(|i| (first + f64::from(i)) * step);
         let times: Vec<f64> = times.filter(|t| *t > from && *t <= to).collect();
-        let mut passage = Passage::default();
+        let mut passage = LiveOutput::default();
         let (mut done, mut arrived) = (0, true);
         for mark in self.marks(from, to) {
             let upto = times.partition_point(|t| *t <= mark);
@@ -117,7 +117,7 @@ impl Watch {
     /// From now on the mass moves as `model` says; see [`Live::change`].
     pub fn change(&mut self, model: &Model) {
         self.leave();
-        let mut passage = Passage::default();
+        let mut passage = LiveOutput::default();
         self.live.change(model, &mut passage);
         self.step = sampling_step(model);
         self.models.change(self.now.t, Arc::new(model.clone()), self.step);
@@ -128,7 +128,7 @@ impl Watch {
     /// Puts the mass to `x` in m with velocity `v` in m/s.
     pub fn place(&mut self, x: f64, v: f64) {
         self.leave();
-        let mut passage = Passage::default();
+        let mut passage = LiveOutput::default();
         self.live.place(x, v, &mut passage);
         self.take(passage);
         self.now = self.live.state();
@@ -268,7 +268,7 @@ impl Watch {
     }
 
     /// Takes in a passage, the corners of the path at its events included.
-    fn take(&mut self, passage: Passage) {
+    fn take(&mut self, passage: LiveOutput) {
         let mut events = passage.events.iter().peekable();
         for sample in &passage.samples {
             while let Some(event) = events.next_if(|event| event.t <= sample.t) {

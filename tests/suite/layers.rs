@@ -1,5 +1,7 @@
 //! Does each layer use only what stands to its left, and does the physics build without a window?
 
+mod inside;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,6 +1,6 @@
 //! Does a run that is watched and changed while it goes on stay the run that it is?
 
-use interwell::dynamics::{EventKind, Live, Model, Passage, Phase, Request, Sample, Side};
+use interwell::dynamics::{EventKind, Live, LiveOutput, Model, Phase, Request, Sample, Side};
 use interwell::study::Watch;
 
 use crate::support::*;
@@ -16,9 +16,9 @@ const SCENES: [&str; 7] = [
 ];
 
 /// Advances to the end of the model's run in pieces of `piece` s with a sample every `dt` s.
-pub fn in_pieces(model: &Model, duration: f64, piece: f64, times: &[f64]) -> (Live, Passage) {
+pub fn in_pieces(model: &Model, duration: f64, piece: f64, times: &[f64]) -> (Live, LiveOutput) {
     let mut live = Live::new(model);
-    let mut passage = Passage::default();
+    let mut passage = LiveOutput::default();
     let mut next = 0;
     while live.time() < duration {
         let to = (live.time() + piece).min(duration);
@@ -60,7 +60,7 @@ fn the_present_lies_on_the_run_and_the_ledger_closes() {
     for name in SCENES {
         let model = preset(name, &[]);
         let mut live = Live::new(&model);
-        let mut passage = Passage::default();
+        let mut passage = LiveOutput::default();
         for k in 1..400 {
             let to = 0.011 * f64::from(k);
             if !live.advance(to, &[to], &mut passage) {
@@ -80,8 +80,8 @@ fn the_present_lies_on_the_run_and_the_ledger_closes() {
 }
 
 /// A live run at `t` s and what it has passed.
-fn at(model: &Model, t: f64) -> (Live, Passage) {
-    let (mut live, mut passage) = (Live::new(model), Passage::default());
+fn at(model: &Model, t: f64) -> (Live, LiveOutput) {
+    let (mut live, mut passage) = (Live::new(model), LiveOutput::default());
     assert!(live.advance(t, &[], &mut passage));
     (live, passage)
 }
@@ -215,7 +215,7 @@ fn from_here_the_future_is_the_same() {
 #[test]
 fn it_ends_where_the_curve_does() {
     let model = preset("paper-unconstrained", &["start=At(x_mm: 8.2, v_m_per_s: 3)"]);
-    let (mut live, mut passage) = (Live::new(&model), Passage::default());
+    let (mut live, mut passage) = (Live::new(&model), LiveOutput::default());
     assert!(!live.advance(1.0, &[0.0001, 0.5], &mut passage));
     let end = live.ended().and_then(|outcome| outcome.ended_at()).unwrap();
     assert_eq!(live.time(), end);

@@ -1,23 +1,26 @@
 //! What do the lanes hold in common while they fly, and how do they go on by one step?
 
-use super::super::clock::Instant;
-use super::super::equation::PieceForce;
-use super::super::glide::{Glide, MARGIN, ROOM_BESIDE};
-use super::super::series::{Series, State, natural_steps};
-use super::super::taylor;
-use super::super::tone::Swing;
-use super::Flight;
+use crate::dynamics::clock::Instant;
+use crate::dynamics::drive::tone::{Harmonic, Sine};
+use crate::dynamics::equation::force::PieceForce;
+use crate::dynamics::motion::Motion;
+use crate::dynamics::record::event_free::MARGIN;
+use crate::dynamics::series::{Endpoint, Series, natural_steps, polynomial};
+use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::numeric::{CompensatedSum, GaussLegendre, Lanes, Number, Scalar};
 
+/// One motion under a sine, without a ledger.
+pub(super) type Flight<'a> = Motion<'a, f64, Sine<f64>, false>;
+
 /// The lanes, in columns.
-pub(super) struct Columns<const W: usize> {
+pub(crate) struct Columns<const W: usize> {
     /// Which lanes fly.
     pub flying: [bool; W],
     /// Steps taken and passages of the top since a lane was filled.
     flown: Lanes<W>,
     crossed: Lanes<W>,
-    // what stays while a lane is in one arena of one run
-    /// Which run and which arena that is.
+    // what stays while a lane is in one mode of one run
+    /// Which run and which mode that is.
     of: [(usize, usize); W],
     force: PieceForce<Lanes<W>>,
     origin: Lanes<W>,
@@ -43,7 +46,7 @@ pub(super) struct Columns<const W: usize> {
     /// Whether the time up to there lies in the settled window.
     pub inside: [bool; W],
     // what changes with each step
-    /// -1 or 1 on the low or high end of the arena, leaving it by its speed; else 0.
+    /// -1 or 1 on the low or high end of the mode, leaving it by its speed; else 0.
     touch: Lanes<W>,
     x: Lanes<W>,
     v: Lanes<W>,
@@ -73,7 +76,7 @@ impl<const W: usize> Clocks<W> {
         Instant { cycle: self.cycle.0[lane] as i64, phase: self.phase.0[lane] }
     }
 
-    /// As [`Clock::advance`](super::super::clock::Clock::advance) by up to a cycle; of more the phase lies beyond the
+    /// As [`Clock::advance`](crate::dynamics::clock::Clock::advance) by up to a cycle; of more the phase lies beyond the
     /// cycle.
     #[inline(always)]
     fn advance(&self, by: &Lanes<W>, period: &Lanes<W>) -> Self {
@@ -115,7 +118,7 @@ impl<const W: usize> CompensatedSums<W> {
 }
 
 /// A step that all lanes have tried.
-pub(super) struct Trial<const W: usize> {
+pub(crate) struct Trial<const W: usize> {
     /// Those that flew and did not take it: something may happen on it.
     pub landed: [bool; W],
     /// Those that took it.
@@ -123,7 +126,7 @@ pub(super) struct Trial<const W: usize> {
     /// Whether the polynomial satisfies the equation at the step's end.
     pub holds: [bool; W],
     pub length: Lanes<W>,
-    end: State<Lanes<W>>,
+    end: Endpoint<Lanes<W>>,
     at: Clocks<W>,
     value: Lanes<W>,
     slope: Lanes<W>,
@@ -133,9 +136,9 @@ pub(super) struct Trial<const W: usize> {
 
 impl<const W: usize> Trial<W> {
     /// Where the polynomial of a lane leads.
-    pub fn end(&self, lane: usize) -> State<f64> {
-        let State { y, v, acceleration, bound } = &self.end;
-        State { y: y.0[lane], v: v.0[lane], acceleration: acceleration.0[lane], bound: bound.0[lane] }
+    pub fn end(&self, lane: usize) -> Endpoint<f64> {
+        let Endpoint { y, v, acceleration, bound } = &self.end;
+        Endpoint { y: y.0[lane], v: v.0[lane], acceleration: acceleration.0[lane], bound: bound.0[lane] }
     }
 
     /// When the step of a lane ends, and the drive and its time derivative there.
@@ -189,8 +192,8 @@ impl<const W: usize> Columns<W> {
     /// Takes a motion into the air, as number `index` of the runs; false where the others fly under a force of another
     /// shape.
     pub fn fill(&mut self, lane: usize, index: usize, motion: &Flight) -> bool {
-        let arena = &motion.equation.arenas[motion.arena];
-        let (count, odd) = (arena.force.coefficients().len(), arena.force.is_odd());
+        let mode = motion.stepper.mode(&motion.state);
+        let (count, odd) = (mode.force.coefficients().len(), mode.force.is_odd());
         if self.force.coefficients().len() != count || self.force.is_odd() != odd {
             if self.flying.contains(&true) {
                 return false;
@@ -198,16 +201,16 @@ impl<const W: usize> Columns<W> {
             self.force = PieceForce::new(vec![Lanes([0.0; W]); count], odd);
             self.of = [(usize::MAX, 0); W];
         }
-        let glide = motion.record.glide(&motion.at, &motion.end);
-        if self.of[lane] != (index, motion.arena) {
-            self.of[lane] = (index, motion.arena);
-            for (degree, own) in arena.force.coefficients().iter().enumerate() {
+        let chord = motion.record.begin_event_free(&motion.state.at, &motion.stepper.end);
+        if self.of[lane] != (index, motion.state.mode) {
+            self.of[lane] = (index, motion.state.mode);
+            for (degree, own) in mode.force.coefficients().iter().enumerate() {
                 self.force.coefficient_mut(degree).0[lane] = *own;
             }
-            let (tone, settings) = (&motion.drive.tone, &motion.settings);
-            self.origin.0[lane] = arena.origin;
-            (self.low_end.0[lane], self.high_end.0[lane]) = (arena.low, arena.high);
-            self.damping.0[lane] = motion.equation.damping;
+            let (tone, settings) = (&motion.stepper.drive.tone, &motion.stepper.settings);
+            self.origin.0[lane] = mode.origin;
+            (self.low_end.0[lane], self.high_end.0[lane]) = (mode.low, mode.high);
+            self.damping.0[lane] = motion.stepper.equation.damping;
             self.curvature.0[lane] = tone.curvature();
             self.amplitude.0[lane] = tone.amplitude;
             self.frequency.0[lane] = tone.frequency;
@@ -216,20 +219,21 @@ impl<const W: usize> Columns<W> {
             self.speed_log2[lane] = settings.speed_log2;
             self.longest[lane] = settings.longest;
             self.allowed.0[lane] = settings.residual_of_a_full_step();
-            self.period.0[lane] = motion.clock.period();
+            self.period.0[lane] = motion.stepper.clock.period();
         }
-        self.barrier.0[lane] = glide.barrier.unwrap_or(f64::NAN);
-        self.side.0[lane] = f64::from(glide.side);
-        self.border.set(lane, &glide.border);
-        self.kept[lane] = motion.record.log.is_some();
-        self.inside[lane] = glide.inside;
-        (self.low.0[lane], self.high.0[lane]) = (glide.low, glide.high);
-        self.squared.set(lane, &glide.squared);
-        self.covered.set(lane, &glide.covered);
-        self.touch.0[lane] = motion.touch.map_or(0.0, |touch| touch.end.sign());
-        (self.x.0[lane], self.v.0[lane]) = (motion.x, motion.v);
-        self.at.set(lane, &motion.at);
-        (self.value.0[lane], self.slope.0[lane]) = motion.drive.looked(&motion.at, &motion.roll);
+        self.barrier.0[lane] = chord.barrier.unwrap_or(f64::NAN);
+        self.side.0[lane] = f64::from(chord.side);
+        self.border.set(lane, &chord.border);
+        self.kept[lane] = motion.log.is_some();
+        self.inside[lane] = chord.inside;
+        (self.low.0[lane], self.high.0[lane]) = (chord.low, chord.high);
+        self.squared.set(lane, &chord.squared);
+        self.covered.set(lane, &chord.covered);
+        self.touch.0[lane] = motion.state.touch.map_or(0.0, |touch| touch.end.sign());
+        (self.x.0[lane], self.v.0[lane]) = (motion.state.x, motion.state.v);
+        self.at.set(lane, &motion.state.at);
+        (self.value.0[lane], self.slope.0[lane]) =
+            motion.stepper.drive.looked(&motion.state.at, &motion.stepper.cursor);
         self.flown.0[lane] = 0.0;
         self.crossed.0[lane] = 0.0;
         self.flying[lane] = true;
@@ -238,10 +242,10 @@ impl<const W: usize> Columns<W> {
 
     /// Goes on with the motion of a lane whose last step is kept.
     pub fn follow(&self, lane: usize, motion: &mut Flight) {
-        (motion.x, motion.v) = (self.x.0[lane], self.v.0[lane]);
-        motion.at = self.at.get(lane);
-        motion.turned_back = false;
-        motion.touch = None;
+        (motion.state.x, motion.state.v) = (self.x.0[lane], self.v.0[lane]);
+        motion.state.at = self.at.get(lane);
+        motion.state.turned_back = false;
+        motion.state.touch = None;
         motion.record.barrier_side = self.side.0[lane] as i8;
     }
 
@@ -253,19 +257,19 @@ impl<const W: usize> Columns<W> {
             return;
         }
         motion.steps += flown;
-        motion.work.add(flown * motion.costs.step);
-        motion.evaluations += flown;
-        (motion.x, motion.v) = (self.x.0[lane], self.v.0[lane]);
-        motion.at = self.at.get(lane);
-        motion.roll = Some((motion.at, (self.value.0[lane], self.slope.0[lane])));
-        motion.turned_back = false;
-        motion.touch = None;
-        motion.record.end_glide(
+        motion.stepper.work.add(flown * motion.stepper.costs.step);
+        motion.stepper.evaluations += flown;
+        (motion.state.x, motion.state.v) = (self.x.0[lane], self.v.0[lane]);
+        motion.state.at = self.at.get(lane);
+        motion.stepper.cursor = Some((motion.state.at, (self.value.0[lane], self.slope.0[lane])));
+        motion.state.turned_back = false;
+        motion.state.touch = None;
+        motion.record.end_event_free(
             (self.low.0[lane], self.high.0[lane]),
             self.squared.get(lane),
             self.covered.get(lane),
         );
-        motion.record.end_glide_crossings(self.side.0[lane] as i8, self.crossed.0[lane] as u64);
+        motion.record.end_event_free_crossings(self.side.0[lane] as i8, self.crossed.0[lane] as u64);
     }
 
     /// Tries one step in all lanes, and takes it where nothing happens.
@@ -277,7 +281,7 @@ impl<const W: usize> Columns<W> {
         order: usize,
         tolerance_log2: f64,
     ) -> Trial<W> {
-        let swing = Swing { curvature: self.curvature };
+        let swing = Harmonic { curvature: self.curvature };
         swing.seed(self.amplitude * self.value, self.amplitude * self.slope, &mut series.a);
         series.begin(self.x - self.origin, self.v);
         series.extend_to(order, &self.force, self.damping, &swing, &mut ());
@@ -300,9 +304,9 @@ impl<const W: usize> Columns<W> {
         let residual = (self.force.at(end.y) + sum).abs() * length;
 
         let mut squared = Lanes([0.0; W]);
-        let bend = taylor::bend(&series.y[..=order], length);
+        let bend = polynomial::chord_deviation(&series.y[..=order], length);
         if self.inside.contains(&true) {
-            squared = taylor::integrals::<_, false>(&series.y[..=order], &[], rule, squared, length).0;
+            squared = polynomial::integrals::<_, false>(&series.y[..=order], &[], rule, squared, length).0;
         }
         let start = series.y[0] + self.origin;
         let x = end.y + self.origin;
@@ -315,22 +319,22 @@ impl<const W: usize> Columns<W> {
             let held = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
 
             let (bound, limits) = (end.bound.0[lane], (self.low_end.0[lane], self.high_end.0[lane]));
-            let glide = Glide { start: start.0[lane], end: x.0[lane], bound, bend: bend.0[lane], limits };
-            let (clear_low, clear_high) = glide.is_clear();
+            let chord = Chord { start: start.0[lane], end: x.0[lane], bound, bend: bend.0[lane], limits };
+            let (clear_low, clear_high) = chord.is_clear();
             let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
             let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
             // from a surface: its own speed leads further away than all the rest can lead back
-            let leaves = 2.0 * self.v.0[lane].abs() * length > bound * ROOM_BESIDE;
+            let leaves = 2.0 * self.v.0[lane].abs() * length > bound * CLEARANCE;
             let clear_low = clear_low | (leaves & (self.touch.0[lane] < 0.0));
             let clear_high = clear_high | (leaves & (self.touch.0[lane] > 0.0));
             let clear = clear_low & clear_high;
-            let (low, high, turns) = glide.extremes((self.low.0[lane], self.high.0[lane]));
+            let (low, high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
 
             // Without a top to cross, what compares with it is NaN and says no.
             let (top, side, inside) = (self.barrier.0[lane], self.side.0[lane], self.inside[lane]);
-            let (from, to) = ((glide.start - top) * side, (glide.end - top) * side);
-            let (near, onto, passed) = ((glide.start - top).abs() <= bound, to == 0.0, to < 0.0);
-            let monotone = 8.0 * glide.bend < self.v.0[lane].abs() * length;
+            let (from, to) = ((chord.start - top) * side, (chord.end - top) * side);
+            let (near, onto, passed) = ((chord.start - top).abs() <= bound, to == 0.0, to < 0.0);
+            let monotone = 8.0 * chord.bend < self.v.0[lane].abs() * length;
             // outside the window only their number counts
             let countable = !inside & (length + length < left);
             let clear_of_top =
@@ -358,7 +362,7 @@ impl<const W: usize> Columns<W> {
             self.crossed.0[lane] += if crosses { 1.0 } else { 0.0 };
             self.flown.0[lane] += if taken { 1.0 } else { 0.0 };
             set(&mut self.touch.0[lane], 0.0, taken);
-            set(&mut self.x.0[lane], glide.end, taken);
+            set(&mut self.x.0[lane], chord.end, taken);
             set(&mut self.v.0[lane], end.v.0[lane], taken);
             set(&mut self.at.cycle.0[lane], at.cycle.0[lane], taken);
             set(&mut self.at.phase.0[lane], at.phase.0[lane], taken);

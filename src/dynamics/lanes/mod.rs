@@ -12,16 +12,21 @@
 
 mod columns;
 
-use super::equation::Equation;
-use super::model::{Model, Request};
-use super::motion::{Begun, Contact, Motion, Step};
-use super::path::StepView;
-use super::prepare::{Form, clock, form};
-use super::result::{Outcome, Run};
-use super::series::{SEEDED, Series};
-use super::tone::Sine;
+use std::sync::atomic::AtomicBool;
+
+use crate::dynamics::drive::form::{Form, clock, form};
+use crate::dynamics::drive::tone::Sine;
+use crate::dynamics::equation::Equation;
+use crate::dynamics::model::Model;
+use crate::dynamics::motion::Motion;
+use crate::dynamics::result::{Outcome, Request, Run};
+use crate::dynamics::run::ending::Begun;
+use crate::dynamics::series::{SEEDED, Series};
+use crate::dynamics::state::Contact;
+use crate::dynamics::step::path::StepView;
+use crate::dynamics::step::stepper::Step;
 use crate::numeric::{GaussLegendre, Lanes, Scalar};
-use columns::{Columns, Trial};
+use columns::{Columns, Flight, Trial};
 
 /// Lanes where registers hold eight numbers: two registers a column, so that one addition need not wait for the last.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -29,9 +34,6 @@ const WIDEST: usize = 16;
 
 /// Steps of the company between two looks at what no step looks at: the budget, and whether the run is to go on.
 const STRIDE: u64 = 256;
-
-/// One motion under a sine, without a ledger.
-type Flight<'a> = Motion<'a, f64, Sine<f64>, false>;
 
 /// A run and what it is made of.
 struct Prepared<'a> {
@@ -41,10 +43,18 @@ struct Prepared<'a> {
     place: usize,
 }
 
+impl Model {
+    /// Runs several models with nothing listed, many at once where the processor can: what [`run`](Self::run) gives for
+    /// each, bit for bit, in their order; `until_settled` as in [`Request`]. The CPU time of all is shared evenly between them.
+    pub fn run_all(models: &[Self], until_settled: Option<f64>, cancel: Option<&AtomicBool>) -> Vec<Run> {
+        run_all(models, &Request { cancel, until_settled, ..Request::default() })
+    }
+}
+
 /// Runs several models, as [`Model::run`] does, with nothing listed; the results in their order.
 ///
 /// Those that cannot share their steps with others are run alone.
-pub(crate) fn run_all(models: &[Model], request: &Request) -> Vec<Run> {
+fn run_all(models: &[Model], request: &Request) -> Vec<Run> {
     let mut runs: Vec<Option<Run>> = models.iter().map(|_| None).collect();
     let mut together = Vec::new();
     for (place, model) in models.iter().enumerate() {
@@ -142,7 +152,7 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
             bundle.take_up(lane);
         }
         if let Some(first) = bundle.lanes.iter().flatten().next() {
-            let settings = &first.motion.settings;
+            let settings = &first.motion.stepper.settings;
             (bundle.order, bundle.tolerance_log2) = (settings.order, settings.tolerance_log2);
             let rule = first.motion.record.rule_of_steps();
             bundle.rule = rule.map(|value| Lanes([value; W]));
@@ -220,8 +230,8 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
                 }
             };
             let motion = &mut own.motion;
-            if motion.contact == Contact::Free
-                && motion.flies_freely()
+            if motion.state.contact == Contact::Free
+                && motion.stepper.flies_freely(&motion.state)
                 && motion.has_budget_for(2 * STRIDE)
                 && self.columns.fill(lane, own.index, motion)
             {
@@ -238,13 +248,13 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
         let Some(own) = &mut self.lanes[lane] else { return };
         let motion = &mut own.motion;
         self.columns.land(lane, motion);
-        let left = motion.clock.between(&motion.at, &motion.end);
+        let left = motion.stepper.clock.between(&motion.state.at, &motion.stepper.end);
         let flow = if trial.holds[lane] && trial.length.0[lane] < left {
-            copy_lane(&self.series, lane, self.order, &mut motion.series);
-            let alone = &mut motion.series;
+            copy_lane(&self.series, lane, self.order, &mut motion.stepper.series);
+            let alone = &mut motion.stepper.series;
             alone.measured = self.columns.inside[lane].then(|| (trial.length.0[lane], trial.squared.0[lane]));
-            motion.evaluations += 1;
-            motion.roll = Some(trial.drive_at_end(lane));
+            motion.stepper.evaluations += 1;
+            motion.stepper.cursor = Some(trial.drive_at_end(lane));
             motion.take(&Step { length: trial.length.0[lane], arrival: None, end: trial.end(lane) })
         } else {
             motion.fly(left)
@@ -258,27 +268,27 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
     fn keep(&mut self, lane: usize, trial: &Trial<W>) {
         let Some(own) = &mut self.lanes[lane] else { return };
         let motion = &mut own.motion;
-        copy_lane(&self.series, lane, self.order, &mut motion.series);
-        let arena = &motion.equation.arenas[motion.arena];
+        copy_lane(&self.series, lane, self.order, &mut motion.stepper.series);
+        let mode = motion.stepper.mode(&motion.state);
         let (length, end) = (trial.length.0[lane], trial.end(lane));
         let view = StepView {
-            path: &motion.series,
-            origin: arena.origin,
-            at: motion.at,
+            path: &motion.stepper.series,
+            origin: mode.origin,
+            at: motion.state.at,
             whole: length,
             length,
             duration: length,
             bound: end.bound,
-            limits: (arena.low, arena.high),
-            x: end.y + arena.origin,
+            limits: (mode.low, mode.high),
+            x: end.y + mode.origin,
             v: end.v,
         };
-        if let Some(log) = &mut motion.record.log {
+        if let Some(log) = &mut motion.log {
             log.add_step(&view);
         }
         self.columns.follow(lane, motion);
         motion.mark();
-        self.columns.kept[lane] = motion.record.log.is_some();
+        self.columns.kept[lane] = motion.log.is_some();
     }
 
     /// Looks at what is not looked at in flight: whether the run is to go on.
@@ -290,8 +300,8 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
             }
             let motion = &mut own.motion;
             self.columns.land(lane, motion);
-            if motion.work.is_cancelled() {
-                let outcome = Outcome::Cancelled { at: motion.clock.seconds(&motion.at) };
+            if motion.stepper.work.is_cancelled() {
+                let outcome = Outcome::Cancelled { at: motion.stepper.clock.seconds(&motion.state.at) };
                 self.end(lane, outcome);
             } else if motion.has_budget_for(2 * STRIDE) {
                 self.columns.fill(lane, own.index, motion);

@@ -3,21 +3,22 @@
 //! Built once for a model; a [`Motion`] is made from it for every call and thrown away. That costs some microseconds
 //! and keeps the integrator free of any thought of being continued.
 
-use super::super::clock::Clock;
-use super::super::drive::Drive;
-use super::super::equation::Equation;
-use super::super::model::{Model, Request};
-use super::super::motion::{Carried, Contact, Motion};
-use super::super::prepare::{Form, base_at, clock, form};
-use super::super::result::{Event, Outcome, Sample};
+use crate::dynamics::clock::Clock;
+use crate::dynamics::drive::form::{Form, clock, form};
+use crate::dynamics::drive::{Drive, base_at};
+use crate::dynamics::equation::Equation;
+use crate::dynamics::model::Model;
+use crate::dynamics::motion::Motion;
+use crate::dynamics::result::{Event, Outcome, Request, Sample};
+use crate::dynamics::state::{Checkpoint, Contact};
 
-/// Work of one call, in units of [`work`](super::super::work): some tens of milliseconds. More is only asked for where
+/// Work of one call, in units of [`work`](crate::dynamics::step::work): some tens of milliseconds. More is only asked for where
 /// impacts crowd without end, or a step takes long.
 const WORK_PER_CALL: u64 = 2_000_000;
 
 /// Energies in kernel units, per mass.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Sums {
+pub(crate) struct Sums {
     pub work: f64,
     pub squared_velocity: f64,
     pub impact: f64,
@@ -35,20 +36,20 @@ impl Sums {
 
 /// Equation, clock and drive of one model.
 #[derive(Debug, Clone)]
-pub(super) struct Kernel {
+pub(crate) struct Kernel {
     equation: Equation<f64>,
     clock: Clock<f64>,
     drive: std::sync::Arc<Form<f64>>,
 }
 
 /// What came of stepping on.
-pub(super) struct Stretch {
+pub(crate) struct Stretch {
     pub samples: Vec<Sample>,
     pub events: Vec<Event>,
-    pub head: Carried<f64>,
+    pub head: Checkpoint<f64>,
     pub sums: Sums,
     /// Where the last step began, and the energies up to there; none where no step was taken.
-    pub last: Option<(Carried<f64>, Sums)>,
+    pub last: Option<(Checkpoint<f64>, Sums)>,
     pub ended: Option<Outcome>,
     /// The work of one call was used up.
     pub exhausted: bool,
@@ -78,13 +79,13 @@ impl Kernel {
         self.equation.unit
     }
 
-    pub fn seconds(&self, carried: &Carried<f64>) -> f64 {
-        self.clock.seconds(&carried.at)
+    pub fn seconds(&self, carried: &Checkpoint<f64>) -> f64 {
+        self.clock.seconds(&carried.state.at)
     }
 
     /// Acceleration of the base in m/s^2.
-    pub fn base(&self, carried: &Carried<f64>) -> f64 {
-        with_drive!(self, drive => base_at(drive, &self.clock, carried.segment, &carried.at, self.unit()))
+    pub fn base(&self, carried: &Checkpoint<f64>) -> f64 {
+        with_drive!(self, drive => base_at(drive, &self.clock, carried.state.segment, &carried.state.at, self.unit()))
     }
 
     /// Acceleration of the base in m/s^2 at a time in s.
@@ -108,7 +109,7 @@ impl Kernel {
         model: &'a Model,
         drive: &'a D,
         request: &Request<'a>,
-        from: Option<&Carried<f64>>,
+        from: Option<&Checkpoint<f64>>,
     ) -> Motion<'a, f64, D, LEDGER> {
         let mut motion = Motion::new(model, request, model.tolerance, &self.equation, self.clock, drive);
         motion.record.next_strobe = None; // a live run is not judged
@@ -119,28 +120,28 @@ impl Kernel {
     }
 
     /// The model's start put into the time `now` in s, and what happens there at once.
-    pub fn start(&self, model: &Model, now: f64) -> (Carried<f64>, Vec<Event>) {
+    pub fn start(&self, model: &Model, now: f64) -> (Checkpoint<f64>, Vec<Event>) {
         with_drive!(self, drive => self.start_with(model, now, drive))
     }
 
-    fn start_with<D: Drive<f64>>(&self, model: &Model, now: f64, drive: &D) -> (Carried<f64>, Vec<Event>) {
+    fn start_with<D: Drive<f64>>(&self, model: &Model, now: f64, drive: &D) -> (Checkpoint<f64>, Vec<Event>) {
         let request = Request { events: true, ..Request::default() };
         let mut motion = self.motion::<D, false>(model, drive, &request, None);
-        motion.at = self.clock.at(now);
-        motion.segment = self.segment(drive, now);
+        motion.state.at = self.clock.at(now);
+        motion.state.segment = self.segment(drive, now);
         motion.place_at_start();
-        (motion.carry(), motion.record.events.take().unwrap_or_default())
+        (motion.checkpoint(), motion.record.events.take().unwrap_or_default())
     }
 
     /// Steps on from `head` until a step has passed `to` in s.
-    pub fn proceed(&self, model: &Model, head: &Carried<f64>, to: f64, times: &[f64]) -> Stretch {
+    pub fn proceed(&self, model: &Model, head: &Checkpoint<f64>, to: f64, times: &[f64]) -> Stretch {
         with_drive!(self, drive => self.proceed_with(model, head, to, times, drive))
     }
 
     fn proceed_with<D: Drive<f64>>(
         &self,
         model: &Model,
-        head: &Carried<f64>,
+        head: &Checkpoint<f64>,
         to: f64,
         times: &[f64],
         drive: &D,
@@ -150,20 +151,20 @@ impl Kernel {
         let until = self.clock.at(to);
         let (mut last, mut ended) = (None, None);
         while ended.is_none()
-            && self.clock.between(&motion.at, &until) >= 0.0
-            && motion.work.done() < WORK_PER_CALL
+            && self.clock.between(&motion.state.at, &until) >= 0.0
+            && motion.stepper.work.done() < WORK_PER_CALL
         {
-            let left = self.clock.between(&motion.at, &motion.end);
+            let left = motion.stepper.left(&motion.state);
             if !(left > 0.0) {
                 ended = Some(Outcome::Done);
                 break;
             }
-            last = Some((motion.carry(), sums(&motion)));
+            last = Some((motion.checkpoint(), sums(&motion)));
             ended = motion.proceed(left);
         }
-        let exhausted = ended.is_none() && self.clock.between(&motion.at, &until) >= 0.0;
+        let exhausted = ended.is_none() && self.clock.between(&motion.state.at, &until) >= 0.0;
         Stretch {
-            head: motion.carry(),
+            head: motion.checkpoint(),
             sums: sums(&motion),
             last,
             ended,
@@ -177,8 +178,8 @@ impl Kernel {
     pub fn look(
         &self,
         model: &Model,
-        tail: &Carried<f64>,
-        head: &Carried<f64>,
+        tail: &Checkpoint<f64>,
+        head: &Checkpoint<f64>,
         times: &[f64],
         into: &mut Vec<Sample>,
     ) {
@@ -190,25 +191,28 @@ impl Kernel {
     fn look_with<D: Drive<f64>>(
         &self,
         model: &Model,
-        tail: &Carried<f64>,
-        head: &Carried<f64>,
+        tail: &Checkpoint<f64>,
+        head: &Checkpoint<f64>,
         times: &[f64],
         into: &mut Vec<Sample>,
         drive: &D,
     ) {
-        if matches!(tail.contact, Contact::Resting(_) | Contact::Motionless) {
+        if matches!(tail.state.contact, Contact::Resting(_) | Contact::Motionless) {
             // It stands still, and the search for its release need not be made again.
-            let (x, phase) = (tail.x, tail.phase());
+            let (x, phase) = (tail.state.x, tail.state.phase());
             into.extend(times.iter().map(|&t| {
-                let base_accel = base_at(drive, &self.clock, tail.segment, &self.clock.at(t), self.unit());
+                let base_accel =
+                    base_at(drive, &self.clock, tail.state.segment, &self.clock.at(t), self.unit());
                 Sample { t, x, v: 0.0, base_accel, phase }
             }));
             return;
         }
         let request = Request { sample_times: times, ..Request::default() };
         let mut motion = self.motion::<D, false>(model, drive, &request, Some(tail));
-        while self.clock.between(&motion.at, &head.at) > 0.0 && motion.work.done() < WORK_PER_CALL {
-            let left = self.clock.between(&motion.at, &motion.end);
+        while self.clock.between(&motion.state.at, &head.state.at) > 0.0
+            && motion.stepper.work.done() < WORK_PER_CALL
+        {
+            let left = motion.stepper.left(&motion.state);
             if motion.proceed(left).is_some() {
                 break;
             }
@@ -220,35 +224,35 @@ impl Kernel {
     pub fn present(
         &self,
         model: &Model,
-        tail: &Carried<f64>,
-        head: &Carried<f64>,
+        tail: &Checkpoint<f64>,
+        head: &Checkpoint<f64>,
         now: f64,
-    ) -> Option<(Carried<f64>, Sums)> {
+    ) -> Option<(Checkpoint<f64>, Sums)> {
         with_drive!(self, drive => self.present_with(model, tail, head, now, drive))
     }
 
     fn present_with<D: Drive<f64>>(
         &self,
         model: &Model,
-        tail: &Carried<f64>,
-        head: &Carried<f64>,
+        tail: &Checkpoint<f64>,
+        head: &Checkpoint<f64>,
         now: f64,
         drive: &D,
-    ) -> Option<(Carried<f64>, Sums)> {
+    ) -> Option<(Checkpoint<f64>, Sums)> {
         let at = self.clock.at(now);
-        if self.clock.between(&at, &head.at) <= 0.0 {
+        if self.clock.between(&at, &head.state.at) <= 0.0 {
             return None;
         }
         let request = Request { ledger: true, ..Request::default() };
         let mut motion = self.motion::<D, true>(model, drive, &request, Some(tail));
-        motion.end = at;
-        while motion.work.done() < WORK_PER_CALL {
-            let left = self.clock.between(&motion.at, &motion.end);
+        motion.stepper.end = at;
+        while motion.stepper.work.done() < WORK_PER_CALL {
+            let left = motion.stepper.left(&motion.state);
             if !(left > 0.0) || motion.proceed(left).is_some() {
                 break;
             }
         }
-        Some((motion.carry(), sums(&motion)))
+        Some((motion.checkpoint(), sums(&motion)))
     }
 }
 

@@ -12,11 +12,10 @@
 mod kernel;
 mod phase;
 
+use crate::dynamics::model::Model;
+use crate::dynamics::result::{Event, EventKind, Outcome, Phase, Sample, Side};
+use crate::dynamics::state::{Checkpoint, Contact};
 use kernel::{Kernel, Sums};
-
-use super::model::Model;
-use super::motion::{Carried, Contact};
-use super::result::{Event, EventKind, Outcome, Phase, Sample, Side};
 
 /// Longest live run in kernel time units: some years of the prototype. The clock of an undriven scene is
 /// still the one that [`Model::run`] has.
@@ -27,7 +26,7 @@ const MOST_PERIODS: f64 = 9e15;
 
 /// Samples and events of a stretch of time, each ascending. The caller may drain them as it likes.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Passage {
+pub struct LiveOutput {
     /// The state at the times asked for, and right after every change.
     pub samples: Vec<Sample>,
     /// What happened.
@@ -62,8 +61,8 @@ pub struct Live {
     shifts: Vec<f64>,
     now: f64,
     /// The begin of the step in which the present time lies, and its end.
-    tail: Carried<f64>,
-    head: Carried<f64>,
+    tail: Checkpoint<f64>,
+    head: Checkpoint<f64>,
     /// Events of that step that are still to come.
     coming: Vec<Event>,
     /// Energies up to the tail, and of the step from there to the head.
@@ -80,7 +79,7 @@ impl Live {
     pub fn new(model: &Model) -> Self {
         let asked = (model.duration, model.settle);
         let model = without_end(model.clone());
-        let shifts = vec![0.0; model.drive.tones.len()];
+        let shifts = vec![0.0; model.excitation.tones.len()];
         let kernel = Kernel::new(&model);
         let (start, coming) = kernel.start(&model, 0.0);
         let start_energy = energy(&model, model.start);
@@ -120,7 +119,7 @@ impl Live {
     ///
     /// False where the work of one call was used up or the run ended before `to`; the present time then says
     /// how far it came, and no sample beyond it was made.
-    pub fn advance(&mut self, to: f64, times: &[f64], into: &mut Passage) -> bool {
+    pub fn advance(&mut self, to: f64, times: &[f64], into: &mut LiveOutput) -> bool {
         let to = to.min(self.model.duration);
         if !(to > self.now) {
             self.deliver(into);
@@ -158,7 +157,7 @@ impl Live {
     }
 
     /// The events that are due.
-    fn deliver(&mut self, into: &mut Passage) {
+    fn deliver(&mut self, into: &mut LiveOutput) {
         let due = self.coming.partition_point(|event| event.t <= self.now);
         into.events.extend(self.coming.drain(..due));
     }
@@ -174,18 +173,18 @@ impl Live {
         self.sample(&carried)
     }
 
-    fn sample(&self, carried: &Carried<f64>) -> Sample {
+    fn sample(&self, carried: &Checkpoint<f64>) -> Sample {
         Sample {
             t: self.now,
-            x: carried.x,
-            v: carried.v / self.kernel.unit(),
+            x: carried.state.x,
+            v: carried.state.v / self.kernel.unit(),
             base_accel: self.kernel.base(carried),
-            phase: carried.phase(),
+            phase: carried.state.phase(),
         }
     }
 
     /// The state at the present time and the energies from the tail to there.
-    fn present(&self) -> (Carried<f64>, Sums) {
+    fn present(&self) -> (Checkpoint<f64>, Sums) {
         self.kernel.present(&self.model, &self.tail, &self.head, self.now).unwrap_or((self.head, self.ahead))
     }
 
@@ -194,8 +193,8 @@ impl Live {
         let (carried, sums) = self.present();
         let mut ledger = self.past;
         ledger.add(&sums, &self.model);
-        let v = carried.v / self.kernel.unit();
-        ledger.stored_j = energy(&self.model, (carried.x, v)) - self.start_energy;
+        let v = carried.state.v / self.kernel.unit();
+        ledger.stored_j = energy(&self.model, (carried.state.x, v)) - self.start_energy;
         ledger
     }
 
@@ -204,18 +203,18 @@ impl Live {
     /// The time goes on, and with it whatever is a function of time (a record, a chirp, a ramp). Tones go on in
     /// phase also where their frequency changes. The mass keeps its place and speed; a stop that now lies on
     /// the other side of it carries it along, as the end of the known curve does, and takes its speed.
-    pub fn change(&mut self, model: &Model, into: &mut Passage) {
+    pub fn change(&mut self, model: &Model, into: &mut LiveOutput) {
         self.shifts = phase::shifts(&self.model, model, &self.shifts, self.now);
         self.asked = (model.duration, model.settle);
         let mut next = without_end(model.clone());
-        phase::shift(&mut next.drive, &self.shifts);
+        phase::shift(&mut next.excitation, &self.shifts);
         let state = self.state();
         self.go_on(next, (state.x, state.v), state.phase, into);
     }
 
     /// Puts the mass to `x` in m with velocity `v` in m/s, as far as the stops let it. What is no number changes nothing,
     /// nor does a state whose energy is none.
-    pub fn place(&mut self, x: f64, v: f64, into: &mut Passage) {
+    pub fn place(&mut self, x: f64, v: f64, into: &mut LiveOutput) {
         if !(x.is_finite() && v.is_finite()) {
             return;
         }
@@ -226,9 +225,9 @@ impl Live {
         self.go_on(next, (x, v), Phase::Free, into);
     }
 
-    fn go_on(&mut self, mut next: Model, wanted: (f64, f64), was: Phase, into: &mut Passage) {
+    fn go_on(&mut self, mut next: Model, wanted: (f64, f64), was: Phase, into: &mut LiveOutput) {
         let (carried, sums) = self.present();
-        let before = energy(&self.model, (carried.x, carried.v / self.kernel.unit()));
+        let before = energy(&self.model, (carried.state.x, carried.state.v / self.kernel.unit()));
         self.past.add(&sums, &self.model);
         // Where a stop was pressed in, it stays so: only what a stop is moved over is carried along.
         let depth = self.model.pressed_depth(wanted.0).filter(|_| was != Phase::Free);
@@ -241,7 +240,7 @@ impl Live {
         self.kernel = Kernel::new(&self.model);
         let (start, mut happened) = self.kernel.start(&self.model, self.now);
         // Resting on is no event, and letting go is one.
-        let rests = start.phase();
+        let rests = start.state.phase();
         match was {
             Phase::Free => {}
             _ if was == rests && gave == gives => {
@@ -263,17 +262,17 @@ impl Live {
     /// A model whose run begins at the present state and phase and lasts as long as the scene's own: what will
     /// become of this motion. None under a ramp, a chirp or a record, which are functions of the time since the start.
     pub fn from_here(&self) -> Option<Model> {
-        let drive = &self.model.drive;
+        let drive = &self.model.excitation;
         let repeats = drive.chirps.is_empty() && drive.records.is_empty();
         if !repeats || drive.tones.iter().any(|tone| tone.ramp.is_some()) {
             return None;
         }
         let mut model = self.model.clone();
         (model.duration, model.settle) = self.asked;
-        phase::advance(&mut model.drive, self.now);
+        phase::advance(&mut model.excitation, self.now);
         let (carried, _) = self.present();
-        model.start = (carried.x, carried.v / self.kernel.unit());
-        model.motionless = carried.contact == Contact::Motionless;
+        model.start = (carried.state.x, carried.state.v / self.kernel.unit());
+        model.motionless = carried.state.contact == Contact::Motionless;
         Some(model)
     }
 }
@@ -315,7 +314,7 @@ impl LiveLedger {
 /// The model with a duration that no one waits for; nothing of it is settled.
 fn without_end(mut model: Model) -> Model {
     let unit = model.scales.unit();
-    let counted = MOST_PERIODS / model.drive.fastest().unwrap_or(0.0);
+    let counted = MOST_PERIODS / model.excitation.fastest().unwrap_or(0.0);
     model.duration = (HORIZON_UNITS * unit).max(model.duration).min(counted);
     model.settle = model.duration;
     model

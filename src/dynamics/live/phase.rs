@@ -3,21 +3,21 @@
 //! Every tone is amplitude sin(2 pi f t + phase) of one running time, so that nothing has to be done when its
 //! amplitude changes. When its frequency changes at time t, its phase has to grow by (f - f') t turns.
 
-use super::super::base::{BaseMotion, BaseTone};
-use super::super::model::Model;
+use crate::dynamics::model::Model;
+use crate::dynamics::model::excitation::{ExcitationParts, TonePart};
 use crate::numeric::{DoubleDouble, Scalar};
 
 /// The turns by which each tone of `new` has to be ahead of its scene from `now` in s on, if those of `old` were ahead by
 /// `shifts`. Tones correspond by their order; a drive with another number of them begins as its scene says.
-pub(super) fn shifts(old: &Model, new: &Model, shifts: &[f64], now: f64) -> Vec<f64> {
-    let (from, to) = (&old.drive.tones, &new.drive.tones);
+pub(crate) fn shifts(old: &Model, new: &Model, shifts: &[f64], now: f64) -> Vec<f64> {
+    let (from, to) = (&old.excitation.tones, &new.excitation.tones);
     if from.len() != to.len() {
         return vec![0.0; to.len()];
     }
     from.iter().zip(to).zip(shifts).map(|((from, to), shift)| shifted(from, to, *shift, now)).collect()
 }
 
-fn shifted(from: &BaseTone, to: &BaseTone, shift: f64, now: f64) -> f64 {
+fn shifted(from: &TonePart, to: &TonePart, shift: f64, now: f64) -> f64 {
     if from.frequency == to.frequency {
         return shift;
     }
@@ -26,14 +26,14 @@ fn shifted(from: &BaseTone, to: &BaseTone, shift: f64, now: f64) -> f64 {
 }
 
 /// Puts every tone ahead by its shift.
-pub(super) fn shift(drive: &mut BaseMotion, shifts: &[f64]) {
+pub(crate) fn shift(drive: &mut ExcitationParts, shifts: &[f64]) {
     for (tone, shift) in drive.tones.iter_mut().zip(shifts).filter(|(_, shift)| **shift != 0.0) {
         tone.phase = fraction(tone.phase + shift);
     }
 }
 
 /// Makes `now` in s the time 0 of every tone.
-pub(super) fn advance(drive: &mut BaseMotion, now: f64) {
+pub(crate) fn advance(drive: &mut ExcitationParts, now: f64) {
     for tone in &mut drive.tones {
         let turns = DoubleDouble::product(tone.frequency, now);
         tone.phase = fraction(tone.phase + (turns - turns.floor()).to_f64());

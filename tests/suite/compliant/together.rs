@@ -1,6 +1,6 @@
 //! Runs in which contact, flight and drive act together.
 
-use interwell::dynamics::{Live, Passage, Phase, Request};
+use interwell::dynamics::{Live, LiveOutput, Phase, Request};
 
 use super::*;
 use crate::live::in_pieces;
@@ -174,7 +174,7 @@ fn live_it_is_the_same_run_in_any_pieces() {
 fn stops_are_changed_under_a_live_motion() {
     let model = prototype(&[]);
     let mut live = Live::new(&model);
-    let mut passage = Passage::default();
+    let mut passage = LiveOutput::default();
     live.advance(0.01, &[], &mut passage);
     assert_eq!(live.state().phase, Phase::RightStop);
     let depth = live.state().x - 1.5e-3;

@@ -28,14 +28,14 @@ fn sprung(c: f64, drive: Excitation, duration: f64) -> Setup {
 
 /// The forcings of the tones of a model, in its own doubles; a ramp as what it is before its end.
 fn tones(model: &Model) -> Vec<Forcing> {
-    let tone = |tone: &crate::dynamics::BaseTone| {
+    let tone = |tone: &crate::dynamics::TonePart| {
         let (amplitude, growth) = tone.ramp.map_or((tone.amplitude, dd(0.0)), |(from, over)| {
             (from, (dd(tone.amplitude) - dd(from)) / dd(over))
         });
         let phase = tone.phase + if tone.quarter { 0.25 } else { 0.0 };
         Forcing::Tone { amplitude, growth, frequency: tone.frequency, phase }
     };
-    model.drive.tones.iter().map(tone).collect()
+    model.excitation.tones.iter().map(tone).collect()
 }
 
 /// Even times within a run.
@@ -67,7 +67,7 @@ fn superposed(
     let model = setup.model()?;
     let run = bench.run(&model, &even(model.duration, 97))?;
     let forcings = tones(&model);
-    let fastest = model.drive.fastest().unwrap_or(0.0);
+    let fastest = model.excitation.fastest().unwrap_or(0.0);
     let errors = against(&model, &run, fastest, |t| oscillator.nearest(model.start, 0.0, t, &forcings));
     Ok(Variant::of(name, &run).worst("state at 97 samples", errors))
 }
@@ -100,7 +100,7 @@ fn ramp(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let oscillator = Oscillator::new(MASS, 0.05, STIFFNESS);
     let ramp = tones(&model);
     let hold = [Forcing::Tone {
-        amplitude: model.drive.tones[0].amplitude,
+        amplitude: model.excitation.tones[0].amplitude,
         growth: dd(0.0),
         frequency: 3.0,
         phase: 0.0,

@@ -40,7 +40,7 @@ fn threshold(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         let released = times(&run, EventKind::Release);
         let variant = Variant::of(name, &run);
         variants.push(if over > 0.0 {
-            let amplitude = dd(model.drive.tones[0].amplitude);
+            let amplitude = dd(model.excitation.tones[0].amplitude);
             let exact = (sine_turns(threshold_acceleration() / amplitude) / dd(3.0)).to_f64();
             let angle = exact * 3.0 * std::f64::consts::TAU;
             let error = released.first().map_or(f64::NAN, |t| off(*t, exact, exact));

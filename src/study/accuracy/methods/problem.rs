@@ -38,7 +38,7 @@ impl<'a> Problem<'a> {
 
     /// Base acceleration in m/s^2 at `t` in s.
     pub fn base(&self, t: f64) -> f64 {
-        let drive = &self.model.drive;
+        let drive = &self.model.excitation;
         let mut sum = drive.constant;
         for tone in &drive.tones {
             let turns = tone.frequency * t + tone.phase;

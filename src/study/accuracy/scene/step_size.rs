@@ -149,7 +149,7 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
 /// of that where it would begin later.
 fn within_reach(model: &Model, step: f64) -> Model {
     let mut model = model.clone();
-    let reach = step * MOST_STEPS / (1.0 + model.drive.tones.len() as f64 / SINES);
+    let reach = step * MOST_STEPS / (1.0 + model.excitation.tones.len() as f64 / SINES);
     if model.duration > reach {
         model.duration = reach;
         model.settle = model.settle.min(0.5 * reach);

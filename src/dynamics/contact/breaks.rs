@@ -1,0 +1,41 @@
+//! LiveOutput from one piece of the force curve to the next.
+
+use crate::dynamics::drive::Drive;
+use crate::dynamics::equation::End;
+use crate::dynamics::motion::Motion;
+use crate::dynamics::state::{BY_ACCELERATION, BY_SPEED, HELD, Touch};
+use crate::numeric::Scalar;
+
+impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+    /// The mass passes the break at `end` of its mode.
+    pub fn enter_neighbour(&mut self, end: End) {
+        self.state.enter(end);
+        self.state.touch = Some(Touch { end: end.other(), order: BY_SPEED });
+    }
+
+    /// The mass stands on the break at `end` of its mode with no speed: the first derivative of its motion that is
+    /// not 0 (to the rounding of its terms) chooses the side; where none is, it stays on this one.
+    pub fn balance(&mut self, end: End) {
+        let sign = end.sign::<T>();
+        let mode = self.stepper.mode(&self.state);
+        let (force, _, rounding) = mode.force.value(mode.end(end).0 - mode.origin);
+        self.stepper.seed(&self.state);
+        let a = &self.stepper.series.a;
+        let rates = [-(sign * (force + a[0])), -(sign * a[1]), -(sign * a[2])];
+        let rounding = rounding + a[0].abs() * T::of(4.0 * T::EPSILON);
+        self.state.v = T::zero();
+        self.state.touch = Some(Touch { end, order: HELD });
+        for (order, rate) in (BY_ACCELERATION..).zip(rates) {
+            let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
+            if rate > size {
+                self.enter_neighbour(end);
+                self.state.touch = Some(Touch { end: end.other(), order });
+                return;
+            }
+            if rate < -size {
+                self.state.touch = Some(Touch { end, order });
+                return;
+            }
+        }
+    }
+}

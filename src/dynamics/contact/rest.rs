@@ -1,0 +1,105 @@
+//! Rest on a rigid stop, and the release that ends it.
+
+use crate::dynamics::clock::Instant;
+use crate::dynamics::drive::{ContactAcceleration, Drive, ReleaseRoot, Span};
+use crate::dynamics::equation::End;
+use crate::dynamics::motion::Motion;
+use crate::dynamics::record::events::Call;
+use crate::dynamics::result::Phase;
+use crate::dynamics::state::{BY_ACCELERATION, BY_JERK, Contact, Label, MotionState, Touch, UNDECIDED};
+use crate::dynamics::step::stepper::Stepper;
+use crate::numeric::Scalar;
+
+/// Share of the clock's cycle by which the search for a release skips an instant at which the press only
+/// touched 0: well above what the rounding of a double root spans, well below any press worth resolving.
+const PAST_A_TOUCH: f64 = 1e-6;
+
+impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+    /// The mass stands at the stop of `end` with no speed: none where it is pressed on it, else the touch with which it
+    /// leaves. The first derivative of the pressing acceleration that is not 0 (to the rounding of its terms) decides; if
+    /// none is, nothing presses, and it stays there, free.
+    pub fn leaves(&mut self, end: End) -> Option<Touch> {
+        let rates = self.stepper.contact_acceleration(&self.state, end);
+        let rounding = self.stepper.contact_acceleration_rounding(end);
+        self.state.v = T::zero();
+        for (order, rate) in (BY_ACCELERATION..).zip(rates) {
+            let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
+            if rate > size {
+                return None;
+            }
+            if rate < -size {
+                return Some(Touch { end, order });
+            }
+        }
+        Some(Touch { end, order: UNDECIDED })
+    }
+
+    /// The mass stands at the stop of `end` with no speed: it rests or leaves.
+    pub fn settle(&mut self, end: End) {
+        self.state.touch = self.leaves(end);
+        if self.state.touch.is_some() {
+            self.state.contact = Contact::Free;
+        } else {
+            self.begin_rest(end);
+        }
+    }
+
+    /// From now on the mass rests on the stop of `end`.
+    pub fn begin_rest(&mut self, end: End) {
+        self.state.contact = Contact::Resting(end);
+        self.tell(Call::Rest { at: self.state.at, side: end.side() });
+    }
+
+    /// The mass stands still until `until`.
+    pub fn stand(&mut self, until: Instant<T>, phase: Phase) {
+        let MotionState { at, x, v, .. } = self.state;
+        self.tell(Call::Stand { at, until, state: (x, v), phase });
+        self.state.at = until;
+    }
+
+    /// A rest on the stop of `end`, up to its release, the end of the drive's segment, or the run's end.
+    pub fn rest(&mut self, end: End) {
+        let phase = self.state.phase();
+        self.steps += 1;
+        let until = self.stepper.segment_limit(&self.state);
+        let mut from = self.state.at;
+        if self.state.refused == Some(self.state.at) {
+            // The press only touched 0 here, to rounding: look beyond.
+            from = self.stepper.clock.advance(&from, self.stepper.clock.period() * T::of(PAST_A_TOUCH));
+        }
+        let threshold = self.stepper.equation.stop(end).map_or(T::zero(), |s| s.press);
+        let press = ContactAcceleration { threshold, sign: end.sign::<T>() };
+        let since = self.searched.take().filter(|(segment, _)| *segment == self.state.segment);
+        let since = since.map_or(from, |(_, since)| since);
+        let span = Span { from, until, segment: self.state.segment, since };
+        let Stepper { drive, clock, cursor, .. } = &mut self.stepper;
+        let (fall, work) = drive.next_release(clock, &span, press, cursor);
+        self.stepper.work.add(self.stepper.costs.check + work);
+        match fall {
+            ReleaseRoot::At(fall, turn) => {
+                self.stand(fall, phase);
+                self.release(end, BY_JERK);
+                self.label = turn.filter(|_| self.recurs).map(|turn| Label { end, turn, phase: fall.phase });
+            }
+            ReleaseRoot::NotBefore(later) => {
+                self.searched = Some((self.state.segment, since));
+                self.stand(later, phase);
+            }
+            ReleaseRoot::Never => {
+                self.stand(until, phase);
+                if self.stepper.pass_segment_end(&mut self.state) {
+                    let press = self.stepper.contact_acceleration(&self.state, end)[0];
+                    if press < -self.stepper.contact_acceleration_rounding(end) {
+                        self.release(end, BY_ACCELERATION);
+                    }
+                }
+            }
+        }
+    }
+
+    fn release(&mut self, end: End, order: usize) {
+        self.tell(Call::Release { at: self.state.at, side: end.side() });
+        self.state.contact = Contact::Free;
+        self.state.touch = Some(Touch { end, order });
+    }
+}

@@ -1,0 +1,166 @@
+//! A sum of any number of tones, chirps and records.
+
+use super::chirp::{Chirp, ChirpState, next_chirp};
+use super::record::{Record, value_and_slope};
+use super::release::Search;
+use super::tone::Tone;
+use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::series::{ROOM, SEEDED, Tail};
+use crate::numeric::Scalar;
+
+/// Up to so many tones the check of a step evaluates each anew; more of them cannot cancel in the series by
+/// chance.
+const FEW_TONES: usize = 8;
+
+/// A constant and any number of tones, chirps and records.
+#[derive(Debug, Clone)]
+pub(crate) struct Composite<T> {
+    pub constant: T,
+    pub tones: Vec<Tone<T>>,
+    pub chirps: Vec<Chirp<T>>,
+    pub records: Vec<Record<T>>,
+    /// Ends of ramps and chirps and the samples of records, ascending.
+    pub segment_ends: Vec<Instant<T>>,
+    /// Cycles of the clock after which, from the last segment's start on, all parts are where they were; none
+    /// where they never are within the run, or it is not known.
+    pub common_cycles: Option<i64>,
+    /// No acceleration but the constant passes this.
+    pub reach: T,
+    /// Angular frequency of the fastest part that moves, kernel units; 0 without one.
+    pub fastest: T,
+}
+
+/// What continues the series of a composite drive.
+#[derive(Debug, Clone)]
+pub(crate) struct Cursor<T> {
+    /// For each tone the last two coefficients of its sine, its amplitude and growth.
+    tones: Vec<[T; 4]>,
+    chirps: Vec<ChirpState<T>>,
+}
+
+impl<T> Default for Cursor<T> {
+    fn default() -> Self {
+        Self { tones: Vec::new(), chirps: Vec::new() }
+    }
+}
+
+impl<T: Scalar> Tail<T> for Composite<T> {
+    type Cursor = Cursor<T>;
+
+    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], cursor: &mut Self::Cursor) {
+        let mut sum = T::zero();
+        for (tone, [before, last, amplitude, growth]) in self.tones.iter().zip(&mut cursor.tones) {
+            let next = tone.curvature() * *before * inverse[k];
+            sum += *amplitude * next + *growth * *last;
+            (*before, *last) = (*last, next);
+        }
+        if !cursor.chirps.is_empty() {
+            let share = inverse[k] * T::of((k - 1) as f64); // 1/k
+            for state in &mut cursor.chirps {
+                next_chirp(state, share);
+                sum += state.amplitude * state.sine[1];
+            }
+        }
+        a[k] = sum;
+    }
+}
+
+impl<T: Scalar> Drive<T> for Composite<T> {
+    fn seed(
+        &self,
+        clock: &Clock<T>,
+        at: &Instant<T>,
+        segment: usize,
+        a: &mut [T; ROOM],
+        cursor: &mut Self::Cursor,
+    ) {
+        // Clearing keeps the room: nothing is allocated after the first call.
+        cursor.tones.clear();
+        cursor.chirps.clear();
+        let mut sums = [self.constant, T::zero(), T::zero(), T::zero()];
+        for tone in &self.tones {
+            let (s, d) = tone.unit(at);
+            let w = tone.curvature();
+            let unit = [s, d, w * s * T::of(0.5), w * d / T::of(6.0)];
+            let (amplitude, growth) = tone.amplitude_at(clock, at, segment);
+            for (k, sum) in sums.iter_mut().enumerate() {
+                *sum += amplitude * unit[k];
+                if k > 0 {
+                    *sum += growth * unit[k - 1];
+                }
+            }
+            cursor.tones.push([unit[2], unit[3], amplitude, growth]);
+        }
+        for chirp in &self.chirps {
+            let (s, c, rate, growth) = chirp.state(clock, at, segment);
+            let zero = T::zero();
+            let amplitude = chirp.amplitude;
+            let mut state = ChirpState { sine: [zero, s], cosine: [zero, c], rate, growth, amplitude };
+            sums[0] += amplitude * s;
+            for (k, sum) in sums.iter_mut().enumerate().skip(1) {
+                next_chirp(&mut state, T::of(1.0) / T::of(k as f64));
+                *sum += amplitude * state.sine[1];
+            }
+            cursor.chirps.push(state);
+        }
+        let (value, slope) = value_and_slope(&self.records, clock, at, segment);
+        sums[0] += value;
+        sums[1] += slope;
+        a[..SEEDED].copy_from_slice(&sums);
+    }
+
+    fn common_cycles(&self) -> i64 {
+        self.common_cycles.unwrap_or(1)
+    }
+
+    /// As the first coefficient, in the same order of sums.
+    fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
+        let tones = self.tones.iter().map(|tone| tone.amplitude_at(clock, at, segment).0 * tone.unit(at).0);
+        let chirps = self.chirps.iter().map(|chirp| chirp.amplitude * chirp.state(clock, at, segment).0);
+        tones.chain(chirps).fold(self.constant, |sum, a| sum + a)
+            + value_and_slope(&self.records, clock, at, segment).0
+    }
+
+    fn cost(&self, order: usize) -> u64 {
+        let (tones, chirps) = (self.tones.len() as u64, self.chirps.len() as u64);
+        let order = order as u64;
+        tones * (15 + order) / 5 + chirps * (120 + order) / 4 + 20 * self.records.len() as u64
+    }
+
+    fn value(
+        &self,
+        clock: &Clock<T>,
+        at: &Instant<T>,
+        segment: usize,
+        by_series: impl Fn() -> T,
+        _: &mut Self::Cursor,
+    ) -> T {
+        if self.tones.len() > FEW_TONES || !self.chirps.is_empty() {
+            return by_series();
+        }
+        let tones = self.tones.iter().map(|tone| tone.amplitude_at(clock, at, segment).0 * tone.unit(at).0);
+        tones.fold(self.constant + value_and_slope(&self.records, clock, at, segment).0, |sum, a| sum + a)
+    }
+
+    fn segment_end(&self, segment: usize) -> Option<Instant<T>> {
+        self.segment_ends.get(segment).copied()
+    }
+
+    fn next_release(
+        &self,
+        clock: &Clock<T>,
+        span: &Span<T>,
+        press: ContactAcceleration<T>,
+        cursor: &mut Self::Cursor,
+    ) -> (ReleaseRoot<T>, u64) {
+        if press.threshold - press.sign * self.constant > self.reach {
+            return (ReleaseRoot::Never, 0);
+        }
+        let mut search = Search::new(self, clock, press, span.segment);
+        (search.fastest, search.reach) = (self.fastest, self.reach);
+        search.common_cycles = self.common_cycles.filter(|_| span.segment >= self.segment_ends.len());
+        search.parts = self.tones.len() + 4 * self.chirps.len() + self.records.len();
+        search.first(span, cursor)
+    }
+}

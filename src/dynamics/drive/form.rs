@@ -1,0 +1,169 @@
+//! Choice of a model's drive: the simplest form that it has, built in kernel units.
+
+use super::Still;
+use super::base_at;
+use super::chirp::Chirp;
+use super::composite::Composite;
+use super::record::{Line, Record};
+use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::model::Model;
+use crate::dynamics::model::excitation::TonePart;
+use crate::numeric::{Ratio, Scalar};
+use crate::scene;
+
+/// Cycle of the clock without a drive, in kernel time units.
+const SHORTEST_CYCLE: f64 = 1.0 / 65536.0;
+
+impl Model {
+    /// Acceleration of the base in m/s^2 at time `t` in s.
+    pub fn base_acceleration(&self, t: f64) -> f64 {
+        let unit = self.scales.unit();
+        let clock = clock::<f64>(self, unit);
+        let drive = composite(self, unit, &clock);
+        let at = clock.at(t);
+        let segment = drive.segment_ends.iter().filter(|end| clock.between(end, &at) >= 0.0).count();
+        base_at(&drive, &clock, segment, &at, unit)
+    }
+}
+
+/// The three forms of a drive.
+#[derive(Debug)]
+pub(crate) enum Form<T> {
+    Still(Still<T>),
+    Sine(Sine<T>),
+    Composite(Composite<T>),
+}
+
+/// The simplest form that this model's drive has.
+pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
+    let drive = &model.excitation;
+    let unit = clock.unit();
+    match drive.tones.as_slice() {
+        _ if !(drive.chirps.is_empty() && drive.records.is_empty()) => {
+            Form::Composite(composite(model, unit, clock))
+        }
+        [] => Form::Still(still(model, unit)),
+        [tone] if drive.constant == 0.0 && tone.ramp.is_none() => Form::Sine(sine(model, unit)),
+        _ => Form::Composite(composite(model, unit, clock)),
+    }
+}
+
+pub(crate) fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
+    let frequency = model.excitation.fastest().unwrap_or_else(|| {
+        // Without a drive: so short a cycle that its phase is exact, a power of two of the time unit, and not so
+        // many cycles that they could not be counted.
+        let units = model.duration / unit;
+        1.0 / (unit * SHORTEST_CYCLE.max((units.log2().ceil() - 50.0).exp2()))
+    });
+    Clock::new(frequency, unit)
+}
+
+fn still<T: Scalar>(model: &Model, unit: f64) -> Still<T> {
+    Still { acceleration: T::of(model.excitation.constant * (unit * unit)) }
+}
+
+fn sine<T: Scalar>(model: &Model, unit: f64) -> Sine<T> {
+    let drive = &model.excitation;
+    Sine { tone: tone(&drive.tones[0], drive.tones[0].frequency, unit, usize::MAX) }
+}
+
+fn tone<T: Scalar>(tone: &TonePart, fastest: f64, unit: f64, holds_from_segment: usize) -> Tone<T> {
+    let square = unit * unit;
+    Tone {
+        amplitude: T::of(tone.amplitude * square),
+        frequency: T::of(tone.frequency * unit),
+        ratio: Ratio::of_decimals(tone.frequency, fastest)
+            .map_or(TurnsPerCycle::Rounded(tone.frequency / fastest), TurnsPerCycle::Exact),
+        phase: T::of(tone.phase),
+        quarter: tone.quarter,
+        ramp: tone.ramp.map(|(from, over)| Ramp {
+            from: T::of(from * square),
+            rate: T::of(tone.amplitude * square - from * square) / T::of(over / unit),
+            holds_from_segment,
+        }),
+    }
+}
+
+fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite<T> {
+    let drive = &model.excitation;
+    let square = unit * unit;
+    let ramps = drive.tones.iter().filter_map(|t| t.ramp.map(|r| r.1));
+    let chirps = drive.chirps.iter().map(|c| c.over);
+    let samples = drive.records.iter().flat_map(|r| r.times.iter().copied());
+    let outlasting = ramps.clone().any(|over| over > model.duration);
+    let mut ends: Vec<f64> =
+        ramps.chain(chirps).chain(samples).filter(|t| *t > 0.0 && *t <= model.duration).collect();
+    ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    // the segment that begins at a time
+    let segment = |time: f64| ends.partition_point(|end| *end <= time);
+    let holds_from = |over: f64| if over > model.duration { usize::MAX } else { segment(over) };
+    let clocked = drive.fastest().unwrap_or(0.0);
+    let tones: Vec<Tone<T>> = drive
+        .tones
+        .iter()
+        .map(|own| tone(own, clocked, unit, own.ramp.map_or(0, |r| holds_from(r.1))))
+        .collect();
+    let chirps = drive.chirps.iter().map(|chirp| Chirp {
+        amplitude: T::of(chirp.amplitude * square),
+        from: chirp.from,
+        to: chirp.to,
+        over: chirp.over,
+        holds_from_segment: holds_from(chirp.over),
+    });
+    let records = drive.records.iter().map(|record| lines(record, model, unit, clock, segment));
+    let largest = |tone: &TonePart| tone.amplitude.abs().max(tone.ramp.map_or(0.0, |r| r.0.abs()));
+    let reach = drive.tones.iter().map(largest).sum::<f64>()
+        + drive.chirps.iter().map(|c| c.amplitude.abs()).sum::<f64>()
+        + drive.records.iter().map(|r| r.peak()).sum::<f64>();
+    let moving = drive.tones.iter().filter(|t| largest(t) > 0.0).map(|t| t.frequency);
+    let sweeping = drive.chirps.iter().filter(|c| c.amplitude != 0.0).map(|c| c.from.max(c.to));
+    let fastest = moving.chain(sweeping).fold(0.0, f64::max) * unit;
+    Composite {
+        constant: T::of(drive.constant * square),
+        tones,
+        chirps: chirps.collect(),
+        records: records.collect(),
+        segment_ends: ends.iter().map(|e| clock.at(*e)).collect(),
+        // a ramp that outlasts the run never lets it repeat
+        common_cycles: drive.common_cycles().map(|c| c as i64).filter(|_| !outlasting),
+        // a bound: rounding must not hide a fall
+        reach: T::of(reach * square * (1.0 + 1e-9)),
+        fastest: T::tau() * T::of(fastest),
+    }
+}
+
+/// The lines between the samples of a record, as far as the run goes.
+fn lines<T: Scalar>(
+    record: &scene::Record,
+    model: &Model,
+    unit: f64,
+    clock: &Clock<T>,
+    segment: impl Fn(f64) -> usize,
+) -> Record<T> {
+    let (times, values) = (&record.times, &record.accelerations);
+    let square = unit * unit;
+    let zero_time = Instant { cycle: 0, phase: T::zero() };
+    let mut lines = Vec::new();
+    for i in 0..times.len() {
+        if times[i] > model.duration || times.get(i + 1).is_some_and(|next| *next <= 0.0) {
+            continue;
+        }
+        let first_segment = if times[i] <= 0.0 { 0 } else { segment(times[i]) };
+        let Some(next) = times.get(i + 1) else {
+            let at = clock.at(times[i].max(0.0));
+            lines.push(Line { first_segment, at, value: T::zero(), slope: T::zero() });
+            continue;
+        };
+        let slope = T::of(values[i + 1] - values[i]) / T::of(next - times[i]);
+        let (at, value) = if times[i] < 0.0 {
+            (zero_time, T::of(values[i]) - slope * T::of(times[i]))
+        } else {
+            (clock.at(times[i]), T::of(values[i]))
+        };
+        let (value, slope) = (value * T::of(square), slope * T::of(square * unit));
+        lines.push(Line { first_segment, at, value, slope });
+    }
+    lines
+}

@@ -1,0 +1,160 @@
+//! How does the base accelerate, as a series about any instant?
+//!
+//! Three forms, one chosen per run, so that a scene pays only for what it names: a constant, one sine, a sum
+//! of anything. A tone is evaluated from the clock's exact phase at the start of a
+//! step and continued by its own series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so nothing drifts and no library
+//! function is called.
+
+mod chirp;
+pub(crate) mod composite;
+pub(crate) mod form;
+mod record;
+mod release;
+pub(crate) mod tone;
+
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::series::{ROOM, Tail};
+use crate::numeric::Scalar;
+
+/// Acceleration of the base, in kernel units.
+pub(crate) trait Drive<T: Scalar>: Tail<T> {
+    /// Whether half a cycle of the clock later it is always the opposite.
+    const ODD: bool = false;
+
+    /// What it adds to the cost of a step with a series of this order, in units of [`work`](crate::dynamics::step::work).
+    fn cost(&self, _order: usize) -> u64 {
+        0
+    }
+
+    /// Cycles of the clock after which it repeats, where it does.
+    fn common_cycles(&self) -> i64 {
+        1
+    }
+
+    /// Fills the first `SEEDED` coefficients of `a`, at `at`.
+    fn seed(
+        &self,
+        clock: &Clock<T>,
+        at: &Instant<T>,
+        segment: usize,
+        a: &mut [T; ROOM],
+        cursor: &mut Self::Cursor,
+    );
+
+    /// a(t) at `at`.
+    fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
+        let mut a = [T::zero(); ROOM];
+        self.seed(clock, at, segment, &mut a, &mut Self::Cursor::default());
+        a[0]
+    }
+
+    /// a(t) at `at` by itself, not by the series: what a step is checked against. A drive of many tones may
+    /// answer with `by_series`, the value of its series.
+    fn value(
+        &self,
+        clock: &Clock<T>,
+        at: &Instant<T>,
+        segment: usize,
+        by_series: impl Fn() -> T,
+        cursor: &mut Self::Cursor,
+    ) -> T;
+
+    /// The instant at which segment `segment` ends, where one follows.
+    fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
+
+    /// The next instant in the span at which the press, positive now, changes sign, and the work that it took to find it.
+    /// The span lies within one segment.
+    fn next_release(
+        &self,
+        clock: &Clock<T>,
+        span: &Span<T>,
+        press: ContactAcceleration<T>,
+        cursor: &mut Self::Cursor,
+    ) -> (ReleaseRoot<T>, u64);
+}
+
+/// When the press on a stop ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum ReleaseRoot<T> {
+    /// It changes sign here. Where the drive repeats and this root was computed from the drive alone, with the cycle of
+    /// the clock within the common period: a root of equal cycle and phase is the same.
+    At(Instant<T>, Option<i64>),
+    /// It does not within the span.
+    Never,
+    /// Not up to here; ask again (a search is broken off now and then, so that its work is counted).
+    NotBefore(Instant<T>),
+}
+
+impl<T: Scalar> ReleaseRoot<T> {
+    /// At `fall` where that lies before the end of the span.
+    pub fn within(clock: &Clock<T>, fall: Instant<T>, turn: Option<i64>, until: &Instant<T>) -> Self {
+        if clock.between(&fall, until) > T::zero() { Self::At(fall, turn) } else { Self::Never }
+    }
+}
+
+/// From an instant to before another, within one segment of the drive.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Span<T> {
+    pub from: Instant<T>,
+    pub until: Instant<T>,
+    pub segment: usize,
+    /// Since when it is known not to have changed sign within this segment; `from` where that is not known.
+    pub since: Instant<T>,
+}
+
+/// The outward acceleration of a mass at rest on a stop: threshold - sign a(t).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ContactAcceleration<T> {
+    /// What the mechanism contributes.
+    pub threshold: T,
+    /// -1 on the left stop, 1 on the right one.
+    pub sign: T,
+}
+
+/// A constant acceleration, 0 included.
+#[derive(Debug, Clone)]
+pub(crate) struct Still<T> {
+    pub acceleration: T,
+}
+
+impl<T: Scalar> Tail<T> for Still<T> {
+    type Cursor = ();
+    const ZERO_FROM: usize = 1;
+
+    #[inline]
+    fn extend(&self, _: usize, _: &mut [T; ROOM], _: &[T; ROOM], (): &mut ()) {}
+}
+
+impl<T: Scalar> Drive<T> for Still<T> {
+    #[inline]
+    fn seed(&self, _: &Clock<T>, _: &Instant<T>, _: usize, a: &mut [T; ROOM], (): &mut ()) {
+        a[0] = self.acceleration; // the others stay 0
+    }
+    #[inline]
+    fn value(&self, _: &Clock<T>, _: &Instant<T>, _: usize, _: impl Fn() -> T, (): &mut ()) -> T {
+        self.acceleration
+    }
+    fn segment_end(&self, _: usize) -> Option<Instant<T>> {
+        None
+    }
+    fn next_release(
+        &self,
+        _: &Clock<T>,
+        _: &Span<T>,
+        _: ContactAcceleration<T>,
+        (): &mut (),
+    ) -> (ReleaseRoot<T>, u64) {
+        (ReleaseRoot::Never, 0)
+    }
+}
+
+/// Acceleration of the base in m/s^2 at an instant; `unit` is the length of the kernel's time unit in s.
+pub(crate) fn base_at<T: Scalar, D: Drive<T>>(
+    drive: &D,
+    clock: &Clock<T>,
+    segment: usize,
+    at: &Instant<T>,
+    unit: f64,
+) -> f64 {
+    drive.acceleration(clock, at, segment).to_f64() / (unit * unit)
+}

@@ -1,0 +1,170 @@
+//! Search for the instant at which a drive of any form lets go of a mass that rests on a stop.
+//!
+//! The search walks ahead in strides. Over each the contact acceleration is a polynomial, the series of the drive, and
+//! its first root is the release. A stride in which it has none is passed.
+
+use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::series::{ROOM, SEEDED};
+use crate::numeric::{PolynomialRoots, Scalar};
+
+/// How long a stride is, in radians of the fastest tone, and the order of its series: the first neglected term,
+/// 2^27/27!, is below rounding.
+const STRIDE_RADIANS: f64 = 2.0;
+const STRIDE_ORDER: usize = 26;
+
+/// Work of a search before it reports where it stands: some milliseconds, and for two or three tones of everyday
+/// frequencies longer than their common period.
+const SEARCH_WORK: u64 = 500_000;
+
+/// What a stride costs beside the parts of the drive, and what each of them costs, in units of
+/// [`work`](crate::dynamics::step::work).
+const STRIDE_WORK: u64 = 80;
+const STRIDE_WORK_OF_A_PART: u64 = 8;
+
+/// Two searches that differ by no more than this share of a quarter cycle have found the same root.
+const SAME_ROOT: f64 = 1e-12;
+
+/// A search in one segment of a drive, and its workspace.
+pub(super) struct Search<'a, T: Scalar, D: Drive<T>> {
+    pub drive: &'a D,
+    pub clock: &'a Clock<T>,
+    pub press: ContactAcceleration<T>,
+    pub segment: usize,
+    /// Angular frequency of the fastest part of the drive that moves; 0 without one.
+    pub fastest: T,
+    /// No acceleration of the drive passes this.
+    pub reach: T,
+    /// Cycles of the clock after which the drive repeats from this segment on, where it does.
+    pub common_cycles: Option<i64>,
+    /// Parts of the drive, each as often as it costs.
+    pub parts: usize,
+    a: [T; ROOM],
+    inverse: [T; ROOM],
+}
+
+/// The contact acceleration over a stride, as a polynomial in the share of it.
+struct Stride<T> {
+    g: [T; STRIDE_ORDER + 1],
+    order: usize,
+}
+
+impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
+    pub fn new(drive: &'a D, clock: &'a Clock<T>, press: ContactAcceleration<T>, segment: usize) -> Self {
+        let zero = T::zero();
+        let mut inverse = [zero; ROOM];
+        for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
+            *slot = T::of(1.0) / T::of((k * (k - 1)) as f64);
+        }
+        let a = [zero; ROOM];
+        Self {
+            drive,
+            clock,
+            press,
+            segment,
+            fastest: zero,
+            reach: zero,
+            common_cycles: None,
+            parts: 0,
+            a,
+            inverse,
+        }
+    }
+
+    /// The first release in the span, and the work that it took to find it.
+    pub fn first(&mut self, span: &Span<T>, cursor: &mut D::Cursor) -> (ReleaseRoot<T>, u64) {
+        let Span { from, until, since, .. } = *span;
+        let clock = self.clock;
+        let stride_work = STRIDE_WORK + STRIDE_WORK_OF_A_PART * self.parts as u64;
+        let mut work = 0;
+        let turning = self.fastest > T::zero();
+        let longest = T::of(STRIDE_RADIANS) / self.fastest;
+        let mut at = from;
+        while work < SEARCH_WORK {
+            work += stride_work;
+            let left = clock.between(&at, &until);
+            if left <= T::zero() {
+                return (ReleaseRoot::Never, work);
+            }
+            let h = if turning { longest.smaller(left) } else { left };
+            let Stride { g, order } = self.stride(&at, h, cursor);
+            // Below 0 by no more than rounding it only touches: the way to the bottom of a parabola.
+            let rounding = (self.press.threshold.abs() + self.reach) * T::of(8.0 * T::EPSILON);
+            let touches = |slope: T, curvature: T| {
+                curvature > T::zero() && slope * slope <= T::of(2.0) * curvature * rounding
+            };
+            let across = |curvature: T| T::of(4.0) * (rounding / curvature).sqrt();
+            let press = PolynomialRoots::new(&g[..=order]);
+            let (s, slope, curvature) = if g[0] > T::zero() {
+                let Some(s) = press.first() else {
+                    at = clock.advance(&at, h);
+                    if self.common_cycles.is_some_and(|cycles| at.cycle > since.cycle + cycles) {
+                        return (ReleaseRoot::Never, work); // one common period without a root: there is none
+                    }
+                    continue;
+                };
+                let (_, slope, curvature) = press.value_and_slopes(s);
+                (s, slope, curvature)
+            } else {
+                (T::zero(), g[1], T::of(2.0) * g[2.min(order)])
+            };
+            if touches(slope, curvature) {
+                at = clock.advance(&at, (s + across(curvature)) * h);
+            } else if s == T::zero() && slope > T::zero() {
+                // rounding: it rises, the root comes later
+                at = clock.advance(&at, T::of(2.0) * rounding / slope * h);
+            } else {
+                let fall = clock.advance(&at, s * h);
+                let own = self.own_root(&fall, cursor);
+                let own = own.filter(|(own, _)| clock.between(&from, own) > T::zero());
+                let (fall, turn) = own.map_or((fall, None), |(own, turn)| (own, Some(turn)));
+                return (ReleaseRoot::within(clock, fall, turn, &until), work);
+            }
+        }
+        (ReleaseRoot::NotBefore(at), work)
+    }
+
+    /// The contact acceleration over a stride of length `h` from `at`.
+    fn stride(&mut self, at: &Instant<T>, h: T, cursor: &mut D::Cursor) -> Stride<T> {
+        let Self { drive, a, inverse, press: ContactAcceleration { threshold, sign }, .. } = self;
+        drive.seed(self.clock, at, self.segment, a, cursor);
+        let order = if self.fastest > T::zero() { STRIDE_ORDER } else { 1 };
+        for k in SEEDED..=order {
+            drive.extend(k, a, inverse, cursor);
+        }
+        let mut g = [T::zero(); STRIDE_ORDER + 1];
+        let mut power = T::of(1.0);
+        for (k, slot) in g[..=order].iter_mut().enumerate() {
+            *slot = -(*sign * a[k]) * power;
+            power = power * h;
+        }
+        g[0] += *threshold;
+        Stride { g, order }
+    }
+
+    /// The root near `fall`, computed from the drive alone, and the clock's cycle within the common period: whenever
+    /// the search that found it began, it is the same number. None where the drive does not repeat, or by more than
+    /// rounding.
+    fn own_root(&mut self, fall: &Instant<T>, cursor: &mut D::Cursor) -> Option<(Instant<T>, i64)> {
+        let cycles = self.common_cycles?;
+        if !(self.fastest > T::zero()) {
+            return None;
+        }
+        // Strides that do not depend on the search: quarters of the cycle, in each cycle alike.
+        let clock = self.clock;
+        let stride = clock.period() * T::of(0.25);
+        let quarter = (fall.phase / stride).floor().smaller(T::of(3.0));
+        let start = Instant { cycle: fall.cycle, phase: quarter * stride };
+        let Stride { g, order } = self.stride(&start, stride, cursor);
+        let near = clock.between(&start, fall) / stride;
+        let mut found = None;
+        PolynomialRoots::new(&g[..=order]).each_sign_change(|s| {
+            if (s - near).abs() <= T::of(SAME_ROOT) {
+                found = Some(s);
+            }
+            found.is_none()
+        });
+        let own = clock.advance(&start, found? * stride);
+        Some((own, own.cycle.rem_euclid(cycles)))
+    }
+}

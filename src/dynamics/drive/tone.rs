@@ -1,0 +1,236 @@
+//! What does one tone do, and when does it let go of a mass on a stop?
+
+use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::series::{ROOM, Tail};
+use crate::numeric::{DoubleDouble, Number, Ratio, Scalar};
+
+/// Linear growth of a tone's amplitude from the run's start to an instant; constant from there.
+#[derive(Debug, Clone)]
+pub(crate) struct Ramp<T> {
+    /// Amplitude at time 0.
+    pub from: T,
+    /// Growth per kernel time unit.
+    pub rate: T,
+    /// The segment of the drive that begins where the ramp ends.
+    pub holds_from_segment: usize,
+}
+
+/// amplitude sin(2 pi (frequency t) + phase).
+#[derive(Debug, Clone)]
+pub(crate) struct Tone<T> {
+    /// Amplitude (that after the ramp, where there is one), any sign.
+    pub amplitude: T,
+    /// Turns per kernel time unit.
+    pub frequency: T,
+    /// This tone's frequency over the clock's.
+    pub ratio: TurnsPerCycle,
+    /// Phase at time 0 in turns, beyond the quarter.
+    pub phase: T,
+    /// A quarter turn ahead: a cosine.
+    pub quarter: bool,
+    /// Growth of the amplitude, where there is one.
+    pub ramp: Option<Ramp<T>>,
+}
+
+/// Turns that a tone makes in one cycle of the clock.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum TurnsPerCycle {
+    /// An exact ratio of the decimal frequencies.
+    Exact(Ratio),
+    /// No common measure within reach: the rounded quotient.
+    Rounded(f64),
+}
+
+impl TurnsPerCycle {
+    /// The turn that a tone is in at the start of a cycle, less whole turns.
+    #[inline]
+    fn fraction(self, cycle: i64) -> f64 {
+        match self {
+            Self::Exact(ratio) => ratio.fraction_of_multiple(cycle.unsigned_abs()),
+            Self::Rounded(ratio) => {
+                let turns = DoubleDouble::product(cycle as f64, ratio);
+                (turns - turns.floor()).to_f64()
+            }
+        }
+    }
+}
+
+impl<T: Scalar> Tone<T> {
+    /// Value and time derivative per unit amplitude.
+    #[inline]
+    pub fn unit(&self, at: &Instant<T>) -> (T, T) {
+        self.after(at.phase, T::of(self.ratio.fraction(at.cycle)) + self.phase)
+    }
+
+    /// The same where the tone is `start` turns in at phase 0 of the cycle.
+    #[inline(always)]
+    fn after(&self, phase: T, start: T) -> (T, T) {
+        let turns = phase * self.frequency + start;
+        let (s, c) = T::sin_cos_turns(turns);
+        let omega = T::tau() * self.frequency;
+        if self.quarter { (c, -(s * omega)) } else { (s, c * omega) }
+    }
+
+    /// -(2 pi frequency)^2.
+    #[inline(always)]
+    pub fn curvature(&self) -> T {
+        let omega = T::tau() * self.frequency;
+        -(omega * omega)
+    }
+
+    /// Amplitude and its growth at an instant.
+    pub fn amplitude_at(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> (T, T) {
+        match &self.ramp {
+            Some(ramp) if segment < ramp.holds_from_segment => {
+                let start = Instant { cycle: 0, phase: T::zero() };
+                (ramp.from + ramp.rate * clock.between(&start, at), ramp.rate)
+            }
+            _ => (self.amplitude, T::zero()),
+        }
+    }
+}
+
+/// One sine. Its frequency is the clock's, so a fall repeats at one phase of the cycle.
+#[derive(Debug, Clone)]
+pub(crate) struct Sine<T> {
+    pub tone: Tone<T>,
+}
+
+/// Where a tone was last evaluated, and what it and its time derivative were per unit amplitude.
+pub(crate) type Looked<T> = Option<(Instant<T>, (T, T))>;
+
+/// The series of a tone of this curvature, -(2 pi frequency)^2.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Harmonic<T> {
+    pub curvature: T,
+}
+
+impl<T: Number> Harmonic<T> {
+    /// The first coefficients from value and time derivative.
+    #[inline(always)]
+    pub fn seed(self, value: T, slope: T, a: &mut [T; ROOM]) {
+        a[0] = value;
+        a[1] = slope;
+        a[2] = self.curvature * a[0] * T::of(0.5);
+        a[3] = self.curvature * a[1] / T::of(6.0);
+    }
+}
+
+impl<T: Number> Tail<T> for Harmonic<T> {
+    type Cursor = ();
+
+    #[inline(always)]
+    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], (): &mut ()) {
+        a[k] = self.curvature * a[k - 2] * inverse[k];
+    }
+}
+
+impl<T: Scalar> Sine<T> {
+    /// Value and time derivative per unit amplitude: each cycle begins at the same turn.
+    #[inline(always)]
+    fn unit(&self, at: &Instant<T>) -> (T, T) {
+        self.tone.after(at.phase, self.tone.phase)
+    }
+
+    /// The same, where it was looked at last if that was there.
+    #[inline(always)]
+    pub fn looked(&self, at: &Instant<T>, last: &Looked<T>) -> (T, T) {
+        match last {
+            Some((when, unit)) if when == at => *unit,
+            _ => self.unit(at),
+        }
+    }
+}
+
+impl<T: Scalar> Tail<T> for Sine<T> {
+    /// A step begins where the check of the last one looked.
+    type Cursor = Looked<T>;
+
+    #[inline(always)]
+    fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], _: &mut Self::Cursor) {
+        Harmonic { curvature: self.tone.curvature() }.extend(k, a, inverse, &mut ());
+    }
+}
+
+impl<T: Scalar> Drive<T> for Sine<T> {
+    const ODD: bool = true;
+
+    #[inline(always)]
+    fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Cursor) {
+        let (s, d) = match last {
+            Some((when, unit)) if when == at => *unit,
+            _ => {
+                let unit = self.unit(at);
+                *last = Some((*at, unit));
+                unit
+            }
+        };
+        let swing = Harmonic { curvature: self.tone.curvature() };
+        swing.seed(self.tone.amplitude * s, self.tone.amplitude * d, a);
+    }
+
+    #[inline(always)]
+    fn value(
+        &self,
+        _: &Clock<T>,
+        at: &Instant<T>,
+        _: usize,
+        _: impl Fn() -> T,
+        last: &mut Self::Cursor,
+    ) -> T {
+        let unit = self.unit(at);
+        *last = Some((*at, unit));
+        self.tone.amplitude * unit.0
+    }
+
+    fn segment_end(&self, _: usize) -> Option<Instant<T>> {
+        None
+    }
+
+    fn next_release(
+        &self,
+        clock: &Clock<T>,
+        &Span { from, until, .. }: &Span<T>,
+        ContactAcceleration { threshold, sign }: ContactAcceleration<T>,
+        _: &mut Self::Cursor,
+    ) -> (ReleaseRoot<T>, u64) {
+        // threshold - b sin = 0 with sin rising through it (b > 0) or falling (b < 0).
+        let b = self.tone.amplitude * sign;
+        let height = threshold / b.abs();
+        if !(height.abs() < T::of(1.0)) {
+            return (ReleaseRoot::Never, 0); // never reached, or touched without a change of sign
+        }
+        let mut turns = T::of(height.to_f64().asin() / std::f64::consts::TAU);
+        for _ in 0..3 {
+            // Newton: settles the last bits, and all of them in a longer number type
+            let (s, c) = T::sin_cos_turns(turns);
+            let slope = c * T::tau();
+            if slope.to_f64() > 1e-6 {
+                turns -= (s - height) / slope;
+            }
+        }
+        if b < T::zero() {
+            turns -= T::of(0.5);
+        }
+        let quarter = if self.tone.quarter { T::of(0.25) } else { T::zero() };
+        let mut turns = (turns - quarter) - self.tone.phase;
+        turns -= turns.floor();
+        let mut phase = turns / self.tone.frequency;
+        if phase >= clock.period() {
+            phase = T::zero();
+        }
+        let behind = from.phase - phase;
+        // A fall behind by no more than rounding is now.
+        let slack = clock.period() * T::of(8.0 * T::EPSILON);
+        // The one root of each cycle; "now" is a guess at it.
+        let (fall, turn) = if behind <= T::zero() {
+            (Instant { cycle: from.cycle, phase }, Some(0))
+        } else if behind <= slack {
+            (from, None)
+        } else {
+            (Instant { cycle: from.cycle + 1, phase }, Some(0))
+        };
+        (ReleaseRoot::within(clock, fall, turn, &until), 0)
+    }
+}

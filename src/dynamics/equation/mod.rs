@@ -1,0 +1,248 @@
+//! What does the integrator run on? The model in kernel units: time in a power of two of a second, mass 1.
+//!
+//! Each piece of the force curve becomes an *mode*: the interval in which the mass moves under one
+//! polynomial, and what stands at its two ends (a stop, a break behind which the next piece begins, the end
+//! of the known curve). The mode is the mode of the motion.
+
+pub(crate) mod force;
+
+use crate::dynamics::model::Model;
+use crate::dynamics::model::stops::StopAt;
+use crate::dynamics::result::Side;
+use crate::numeric::Scalar;
+use force::PieceForce;
+
+/// Stands in for an end that does not exist; far, yet safe to compute with.
+pub(crate) const FAR: f64 = 1e200;
+
+/// What stands at an end of a mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum EndKind {
+    /// A rigid stop.
+    Stop,
+    /// The surface of a compliant stop, free flight on one side and contact on the other.
+    Compliant,
+    /// A break: the neighbouring piece begins.
+    Break,
+    /// Nothing is known beyond.
+    Unknown,
+}
+
+/// One end of a mode: low (left) or high (right).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    Low,
+    High,
+}
+
+impl End {
+    /// -1 for low, +1 for high.
+    #[inline]
+    pub fn sign<T: Scalar>(self) -> T {
+        match self {
+            Self::Low => T::of(-1.0),
+            Self::High => T::of(1.0),
+        }
+    }
+
+    /// The side that it is on.
+    pub fn side(self) -> Side {
+        match self {
+            Self::Low => Side::Left,
+            Self::High => Side::Right,
+        }
+    }
+
+    pub fn other(self) -> Self {
+        match self {
+            Self::Low => Self::High,
+            Self::High => Self::Low,
+        }
+    }
+}
+
+/// A compliant stop: stiffness d^1.5 (1 + loss d') over mass, kernel units.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Compliant<T> {
+    pub stiffness: T,
+    pub loss: T,
+}
+
+impl<T: Scalar> Compliant<T> {
+    /// Elastic energy over mass at a root of the depth.
+    pub fn stored(&self, root: T) -> T {
+        let square = root * root;
+        self.stiffness * (square * square * root) * T::of(2.0) / T::of(5.0)
+    }
+}
+
+/// The interval in which one polynomial rules.
+#[derive(Debug, Clone)]
+pub(crate) struct Mode<T> {
+    /// The piece of the force curve that it lies in.
+    pub piece: usize,
+    pub force: PieceForce<T>,
+    pub origin: T,
+    pub low: T,
+    pub high: T,
+    pub low_kind: EndKind,
+    pub high_kind: EndKind,
+}
+
+impl<T: Scalar> Mode<T> {
+    #[inline]
+    pub fn end(&self, end: End) -> (T, EndKind) {
+        match end {
+            End::Low => (self.low, self.low_kind),
+            End::High => (self.high, self.high_kind),
+        }
+    }
+}
+
+/// What a stop does to the mass that touches it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stop<T> {
+    pub restitution: T,
+    /// Outward acceleration by the mechanism alone at the stop: positive presses.
+    pub press: T,
+    /// Rounding error of `press`.
+    pub press_rounding: T,
+    /// Slope of force over mass at the stop.
+    pub stiffness: T,
+}
+
+/// The equation of motion in kernel units.
+#[derive(Debug, Clone)]
+pub(crate) struct Equation<T> {
+    /// c/m.
+    pub damping: T,
+    pub modes: Vec<Mode<T>>,
+    pub left: Option<Stop<T>>,
+    pub right: Option<Stop<T>>,
+    /// What the two stops are made of, where they are compliant.
+    pub compliant: Option<Compliant<T>>,
+    /// Seconds per kernel time unit.
+    pub unit: f64,
+}
+
+/// The modes with the surface of a compliant stop at `x` between two of them; a curve that ends there or before has
+/// no stop.
+fn cut<T: Scalar>(modes: Vec<Mode<T>>, x: T) -> Vec<Mode<T>> {
+    let mut parts = Vec::with_capacity(modes.len() + 1);
+    let last = modes.len() - 1;
+    for (index, mut mode) in modes.into_iter().enumerate() {
+        if mode.low < x && x < mode.high {
+            let beyond = Mode { low: x, low_kind: EndKind::Compliant, ..mode.clone() };
+            (mode.high, mode.high_kind) = (x, EndKind::Compliant);
+            parts.extend([mode, beyond]);
+            continue;
+        }
+        if mode.low == x && index > 0 {
+            mode.low_kind = EndKind::Compliant;
+        }
+        if mode.high == x && index < last {
+            mode.high_kind = EndKind::Compliant;
+        }
+        parts.push(mode);
+    }
+    parts
+}
+
+impl<T: Scalar> Equation<T> {
+    pub fn new(model: &Model, unit: f64) -> Self {
+        let curve = &model.mechanism.curve;
+        let square = T::of(unit * unit) / T::of(model.mass);
+        let compliant = model.compliant.map(|own| Compliant {
+            stiffness: T::of(own.stiffness) * square,
+            loss: T::of(own.loss) / T::of(unit),
+        });
+        let left_stop = model.stops.as_ref().and_then(|s| s.left);
+        let right_stop = model.stops.as_ref().and_then(|s| s.right);
+        let rigid = |stop: Option<StopAt>| stop.filter(|_| compliant.is_none());
+        let mut modes: Vec<Mode<T>> = Vec::with_capacity(curve.pieces().len());
+        for (index, piece) in curve.pieces().iter().enumerate() {
+            let (left, right) = curve.piece_interval(index);
+            let coefficients: Vec<T> = piece.coefficients.iter().map(|c| T::of(*c) * square).collect();
+            let odd = coefficients.len() > 2
+                && coefficients.len().is_multiple_of(2)
+                && piece.coefficients.iter().step_by(2).all(|c| *c == 0.0);
+            let end = |x: f64, outermost: bool, stop: Option<StopAt>, inside: bool| match stop {
+                Some(s) if inside => (T::of(s.x), EndKind::Stop),
+                _ if outermost && !x.is_finite() => (T::of(FAR.copysign(x)), EndKind::Unknown),
+                _ if outermost => (T::of(x), EndKind::Unknown),
+                _ => (T::of(x), EndKind::Break),
+            };
+            let last = index + 1 == curve.pieces().len();
+            let (low, low_kind) =
+                end(left, index == 0, rigid(left_stop), left_stop.is_some_and(|s| s.x >= left));
+            let (high, high_kind) =
+                end(right, last, rigid(right_stop), right_stop.is_some_and(|s| s.x <= right));
+            modes.push(Mode {
+                piece: index,
+                force: PieceForce::new(coefficients, odd),
+                origin: T::of(piece.origin),
+                low,
+                high,
+                low_kind,
+                high_kind,
+            });
+        }
+        let stop = |at: Option<StopAt>, sign: T| {
+            at.map(|s| {
+                let mode = &modes[curve.piece_index(s.x).min(modes.len() - 1)];
+                let (f, slope, size) = mode.force.value(T::of(s.x) - mode.origin);
+                Stop {
+                    restitution: T::of(s.restitution),
+                    press: -(sign * f),
+                    press_rounding: size,
+                    stiffness: slope,
+                }
+            })
+        };
+        let left = stop(left_stop, T::of(-1.0));
+        let right = stop(right_stop, T::of(1.0));
+        if compliant.is_some() {
+            for at in [left_stop, right_stop].into_iter().flatten() {
+                modes = cut(modes, T::of(at.x));
+            }
+        }
+        Self { damping: T::of(model.damping * unit) / T::of(model.mass), modes, left, right, compliant, unit }
+    }
+
+    /// The most products of series that a piece's force takes beyond the first.
+    pub fn most_products(&self) -> usize {
+        self.modes.iter().map(|mode| mode.force.products()).max().unwrap_or(0)
+    }
+
+    /// The mode of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant stop the one
+    /// outside it.
+    pub fn mode_at(&self, x: T, piece: usize) -> usize {
+        if self.compliant.is_none() {
+            return piece;
+        }
+        let surface = |end: End, mode: &Mode<T>| mode.end(end) == (x, EndKind::Compliant);
+        let holds = |mode: &Mode<T>| mode.piece == piece && mode.low <= x && x <= mode.high;
+        let middle = x < T::zero();
+        let outside = |mode: &Mode<T>| surface(if middle { End::Low } else { End::High }, mode);
+        let found = self.modes.iter().position(outside).or(self.modes.iter().position(holds));
+        found.unwrap_or(piece)
+    }
+
+    /// Displacement of the surface of the compliant stop of `end`.
+    pub fn surface(&self, end: End) -> Option<T> {
+        let surface = |mode: &&Mode<T>| {
+            // The mode outside it: the surface is its end on that side.
+            mode.end(end).1 == EndKind::Compliant && (mode.end(end).0 < T::zero()) == (end == End::Low)
+        };
+        self.modes.iter().find(surface).map(|mode| mode.end(end).0)
+    }
+
+    /// The stop at an end.
+    #[inline]
+    pub fn stop(&self, end: End) -> Option<&Stop<T>> {
+        match end {
+            End::Low => self.left.as_ref(),
+            End::High => self.right.as_ref(),
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! How fast is a motion, and how hard is it pushed? What a picture of it has to have room for.
+
+use std::f64::consts::TAU;
+
+use super::Model;
+
+/// What an axis makes room for where nothing shakes, in m/s^2.
+const UNSHAKEN: f64 = super::excitation::STANDARD_GRAVITY;
+
+/// Multiple of its root mean square that a noise is given room for; more is rare.
+const NOISE_ROOM: f64 = 2.5;
+
+impl Model {
+    /// A typical time in s in which the motion does something and comes back: the forcing period; without one that of the
+    /// drive's middle frequency; without a drive that of the mechanism, [`swing`](Self::swing).
+    pub fn pace(&self) -> f64 {
+        self.forcing_period.or_else(|| self.rhythm()).unwrap_or_else(|| self.swing())
+    }
+
+    /// A typical period in s of a drive that has none: of the middle of a noise's band, of the fast end of a chirp, and of
+    /// how often a record passes its mean.
+    fn rhythm(&self) -> Option<f64> {
+        let drive = &self.excitation;
+        let noises = drive.noises.iter().map(|noise| 2.0 / (noise.low + noise.high));
+        let chirps = drive.chirps.iter().map(|chirp| 1.0 / chirp.from.max(chirp.to));
+        let records =
+            drive.records.iter().map(|record| 2.0 * between_passages(&record.times, &record.accelerations));
+        let all = noises.chain(chirps).chain(records);
+        all.filter(|time| time.is_finite() && *time > 0.0).reduce(f64::min)
+    }
+
+    /// A typical time in s of the mechanism, whatever shakes it: the period of small oscillations in the stiffest well; without
+    /// a stiffness the flight to a stop and back; without both the scene's own time scale.
+    pub fn swing(&self) -> f64 {
+        let landscape = &self.mechanism.landscape;
+        let wells = landscape.equilibria.iter().filter(|own| own.stable);
+        let stiffness = wells.map(|own| landscape.inner_stiffness(own)).fold(0.0, f64::max);
+        let small = TAU * (self.mass / stiffness).sqrt();
+        let usable = |time: &f64| time.is_finite() && *time > 0.0;
+        Some(small)
+            .filter(usable)
+            .or_else(|| self.flight().map(|flight| 2.0 * flight).filter(usable))
+            .unwrap_or(TAU * self.scales.time)
+    }
+
+    /// The time in s in which the mass would fly from its start to a stop, its acceleration staying as it is there.
+    fn flight(&self) -> Option<f64> {
+        let (x, v) = self.start;
+        let a = -self.mechanism.curve.force(x) / self.mass;
+        let to = |stop: f64| {
+            let (d, root) = (stop - x, v * v + 2.0 * a * (stop - x));
+            // the roots of a t^2/2 + v t - d, without cancellation
+            let q = v + v.signum() * root.sqrt();
+            [q / -a, 2.0 * d / q].into_iter().filter(|t| *t > 0.0 && t.is_finite()).reduce(f64::min)
+        };
+        let (left, right) = self.stop_positions();
+        [left, right].into_iter().flatten().filter_map(to).reduce(f64::min)
+    }
+
+    /// The largest acceleration of the base in m/s^2 that a picture makes room for.
+    pub fn largest_push(&self) -> f64 {
+        let drive = &self.excitation;
+        let tones = drive.tones.iter().filter(|tone| !tone.noise);
+        let tones = tones.map(|tone| tone.amplitude.abs().max(tone.ramp.map_or(0.0, |ramp| ramp.0.abs())));
+        let noises = drive.noises.iter().map(|noise| NOISE_ROOM * noise.rms);
+        let chirps = drive.chirps.iter().map(|chirp| chirp.amplitude.abs());
+        let records = drive.records.iter().map(|record| record.peak());
+        let parts: Vec<f64> = tones.chain(noises).chain(chirps).chain(records).collect();
+        if parts.is_empty() && drive.constant == 0.0 {
+            return UNSHAKEN;
+        }
+        drive.constant.abs() + parts.iter().sum::<f64>()
+    }
+
+    /// Amplitude in m/s^2 and angular frequency in 1/s of the drive, where it is a single sine and nothing else.
+    pub fn single_sine(&self) -> Option<(f64, f64)> {
+        let drive = &self.excitation;
+        let alone = drive.constant == 0.0 && drive.chirps.is_empty() && drive.records.is_empty();
+        match drive.tones.as_slice() {
+            [tone] if alone && tone.ramp.is_none() && !tone.noise => {
+                Some((tone.amplitude.abs(), TAU * tone.frequency))
+            }
+            _ => None,
+        }
+    }
+
+    /// Acceleration of the mass in m/s^2 relative to the base while it touches no stop, by the equation of motion
+    /// m a = -F(x) - c v - m a_b, at a displacement in m, a velocity in m/s and an acceleration of the base in m/s^2.
+    pub fn acceleration(&self, x: f64, v: f64, base_accel: f64) -> f64 {
+        -(self.mechanism.curve.force(x) + self.damping * v) / self.mass - base_accel
+    }
+}
+
+/// Mean time between two passages of a signal through its mean.
+fn between_passages(times: &[f64], values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let passages = values.windows(2).filter(|pair| (pair[0] > mean) != (pair[1] > mean)).count();
+    let length = times.last().copied().unwrap_or(0.0) - times.first().copied().unwrap_or(0.0);
+    length / passages as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::mechanics::Mechanism;
+    use crate::scene::Document;
+
+    fn model(preset: &str, changes: &[&str]) -> Model {
+        let mut document = Document::load(preset).unwrap();
+        for change in changes {
+            document.set(change).unwrap();
+        }
+        let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+        Model::build(&document.scene, Arc::new(mechanism)).unwrap()
+    }
+
+    fn near(a: f64, b: f64) {
+        assert!((a - b).abs() < 1e-9 * b.abs(), "{a} {b}");
+    }
+
+    #[test]
+    fn the_pace_is_that_of_what_happens() {
+        near(model("paper", &[]).pace(), 1.0 / 3.0);
+        // 2 pi sqrt(m/k), k = 40 N/m
+        let unshaken = model("monostable", &["excitation=None"]);
+        near(unshaken.pace(), TAU * (15.2e-3_f64 / 40.0).sqrt());
+        // down and up again: twice sqrt(2 h/g)
+        near(model("bouncing-ball", &[]).pace(), 2.0 * (2.0_f64 / 9.81).sqrt());
+        // 10 mm at 50 mm/s, and back
+        near(model("elastic-box", &[]).pace(), 0.4);
+        // noise from 1 to 6 Hz
+        near(model("random-shaking", &[]).pace(), 1.0 / 3.5);
+        let wave: Vec<f64> = (0..1000).map(|i| (0.05 * f64::from(i)).sin()).collect();
+        let times: Vec<f64> = (0..1000).map(f64::from).collect();
+        assert!((between_passages(&times, &wave) / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.1);
+        let walking = model("walking", &[]).pace();
+        assert!((0.05..1.0).contains(&walking), "{walking}");
+        let nothing = model("elastic-box", &["stops=None", "start=At(x_mm: 0, v_m_per_s: 0)"]);
+        assert!(nothing.pace().is_finite() && nothing.pace() > 0.0);
+    }
+
+    #[test]
+    fn the_push_is_what_the_parts_add_up_to() {
+        let g = super::super::excitation::STANDARD_GRAVITY;
+        near(model("paper", &["excitation.amplitude_g=1.25"]).largest_push(), 1.25 * g);
+        near(model("paper", &["excitation=None"]).largest_push(), g);
+        assert_eq!(model("paper", &["excitation.amplitude_g=0"]).largest_push(), 0.0);
+        let (amplitude, rate) = model("paper", &["excitation.amplitude_g=-0.5"]).single_sine().unwrap();
+        near(amplitude, 0.5 * g);
+        near(rate, 3.0 * TAU);
+        assert!(model("random-shaking", &[]).single_sine().is_none());
+    }
+
+    #[test]
+    fn the_acceleration_is_that_of_the_equation_of_motion() {
+        let own = model("duffing", &[]);
+        // x'' = x - x^3 - 0.3 x' - a_b
+        near(own.acceleration(0.5, 0.2, 0.1), 0.5 - 0.125 - 0.06 - 0.1);
+    }
+}

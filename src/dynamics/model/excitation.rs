@@ -1,0 +1,232 @@
+//! How does the base move? The excitation of a scene in SI, flattened.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::numeric::{Ratio, greatest_common_divisor};
+use crate::scene::{Excitation, Fault, Record};
+
+/// Standard gravity in m/s^2.
+pub const STANDARD_GRAVITY: f64 = 9.80665;
+
+/// The longest common period of several tones, in periods of the fastest.
+const LONGEST_COMMON_PERIOD: u64 = 10_000;
+
+/// Noise rarely passes this multiple of its root mean square.
+const NOISE_PEAK: f64 = 3.0;
+
+/// The drive, as a judgement needs it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Rhythm {
+    /// It repeats.
+    Periodic,
+    /// It has no period, or another amplitude in each.
+    Changing,
+    /// There is none.
+    Absent,
+}
+
+/// Base acceleration in SI: a constant, tones, chirps and records; its parts add up.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ExcitationParts {
+    pub constant: f64,
+    pub tones: Vec<TonePart>,
+    pub chirps: Vec<ChirpPart>,
+    pub records: Vec<Arc<Record>>,
+    /// What each noise among the tones is.
+    pub noises: Vec<NoisePart>,
+}
+
+/// amplitude sin(2 pi frequency t + phase). SI.
+#[derive(Debug, Clone)]
+pub(crate) struct TonePart {
+    pub amplitude: f64,
+    pub frequency: f64,
+    /// Phase in turns beyond the quarter, 0 <= phase < 1.
+    pub phase: f64,
+    /// A quarter turn ahead.
+    pub quarter: bool,
+    /// Amplitude at time 0 and length of the ramp in s.
+    pub ramp: Option<(f64, f64)>,
+    /// One line of a noise.
+    pub noise: bool,
+}
+
+/// amplitude sin(2 pi (from t + (to - from) t^2/(2 over))), then holding `to`. SI.
+#[derive(Debug, Clone)]
+pub(crate) struct ChirpPart {
+    pub amplitude: f64,
+    pub from: f64,
+    pub to: f64,
+    pub over: f64,
+}
+
+/// What a noise was made from. SI.
+#[derive(Debug, Clone)]
+pub(crate) struct NoisePart {
+    pub rms: f64,
+    pub low: f64,
+    pub high: f64,
+    pub seed: u64,
+    pub lines: u64,
+}
+
+impl ExcitationParts {
+    /// Fails where a record has not been read.
+    pub fn new(excitation: &Excitation) -> Result<Self, Fault> {
+        let mut motion = Self::default();
+        motion.add(excitation, "excitation")?;
+        Ok(motion)
+    }
+
+    fn add(&mut self, excitation: &Excitation, path: &str) -> Result<(), Fault> {
+        match excitation {
+            Excitation::None => {}
+            Excitation::Constant { accel_g } => self.constant += accel_g * STANDARD_GRAVITY,
+            Excitation::Sine { frequency_hz, amplitude_g, phase_deg } => {
+                // Exact: the remainder and the multiple of 90 degrees are.
+                let reduced = phase_deg.rem_euclid(360.0);
+                let quarters = (reduced / 90.0).floor();
+                let rest = reduced - 90.0 * quarters;
+                let quarters = quarters as i64 & 3;
+                let amplitude = amplitude_g * STANDARD_GRAVITY;
+                self.tones.push(TonePart {
+                    amplitude: if quarters >= 2 { -amplitude } else { amplitude },
+                    frequency: *frequency_hz,
+                    phase: rest / 360.0,
+                    quarter: quarters % 2 == 1,
+                    ramp: None,
+                    noise: false,
+                });
+            }
+            Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s } => self.tones.push(TonePart {
+                amplitude: to_g * STANDARD_GRAVITY,
+                frequency: *frequency_hz,
+                phase: 0.0,
+                quarter: false,
+                ramp: Some((from_g * STANDARD_GRAVITY, *over_s)),
+                noise: false,
+            }),
+            Excitation::Chirp { from_hz, to_hz, over_s, amplitude_g } => self.chirps.push(ChirpPart {
+                amplitude: amplitude_g * STANDARD_GRAVITY,
+                from: *from_hz,
+                to: *to_hz,
+                over: *over_s,
+            }),
+            Excitation::Noise { rms_g, low_hz, high_hz, seed, lines } => {
+                let rms = rms_g * STANDARD_GRAVITY;
+                self.noise(NoisePart { rms, low: *low_hz, high: *high_hz, seed: *seed, lines: *lines });
+            }
+            Excitation::Recorded { path: file, record } => match record {
+                Some(record) => self.records.push(Arc::clone(record)),
+                None => {
+                    return Err(Fault {
+                        field: format!("{path}.path"),
+                        value: file.clone(),
+                        problem: "has not been read: take the scene from a document".into(),
+                    });
+                }
+            },
+            Excitation::Sum(terms) => {
+                for (i, term) in terms.iter().enumerate() {
+                    self.add(term, &format!("{path}.{i}"))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Sines f_k = low + (k + u_k) (high - low)/lines, each of amplitude rms sqrt(2/lines), phases and u_k
+    /// uniform in \[0, 1) from ChaCha8 seeded with `seed`: for each line first u, then the phase, each from the
+    /// upper 53 bits of 64. Stable across versions and machines, the same for any duration.
+    fn noise(&mut self, noise: NoisePart) {
+        let mut random = ChaCha8Rng::seed_from_u64(noise.seed);
+        let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        let lines = noise.lines as f64;
+        let amplitude = noise.rms * (2.0 / lines).sqrt();
+        for k in 0..noise.lines {
+            let frequency = noise.low + (k as f64 + uniform()) * (noise.high - noise.low) / lines;
+            let phase = uniform();
+            // a line at 0 Hz would be a constant
+            let frequency = frequency.max(f64::MIN_POSITIVE);
+            self.tones.push(TonePart {
+                amplitude,
+                frequency,
+                phase,
+                quarter: false,
+                ramp: None,
+                noise: true,
+            });
+        }
+        self.noises.push(noise);
+    }
+
+    /// Whether it never accelerates.
+    pub fn is_still(&self) -> bool {
+        self.constant == 0.0
+            && self.tones.iter().all(|t| t.amplitude == 0.0 && t.ramp.is_none_or(|r| r.0 == 0.0))
+            && self.chirps.iter().all(|c| c.amplitude == 0.0)
+            && self.records.iter().all(|r| r.peak() == 0.0)
+    }
+
+    /// Whether it repeats; `common` are its [`common_cycles`](Self::common_cycles).
+    pub fn rhythm(&self, common: Option<u64>) -> Rhythm {
+        let empty = self.tones.is_empty() && self.chirps.is_empty() && self.records.is_empty();
+        match common {
+            _ if empty => Rhythm::Absent,
+            Some(_) if self.tones.iter().all(|tone| tone.ramp.is_none()) => Rhythm::Periodic,
+            _ => Rhythm::Changing,
+        }
+    }
+
+    /// Size of the amplitude in m/s^2 at a time in s, where it is one ramp.
+    pub fn ramped_amplitude(&self, t: f64) -> Option<f64> {
+        let alone = self.constant == 0.0 && self.chirps.is_empty() && self.records.is_empty();
+        match self.tones.as_slice() {
+            [TonePart { amplitude, ramp: Some((from, over)), .. }] if alone => {
+                Some((from + (amplitude - from) * (t / over).min(1.0)).abs())
+            }
+            _ => None,
+        }
+    }
+
+    /// Amplitude in m/s^2 and angular frequency in 1/s of each part, for the scales; a constant and a record
+    /// have the rate 0.
+    pub fn parts(&self) -> Vec<(f64, f64)> {
+        let mut parts = vec![(self.constant.abs(), 0.0)];
+        for tone in self.tones.iter().filter(|t| !t.noise) {
+            let largest = tone.amplitude.abs().max(tone.ramp.map_or(0.0, |r| r.0.abs()));
+            parts.push((largest, tone.frequency * TAU));
+        }
+        parts.extend(self.noises.iter().map(|n| (NOISE_PEAK * n.rms, n.low * TAU)));
+        parts.extend(self.chirps.iter().map(|c| (c.amplitude.abs(), c.from.min(c.to) * TAU)));
+        parts.extend(self.records.iter().map(|r| (r.peak(), 0.0)));
+        parts
+    }
+
+    /// Frequency of the fastest tone in Hz.
+    pub fn fastest(&self) -> Option<f64> {
+        self.tones.iter().map(|t| t.frequency).reduce(f64::max)
+    }
+
+    /// Periods of the fastest tone in the common period of all parts, where there is one within reach.
+    pub fn common_cycles(&self) -> Option<u64> {
+        if !(self.chirps.is_empty() && self.records.is_empty() && self.noises.is_empty()) {
+            return None;
+        }
+        let fastest = self.fastest()?;
+        let mut common: u64 = 1;
+        for tone in &self.tones {
+            let denominator = Ratio::of_decimals(tone.frequency, fastest)?.denominator;
+            let shared = greatest_common_divisor(common.into(), denominator.into()) as u64;
+            common = (common / shared).checked_mul(denominator)?;
+            if common > LONGEST_COMMON_PERIOD {
+                return None;
+            }
+        }
+        Some(common)
+    }
+}

@@ -1,0 +1,215 @@
+//! The scene as run: SI units, checked, everything the integrator needs.
+
+mod characteristic;
+mod describe;
+pub(crate) mod excitation;
+pub(crate) mod scales;
+mod start;
+pub(crate) mod stops;
+
+use std::sync::Arc;
+
+use crate::mechanics::{Hertz, Mechanism};
+use crate::scene::{Damping, Fault, Scene, Start};
+use excitation::{ExcitationParts, Rhythm};
+use scales::{Scales, scales};
+use start::{fault, start_state};
+use stops::{StopAt, StopPair};
+
+/// The most periods of the fastest tone that the clock counts exactly, about 2^53.
+const MOST_PERIODS: f64 = 9e15;
+
+/// A scene as run.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// Proof mass in kg.
+    pub mass: f64,
+    /// Damping coefficient in N s/m.
+    pub damping: f64,
+    /// The mechanism, shared between the cells of a sweep.
+    pub mechanism: Arc<Mechanism>,
+    /// Duration in s.
+    pub duration: f64,
+    /// Period of the drive in s, where it has one.
+    pub forcing_period: Option<f64>,
+    /// Length, speed and time that the tolerance is relative to.
+    pub scales: Scales,
+    /// Local error allowed, relative to the scales.
+    pub tolerance: f64,
+    /// Whether a run may be completed from a cycle that comes back exactly.
+    pub recurrence: bool,
+    pub(crate) settle: f64,
+    pub(crate) stops: Option<StopPair>,
+    /// What the stops are made of, where they are compliant.
+    pub compliant: Option<Hertz>,
+    pub(crate) excitation: ExcitationParts,
+    pub(crate) start: (f64, f64),
+    /// At rest in an equilibrium with nothing to move it.
+    pub(crate) motionless: bool,
+    /// Where a crossing is counted.
+    pub(crate) crossing_level: Option<f64>,
+    pub(crate) one_well: bool,
+    /// Cycles of the clock in a forcing period.
+    cycles_per_period: i64,
+    pub(crate) rhythm: Rhythm,
+}
+
+impl Model {
+    /// Converts a scene that has passed its check; faults that only show here (no equilibrium to rest
+    /// at, a ratio without a stable equilibrium, a start beyond a stop or the curve) are all reported.
+    pub fn build(scene: &Scene, mechanism: Arc<Mechanism>) -> Result<Self, Vec<Fault>> {
+        let mut faults = Vec::new();
+        let mass = scene.mass_g / 1e3;
+        let landscape = &mechanism.landscape;
+        let damping = match scene.damping {
+            Damping::None => 0.0,
+            Damping::Coefficient { c_n_s_per_m } => c_n_s_per_m,
+            Damping::Ratio(xi) => match mechanism.damping_stiffness() {
+                Some(k) => {
+                    let c = 2.0 * xi * (k * mass).sqrt();
+                    if !c.is_finite() {
+                        let problem = format!(
+                            "makes no finite damping coefficient with the stiffness {k:e} N/m of the equilibrium; use \
+                             Coefficient(c_n_s_per_m: ..) instead"
+                        );
+                        faults.push(fault("damping.xi", xi, problem));
+                    }
+                    c
+                }
+                None => {
+                    faults.push(fault(
+                        "damping.xi",
+                        xi,
+                        "a damping ratio needs a stable equilibrium with a stiffness above 0, and this \
+                         mechanism has none; use Coefficient(c_n_s_per_m: ..) instead",
+                    ));
+                    0.0
+                }
+            },
+        };
+        let stops = StopPair::of(&scene.stops);
+        let compliant = Hertz::of(&scene.stops);
+        let start = match start_state(scene, &mechanism, stops.as_ref(), compliant.as_ref()) {
+            Ok(start) => start,
+            Err(found) => {
+                faults.push(found);
+                (0.0, 0.0)
+            }
+        };
+        let drive = ExcitationParts::new(&scene.excitation).unwrap_or_else(|found| {
+            faults.push(found);
+            ExcitationParts::default()
+        });
+        let periods = drive.fastest().unwrap_or(0.0) * scene.run.duration_s;
+        if periods > MOST_PERIODS {
+            faults.push(fault(
+                "run.duration_s",
+                scene.run.duration_s,
+                format!(
+                    "makes {periods:e} periods of the excitation; at most {MOST_PERIODS:e} can be counted: \
+                     shorten the run or lower the frequency"
+                ),
+            ));
+        }
+        if !faults.is_empty() {
+            return Err(faults);
+        }
+        let common = drive.common_cycles();
+        let forcing_period = drive.fastest().and_then(|f| common.map(|cycles| cycles as f64 / f));
+        let barrier = landscape.barrier.as_ref();
+        let crossing_level = landscape.crossing_position();
+        let scales = scales(scene, mass, &mechanism, &drive, start, (stops, compliant));
+        let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
+        let on_a_stop = left.is_some_and(|s| s.x == start.0) || right.is_some_and(|s| s.x == start.0);
+        let motionless = scene.start == Start::Rest && !on_a_stop && drive.is_still();
+        Ok(Self {
+            mass,
+            damping,
+            duration: scene.run.duration_s,
+            forcing_period,
+            scales,
+            tolerance: scene.run.tolerance,
+            recurrence: scene.run.recurrence,
+            settle: scene.run.settle_s.unwrap_or(scene.run.duration_s * 0.5),
+            stops,
+            compliant,
+            rhythm: drive.rhythm(common),
+            excitation: drive,
+            start,
+            motionless,
+            crossing_level,
+            one_well: barrier.is_none(),
+            cycles_per_period: common.map_or(0, |c| c as i64),
+            mechanism,
+        })
+    }
+
+    /// Positions of the left and the right stop in m, where there are any.
+    pub fn stop_positions(&self) -> (Option<f64>, Option<f64>) {
+        let at = |stop: Option<StopAt>| stop.map(|stop| stop.x);
+        self.stops.map_or((None, None), |pair| (at(pair.left), at(pair.right)))
+    }
+
+    /// Kinetic energy and potential in J at a displacement in m and a velocity in m/s; the potential is 0 at x = 0 and
+    /// holds what a compliant stop stores.
+    pub fn energies(&self, x: f64, v: f64) -> (f64, f64) {
+        let potential = self.mechanism.curve.potential(x);
+        let pressed = self.compliant.zip(self.pressed_depth(x)).map(|(own, (depth, _))| own.energy(depth));
+        (0.5 * self.mass * v * v, pressed.map_or(potential, |stored| potential + stored))
+    }
+
+    /// How deep in m a mass at `x` in m has pressed a stop in, and whether that is the right one; none outside both.
+    pub fn pressed_depth(&self, x: f64) -> Option<(f64, bool)> {
+        let (left, right) = self.stop_positions();
+        let right = right.map(|stop| (x - stop, true));
+        left.map(|stop| (stop - x, false)).into_iter().chain(right).find(|(depth, _)| *depth > 0.0)
+    }
+
+    /// Whether the mirror image of a free motion is one, and crosses where the motion does: an odd curve, stops alike on
+    /// both sides.
+    pub(crate) fn is_symmetric(&self) -> bool {
+        let (left, right) = self.stops.map_or((None, None), |pair| (pair.left, pair.right));
+        let alike = match (left, right) {
+            (Some(left), Some(right)) => left.x == -right.x && left.restitution == right.restitution,
+            (None, None) => true,
+            _ => false,
+        };
+        alike && self.mechanism.curve.is_odd() && self.crossing_level.is_none_or(|level| level == 0.0)
+    }
+
+    /// Whether the base moves at all.
+    pub fn is_shaken(&self) -> bool {
+        !self.excitation.is_still()
+    }
+
+    /// Begin of the settled window in s.
+    pub fn settle(&self) -> f64 {
+        self.settle
+    }
+
+    /// Whole forcing periods in the settled window, and the clock's cycles in one.
+    pub(crate) fn window_periods(&self) -> (u64, i64) {
+        match self.forcing_period {
+            Some(period) => {
+                let n = ((self.duration - self.settle) / period + 1e-9).floor();
+                (n.max(0.0) as u64, self.cycles_per_period)
+            }
+            None => (0, 0),
+        }
+    }
+
+    /// Time in s at which the last amplitude ramp of the drive ends; none without one.
+    pub fn ramp_end(&self) -> Option<f64> {
+        self.excitation.tones.iter().filter_map(|tone| tone.ramp.map(|ramp| ramp.1)).reduce(f64::max)
+    }
+
+    /// Whether the drive repeats: a sine, or several with a common period.
+    pub fn repeats(&self) -> bool {
+        self.rhythm == Rhythm::Periodic
+    }
+
+    /// Whether a run may go on until the motion repeats: the drive does, and the settled window holds two periods of it.
+    pub fn can_settle(&self) -> bool {
+        self.repeats() && self.window_periods().0 >= 2
+    }
+}

@@ -1,0 +1,234 @@
+//! Relative to what are errors small? One length, one speed, one time for a scene.
+//!
+//! The rule, covariant under a change of units; from mechanism, drive and start alone, since a stop that is never reached
+//! must not change a bit:
+//!
+//! - rate w: the square root of the largest stiffness magnitude over mass among the wells' inner sides and
+//!   the barrier (one well: at it; none: at the start); without stiffness the drive's fastest tone;
+//!   without both, sqrt(acceleration over length), or speed over length. The inner side of a well that lies
+//!   beyond a kink is the slope just inside the kink, as for a damping ratio: flexures rest some um beyond
+//!   theirs, where the force is a wall of 30 times the stiffness, and nothing here may jump while a slider
+//!   moves the well across;
+//! - length L: the largest of half the distance between the wells, the start's distance from the
+//!   barrier (or the single equilibrium, or 0), start speed over w, and the sum over the parts of
+//!   the drive of amplitude over w and the larger of w and the part's own rate (a fast part moves the mass that
+//!   far, by its first kick);
+//! - speed L w, time 1/w.
+//!
+//! Two stops that leave the mass less than a hundredth of L bound it more than all that: the mass is soon at one of them,
+//! or it rests. L then falls with that room, and is the room itself where it is a ten-thousandth of L; w rises to the rate
+//! at which drive and start speed move the mass as far.
+
+use super::excitation::ExcitationParts;
+use super::stops::StopPair;
+use crate::mechanics::{Hertz, Mechanism};
+use crate::scene::Scene;
+
+/// Length in m, speed in m/s, time in s; all above 0 and finite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scales {
+    /// Length in m.
+    pub length: f64,
+    /// Speed in m/s.
+    pub speed: f64,
+    /// Time in s.
+    pub time: f64,
+    /// The longest step of the integrator in s, at a high order and at a low one: some radians of the rate; where nothing
+    /// sets a rate, the run.
+    pub(crate) longest_step: (f64, f64),
+}
+
+/// The longest step in units of the time scale. Only a motion far smaller than the length would let a step be longer, since
+/// the tolerance is relative to that. At high orders what is lost then is rounding; at lower ones a step is short enough for
+/// the series of an oscillation to hold to its own size (at order 16 to 3^17/17! = 4e-7), so that small motions are as true
+/// as others, and no noise of the size of the tolerance.
+const LONGEST_STEP: (f64, f64) = (8.0, 3.0);
+
+/// How many times as large as the room between the stops the length is at most.
+const FAR: f64 = 100.0;
+
+/// What the rule looks at. All SI, magnitudes.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Landmarks {
+    /// Largest stiffness magnitude over mass, 1/s^2.
+    pub stiffness_over_mass: f64,
+    /// Half the distance between the wells, m; 0 without a pair.
+    pub half_distance: f64,
+    /// Distance of the start from the reference point, m.
+    pub start_distance: f64,
+    /// Start speed, m/s.
+    pub start_speed: f64,
+    /// Acceleration by the mechanism at the start, m/s^2.
+    pub start_acceleration: f64,
+    /// Amplitude in m/s^2 and angular frequency in 1/s of each part of the drive; a rate of 0 has none.
+    pub drive: Vec<(f64, f64)>,
+    /// Duration of the run in s.
+    pub duration: f64,
+    /// Half of what two stops leave the mass, m; none where a side is open.
+    pub room: Option<f64>,
+}
+
+impl Scales {
+    pub(crate) fn new(l: &Landmarks) -> Self {
+        let stiff = l.stiffness_over_mass.sqrt();
+        let usable = |x: f64| x.is_finite() && x > 0.0;
+        let driven: f64 = l.drive.iter().map(|part| part.0).sum();
+        let fastest = l.drive.iter().map(|part| part.1).fold(0.0, f64::max);
+        let acceleration = l.start_acceleration.max(driven);
+        let rated = usable(stiff) || usable(fastest);
+        let (length, rate) = if rated {
+            let rate = if usable(stiff) { stiff } else { fastest };
+            let driven: f64 = l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum();
+            let length = l
+                .half_distance
+                .max(l.start_distance)
+                .max(l.start_speed / rate)
+                .max(driven)
+                .max(if usable(stiff) { 0.0 } else { l.start_acceleration / (rate * rate) });
+            (length, rate)
+        } else if usable(acceleration) {
+            let length = l.start_distance.max(l.start_speed * l.start_speed / acceleration);
+            let length = if usable(length) { length } else { acceleration * l.duration * l.duration };
+            (length, (acceleration / length).sqrt())
+        } else if usable(l.start_speed) {
+            let length = if usable(l.start_distance) { l.start_distance } else { l.start_speed * l.duration };
+            (length, l.start_speed / length)
+        } else {
+            (l.start_distance, 1.0 / l.duration)
+        };
+        let room = l.room.filter(|room| usable(*room) && usable(length) && length > FAR * room);
+        let length = if usable(length) { length } else { 1.0 };
+        let rate = if usable(rate) { rate } else { 1.0 };
+        let longest = |radians: f64| if rated { radians * (1.0 / rate) } else { l.duration };
+        let longest_step = (longest(LONGEST_STEP.0), longest(LONGEST_STEP.1));
+        let (length, rate) = match room {
+            None => (length, rate),
+            Some(room) => {
+                let within = room.max(FAR * room * (FAR * room / length));
+                let driven: f64 = match rated {
+                    true => l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum(),
+                    false => acceleration / (rate * rate),
+                };
+                let faster = (driven / within).sqrt().max(l.start_speed / rate / within);
+                (within, rate * faster.max(1.0))
+            }
+        };
+        Self { length, speed: length * rate, time: 1.0 / rate, longest_step }
+    }
+
+    /// The power of two of a second nearest to the time scale.
+    pub(crate) fn unit(&self) -> f64 {
+        self.time.log2().round().clamp(-900.0, 900.0).exp2()
+    }
+}
+
+/// Those of a scene.
+pub(crate) fn scales(
+    scene: &Scene,
+    mass: f64,
+    mechanism: &Mechanism,
+    drive: &ExcitationParts,
+    start: (f64, f64),
+    (stops, compliant): (Option<StopPair>, Option<Hertz>),
+) -> Scales {
+    let landscape = &mechanism.landscape;
+    let curve = &mechanism.curve;
+    let mut stiffness: f64 = 0.0;
+    let mut reference = 0.0;
+    let mut half_distance = 0.0;
+    match (&landscape.barrier, landscape.equilibria.as_slice()) {
+        (Some(barrier), equilibria) => {
+            reference = barrier.x;
+            half_distance = 0.5 * (barrier.right_well - barrier.left_well);
+            for e in equilibria {
+                if e.x == barrier.left_well || e.x == barrier.right_well {
+                    stiffness = stiffness.max(landscape.inner_stiffness(e).abs());
+                } else if e.x == barrier.x {
+                    stiffness = stiffness.max(e.stiffness_left.abs()).max(e.stiffness_right.abs());
+                }
+            }
+        }
+        (None, [single]) => {
+            reference = single.x;
+            stiffness = single.stiffness_left.abs().max(single.stiffness_right.abs());
+        }
+        (None, _) => {}
+    }
+    if !(stiffness > 0.0 && stiffness.is_finite()) {
+        stiffness = curve.stiffness(start.0).abs();
+    }
+    let landmarks = Landmarks {
+        stiffness_over_mass: stiffness / mass,
+        half_distance,
+        start_distance: (start.0 - reference).abs(),
+        start_speed: start.1.abs(),
+        start_acceleration: curve.force(start.0).abs() / mass,
+        drive: drive.parts(),
+        duration: scene.run.duration_s,
+        room: None,
+    };
+    let open = Scales::new(&landmarks);
+    let Some(StopPair { left: Some(left), right: Some(right) }) = stops else { return open };
+    // A compliant stop leaves as much more as the mass could press it in, even without its loss.
+    let depth = compliant.map_or(0.0, |own| Hertz { loss: 0.0, ..own }.depth(mass, open.speed));
+    let room = 0.5 * (right.x - left.x) + depth;
+    Scales::new(&Landmarks { room: Some(room), ..landmarks })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rule_is_covariant_and_never_fails() {
+        let base = Landmarks {
+            stiffness_over_mass: 5263.0,
+            half_distance: 7e-3,
+            start_distance: 4e-3,
+            start_speed: 0.2,
+            start_acceleration: 12.0,
+            drive: vec![(9.8, 18.8), (0.5, 0.0)],
+            duration: 10.0,
+            room: None,
+        };
+        let (l, t) = (1e6, 1e-7);
+        let scaled = Landmarks {
+            stiffness_over_mass: base.stiffness_over_mass / (t * t),
+            half_distance: base.half_distance * l,
+            start_distance: base.start_distance * l,
+            start_speed: base.start_speed * l / t,
+            start_acceleration: base.start_acceleration * l / (t * t),
+            drive: base.drive.iter().map(|(a, w)| (a * l / (t * t), w / t)).collect(),
+            duration: base.duration * t,
+            room: None,
+        };
+        for drop in 0..32 {
+            let thin = |mut m: Landmarks| {
+                if drop & 1 > 0 {
+                    m.stiffness_over_mass = 0.0;
+                    m.half_distance = 0.0;
+                }
+                if drop & 2 > 0 {
+                    m.drive.clear();
+                }
+                if drop & 4 > 0 {
+                    m.start_distance = 0.0;
+                    m.start_speed = 0.0;
+                }
+                if drop & 8 > 0 {
+                    m.start_acceleration = 0.0;
+                }
+                m
+            };
+            let tight =
+                |m: Landmarks, unit: f64| Landmarks { room: (drop & 16 > 0).then_some(1e-5 * unit), ..m };
+            let (a, b) = (tight(thin(base.clone()), 1.0), tight(thin(scaled.clone()), l));
+            let (a, b) = (Scales::new(&a), Scales::new(&b));
+            assert!(a.length > 0.0 && a.speed.is_finite() && a.time > 0.0, "{drop} {a:?}");
+            if a.length != 1.0 {
+                assert!((b.length / a.length / l - 1.0).abs() < 1e-12, "{drop}");
+                assert!((b.time / a.time / t - 1.0).abs() < 1e-12, "{drop}");
+            }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! State at which a run begins: checked, and in SI.
+
+use super::stops::StopPair;
+use crate::mechanics::{Hertz, Mechanism};
+use crate::scene::{Fault, Scene, Start};
+
+pub(crate) fn fault(field: &str, value: impl ToString, problem: impl Into<String>) -> Fault {
+    Fault { field: field.into(), value: value.to_string(), problem: problem.into() }
+}
+
+/// Displacement in m and velocity in m/s.
+pub(crate) fn start_state(
+    scene: &Scene,
+    mechanism: &Mechanism,
+    stops: Option<&StopPair>,
+    compliant: Option<&Hertz>,
+) -> Result<(f64, f64), Fault> {
+    let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
+    let domain = mechanism.curve.domain();
+    match scene.start {
+        Start::Rest => {
+            let Some(equilibrium) = mechanism.landscape.right_stable() else {
+                return Err(fault(
+                    "start",
+                    "Rest",
+                    "this mechanism has no stable equilibrium to rest at; use At(x_mm: .., v_m_per_s: ..)",
+                ));
+            };
+            let mut x = equilibrium.x;
+            if let Some(stop) = right {
+                x = x.min(stop.x);
+            }
+            if let Some(stop) = left {
+                x = x.max(stop.x);
+            }
+            if let Some(hertz) = compliant.filter(|_| x != equilibrium.x) {
+                x = pressed_in(mechanism, hertz, x, equilibrium.x);
+            }
+            Ok((x, 0.0))
+        }
+        Start::At { x_mm, v_m_per_s } => {
+            let x = x_mm / 1e3;
+            if let Some(stop) = right.filter(|s| x > s.x).or(left.filter(|s| x < s.x)) {
+                return Err(fault(
+                    "start.x_mm",
+                    x_mm,
+                    format!("lies beyond the stop at {} mm; start between the stops", stop.x * 1e3),
+                ));
+            }
+            if x < domain.0 || x > domain.1 {
+                return Err(fault(
+                    "start.x_mm",
+                    x_mm,
+                    format!(
+                        "lies outside the force curve, which is known from {} to {} mm",
+                        domain.0 * 1e3,
+                        domain.1 * 1e3
+                    ),
+                ));
+            }
+            Ok((x, v_m_per_s))
+        }
+    }
+}
+
+/// Where a mass rests that the mechanism presses on the compliant stop at `surface` towards the equilibrium at
+/// `equilibrium` beyond it, in m: where the stop's force is the mechanism's. The two meet between the surface, where the
+/// mechanism alone presses, and the equilibrium, where it does not.
+fn pressed_in(mechanism: &Mechanism, hertz: &Hertz, surface: f64, equilibrium: f64) -> f64 {
+    let sign = (equilibrium - surface).signum();
+    let pressed = |depth: f64| -sign * mechanism.curve.force(surface + sign * depth);
+    let excess = |depth: f64| hertz.stiffness * depth * depth.sqrt() - pressed(depth);
+    let (mut low, mut high) = (0.0, (equilibrium - surface).abs());
+    // The depth is far less than the way to the equilibrium: halve its logarithm first.
+    let near = hertz.static_depth(pressed(0.0).max(0.0));
+    for guess in [0.5 * near, 2.0 * near] {
+        if guess > low && guess < high {
+            *(if excess(guess) > 0.0 { &mut high } else { &mut low }) = guess;
+        }
+    }
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        *(if excess(middle) > 0.0 { &mut high } else { &mut low }) = middle;
+    }
+    surface + sign * high
+}

@@ -1,0 +1,42 @@
+//! Stops of a scene in SI.
+
+use crate::scene::Stops;
+
+/// The stops of a scene; a side without one is open.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct StopPair {
+    pub left: Option<StopAt>,
+    pub right: Option<StopAt>,
+}
+
+/// One stop. SI. A compliant one takes energy by its own law and has the restitution 1 here.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct StopAt {
+    pub x: f64,
+    pub restitution: f64,
+}
+
+impl StopPair {
+    /// Those of a scene; none where it has no stops.
+    pub fn of(stops: &Stops) -> Option<Self> {
+        let at = |mm: f64, sign: f64, restitution: f64| Some(StopAt { x: sign * (mm / 1e3), restitution });
+        match *stops {
+            Stops::None => None,
+            Stops::Hertz { travel_limit_mm, .. } => {
+                let [left, right] = [-1.0, 1.0].map(|sign| at(travel_limit_mm, sign, 1.0));
+                Some(Self { left, right })
+            }
+            Stops::Rigid { travel_limit_mm, restitution } => {
+                let [left, right] = [-1.0, 1.0].map(|sign| at(travel_limit_mm, sign, restitution));
+                Some(Self { left, right })
+            }
+            Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => {
+                let of = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(1.0);
+                Some(Self {
+                    left: left_mm.and_then(|mm| at(mm, -1.0, of(restitution_left, restitution_right))),
+                    right: right_mm.and_then(|mm| at(mm, 1.0, of(restitution_right, restitution_left))),
+                })
+            }
+        }
+    }
+}

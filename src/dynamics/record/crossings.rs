@@ -1,0 +1,75 @@
+//! Recording of the crossings of the barrier within a step.
+
+use super::barrier::StepCrossings;
+use super::recorder::Recorder;
+use crate::dynamics::clock::Instant;
+use crate::dynamics::result::{EventKind, Side};
+use crate::dynamics::series::ROOM;
+use crate::dynamics::step::path::{Path, StepView};
+use crate::numeric::Scalar;
+
+impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+    /// Takes in the passages of the top within a step that starts `gap` to the right of it and ends on `end_side`.
+    pub fn crossings<P: Path<T>>(&mut self, step: &StepView<T, P>, gap: T, end_side: i8) {
+        let mut g = step.path.scaled(step.whole);
+        g[0] = gap;
+        let Some(passages) = StepCrossings::new(&mut g[..step.path.known()], self.barrier_side, end_side)
+        else {
+            return;
+        };
+        self.barrier_side = passages.from;
+        if !self.instants_matter(step) {
+            let count = passages.count();
+            self.barrier_side = passages.side_after(count);
+            self.counts.total_crossings += count as u64;
+            if self.in_window(&step.at) {
+                self.counts.crossings += count as u64;
+            }
+            return;
+        }
+        let mut found = [T::zero(); ROOM];
+        let mut count = passages.at_once;
+        passages.roots.each_sign_change(|s| {
+            let t = s * step.whole;
+            if t > step.length || count == found.len() {
+                return false;
+            }
+            found[count] = t;
+            count += 1;
+            true
+        });
+        if count == 0 {
+            found[0] = step.length;
+        }
+        for t in &found[..passages.settle(count)] {
+            self.crossing(step, *t);
+        }
+    }
+
+    /// Whether it must be known when within the step a crossing happens, not only that it does: events list it, and
+    /// so does what tells the regime; a step cut short or near an end of the window may hold a crossing beyond it.
+    fn instants_matter<P: Path<T>>(&self, step: &StepView<T, P>) -> bool {
+        // By two lengths: more than rounding can hide.
+        let clear = |border: &Instant<T>| {
+            let left = self.clock.between(&step.at, border);
+            left <= T::zero() || left > step.duration + step.duration
+        };
+        self.lists_crossings()
+            || step.length != step.whole
+            || !(clear(&self.window.0) && clear(&self.window.1))
+            || (self.period > T::zero() && self.in_window(&step.at))
+    }
+
+    fn crossing<P: Path<T>>(&mut self, step: &StepView<T, P>, into: T) {
+        self.barrier_side = -self.barrier_side;
+        let at = self.clock.advance(&step.at, step.path.time(into));
+        let v = step.path.velocity(into).to_f64() / self.unit;
+        let side = if self.barrier_side > 0 { Side::Right } else { Side::Left };
+        self.counts.total_crossings += 1;
+        if self.in_window(&at) {
+            self.counts.crossings += 1;
+        }
+        self.judge.crossing(self.in_periods(&at), side, self.clock.seconds(&at));
+        self.event(&at, EventKind::Crossing, side, v, v);
+    }
+}

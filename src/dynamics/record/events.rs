@@ -1,0 +1,191 @@
+//! Recording of what happens between steps: rests, impacts, releases, contacts.
+
+use super::recorder::Recorder;
+use super::window::STILL;
+use crate::dynamics::clock::Instant;
+use crate::dynamics::result::{EventKind, Phase, Sample, Side};
+use crate::numeric::Scalar;
+
+/// A recorder call other than a step. Velocities are signed, in kernel units.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Call<T> {
+    /// The mass stands still in this state (at rest on a stop, in an equilibrium, or in the last, unresolved bounces
+    /// of a chatter: with phase free, and with the speed at its first instant).
+    Stand {
+        at: Instant<T>,
+        until: Instant<T>,
+        state: (T, T),
+        phase: Phase,
+    },
+    Impact {
+        at: Instant<T>,
+        side: Side,
+        v_in: T,
+        v_out: T,
+    },
+    /// A chatter is summed in closed form from speed `v`: what is left of the kinetic energy goes.
+    Chatter {
+        at: Instant<T>,
+        v: T,
+    },
+    Rest {
+        at: Instant<T>,
+        side: Side,
+    },
+    Release {
+        at: Instant<T>,
+        side: Side,
+    },
+}
+
+impl<T: Scalar> Call<T> {
+    /// The same at other instants.
+    pub fn when(self, instant: impl Fn(&Instant<T>) -> Instant<T>) -> Self {
+        match self {
+            Self::Stand { at, until, state, phase } => {
+                Self::Stand { at: instant(&at), until: instant(&until), state, phase }
+            }
+            Self::Impact { at, side, v_in, v_out } => Self::Impact { at: instant(&at), side, v_in, v_out },
+            Self::Chatter { at, v } => Self::Chatter { at: instant(&at), v },
+            Self::Rest { at, side } => Self::Rest { at: instant(&at), side },
+            Self::Release { at, side } => Self::Release { at: instant(&at), side },
+        }
+    }
+
+    /// Its mirror image.
+    pub fn mirrored(self) -> Self {
+        let minus = |value: T| T::zero() - value;
+        let other = |phase: Phase| match phase {
+            Phase::Free => Phase::Free,
+            Phase::LeftStop => Phase::RightStop,
+            Phase::RightStop => Phase::LeftStop,
+        };
+        match self {
+            Self::Stand { at, until, state: (x, v), phase } => {
+                Self::Stand { at, until, state: (minus(x), minus(v)), phase: other(phase) }
+            }
+            Self::Impact { at, side, v_in, v_out } => {
+                Self::Impact { at, side: side.other(), v_in: minus(v_in), v_out: minus(v_out) }
+            }
+            Self::Chatter { .. } => self,
+            Self::Rest { at, side } => Self::Rest { at, side: side.other() },
+            Self::Release { at, side } => Self::Release { at, side: side.other() },
+        }
+    }
+}
+
+impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+    /// Takes in what happened; `base` is the acceleration of the base in m/s^2.
+    pub fn tell(&mut self, told: &Call<T>, base: impl FnMut(&Instant<T>) -> f64) {
+        match told {
+            Call::Stand { at, until, state, phase } => self.stand(at, until, *state, *phase, base),
+            Call::Impact { at, side, v_in, v_out } => self.impact(at, *side, *v_in, *v_out),
+            Call::Chatter { at, v } => self.chatter_sum(at, *v),
+            Call::Rest { at, side } => self.rest(at, *side),
+            Call::Release { at, side } => self.release(at, *side),
+        }
+    }
+
+    fn stand(
+        &mut self,
+        at: &Instant<T>,
+        until: &Instant<T>,
+        (x, v): (T, T),
+        phase: Phase,
+        mut base: impl FnMut(&Instant<T>) -> f64,
+    ) {
+        let length = self.clock.between(at, until);
+        if let Some((from, to)) = self.overlap(at, length) {
+            self.covered.add(to - from);
+            if phase != Phase::Free {
+                self.settled.rested.add(to - from);
+            }
+            if LEDGER {
+                self.settled.displacement.add(x * (to - from));
+            }
+            self.low = self.low.smaller(x);
+            self.high = self.high.larger(x);
+        }
+        let mut told = 0;
+        while let Some(strobe) = self.next_strobe {
+            if self.clock.between(&strobe, until) <= T::zero() {
+                break;
+            }
+            self.strobe(x, T::zero());
+            told += 1;
+            if told == STILL {
+                told = 0;
+                self.skip_strobes(until);
+            }
+        }
+        if self.next_time < self.times.len() {
+            let (begin, end) = (self.clock.seconds(at), self.clock.seconds(until));
+            while let Some(t) = self.next_sample(end) {
+                let base_accel = base(&self.clock.at(t));
+                let v = if t <= begin { v.to_f64() / self.unit } else { 0.0 };
+                self.samples.push(Sample { t, x: x.to_f64(), v, base_accel, phase });
+                self.next_time += 1;
+            }
+        }
+    }
+
+    fn impact(&mut self, at: &Instant<T>, side: Side, v_in: T, v_out: T) {
+        let taken = (v_in * v_in - v_out * v_out) * T::of(0.5);
+        self.whole.impact.add(taken);
+        self.counts.total_impacts += 1;
+        if LEDGER {
+            self.peak_kinetic = self.peak_kinetic.max(0.5 * (v_in * v_in).to_f64());
+        }
+        if self.in_window(at) {
+            self.settled.impact.add(taken);
+            self.counts.impacts += 1;
+            self.impact_speed = self.impact_speed.larger(v_in.abs());
+        }
+        self.event(at, EventKind::Impact, side, v_in.to_f64() / self.unit, v_out.to_f64() / self.unit);
+    }
+
+    /// The mass touches a compliant stop with this signed velocity in kernel units. `strikes`: it came from outside, and
+    /// does not stand there from the start.
+    pub fn touch(&mut self, at: &Instant<T>, side: Side, v: T, strikes: bool) {
+        if strikes {
+            self.counts.total_impacts += 1;
+            if self.in_window(at) {
+                self.counts.impacts += 1;
+                self.impact_speed = self.impact_speed.larger(v.abs());
+            }
+        }
+        if LEDGER {
+            self.peak_kinetic = self.peak_kinetic.max(0.5 * (v * v).to_f64());
+        }
+        let v = v.to_f64() / self.unit;
+        self.event(at, EventKind::Contact, side, v, v);
+    }
+
+    /// The mass leaves a compliant stop with this signed velocity in kernel units.
+    pub fn separate(&mut self, at: &Instant<T>, side: Side, v: T) {
+        let v = v.to_f64() / self.unit;
+        self.event(at, EventKind::Separate, side, v, v);
+    }
+
+    fn chatter_sum(&mut self, at: &Instant<T>, v: T) {
+        let taken = v * v * T::of(0.5);
+        self.counts.sums += 1;
+        self.whole.impact.add(taken);
+        if self.in_window(at) {
+            self.settled.impact.add(taken);
+        }
+    }
+
+    fn rest(&mut self, at: &Instant<T>, side: Side) {
+        self.counts.rests += 1;
+        self.event(at, EventKind::Rest, side, 0.0, 0.0);
+    }
+
+    fn release(&mut self, at: &Instant<T>, side: Side) {
+        if self.in_window(at) {
+            self.counts.releases += 1;
+        }
+        self.judge.release(self.in_periods(at), self.clock.seconds(at));
+        self.event(at, EventKind::Release, side, 0.0, 0.0);
+    }
+}

@@ -1,0 +1,94 @@
+//! Laps that are added by multiplication.
+
+use super::recorder::Recorder;
+use super::sums::{Counts, Sums};
+use crate::dynamics::clock::Instant;
+use crate::numeric::{CompensatedSum, Scalar};
+
+/// Share of the clock's cycle that keeps a stretch of time clear of a border.
+const CLEAR: f64 = 1e-9;
+
+/// The sums and counts of a recorder at an instant.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Totals<T> {
+    whole: Sums<T>,
+    settled: Sums<T>,
+    covered: CompensatedSum<T>,
+    work_moved: f64,
+    counts: Counts,
+    /// What the judge has kept.
+    taped: usize,
+    next_strobe: Option<Instant<T>>,
+}
+
+impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+    pub fn totals(&self) -> Totals<T> {
+        Totals {
+            whole: self.whole,
+            settled: self.settled,
+            covered: self.covered,
+            work_moved: self.work_moved,
+            counts: self.counts,
+            taped: self.judge.taped(),
+            next_strobe: self.next_strobe,
+        }
+    }
+
+    /// Whether the time from `start` to `end` lies wholly inside the settled window, or wholly outside; none where it
+    /// does neither, or ends within rounding of a border.
+    pub fn lies_inside(&self, start: &Instant<T>, end: &Instant<T>) -> Option<bool> {
+        let clear = self.clock.period() * T::of(CLEAR);
+        let (from, to) = &self.window;
+        let between = |a: &Instant<T>, b: &Instant<T>| self.clock.between(a, b);
+        if between(from, start) >= T::zero() && between(end, to) > clear {
+            Some(true)
+        } else if between(end, from) > clear || between(to, start) > clear {
+            Some(false)
+        } else {
+            None
+        }
+    }
+
+    /// Up to when the time after `at` is on the same side of the window's borders, `end` at the latest.
+    pub fn alike_until(&self, at: &Instant<T>, end: &Instant<T>, inside: bool) -> Instant<T> {
+        let (from, to) = self.window;
+        let border =
+            if inside { Some(to) } else { Some(from).filter(|w| self.clock.between(at, w) > T::zero()) };
+        border.filter(|border| self.clock.between(border, end) > T::zero()).unwrap_or(*end)
+    }
+
+    /// From when on, at `at` or later, anything is listed; none where nothing is.
+    pub fn next_listed(&self, at: &Instant<T>) -> Option<Instant<T>> {
+        let sample = self.times.get(self.next_time).map(|t| self.clock.at(*t));
+        if self.events.is_some() { Some(*at) } else { sample }
+    }
+
+    /// Takes sums and counts back to what they were; what has been listed since stays.
+    pub fn take_back(&mut self, totals: &Totals<T>) {
+        self.whole = totals.whole;
+        self.settled = totals.settled;
+        self.covered = totals.covered;
+        self.work_moved = totals.work_moved;
+        self.counts = totals.counts;
+        self.next_strobe = totals.next_strobe;
+    }
+
+    /// Takes in `laps` more laps of `cycles` cycles of the clock, each like the one that led from `before` to `after`, the
+    /// present; all of them inside or all of them outside the window.
+    pub fn repeat(&mut self, before: &Totals<T>, after: &Totals<T>, laps: i64, cycles: i64) {
+        let times = T::of(laps as f64);
+        let more = |sum: &mut CompensatedSum<T>, before: &CompensatedSum<T>, after: &CompensatedSum<T>| {
+            sum.add((after.value() - before.value()) * times);
+        };
+        self.whole.each(&before.whole, &after.whole, more);
+        self.settled.each(&before.settled, &after.settled, more);
+        more(&mut self.covered, &before.covered, &after.covered);
+        self.work_moved += (after.work_moved - before.work_moved) * laps as f64;
+        self.counts.repeat(&before.counts, &after.counts, laps as u64);
+        let periods = cycles / self.period_cycles.max(1);
+        self.judge.repeat(before.taped, after.taped, laps as u64, periods as u64);
+        if let Some(strobe) = &mut self.next_strobe {
+            strobe.cycle += laps * cycles;
+        }
+    }
+}

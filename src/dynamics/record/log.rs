@@ -1,0 +1,271 @@
+//! Log of recorder calls: what a motion did since the first labelled release, kept for replay.
+
+use std::cell::Cell;
+
+use super::events::Call;
+use super::laps::Totals;
+use super::recorder::Recorder;
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::series::polynomial;
+use crate::dynamics::state::{Checkpoint, Label, MotionState};
+use crate::dynamics::step::path::{InTime, Path, StepView};
+use crate::numeric::{GaussLegendre, Scalar};
+
+/// A motion of more entries than this is not kept: a cycle that long would hardly fit into a run twice.
+const MOST_ENTRIES: usize = 1 << 15;
+
+/// One recorder call, kept for replay.
+#[derive(Debug, Clone)]
+enum Entry<T: Copy> {
+    Step(Kept<T>),
+    Call(Call<T>),
+}
+
+/// A step of flight; its coefficients lie in the log.
+#[derive(Debug, Clone)]
+struct Kept<T: Copy> {
+    origin: T,
+    at: Instant<T>,
+    whole: T,
+    length: T,
+    bound: T,
+    limits: (T, T),
+    x: T,
+    v: T,
+    /// Where the coefficients begin, and how many are of the displacement and of the base.
+    first: usize,
+    known: usize,
+    base: usize,
+    /// Which of the log's integrals are those over all of it; a step and its mirror image share them.
+    integrals: usize,
+}
+
+/// A kept step with its coefficients.
+struct KeptPath<'a, T: Copy> {
+    y: &'a [T],
+    a: &'a [T],
+    length: T,
+    integrals: &'a Cell<Option<(T, T)>>,
+}
+
+impl<T: Scalar> InTime for KeptPath<'_, T> {
+    type Number = T;
+
+    fn coefficients(&self) -> &[T] {
+        self.y
+    }
+    fn base_coefficients(&self) -> &[T] {
+        self.a
+    }
+    fn integrals_in_time<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
+        if from != T::zero() || to != self.length {
+            return polynomial::integrals::<T, WORK>(self.y, self.a, rule, from, to);
+        }
+        let known = self.integrals.get();
+        let integrals =
+            known.unwrap_or_else(|| polynomial::integrals::<T, WORK>(self.y, self.a, rule, from, to));
+        self.integrals.set(Some(integrals));
+        integrals
+    }
+}
+
+/// Where the motion stood before it went on by a step or a rest.
+#[derive(Debug, Clone, Copy)]
+struct Mark<T> {
+    point: Checkpoint<T>,
+    /// Entries before it.
+    entries: usize,
+}
+
+/// Everything since the first labelled release.
+#[derive(Debug, Clone)]
+pub(crate) struct Log<T: Copy> {
+    entries: Vec<Entry<T>>,
+    coefficients: Vec<T>,
+    /// Integrals over whole steps, once they have been taken.
+    integrals: Vec<Cell<Option<(T, T)>>>,
+    marks: Vec<Mark<T>>,
+    /// The releases with a label: where they stand, and what the recorder had then.
+    labels: Vec<(Label<T>, usize, Totals<T>)>,
+}
+
+/// Turns one cycle of a log into another: later by whole cycles of the clock.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Later(pub i64);
+
+impl Later {
+    fn instant<T: Scalar>(self, at: &Instant<T>) -> Instant<T> {
+        Instant { cycle: at.cycle + self.0, phase: at.phase }
+    }
+}
+
+impl<T: Scalar> Log<T> {
+    pub fn new() -> Self {
+        Self {
+            entries: Vec::with_capacity(96),
+            coefficients: Vec::with_capacity(1024),
+            integrals: Vec::with_capacity(64),
+            marks: Vec::with_capacity(64),
+            labels: Vec::new(),
+        }
+    }
+
+    /// Whether there is room for more.
+    pub fn has_room(&self) -> bool {
+        self.entries.len() < MOST_ENTRIES
+    }
+
+    pub fn add(&mut self, told: Call<T>) {
+        self.entries.push(Entry::Call(told));
+    }
+
+    /// Keeps a step, where it is one in time.
+    pub fn add_step<P: Path<T>>(&mut self, step: &StepView<T, P>) {
+        let Some((y, a)) = step.path.in_time() else { return };
+        let first = self.coefficients.len();
+        self.coefficients.extend_from_slice(y);
+        self.coefficients.extend_from_slice(a);
+        self.entries.push(Entry::Step(Kept {
+            origin: step.origin,
+            at: step.at,
+            whole: step.whole,
+            length: step.length,
+            bound: step.bound,
+            limits: step.limits,
+            x: step.x,
+            v: step.v,
+            first,
+            known: y.len(),
+            base: a.len(),
+            integrals: self.integrals.len(),
+        }));
+        self.integrals.push(Cell::new(None));
+    }
+
+    /// Cycles of the clock since the last labelled release.
+    pub fn cycles_until(&self, at: &Instant<T>) -> i64 {
+        self.labels
+            .last()
+            .and_then(|(_, mark, _)| self.marks.get(*mark))
+            .map_or(0, |mark| at.cycle - mark.point.state.at.cycle)
+    }
+
+    pub fn mark(&mut self, point: Checkpoint<T>) {
+        self.marks.push(Mark { point, entries: self.entries.len() });
+    }
+
+    pub fn label(&mut self, label: Label<T>, totals: Totals<T>) {
+        self.labels.push((label, self.marks.len(), totals));
+    }
+
+    /// The release among those kept that `wanted` says yes to: the index of its mark, and the totals of then.
+    pub fn find(&self, wanted: impl Fn(&Label<T>) -> bool) -> Option<(usize, Totals<T>)> {
+        self.labels.iter().find(|(label, ..)| wanted(label)).map(|(_, mark, totals)| (*mark, *totals))
+    }
+
+    /// Number of marks.
+    pub fn marks(&self) -> usize {
+        self.marks.len()
+    }
+
+    /// When the motion stood at a mark.
+    pub fn at(&self, mark: usize) -> Instant<T> {
+        self.marks[mark].point.state.at
+    }
+
+    /// The last mark from `first` on that is not after `end` when it is `later`.
+    pub fn last_before(&self, first: usize, later: Later, end: &Instant<T>, clock: &Clock<T>) -> usize {
+        let reached = |mark: &Mark<T>| clock.between(&later.instant(&mark.point.state.at), end) >= T::zero();
+        first + self.marks[first + 1..].partition_point(reached)
+    }
+
+    /// The motion that was kept at a mark, `later`.
+    pub fn point_later(&self, mark: usize, later: Later) -> Checkpoint<T> {
+        let Checkpoint { state, barrier_side } = self.marks[mark].point;
+        let state = MotionState { at: later.instant(&state.at), refused: None, ..state };
+        Checkpoint { state, barrier_side }
+    }
+
+    /// Tells the recorder once more what it was told between two marks (to the end without a second), `later`; how many
+    /// entries those are.
+    pub fn play<const LEDGER: bool>(
+        &self,
+        record: &mut Recorder<T, LEDGER>,
+        (from, to): (usize, Option<usize>),
+        later: Later,
+        mut base: impl FnMut(&Instant<T>) -> f64,
+    ) -> usize {
+        let end = to.map_or(self.entries.len(), |mark| self.marks[mark].entries);
+        let entries = &self.entries[self.marks[from].entries..end];
+        for entry in entries {
+            match entry {
+                Entry::Step(step) => {
+                    let (y, a) =
+                        self.coefficients[step.first..][..step.known + step.base].split_at(step.known);
+                    let view = StepView {
+                        path: &KeptPath {
+                            y,
+                            a,
+                            length: step.length,
+                            integrals: &self.integrals[step.integrals],
+                        },
+                        origin: step.origin,
+                        at: later.instant(&step.at),
+                        whole: step.whole,
+                        length: step.length,
+                        duration: step.length,
+                        bound: step.bound,
+                        limits: step.limits,
+                        x: step.x,
+                        v: step.v,
+                    };
+                    record.step(&view, &mut base);
+                }
+                Entry::Call(told) => record.tell(&told.when(|at| later.instant(at)), &mut base),
+            }
+        }
+        entries.len()
+    }
+
+    /// Appends the mirror image of everything from mark `first` on, later by half a cycle of the clock and `cycles`
+    /// whole ones; `modes` is their number.
+    pub fn append_mirrored(&mut self, first: usize, cycles: i64, modes: usize, clock: &Clock<T>) {
+        let half = clock.period() * T::of(0.5);
+        let instant = |at: &Instant<T>| {
+            let at = clock.advance(at, half);
+            Instant { cycle: at.cycle + cycles, phase: at.phase }
+        };
+        let minus = |value: T| T::zero() - value;
+        let (entries, marks) = (self.entries.len(), self.marks.len());
+        let from = self.marks[first].entries;
+        for index in first..marks {
+            let Mark { point: Checkpoint { state, barrier_side }, entries: before } = self.marks[index];
+            let state = MotionState { at: instant(&state.at), refused: None, ..state.mirrored(modes) };
+            self.marks.push(Mark {
+                point: Checkpoint { state, barrier_side: -barrier_side },
+                entries: before + entries - from,
+            });
+        }
+        for index in from..entries {
+            let mirrored = match self.entries[index].clone() {
+                Entry::Step(step) => {
+                    let first = self.coefficients.len();
+                    for place in step.first..step.first + step.known + step.base {
+                        self.coefficients.push(minus(self.coefficients[place]));
+                    }
+                    Entry::Step(Kept {
+                        origin: minus(step.origin),
+                        at: instant(&step.at),
+                        limits: (minus(step.limits.1), minus(step.limits.0)),
+                        x: minus(step.x),
+                        v: minus(step.v),
+                        first,
+                        ..step
+                    })
+                }
+                Entry::Call(told) => Entry::Call(told.when(instant).mirrored()),
+            };
+            self.entries.push(mirrored);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Record: what of a run is kept, and what comes out of it. Nothing here acts on the motion.
+
+pub(crate) mod barrier;
+mod crossings;
+pub(crate) mod event_free;
+pub(crate) mod events;
+pub(crate) mod laps;
+pub(crate) mod log;
+pub(crate) mod recorder;
+mod regime;
+mod repeats;
+mod steps;
+pub(crate) mod summary;
+mod sums;
+mod window;

@@ -1,0 +1,157 @@
+//! What of a run is kept: samples, events, statistics, ledger. Nothing here acts on the motion.
+
+use std::sync::atomic::AtomicBool;
+
+use super::barrier::side_of;
+use super::regime::Judge;
+use super::sums::{Counts, Sums};
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::model::Model;
+use crate::dynamics::result::{Event, EventKind, Request, Sample, Side};
+use crate::numeric::{CompensatedSum, Scalar};
+
+/// The most stroboscopic states that are told one by one: some tenths of a second of one core, and more than a run makes
+/// whose steps are shorter than a forcing period. What comes after them is not judged.
+pub(crate) const MOST_STROBES: u32 = 1 << 22;
+
+pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
+    pub model: &'a Model,
+    pub clock: Clock<T>,
+    pub unit: f64,
+    pub times: &'a [f64],
+    pub next_time: usize,
+    pub cancel: Option<&'a AtomicBool>,
+    /// Samples between two looks at that, and since the last.
+    pub samples_per_look: u64,
+    pub samples_since_look: u64,
+    /// Samples were left out since the run is told to stop.
+    pub cut_short: bool,
+    pub samples: Vec<Sample>,
+    pub events: Option<Vec<Event>>,
+    pub window: (Instant<T>, Instant<T>),
+    /// Forcing period in kernel units; 0 where the drive has none.
+    pub period: T,
+    pub whole: Sums<T>,
+    pub settled: Sums<T>,
+    pub low: T,
+    pub high: T,
+    pub covered: CompensatedSum<T>,
+    pub work_moved: f64,
+    pub peak_kinetic: f64,
+    /// Lowest and highest displacement at the ends of steps over the whole run, where there is a ledger.
+    pub places: (f64, f64),
+    pub barrier: Option<T>,
+    /// -1, 0 (on it since the start) or 1.
+    pub barrier_side: i8,
+    pub judge: Judge,
+    /// The first instant of the run at the window's phase.
+    pub origin: Instant<T>,
+    pub next_strobe: Option<Instant<T>>,
+    /// Cycles of the clock in a forcing period.
+    pub period_cycles: i64,
+    /// How many stroboscopic states may still be told one by one.
+    pub strobes_left: u32,
+    /// Forcing periods in the window.
+    pub periods: u64,
+    /// Speed of the fastest impact in the window.
+    pub impact_speed: T,
+    pub counts: Counts,
+    /// Largest force of a compliant stop over mass, kernel units.
+    pub peak_contact: T,
+    /// Order of the series.
+    pub order: usize,
+}
+
+impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
+    pub fn new(
+        model: &'a Model,
+        clock: Clock<T>,
+        unit: f64,
+        order: usize,
+        request: &Request<'a>,
+        start: (T, T),
+    ) -> Self {
+        let from = clock.at(model.settle);
+        let (periods, cycles) = model.window_periods();
+        let to = if periods > 0 {
+            Instant { cycle: from.cycle + periods as i64 * cycles, phase: from.phase }
+        } else {
+            clock.at(model.duration)
+        };
+        let origin = match cycles {
+            0 => from,
+            _ => Instant { cycle: from.cycle.rem_euclid(cycles), phase: from.phase },
+        };
+        let first = if cycles == 0 { 0 } else { from.cycle.div_euclid(cycles) as u64 };
+        let scales = (model.scales.length, model.scales.speed);
+        let barrier = model.crossing_level.map(T::of);
+        let side = barrier.map_or(0, |b| side_of(start.0, b));
+        let mut samples = Vec::new();
+        samples.reserve_exact(request.sample_times.len());
+        Self {
+            model,
+            clock,
+            unit,
+            times: request.sample_times,
+            next_time: 0,
+            cancel: request.cancel,
+            samples_per_look: 1,
+            samples_since_look: 0,
+            cut_short: false,
+            samples,
+            events: request.events.then(Vec::new),
+            window: (from, to),
+            period: clock.period() * T::of(cycles as f64),
+            whole: Sums::new(),
+            settled: Sums::new(),
+            low: T::of(f64::INFINITY),
+            high: T::of(f64::NEG_INFINITY),
+            covered: CompensatedSum::new(),
+            work_moved: 0.0,
+            peak_kinetic: 0.5 * (start.1 * start.1).to_f64(),
+            places: (start.0.to_f64(), start.0.to_f64()),
+            barrier,
+            barrier_side: side,
+            judge: Judge::new(model.rhythm, scales, periods, first),
+            origin,
+            next_strobe: (periods > 0).then_some(origin),
+            period_cycles: cycles,
+            strobes_left: MOST_STROBES,
+            periods,
+            impact_speed: T::zero(),
+            counts: Counts::default(),
+            peak_contact: T::zero(),
+            order,
+        }
+    }
+
+    /// The part of [at, at + length) inside the settled window, from the start of the step.
+    #[inline]
+    pub(crate) fn overlap(&self, at: &Instant<T>, length: T) -> Option<(T, T)> {
+        let from = self.clock.between(at, &self.window.0).larger(T::zero());
+        let to = self.clock.between(at, &self.window.1).smaller(length);
+        (to > from).then_some((from, to))
+    }
+
+    pub fn in_window(&self, at: &Instant<T>) -> bool {
+        self.clock.between(&self.window.0, at) >= T::zero()
+            && self.clock.between(at, &self.window.1) > T::zero()
+    }
+
+    /// Forcing periods since the first stroboscopic state; NaN where the drive has no period.
+    pub(crate) fn in_periods(&self, at: &Instant<T>) -> f64 {
+        (self.clock.between(&self.origin, at) / self.period).to_f64()
+    }
+
+    /// Whether the instant of every crossing matters.
+    pub(crate) fn lists_crossings(&self) -> bool {
+        self.events.is_some() || self.judge.times_all_crossings()
+    }
+
+    /// Lists an event, where events are listed.
+    pub fn event(&mut self, at: &Instant<T>, kind: EventKind, side: Side, v_in: f64, v_out: f64) {
+        if let Some(events) = &mut self.events {
+            events.push(Event { t: self.clock.seconds(at), kind, side, v_in, v_out });
+        }
+    }
+}

@@ -1,0 +1,377 @@
+//! Judgement of a run: regime, period, whether the motion has settled, and what happened first.
+
+use super::repeats::{Crossings, Strobe, Strobes};
+use crate::dynamics::model::excitation::Rhythm;
+use crate::dynamics::result::{First, Firsts, Side};
+
+/// Forcing periods of a run before irregular motion may be called settled. Without stops the prototype moves without
+/// a period for up to 180 of them before it finds one, and nothing in such a transient tells that it will end.
+const OLD_ENOUGH: u64 = 200;
+
+/// Forcing periods of a window whose halves can be compared.
+const ENOUGH_TO_COMPARE: u64 = 8;
+
+/// Two halves agree where their means differ by at most so many standard errors.
+const STANDARD_ERRORS: f64 = 3.0;
+
+/// What a lap of a motion that comes back has told, kept to be told again.
+#[derive(Debug, Clone, Copy)]
+enum Call {
+    Strobe(Strobe),
+    Crossing { time: f64, side: Side, seconds: f64 },
+    Release { time: f64, seconds: f64 },
+}
+
+/// One quantity over the forcing periods of half a window.
+#[derive(Debug, Clone, Copy, Default)]
+struct Half {
+    count: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Half {
+    fn add(&mut self, value: f64) {
+        self.count += 1.0;
+        self.sum += value;
+        self.squares += value * value;
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.count
+    }
+
+    /// Square of the mean's standard error.
+    fn error_squared(&self) -> f64 {
+        let mean = self.mean();
+        (self.squares / self.count - mean * mean).max(0.0) / (self.count - 1.0)
+    }
+
+    fn agrees(&self, other: &Self) -> bool {
+        let apart = self.mean() - other.mean();
+        apart * apart <= STANDARD_ERRORS * STANDARD_ERRORS * (self.error_squared() + other.error_squared())
+    }
+}
+
+/// The forcing periods of a window in which something happened.
+#[derive(Debug, Clone, Copy, Default)]
+struct PeriodsWith {
+    count: u64,
+    last: Option<i64>,
+}
+
+impl PeriodsWith {
+    fn tell(&mut self, period: i64) {
+        self.count += u64::from(self.last != Some(period));
+        self.last = Some(period);
+    }
+}
+
+/// What is kept of a run to judge it. Times are in forcing periods since the first stroboscopic state, which is the first
+/// instant of the run at the window's phase, unless said otherwise.
+#[derive(Debug, Clone)]
+pub(crate) struct Judge {
+    rhythm: Rhythm,
+    /// Forcing periods in the window, and the one at which it begins.
+    periods: u64,
+    from: u64,
+    strobes: Strobes,
+    crossings: Crossings,
+    crossing_periods: PeriodsWith,
+    release_periods: PeriodsWith,
+    /// Integral of the squared velocity, and crossings, over each period of either half of the window.
+    speed: [Half; 2],
+    crossed: [Half; 2],
+    last: (f64, u64),
+    /// Time in s since when the motion has come back exactly, where it has.
+    recurs_since: Option<f64>,
+    firsts: Firsts,
+    /// Forcing period of the last crossing of the whole run.
+    last_crossing: Option<i64>,
+    tape: Option<Vec<Call>>,
+}
+
+impl Judge {
+    /// Of a settled window of so many forcing periods, which begins with the stroboscopic state number `from`.
+    pub fn new(rhythm: Rhythm, scales: (f64, f64), periods: u64, from: u64) -> Self {
+        Self {
+            rhythm,
+            periods,
+            from,
+            strobes: Strobes::new(scales, periods, from),
+            crossings: Crossings::new(periods),
+            crossing_periods: PeriodsWith::default(),
+            release_periods: PeriodsWith::default(),
+            speed: [Half::default(); 2],
+            crossed: [Half::default(); 2],
+            last: (0.0, 0),
+            recurs_since: None,
+            firsts: Firsts::default(),
+            last_crossing: None,
+            tape: None,
+        }
+    }
+
+    /// Whether the instants of crossings outside the window matter too: of a drive that changes what happened first is
+    /// told.
+    pub fn times_all_crossings(&self) -> bool {
+        self.rhythm == Rhythm::Changing
+    }
+
+    fn keep(&mut self, told: Call) {
+        if let Some(tape) = &mut self.tape {
+            tape.push(told);
+        }
+    }
+
+    /// A stroboscopic state; the integral of the squared velocity and the number of crossings since the window's begin.
+    pub fn strobe(&mut self, state: Strobe, squared_velocity: f64, crossings: u64) {
+        self.keep(Call::Strobe(state));
+        let number = self.strobes.seen();
+        self.strobes.tell(state);
+        if number > self.from && number <= self.from + self.periods {
+            let half = usize::from(2 * (number - self.from) > self.periods);
+            self.speed[half].add(squared_velocity - self.last.0);
+            self.crossed[half].add((crossings - self.last.1) as f64);
+        }
+        self.last = (squared_velocity, crossings);
+    }
+
+    /// A crossing into the well on `side`; `seconds` since the run's begin.
+    pub fn crossing(&mut self, time: f64, side: Side, seconds: f64) {
+        self.keep(Call::Crossing { time, side, seconds });
+        if self.rhythm == Rhythm::Changing {
+            let first = First { t: seconds, amplitude: None };
+            self.firsts.crossing.get_or_insert(first);
+            if time.is_finite() {
+                let period = time.floor() as i64;
+                if self.last_crossing.is_none_or(|last| period > last + 1) {
+                    self.firsts.crossing_in_every_period = Some(first);
+                }
+                self.last_crossing = Some(period);
+            }
+        }
+        if let Some(inside) = self.in_window(time) {
+            if self.rhythm == Rhythm::Periodic {
+                self.crossings.tell(inside, side);
+            }
+            self.crossing_periods.tell(inside.floor() as i64);
+        }
+    }
+
+    /// A release from rest on a stop.
+    pub fn release(&mut self, time: f64, seconds: f64) {
+        self.keep(Call::Release { time, seconds });
+        if self.rhythm == Rhythm::Changing {
+            self.firsts.release.get_or_insert(First { t: seconds, amplitude: None });
+        }
+        if let Some(inside) = self.in_window(time) {
+            self.release_periods.tell(inside.floor() as i64);
+        }
+    }
+
+    /// The time since the window's begin, where it is inside.
+    fn in_window(&self, time: f64) -> Option<f64> {
+        let inside = time - self.from as f64;
+        (inside >= 0.0 && inside < self.periods as f64).then_some(inside)
+    }
+
+    /// Keeps from now on what is told, to tell it again.
+    pub fn begin_tape(&mut self) {
+        self.tape = Some(Vec::new());
+    }
+
+    /// Keeps no more.
+    pub fn end_tape(&mut self) {
+        self.tape = None;
+    }
+
+    /// How much has been kept.
+    pub fn taped(&self) -> usize {
+        self.tape.as_ref().map_or(0, Vec::len)
+    }
+
+    /// The motion has come back to where it was at this time in s, exactly.
+    pub fn comes_back(&mut self, since: f64) {
+        self.recurs_since.get_or_insert(since);
+    }
+
+    /// Takes in `laps` more laps like the one that was kept between these two places, each of so many forcing periods.
+    pub fn repeat(&mut self, from: usize, to: usize, laps: u64, periods: u64) {
+        let Some(tape) = self.tape.take() else { return };
+        // As many laps as any judgement looks back, and one more to see what each of them adds.
+        let told = laps.min(2 * self.strobes.longest() as u64 / periods.max(1) + 4);
+        let mut before = (0, 0);
+        for lap in 1..=told {
+            before = (self.crossing_periods.count, self.release_periods.count);
+            let later = (lap * periods) as f64;
+            for entry in tape.get(from..to).unwrap_or_default() {
+                match *entry {
+                    Call::Strobe(state) => self.strobe(state, self.last.0, self.last.1),
+                    Call::Crossing { time, side, seconds } => self.crossing(time + later, side, seconds),
+                    Call::Release { time, seconds } => self.release(time + later, seconds),
+                }
+            }
+        }
+        let left = laps - told;
+        if left > 0 {
+            let later = left * periods;
+            let more = |own: &mut PeriodsWith, before: u64| {
+                own.count += left * (own.count - before);
+                own.last = own.last.map(|last| last + later as i64);
+            };
+            more(&mut self.crossing_periods, before.0);
+            more(&mut self.release_periods, before.1);
+            self.strobes.skip(later, periods);
+            self.crossings.skip(later as f64);
+            self.last_crossing = self.last_crossing.map(|last| last + later as i64);
+        }
+        self.tape = Some(tape);
+    }
+
+    /// Takes in `more` stroboscopic states like each of the last ones, none of them on another side of a border of the window.
+    pub fn skip_still(&mut self, more: u64) {
+        self.strobes.skip(more, 1);
+    }
+
+    /// Whether the crossings of the window repeat, by themselves or with the motion.
+    pub fn crossings_repeat(&self) -> bool {
+        self.period().is_some() || self.crossings.repeat()
+    }
+
+    /// The smallest number of forcing periods, at most 12 and half the window, after which all stroboscopic states of the
+    /// window repeat, and the number of the state since which they have.
+    fn repeats(&self) -> Option<(u32, u64)> {
+        self.strobes.period().filter(|_| self.rhythm == Rhythm::Periodic)
+    }
+
+    /// The period in forcing periods.
+    pub fn period(&self) -> Option<u32> {
+        self.repeats().map(|(period, _)| period)
+    }
+
+    /// Whether the motion repeats: it has come back exactly, or its states do and stand still.
+    pub fn has_settled(&self) -> bool {
+        let steady = |period| self.strobes.is_steady(period);
+        self.recurs_since.is_some() || self.period().is_some_and(steady)
+    }
+
+    /// Whether the motion has settled, where the drive is such that this can be said; `moved` in the window at all.
+    pub fn settled(&self, moved: bool) -> Option<bool> {
+        match self.rhythm {
+            Rhythm::Changing => None,
+            Rhythm::Absent => Some(!moved),
+            Rhythm::Periodic => Some(self.has_settled() || self.is_stationary()),
+        }
+    }
+
+    /// Whether it is irregular for good, as far as can be told: old, and both halves of the window alike.
+    fn is_stationary(&self) -> bool {
+        self.strobes.seen() >= OLD_ENOUGH
+            && self.period().is_none()
+            && self.periods >= ENOUGH_TO_COMPARE
+            && self.speed[0].agrees(&self.speed[1])
+            && self.crossed[0].agrees(&self.crossed[1])
+    }
+
+    /// Time in s since when the motion has repeated; `at` gives the time of a stroboscopic state.
+    pub fn settles_at(&self, at: impl Fn(u64) -> f64) -> Option<f64> {
+        let since = self.repeats().map(|(_, since)| at(since));
+        since.or(self.recurs_since).filter(|_| self.has_settled())
+    }
+
+    /// Forcing periods of the window with a crossing, and with a release.
+    pub fn periods_with(&self) -> (u64, u64) {
+        (self.crossing_periods.count, self.release_periods.count)
+    }
+
+    /// What happened first under a drive that changes, up to so many forcing periods.
+    pub fn firsts(&self, end: f64, amplitude: impl Fn(f64) -> Option<f64>) -> Option<Firsts> {
+        let mut firsts = self.firsts;
+        let lasting = |last: i64| last >= end.floor() as i64 - 1;
+        if !self.last_crossing.is_some_and(lasting) {
+            firsts.crossing_in_every_period = None;
+        }
+        let all = [&mut firsts.release, &mut firsts.crossing, &mut firsts.crossing_in_every_period];
+        all.into_iter().flatten().for_each(|first| first.amplitude = amplitude(first.t));
+        (self.rhythm == Rhythm::Changing).then_some(firsts)
+    }
+
+    /// The settled window begins anew at its end, which is where the run stands.
+    pub fn open_window(&mut self) {
+        self.from += self.periods;
+        self.strobes.open_window();
+        self.crossings = Crossings::new(self.periods);
+        (self.crossing_periods, self.release_periods) = Default::default();
+        (self.speed, self.crossed, self.last) = Default::default();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn judge(periods: u64) -> Judge {
+        Judge::new(Rhythm::Periodic, (1.0, 1.0), periods, 0)
+    }
+
+    /// One lap of `period` periods with a crossing in each but the last, and a state at each.
+    fn lap(judge: &mut Judge, first: u64, period: u64) {
+        for own in 0..period {
+            judge.strobe(Strobe { x: own as f64, v: 0.0 }, 0.0, 0);
+            if own + 1 < period {
+                judge.crossing((first + own) as f64 + 0.5, Side::Right, 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn laps_that_are_not_told_count() {
+        for period in [1, 2, 5, 13] {
+            let (laps, mut long, mut short) = (200, judge(200 * period), judge(200 * period));
+            long.begin_tape();
+            lap(&mut long, 0, period);
+            long.repeat(0, long.taped(), laps - 1, period);
+            (0..laps).for_each(|own| lap(&mut short, own * period, period));
+            assert_eq!(long.period(), short.period(), "{period}");
+            assert_eq!(long.period(), (period <= 12).then_some(period as u32));
+            assert_eq!(long.periods_with(), short.periods_with());
+            assert_eq!(long.crossings_repeat(), short.crossings_repeat());
+            assert_eq!(long.strobes.seen(), short.strobes.seen());
+            assert_eq!(long.settles_at(|own| own as f64), short.settles_at(|own| own as f64));
+        }
+    }
+
+    #[test]
+    fn irregular_motion_is_settled_once_it_is_old_and_its_halves_agree() {
+        let noise = |i: u64| f64::from((i * 7919 % 1009) as u32) / 1009.0;
+        let run = |periods: u64, drift: f64| {
+            let (mut judge, mut sum) = (judge(periods), 0.0);
+            for i in 0..=periods {
+                judge.strobe(Strobe { x: noise(i), v: 0.0 }, sum, 0);
+                sum += 1.0 + noise(i) + drift * i as f64;
+            }
+            judge
+        };
+        assert_eq!(run(300, 0.0).settled(true), Some(true));
+        assert_eq!(run(300, 0.01).settled(true), Some(false));
+        assert_eq!(run(100, 0.0).settled(true), Some(false));
+        assert_eq!(run(300, 0.0).period(), None);
+    }
+
+    #[test]
+    fn of_a_drive_that_changes_it_is_told_what_happened_first() {
+        let mut judge = Judge::new(Rhythm::Changing, (1.0, 1.0), 10, 0);
+        judge.release(2.2, 2.2);
+        for time in [3.5, 6.5, 7.5, 8.5, 9.5] {
+            judge.crossing(time, Side::Left, time);
+        }
+        let firsts = judge.firsts(10.0, |t| Some(0.1 * t)).unwrap();
+        assert_eq!(firsts.release.unwrap().t, 2.2);
+        assert_eq!(firsts.crossing.unwrap().t, 3.5);
+        assert_eq!(firsts.crossing_in_every_period, Some(First { t: 6.5, amplitude: Some(0.1 * 6.5) }));
+        assert_eq!(judge.firsts(12.0, |_| None).unwrap().crossing_in_every_period, None);
+        assert_eq!((judge.settled(true), judge.period()), (None, None));
+        assert!(super::tests::judge(4).firsts(1.0, |_| None).is_none());
+    }
+}

@@ -1,0 +1,169 @@
+//! Recording of steps: integrals, extremes, samples.
+
+use std::sync::atomic::Ordering;
+
+use super::barrier::side_of;
+use super::recorder::Recorder;
+use crate::dynamics::clock::Instant;
+use crate::dynamics::result::Sample;
+use crate::dynamics::series::{ROOM, polynomial};
+use crate::dynamics::step::chord::Chord;
+use crate::dynamics::step::path::{Path, StepView};
+use crate::dynamics::step::penetration::Penetration;
+use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
+
+impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+    /// What integrals over a step are taken with: half as many points as a full series has coefficients, and no more than
+    /// a shorter one needs.
+    #[inline]
+    fn rule_of<P: Path<T>>(&self, path: &P) -> &'static GaussLegendre<T> {
+        let points = self.order / 2 + 1;
+        T::gauss_legendre(if P::IN_CONTACT { points } else { points.min(path.known() - 1) })
+    }
+
+    /// Takes in a step of free flight, or of contact with a compliant stop.
+    #[inline]
+    pub fn step<P: Path<T>>(&mut self, step: &StepView<T, P>, mut base: impl FnMut(&Instant<T>) -> f64) {
+        let overlap = self.overlap(&step.at, step.duration);
+        let rule = self.rule_of(step.path);
+        let full = overlap.is_some_and(|(from, to)| from == T::zero() && to == step.duration);
+        if LEDGER {
+            let (squared, av) = step.path.integrals::<true>(rule, T::zero(), step.length);
+            self.whole.squared_velocity.add(squared);
+            self.whole.work.add(-av);
+            self.work_moved += av.to_f64().abs();
+            self.peak_kinetic = self.peak_kinetic.max(0.5 * (step.v * step.v).to_f64());
+            let x = step.x.to_f64();
+            self.places = (self.places.0.min(x), self.places.1.max(x));
+            if full {
+                self.settled.squared_velocity.add(squared);
+                self.settled.work.add(-av);
+            }
+        }
+        if let Some((begin, end)) = overlap {
+            // (a time of contact is inverted to half its digits, which the ends of a whole step need not suffer)
+            let (from, to) = match full {
+                true => (T::zero(), step.length),
+                false => (step.path.parameter(begin, step.length), step.path.parameter(end, step.length)),
+            };
+            if !LEDGER || !full {
+                let (squared, av) = step.path.integrals::<LEDGER>(rule, from, to);
+                self.settled.squared_velocity.add(squared);
+                self.settled.work.add(-av);
+            }
+            self.covered.add(end - begin);
+            if P::IN_CONTACT {
+                self.settled.rested.add(end - begin);
+            }
+            if LEDGER {
+                let moment = step.path.moment(rule, from, to) + step.origin * (end - begin);
+                self.settled.displacement.add(moment);
+            }
+            self.extremes(step, from, to, full);
+        }
+        if let Some(barrier) = self.barrier {
+            let end_side = side_of(step.x, barrier);
+            let gap = (step.path.start() + step.origin) - barrier;
+            if end_side != self.barrier_side || !(gap.abs() > step.bound) {
+                self.crossings(step, gap, end_side);
+            }
+        }
+        if self.next_strobe.is_some() {
+            self.strobes(step);
+        }
+        if self.next_time < self.times.len() {
+            let end = self.clock.seconds(&self.clock.advance(&step.at, step.duration));
+            while let Some(t) = self.next_sample(end) {
+                let instant = self.clock.at(t);
+                let into = self.clock.between(&step.at, &instant).larger(T::zero()).smaller(step.duration);
+                let into = step.path.parameter(into, step.length);
+                self.samples.push(Sample {
+                    t,
+                    x: step.x_at(into).to_f64(),
+                    v: step.path.velocity(into).to_f64() / self.unit,
+                    base_accel: base(&instant),
+                    phase: step.path.phase(),
+                });
+                self.next_time += 1;
+            }
+        }
+    }
+
+    /// The time in s of the next sample, where it comes before `end`. A single step, or a rest, may hold all that there are,
+    /// each with the sum of a drive's tones: once the run is told to stop there are no more.
+    pub fn next_sample(&mut self, end: f64) -> Option<f64> {
+        let next = self.times.get(self.next_time).copied().filter(|t| *t < end)?;
+        self.samples_since_look += 1;
+        if self.samples_since_look >= self.samples_per_look {
+            self.samples_since_look = 0;
+            if self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+                self.times = &self.times[..self.next_time];
+                self.cut_short = true;
+                return None;
+            }
+        }
+        Some(next)
+    }
+
+    fn extremes<P: Path<T>>(&mut self, step: &StepView<T, P>, from: T, to: T, full: bool) {
+        let (first, last) = match full {
+            true => (step.path.start() + step.origin, step.x),
+            false => (step.x_at(from), step.x_at(to)),
+        };
+        let endless = T::of(f64::INFINITY);
+        let mut chord = Chord { start: first, end: last, bound: endless, bend: endless, limits: step.limits };
+        chord.bound = if full { step.bound } else { step.bound + step.bound };
+        let (low, high, mut turns) = chord.extremes((self.low, self.high));
+        if turns
+            && full
+            && step.length == step.whole
+            && let Some((y, _)) = step.path.in_time()
+        {
+            chord.bend = polynomial::chord_deviation(y, step.length);
+            (_, _, turns) = chord.extremes((low, high));
+        }
+        (self.low, self.high) = (low, high);
+        if turns {
+            let n = step.path.known();
+            let mut slope = [T::zero(); ROOM];
+            let scaled = step.path.scaled(step.whole);
+            for (k, slot) in (1..n).zip(slope.iter_mut()) {
+                *slot = scaled[k] * T::whole(k);
+            }
+            if slope[0] < T::zero() {
+                // a value of 0 counts as negative: the mirrored motion must be told the same
+                slope[..n - 1].iter_mut().for_each(|c| *c = -*c);
+            }
+            PolynomialRoots::new(&slope[..n - 1]).each_sign_change(|s| {
+                let t = s * step.whole;
+                if t >= from && t <= to {
+                    let x = step.x_at(t);
+                    self.low = self.low.smaller(x);
+                    self.high = self.high.larger(x);
+                }
+                true
+            });
+        }
+    }
+
+    /// What a compliant stop took and how hard it was pressed, over a step in contact that has been taken in.
+    pub fn contact(&mut self, step: &StepView<T, Penetration<T>>) {
+        if LEDGER {
+            let rule = self.rule_of(step.path);
+            let whole = step.path.loss(rule, T::zero(), step.length);
+            self.whole.impact.add(whole);
+            match self.overlap(&step.at, step.duration) {
+                Some((from, to)) if from == T::zero() && to == step.duration => {
+                    self.settled.impact.add(whole)
+                }
+                Some((from, to)) => {
+                    let parameter = |time: T| step.path.parameter(time, step.length);
+                    self.settled.impact.add(step.path.loss(rule, parameter(from), parameter(to)));
+                }
+                None => {}
+            }
+        }
+        let until = if step.whole > T::zero() { step.length / step.whole } else { T::zero() };
+        self.peak_contact = step.path.peak(step.whole, until, self.peak_contact);
+    }
+}

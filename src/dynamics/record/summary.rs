@@ -1,0 +1,155 @@
+//! What comes out of a record: the statistics, the regime and the energy ledger.
+
+use super::recorder::Recorder;
+use crate::dynamics::clock::Instant;
+use crate::dynamics::model::excitation::Rhythm;
+use crate::dynamics::result::{Ledger, Outcome, Phase, Place, Regime, Run, Sample, Summary};
+use crate::numeric::{CompensatedSum, Scalar};
+
+/// Below this share of the length scale a motion is rounding: the mass has not moved.
+const STILL: f64 = 1e-12;
+
+/// How a run ended, as the recorder needs it.
+pub(crate) struct Ending<T> {
+    pub at: Instant<T>,
+    /// Displacement and velocity, kernel units.
+    pub state: (T, T),
+    /// Velocity at time 0, kernel units.
+    pub start_v: T,
+    pub phase: Phase,
+    /// Change of the potential over the run in J.
+    pub potential: f64,
+    pub outcome: Outcome,
+}
+
+impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+    /// Closes the record.
+    pub fn finish(mut self, ending: &Ending<T>, base: impl Fn(&Instant<T>) -> f64) -> Run {
+        let &Ending { at: end, state: (x, v), start_v, phase, potential, outcome } = ending;
+        let final_x = x.to_f64();
+        let final_v = v.to_f64() / self.unit;
+        // What was asked for at the very end (to rounding) is the final state.
+        let last = self.clock.seconds(&end);
+        while let Some(t) = self.times.get(self.next_time).copied() {
+            if t > last * (1.0 + 4.0 * f64::EPSILON) {
+                break;
+            }
+            self.samples.push(Sample {
+                t,
+                x: final_x,
+                v: final_v,
+                base_accel: base(&self.clock.at(t)),
+                phase,
+            });
+            self.next_time += 1;
+        }
+        self.last_strobe(&end, (x, v));
+        let m = self.model.mass;
+        let energy = m / (self.unit * self.unit);
+        let value = |sum: &CompensatedSum<T>| sum.value().to_f64();
+        let covered = value(&self.covered);
+        let seen = covered > 0.0;
+        let ledger = LEDGER.then(|| {
+            let kinetic = |v: T| (v * v).to_f64() * 0.5;
+            let work_j = value(&self.whole.work) * energy;
+            let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
+            let impact_j = value(&self.whole.impact) * energy;
+            let stored_j = (kinetic(v) - kinetic(start_v)) * energy + potential;
+            let residual_j = ((work_j - damping_j) - impact_j) - stored_j;
+            let moved =
+                (self.work_moved + self.peak_kinetic) * energy + damping_j + impact_j.abs() + stored_j.abs();
+            let energy_residual = match residual_j.abs() / moved {
+                _ if moved == 0.0 => 0.0,
+                share if share.is_finite() => share,
+                _ => f64::INFINITY, // the run blew up
+            };
+            Ledger { work_j, damping_j, impact_j, stored_j, residual_j, energy_residual }
+        });
+        let rms = (value(&self.settled.squared_velocity) / covered).sqrt() / self.unit;
+        let travel = (self.high - self.low).to_f64();
+        let scales = &self.model.scales;
+        let counts = &self.counts;
+        let left = counts.crossings + counts.impacts + counts.releases > 0;
+        let compliant = self.model.compliant;
+        // Pressed on a compliant stop throughout, it trembles there and has not left it.
+        let pressed = compliant.is_some() && value(&self.settled.rested) == covered;
+        let moved = seen && (left || (travel > STILL * scales.length && !pressed));
+        let pressed_by = |force: f64| compliant.and_then(|own| own.pressure(force));
+        let force = compliant.map(|_| self.peak_contact.to_f64() * m / (self.unit * self.unit));
+        let pressure = force.and_then(pressed_by);
+        let material = compliant.and_then(|own| own.material);
+        let yields = pressure.zip(material).is_some_and(|(own, of)| own > of.yield_pressure());
+        let work = value(&self.settled.work);
+        let impact_share = (LEDGER && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
+        let regime = if self.model.one_well {
+            Regime::OneWell
+        } else if !moved {
+            Regime::Rest
+        } else if self.counts.crossings == 0 {
+            Regime::Intrawell
+        } else if self.model.rhythm != Rhythm::Periodic {
+            Regime::Crossing
+        } else if self.judge.crossings_repeat() {
+            Regime::Interwell
+        } else {
+            Regime::Irregular
+        };
+        let done = outcome == Outcome::Done;
+        let origin = self.origin();
+        let strobed = |number: u64| {
+            let cycle = origin.cycle + number as i64 * self.period_cycles;
+            self.clock.seconds(&Instant { cycle, phase: origin.phase })
+        };
+        let (low, high) = (self.low.to_f64(), self.high.to_f64());
+        let side = self.model.crossing_level.filter(|_| seen && !self.model.one_well).map(|top| match () {
+            () if low >= top => Place::Right,
+            () if high <= top => Place::Left,
+            () => Place::Both,
+        });
+        let (crossing_periods, release_periods) = self.judge.periods_with();
+        let ramped = |t: f64| self.model.excitation.ramped_amplitude(t);
+        Run {
+            samples: std::mem::take(&mut self.samples),
+            events: self.events.take().unwrap_or_default(),
+            summary: Summary {
+                final_x,
+                final_v,
+                rms_velocity: (seen && rms.is_finite()).then_some(rms),
+                regime,
+                crossings: self.counts.crossings,
+                impacts: self.counts.impacts,
+                impact_speed_max: (self.counts.impacts > 0).then(|| self.impact_speed.to_f64() / self.unit),
+                releases: self.counts.releases,
+                max_abs_x: seen.then(|| high.abs().max(low.abs())),
+                range: seen.then_some((low, high)),
+                mean_x: (LEDGER && seen).then(|| value(&self.settled.displacement) / covered),
+                side,
+                window: self.window_seconds(&end),
+                periods: self.periods(),
+                crossing_periods,
+                release_periods,
+                settled: match done {
+                    true => self.judge.settled(moved),
+                    false => self.judge.settled(moved).map(|_| false),
+                },
+                settles_at: self.judge.settles_at(strobed).filter(|_| done),
+                firsts: self.judge.firsts(self.in_periods(&end), ramped),
+                impact_share,
+                rested_share: seen.then(|| value(&self.settled.rested) / covered),
+                total_crossings: self.counts.total_crossings,
+                total_impacts: self.counts.total_impacts,
+                chatter_sums: self.counts.sums,
+                rests: self.counts.rests,
+                period: self.judge.period().filter(|_| done && moved),
+                peak_contact_force: force,
+                peak_contact_pressure: pressure,
+                contact_yields: yields,
+                outcome,
+                steps: 0,
+                evaluations: 0,
+                cpu_s: 0.0,
+                ledger,
+            },
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Sums and counts of a record, and what they become with more laps of the same.
+
+use crate::numeric::{CompensatedSum, Scalar};
+
+/// Sums over an interval of time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sums<T> {
+    /// Integral of v^2, kernel units.
+    pub squared_velocity: CompensatedSum<T>,
+    /// - integral of a v.
+    pub work: CompensatedSum<T>,
+    /// Kinetic energy over mass taken by impacts.
+    pub impact: CompensatedSum<T>,
+    /// Time at rest on a stop.
+    pub rested: CompensatedSum<T>,
+    /// Integral of the displacement; with a ledger only.
+    pub displacement: CompensatedSum<T>,
+}
+
+impl<T: Scalar> Sums<T> {
+    pub fn new() -> Self {
+        let sum = CompensatedSum::new();
+        Self { squared_velocity: sum, work: sum, impact: sum, rested: sum, displacement: sum }
+    }
+}
+
+#[derive(Debug, Default, Clone, Copy)]
+pub(crate) struct Counts {
+    pub crossings: u64,
+    pub impacts: u64,
+    pub releases: u64,
+    pub total_crossings: u64,
+    pub total_impacts: u64,
+    pub sums: u64,
+    pub rests: u64,
+}
+
+impl Counts {
+    /// Adds `laps` more of what was added between `before` and `after`.
+    pub fn repeat(&mut self, before: &Self, after: &Self, laps: u64) {
+        let Self { crossings, impacts, releases, total_crossings, total_impacts, sums, rests } = self;
+        *crossings = crossings.saturating_add((after.crossings - before.crossings).saturating_mul(laps));
+        *impacts = impacts.saturating_add((after.impacts - before.impacts).saturating_mul(laps));
+        *releases = releases.saturating_add((after.releases - before.releases).saturating_mul(laps));
+        *total_crossings = total_crossings
+            .saturating_add((after.total_crossings - before.total_crossings).saturating_mul(laps));
+        *total_impacts =
+            total_impacts.saturating_add((after.total_impacts - before.total_impacts).saturating_mul(laps));
+        *sums = sums.saturating_add((after.sums - before.sums).saturating_mul(laps));
+        *rests = rests.saturating_add((after.rests - before.rests).saturating_mul(laps));
+    }
+}
+
+impl<T: Scalar> Sums<T> {
+    /// Does the same with each sum and what it was at two instants.
+    pub fn each(
+        &mut self,
+        before: &Self,
+        after: &Self,
+        more: impl Fn(&mut CompensatedSum<T>, &CompensatedSum<T>, &CompensatedSum<T>),
+    ) {
+        more(&mut self.squared_velocity, &before.squared_velocity, &after.squared_velocity);
+        more(&mut self.work, &before.work, &after.work);
+        more(&mut self.impact, &before.impact, &after.impact);
+        more(&mut self.rested, &before.rested, &after.rested);
+        more(&mut self.displacement, &before.displacement, &after.displacement);
+    }
+}

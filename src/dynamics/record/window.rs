@@ -1,0 +1,112 @@
+//! The settled window of a record: its borders, the stroboscopic states within and before it, and the next one.
+
+use super::recorder::Recorder;
+use super::repeats::Strobe;
+use super::sums::Sums;
+use crate::dynamics::clock::Instant;
+use crate::dynamics::step::path::{Path, StepView};
+use crate::numeric::{CompensatedSum, Scalar};
+
+/// Stroboscopic states of a mass that stands still that are told one by one before some are passed over: more than a
+/// period is looked for.
+pub(crate) const STILL: u32 = 32;
+
+impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+    pub(crate) fn strobes<P: Path<T>>(&mut self, step: &StepView<T, P>) {
+        while let Some(strobe) = self.next_strobe {
+            let into = self.clock.between(&step.at, &strobe);
+            if into >= step.duration {
+                return;
+            }
+            let into = step.path.parameter(into, step.length);
+            let x = step.x_at(into);
+            let v = step.path.velocity(into);
+            self.strobe(x, v);
+        }
+    }
+
+    pub(crate) fn strobe(&mut self, x: T, v: T) {
+        let Some(strobe) = &mut self.next_strobe else { return };
+        strobe.cycle += self.period_cycles;
+        self.strobes_left -= 1;
+        if self.strobes_left == 0 || self.clock.between(strobe, &self.window.1) < T::zero() {
+            self.next_strobe = None;
+        }
+        let state = Strobe { x: x.to_f64(), v: v.to_f64() / self.unit };
+        self.judge.strobe(state, self.settled.squared_velocity.value().to_f64(), self.counts.crossings);
+    }
+
+    /// Passes over stroboscopic states of a mass that stands still up to `until`, all like the last ones, but for some
+    /// before the next border of the window.
+    pub(crate) fn skip_strobes(&mut self, until: &Instant<T>) {
+        let Some(strobe) = &mut self.next_strobe else { return };
+        let left = |border: &Instant<T>| {
+            let periods = (self.clock.between(strobe, border) / self.period).to_f64();
+            Some(periods).filter(|periods| *periods > 0.0)
+        };
+        let borders = [until, &self.window.0, &self.window.1];
+        let fewest = borders.into_iter().filter_map(left).fold(f64::INFINITY, f64::min);
+        let more = (fewest - f64::from(STILL)).floor() as i64;
+        if more > 0 && fewest.is_finite() {
+            strobe.cycle += more * self.period_cycles;
+            self.judge.skip_still(more as u64);
+        }
+    }
+
+    /// The stroboscopic state at `end`, the end of the run, where the window ends there too.
+    pub(crate) fn last_strobe(&mut self, end: &Instant<T>, (x, v): (T, T)) {
+        let due = |strobe: &Instant<T>| self.clock.between(strobe, end).abs() <= self.period * T::of(1e-9);
+        if self.next_strobe.as_ref().is_some_and(due) {
+            self.strobe(x, v);
+        }
+    }
+
+    /// The first instant of the run at the window's phase.
+    pub(crate) fn origin(&self) -> Instant<T> {
+        self.origin
+    }
+
+    /// Whole forcing periods in the settled window; 0 where it holds none.
+    pub(crate) fn periods(&self) -> u64 {
+        self.periods
+    }
+
+    /// Begin and end of the settled window in s, as far as a run that ended at `end` came.
+    pub(crate) fn window_seconds(&self, end: &Instant<T>) -> (f64, f64) {
+        let (from, to) = &self.window;
+        let reached = if self.clock.between(to, end) > T::zero() { to } else { end };
+        // as it was written, where it was
+        let written = [self.model.settle, self.model.duration];
+        let seconds = |at: &Instant<T>| {
+            let own = written.into_iter().find(|t| self.clock.at(*t) == *at);
+            own.unwrap_or_else(|| self.clock.seconds(at))
+        };
+        let (from, reached) = (seconds(from), seconds(reached));
+        (from, reached.max(from))
+    }
+
+    /// The end of the settled window.
+    pub fn window_end(&self) -> Instant<T> {
+        self.window.1
+    }
+
+    /// The settled window begins anew at its end, where the run stands; where the new one ends, if that is not after
+    /// `until` in s and can be judged.
+    pub fn next_window(&mut self, until: f64) -> Option<Instant<T>> {
+        let from = self.window.1;
+        let length = self.periods as i64 * self.period_cycles;
+        let to = Instant { cycle: from.cycle + length, phase: from.phase };
+        if self.clock.seconds(&to) > until || u64::from(self.strobes_left) <= self.periods {
+            return None;
+        }
+        self.window = (from, to);
+        self.next_strobe = Some(Instant { cycle: from.cycle + self.period_cycles, phase: from.phase });
+        self.settled = Sums::new();
+        self.covered = CompensatedSum::new();
+        (self.low, self.high) = (T::of(f64::INFINITY), T::of(f64::NEG_INFINITY));
+        self.impact_speed = T::zero();
+        (self.counts.crossings, self.counts.impacts, self.counts.releases) = (0, 0, 0);
+        self.judge.open_window();
+        Some(to)
+    }
+}

@@ -1,0 +1,22 @@
+//! What a run is asked for and what it returns: samples, events, statistics, outcome and ledger. All SI.
+
+mod event;
+mod outcome;
+mod request;
+mod summary;
+
+pub use event::{Event, EventKind, Phase, Sample, Side};
+pub use outcome::{Outcome, Place, Regime};
+pub use request::Request;
+pub use summary::{First, Firsts, Ledger, Summary};
+
+/// Everything a run returns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// The state at the requested times, up to the end of the run.
+    pub samples: Vec<Sample>,
+    /// Events in order of time, where they were asked for.
+    pub events: Vec<Event>,
+    /// Statistics, outcome and ledger.
+    pub summary: Summary,
+}

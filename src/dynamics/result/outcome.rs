@@ -1,0 +1,123 @@
+//! Verdicts on a run: the regime, the place of the motion, and how the run ended.
+
+/// What the motion is over the settled window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Regime {
+    /// Never left the stop or the equilibrium.
+    Rest,
+    /// Moved without a crossing.
+    Intrawell,
+    /// Crosses, and the crossings repeat with a period of at most 12 forcing periods.
+    Interwell,
+    /// Crosses without such a period.
+    Irregular,
+    /// Crosses under a drive that has no period or another amplitude in each, or under none.
+    Crossing,
+    /// The curve has one well or none: nothing to cross.
+    OneWell,
+}
+
+impl Regime {
+    /// The word in the CSV; empty for one well.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rest => "rest",
+            Self::Intrawell => "intrawell",
+            Self::Interwell => "interwell",
+            Self::Irregular => "irregular",
+            Self::Crossing => "crossing",
+            Self::OneWell => "",
+        }
+    }
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Outcome {
+    /// It reached its duration.
+    Done,
+    /// The mass left the range of the force curve at this time in s.
+    LeftTable {
+        /// Time in s.
+        at: f64,
+    },
+    /// It used up its budget of impacts.
+    ImpactBudget {
+        /// Time in s.
+        at: f64,
+        /// Impacts made.
+        count: u64,
+    },
+    /// It used up its budget of steps.
+    StepBudget {
+        /// Time in s.
+        at: f64,
+        /// Steps made.
+        count: u64,
+    },
+    /// A number was no longer finite.
+    NotFinite {
+        /// Time in s.
+        at: f64,
+    },
+    /// It reached its duration, but its energy does not balance: by more than a hundred tolerances, or by a tenth of what
+    /// was moved. Only told of a run with a ledger.
+    Inaccurate {
+        /// What is unaccounted for over the sum of the magnitudes moved.
+        residual: f64,
+    },
+    /// It was told to stop.
+    Cancelled {
+        /// Time in s.
+        at: f64,
+    },
+}
+
+impl Outcome {
+    /// The word in the CSV and the summary.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::LeftTable { .. } => "left_table",
+            Self::ImpactBudget { .. } => "impact_budget",
+            Self::StepBudget { .. } => "step_budget",
+            Self::NotFinite { .. } => "not_finite",
+            Self::Inaccurate { .. } => "inaccurate",
+            Self::Cancelled { .. } => "cancelled",
+        }
+    }
+
+    /// Time in s at which the run ended early; none where it has reached its duration.
+    pub fn ended_at(self) -> Option<f64> {
+        match self {
+            Self::Done | Self::Inaccurate { .. } => None,
+            Self::LeftTable { at }
+            | Self::ImpactBudget { at, .. }
+            | Self::StepBudget { at, .. }
+            | Self::NotFinite { at }
+            | Self::Cancelled { at } => Some(at),
+        }
+    }
+}
+
+/// On which side of the barrier top a motion is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Never to the right of it.
+    Left,
+    /// Never to the left of it.
+    Right,
+    /// On both sides.
+    Both,
+}
+
+impl Place {
+    /// The word in the CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Both => "both",
+        }
+    }
+}

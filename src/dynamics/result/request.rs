@@ -1,0 +1,19 @@
+//! What a run is asked to keep, and when it should end.
+
+use std::sync::atomic::AtomicBool;
+
+/// What a run should keep.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Request<'a> {
+    /// Times in s at which to sample, ascending, within 0..=duration.
+    pub sample_times: &'a [f64],
+    /// Whether to keep the list of events.
+    pub events: bool,
+    /// Whether to keep the energy ledger (a sweep does not need it).
+    pub ledger: bool,
+    /// Set from elsewhere to end the run early with the outcome `Cancelled`.
+    pub cancel: Option<&'a AtomicBool>,
+    /// Goes on, window after window, until the motion repeats or the next window would end after this time in s. Under a
+    /// drive that does not repeat, and where the window holds less than two forcing periods, nothing changes.
+    pub until_settled: Option<f64>,
+}

@@ -1,0 +1,69 @@
+//! Begin and end of a run.
+
+use super::balance::{Excursion, judged};
+use crate::dynamics::drive::Drive;
+use crate::dynamics::equation::Compliant;
+use crate::dynamics::model::Model;
+use crate::dynamics::motion::Motion;
+use crate::dynamics::record::summary::Ending;
+use crate::dynamics::result::{Outcome, Run};
+use crate::numeric::Scalar;
+
+/// What is kept of a run's first instant: the velocity, the mode and the place in it, and in J what a compliant stop
+/// stores.
+pub(crate) struct Begun<T> {
+    v: T,
+    place: (usize, f64, f64),
+}
+
+impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+    /// Puts the mass to its start.
+    pub fn begin(&mut self, model: &Model) -> Begun<T> {
+        let v = self.state.v;
+        self.place_at_start();
+        Begun { v, place: (self.state.mode, self.state.x.to_f64(), self.stop_energy_j(model)) }
+    }
+
+    /// Closes the record.
+    pub fn finish(self, model: &Model, begun: &Begun<T>, outcome: Outcome) -> Run {
+        let phase = self.state.phase();
+        let (start_v, potential) = (begun.v, self.potential_since(model, begun.place));
+        let (base, unit) = (self.stepper.base(self.state.segment), self.stepper.equation.unit);
+        let (low, high) = self.record.places;
+        let reach = Excursion { low, high, speed: (2.0 * self.record.peak_kinetic).sqrt() / unit };
+        let mut run = self.record.finish(
+            &Ending {
+                at: self.state.at,
+                state: (self.state.x, self.state.v),
+                start_v,
+                phase,
+                potential,
+                outcome,
+            },
+            base,
+        );
+        run.summary.steps = self.steps;
+        run.summary.evaluations = self.stepper.evaluations;
+        run.summary.outcome = judged(model, &run, reach);
+        run
+    }
+
+    /// Change in J, since a start in a mode at a place, of the potential and of what a compliant stop stores.
+    fn potential_since(&self, model: &Model, (mode, from, stored): (usize, f64, f64)) -> f64 {
+        let piece = |mode: usize| &model.mechanism.curve.pieces()[self.stepper.equation.modes[mode].piece];
+        let (first, last, x) = (piece(mode), piece(self.state.mode), self.state.x.to_f64());
+        let change = match std::ptr::eq(first, last) {
+            true => first.potential_change(from, x),
+            false => last.potential(x) - first.potential(from),
+        };
+        change + (self.stop_energy_j(model) - stored)
+    }
+
+    /// Energy in J that the pressed compliant stop stores.
+    fn stop_energy_j(&self, model: &Model) -> f64 {
+        let unit = self.stepper.equation.unit;
+        let stored =
+            |stop: &Compliant<T>| stop.stored(self.state.depth.root).to_f64() * model.mass / (unit * unit);
+        self.stepper.equation.compliant.as_ref().map_or(0.0, stored)
+    }
+}

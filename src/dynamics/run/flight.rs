@@ -1,0 +1,108 @@
+//! Steps of free flight, each up to its end or the first surface.
+
+use crate::dynamics::clock::Instant;
+use crate::dynamics::drive::Drive;
+use crate::dynamics::equation::End;
+use crate::dynamics::motion::Motion;
+use crate::dynamics::result::Outcome;
+use crate::dynamics::state::Flow;
+use crate::dynamics::step::path::{Path, StepView};
+use crate::dynamics::step::stepper::Step;
+use crate::dynamics::step::work::ARRIVAL;
+use crate::numeric::Scalar;
+
+impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+    /// Whether it may take `steps` more of free flight without its budget being spent.
+    pub fn has_budget_for(&self, steps: u64) -> bool {
+        self.stepper.work.has_room_for(steps * self.stepper.costs.step)
+    }
+
+    /// One step of free flight; `left` is the time to the end of the run.
+    pub fn fly(&mut self, left: T) -> Flow {
+        if self.stepper.pass_segment_end(&mut self.state) {
+            return None;
+        }
+        self.stepper.seed(&self.state);
+        self.stepper.evaluations += 1;
+        let flight = match self.stepper.pressed_rebound(&self.state) {
+            Some((end, rates)) if self.sum_chatter(end, rates) => return None,
+            Some((end, rates)) => self.stepper.short_flight(&self.state, end, rates),
+            None => None,
+        };
+        let (stepper, state) = (&mut self.stepper, &self.state);
+        let mode = stepper.mode(state);
+        stepper.series.begin(state.x - mode.origin, state.v);
+        if let Some(flight) = flight {
+            if let Some((end, length, landing)) = stepper.rebound(state, flight, left) {
+                let on_the_stop = (mode.end(end).0, landing.v);
+                return self.arrive((length, length), landing.bound, on_the_stop, None, Some(end));
+            }
+            stepper.seed(state);
+            stepper.series.begin(state.x - mode.origin, state.v);
+        }
+        let step = stepper.choose_step(state, flight, left);
+        self.take_any(step)
+    }
+
+    /// Goes along the step that was chosen; none is the end of the run.
+    pub fn take_any(&mut self, step: Option<Step<T>>) -> Flow {
+        match step {
+            Some(step) => self.take(&step),
+            None => Some(Outcome::NotFinite { at: self.stepper.seconds(&self.state) }),
+        }
+    }
+
+    /// Goes along a step of flight up to its end or the first surface.
+    pub fn take(&mut self, &Step { length: h, arrival, end }: &Step<T>) -> Flow {
+        let mode = self.stepper.mode(&self.state);
+        match self.stepper.find_exit(&self.state, h, &end) {
+            Some((s, exit)) => {
+                self.stepper.work.add(ARRIVAL);
+                let (length, level) = (s * h, mode.end(exit).0);
+                let on_the_end = (level, self.stepper.series.velocity(length));
+                self.arrive((h, length), end.bound, on_the_end, None, Some(exit))
+            }
+            None => self.arrive((h, h), end.bound, (end.y + mode.origin, end.v), arrival, None),
+        }
+    }
+
+    /// Tells of a step that was chosen `h` long, of which `length` is kept, and goes to its end: at the state `(x, v)` and,
+    /// where that is known, the instant `arrival`, on the surface of the end `touched`.
+    pub fn arrive(
+        &mut self,
+        (h, length): (T, T),
+        bound: T,
+        (x, v): (T, T),
+        arrival: Option<Instant<T>>,
+        touched: Option<End>,
+    ) -> Flow {
+        let (mode, zero) = (self.stepper.mode(&self.state), T::zero());
+        if !(x.is_finite() && v.is_finite()) {
+            return Some(Outcome::NotFinite { at: self.stepper.seconds(&self.state) });
+        }
+        self.steps += 1;
+        self.stepper.work.add(self.stepper.costs.step);
+        let view = StepView {
+            path: &self.stepper.series,
+            origin: mode.origin,
+            at: self.state.at,
+            whole: h,
+            length,
+            duration: length,
+            bound,
+            limits: (mode.low, mode.high),
+            x,
+            v,
+        };
+        if let Some(log) = &mut self.log {
+            log.add_step(&view);
+        }
+        self.record.step(&view, self.stepper.base(self.state.segment));
+        self.state.at = arrival.unwrap_or_else(|| self.stepper.clock.advance(&self.state.at, length));
+        self.state.x = x;
+        self.state.v = v;
+        self.state.touch = None;
+        self.state.turned_back &= length == zero;
+        touched.and_then(|end| self.reach(end, length == zero))
+    }
+}

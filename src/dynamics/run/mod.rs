@@ -1,0 +1,163 @@
+//! The run: from event to event, up to its end.
+
+mod balance;
+pub(crate) mod ending;
+pub(crate) mod event_free;
+mod flight;
+mod recurrence;
+
+use crate::dynamics::clock::Clock;
+use crate::dynamics::drive::Drive;
+use crate::dynamics::drive::form::{Form, clock, form};
+use crate::dynamics::equation::Equation;
+use crate::dynamics::model::Model;
+use crate::dynamics::motion::Motion;
+use crate::dynamics::result::{Outcome, Request, Run};
+use crate::dynamics::state::{Contact, Flow};
+use crate::dynamics::step::work::{IMPACT_BUDGET, WORK_BUDGET};
+use crate::numeric::{DoubleDouble, Scalar};
+use event_free::FastPath;
+
+impl Model {
+    /// Runs the model once.
+    ///
+    /// Returns samples, events and statistics in SI. Never fails: a run that cannot go on says so in its
+    /// outcome. The result does not depend on what is asked for or on threads.
+    pub fn run(&self, request: &Request) -> Run {
+        run::<f64>(self, request, self.tolerance, self.recurrence)
+    }
+
+    /// Runs the model once in double-double arithmetic, some 31 digits, with its own `tolerance` (1e-28 is
+    /// sensible): the reference that a run in doubles is measured against. About a hundred times slower; nothing of it is
+    /// completed from a cycle.
+    pub fn run_reference(&self, request: &Request, tolerance: f64) -> Run {
+        run::<DoubleDouble>(self, request, tolerance, false)
+    }
+}
+
+/// Runs the model in numbers of type `T`; where `recurs`, a cycle that comes back may complete the run.
+fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64, recurs: bool) -> Run {
+    let watch = cpu_time::ThreadTime::now();
+    let unit = model.scales.unit();
+    let equation = Equation::<T>::new(model, unit);
+    let clock = clock(model, unit);
+    let mut run = match form(model, &clock) {
+        Form::Still(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
+        Form::Sine(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
+        Form::Composite(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
+    };
+    run.summary.cpu_s = watch.elapsed().as_secs_f64();
+    run
+}
+
+fn with_drive<T: Scalar, D: Drive<T>>(
+    model: &Model,
+    request: &Request,
+    (tolerance, recurs): (f64, bool),
+    equation: &Equation<T>,
+    clock: Clock<T>,
+    drive: &D,
+) -> Run {
+    if request.ledger {
+        Motion::<T, D, true>::new(model, request, tolerance, equation, clock, drive)
+            .with_recurrence(recurs, model)
+            .run(model)
+    } else {
+        Motion::<T, D, false>::new(model, request, tolerance, equation, clock, drive)
+            .with_recurrence(recurs, model)
+            .run(model)
+    }
+}
+
+impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+    /// Goes on from event to event, up to the end of the run.
+    fn run(mut self, model: &Model) -> Run {
+        let begun = self.begin(model);
+        let outcome = loop {
+            let left = match self.left() {
+                Ok(left) => left,
+                Err(outcome) => break outcome,
+            };
+            let flow = match self.event_free_steps() {
+                FastPath::On => None,
+                FastPath::To(step) => self.take(&step),
+                FastPath::Before(length) => {
+                    let left = self.stepper.left(&self.state);
+                    let step = self.stepper.shorten(&self.state, length, left);
+                    self.take_any(step)
+                }
+                FastPath::Not => self.proceed(left),
+            };
+            if let Some(outcome) = flow.or_else(|| self.spent()) {
+                break outcome;
+            }
+        };
+        self.finish(model, &begun, outcome)
+    }
+
+    /// The time to the end of the run, or how it has ended. A motion that has come back is completed first.
+    #[inline]
+    pub fn left(&mut self) -> Result<T, Outcome> {
+        if let Some(label) = self.label.take() {
+            self.let_go(label);
+        }
+        let mut left = self.stepper.left(&self.state);
+        if !(left > T::zero()) {
+            if self.record.cut_short {
+                return Err(Outcome::Cancelled { at: self.stepper.seconds(&self.state) });
+            }
+            if !self.goes_on() {
+                return Err(Outcome::Done);
+            }
+            left = self.stepper.left(&self.state);
+        }
+        self.mark();
+        Ok(left)
+    }
+
+    /// At the end of a settled window: whether the run goes on with another, since the motion does not repeat yet.
+    fn goes_on(&mut self) -> bool {
+        let Some(until) = self.until_settled else { return false };
+        self.record.last_strobe(&self.state.at, (self.state.x, self.state.v));
+        let next = match self.record.judge.has_settled() {
+            true => None,
+            false => self.record.next_window(until),
+        };
+        self.stepper.end = next.unwrap_or(self.stepper.end);
+        next.is_some()
+    }
+
+    /// How the run ends where its budget is spent, or it is told to.
+    #[inline]
+    pub fn spent(&mut self) -> Flow {
+        let told = self.stepper.work.is_told_to_stop();
+        let at = || self.stepper.seconds(&self.state);
+        if told {
+            return Some(Outcome::Cancelled { at: at() });
+        }
+        if self.stepper.work.impacts() >= IMPACT_BUDGET {
+            return Some(Outcome::ImpactBudget { at: at(), count: self.stepper.work.impacts() });
+        }
+        if self.stepper.work.done() >= WORK_BUDGET {
+            return Some(Outcome::StepBudget { at: at(), count: self.steps });
+        }
+        None
+    }
+
+    /// Goes on by one step of flight or one rest; `left` is the time to the end of the run.
+    #[inline]
+    pub fn proceed(&mut self, left: T) -> Flow {
+        match self.state.contact {
+            Contact::Motionless => {
+                self.stand(self.stepper.end, self.state.phase());
+                None
+            }
+            Contact::Resting(end) => {
+                self.rest(end);
+                None
+            }
+            Contact::Free => self.fly(left),
+            Contact::Compressing(end) | Contact::Clipped(end) => self.contact_step(end, left),
+        }
+    }
+}

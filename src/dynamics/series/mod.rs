@@ -1,0 +1,264 @@
+//! How does the motion continue from here, as a power series in time?
+//!
+//! Taylor coefficients of x'' = -g x' - f(x) - a(t) by recurrence, one order at a time and only as many as
+//! are asked for: a flight of a microsecond between two small impacts needs four where a swing across
+//! the barrier needs sixteen. f is a polynomial of the current piece about its origin; an odd one goes by the
+//! square of the displacement, which halves its products. (Moore 1966, "Interval Analysis", ch. 11; Jorba
+//! and Zou 2005, "A software package for the numerical integration of ODEs by means of high-order Taylor
+//! methods".)
+
+mod force;
+mod order;
+pub(crate) mod polynomial;
+
+use crate::dynamics::equation::force::PieceForce;
+use crate::numeric::{Number, Scalar, fast_exp2, fast_log2};
+use force::ForceSeries;
+
+pub(crate) use force::convolve;
+pub(crate) use order::{MAX_ORDER, ROOM, SEEDED, Tail};
+
+/// The Taylor coefficients of one step and the workspace to extend them.
+#[derive(Debug, Clone)]
+pub(crate) struct Series<T> {
+    /// Displacement from the piece's origin: y\[k\] is the coefficient of (time since the step's start)^k.
+    pub y: [T; ROOM],
+    /// Acceleration of the base.
+    pub a: [T; ROOM],
+    /// Number of coefficients of y that are known.
+    pub known: usize,
+    /// The length of a step over which the integral of the squared velocity is known, and that.
+    pub measured: Option<(T, T)>,
+    forces: ForceSeries<T>,
+    inverse: [T; ROOM],
+}
+
+/// Where a step's polynomial leads.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Endpoint<T> {
+    /// Displacement from the piece's origin.
+    pub y: T,
+    pub v: T,
+    pub acceleration: T,
+    /// Sum of the magnitudes of the terms above the constant: the mass is never further from the start.
+    pub bound: T,
+}
+
+impl<T: Number> Series<T> {
+    /// With room for forces that take up to `products` products beyond the first.
+    pub fn new(products: usize) -> Self {
+        let mut inverse = [T::zero(); ROOM];
+        for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
+            *slot = T::ratio(1.0, (k * (k - 1)) as f64);
+        }
+        let zeros = [T::zero(); ROOM];
+        Self { y: zeros, a: zeros, known: 0, measured: None, forces: ForceSeries::new(products), inverse }
+    }
+
+    /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first
+    /// [`SEEDED`] coefficients of the drive are already in `a`.
+    #[inline(always)]
+    pub fn begin(&mut self, y: T, v: T) {
+        self.y[0] = y;
+        self.y[1] = v;
+        self.known = 2;
+        self.measured = None;
+    }
+
+    /// Adds coefficients up to `order`.
+    #[inline(always)]
+    pub fn extend_to<D: Tail<T>>(
+        &mut self,
+        order: usize,
+        force: &PieceForce<T>,
+        damping: T,
+        drive: &D,
+        cursor: &mut D::Cursor,
+    ) {
+        let Self { y, a, forces, inverse, .. } = self;
+        let known = self.known - 2..order.min(MAX_ORDER) - 1; // the bound spares a look at each index
+        // The shape of the force is decided once.
+        macro_rules! recur {
+            ($unrolled:expr, $force:expr) => {
+                recur::<T, D, { $unrolled }>(
+                    known,
+                    (y, a, inverse),
+                    damping,
+                    drive,
+                    cursor,
+                    #[inline(always)]
+                    $force,
+                )
+            };
+        }
+        match force.coefficients() {
+            [c0] => recur!(true, |k, _, more| force::constant(*c0, k, more)),
+            [c0, c1] => recur!(true, |k, y, more| force::linear(*c0, *c1, y, k, more)),
+            [_, c1, _, c3] if force.is_odd() => {
+                let mut cubic = forces.cubic(*c1, *c3, y[0]);
+                recur!(true, |k, y, more| cubic.coefficient(y, k, more));
+            }
+            c if force.is_odd() => recur!(false, |k, y, more| forces.odd(c, y, k, more)),
+            c => recur!(false, |k, y, more| forces.dense(c, y, k, more)),
+        }
+        self.known = order + 1;
+    }
+
+    /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones have been asked for before.
+    #[inline(always)]
+    pub(crate) fn force_coefficient(&mut self, force: &PieceForce<T>, k: usize) -> T {
+        self.forces.coefficient(force, &self.y, k, None)
+    }
+
+    /// Adds coefficient `k` of the drive, at or above [`SEEDED`]; once each and in ascending order.
+    pub(crate) fn extend_drive<D: Tail<T>>(&mut self, k: usize, drive: &D, cursor: &mut D::Cursor) {
+        drive.extend(k, &mut self.a, &self.inverse, cursor);
+    }
+
+    /// The state at time `t` into the step, and a bound of the way up to there.
+    #[inline(always)]
+    pub fn state(&self, t: T) -> Endpoint<T> {
+        let zero = T::zero();
+        let (mut y, mut v, mut acceleration, mut bound) = (zero, self.y[1], zero, zero);
+        // Powers, and sums of terms: where Horner's rule waits for a product and a sum at each coefficient, this waits for one.
+        let (mut before, mut power) = (T::of(1.0), t);
+        each_order::<2>(
+            T::QUICK,
+            2..self.known,
+            #[inline(always)]
+            |k| {
+                let c = self.y[k];
+                acceleration += T::whole(k * (k - 1)) * c * before;
+                v += T::whole(k) * c * power;
+                (before, power) = (power, power * t);
+                let term = c * power;
+                y += term;
+                bound += term.abs();
+            },
+        );
+        let term = self.y[1] * t;
+        Endpoint { y: self.y[0] + (term + y), v, acceleration, bound: term.abs() + bound }
+    }
+
+    /// The coefficients of the base's acceleration that go with those of the motion.
+    #[inline]
+    pub fn base_coefficients(&self) -> &[T] {
+        &self.a[..(self.known - 2).max(SEEDED)]
+    }
+}
+
+impl<T: Scalar> Series<T> {
+    /// As [`Self::extend_to`], compiled once: it is large.
+    #[inline(never)]
+    pub fn extend<D: Tail<T>>(
+        &mut self,
+        order: usize,
+        force: &PieceForce<T>,
+        damping: T,
+        drive: &D,
+        cursor: &mut D::Cursor,
+    ) {
+        self.extend_to(order, force, damping, drive, cursor);
+    }
+
+    /// The longest step whose first neglected term in the velocity stays below `tolerance` times `speed`, at most `cap`.
+    #[inline]
+    pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
+        let [step] =
+            natural_steps(self.known - 1, |k| [self.y[k].to_f64()], &[speed_log2], tolerance_log2, &[cap]);
+        step
+    }
+
+    /// Acceleration of the base at time `t` into the step, by its series.
+    pub fn base(&self, t: T) -> T {
+        self.base_coefficients().iter().rev().fold(T::zero(), |sum, c| sum * t + *c)
+    }
+}
+
+/// As [`Series::natural_step`], of coefficients up to `order`, for several series at once; from several of the last ones,
+/// since single ones vanish at symmetry points. NaN where one is.
+#[inline(always)]
+pub(crate) fn natural_steps<const W: usize>(
+    order: usize,
+    coefficients: impl Fn(usize) -> [f64; W],
+    speed_log2: &[f64; W],
+    tolerance_log2: f64,
+    cap: &[f64; W],
+) -> [f64; W] {
+    let (mut radius, mut sum) = ([f64::INFINITY; W], [0.0; W]);
+    let last = order.clamp(5, MAX_ORDER);
+    for k in [last - 3, last - 2, last - 1, last] {
+        let coefficients = coefficients(k);
+        let inverse = 1.0 / (k as f64 - 1.0);
+        for lane in 0..W {
+            let size = coefficients[lane].abs() * k as f64;
+            let own = (speed_log2[lane] - fast_log2(size)) * inverse;
+            radius[lane] = if (size > 1e-300) & (own < radius[lane]) { own } else { radius[lane] };
+            sum[lane] += size;
+        }
+    }
+    let mut steps = [0.0; W];
+    for lane in 0..W {
+        let log2 = radius[lane] + tolerance_log2 / order as f64;
+        let step = fast_exp2(if log2 < 1000.0 { log2 } else { 1000.0 });
+        let step = if (log2 < 1000.0) & (step < cap[lane]) { step } else { cap[lane] };
+        steps[lane] = if sum[lane].is_nan() { f64::NAN } else { step };
+    }
+    steps
+}
+
+/// The recurrence of the equation of motion over the orders `known`, the force's coefficients and what is added to them by
+/// `force`.
+#[inline(always)]
+fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
+    known: std::ops::Range<usize>,
+    (y, a, inverse): (&mut [T; ROOM], &mut [T; ROOM], &[T; ROOM]),
+    damping: T,
+    drive: &D,
+    cursor: &mut D::Cursor,
+    mut force: impl FnMut(usize, &[T; ROOM], Option<T>) -> T,
+) {
+    each_order::<0>(
+        T::QUICK && SIMPLE,
+        known,
+        #[inline(always)]
+        |k| {
+            if k >= SEEDED {
+                drive.extend(k, a, inverse, cursor);
+            }
+            let base = if k < D::ZERO_FROM { Some(a[k]) } else { None };
+            let drag = damping * T::whole(k + 1) * y[k + 1];
+            y[k + 2] = -(force(k, y, base) + drag) * inverse[k + 2];
+        },
+    );
+}
+
+/// Does something for each of the orders; where `unrolled`, and the first of them is `USUAL`, with numbers that the compiler
+/// knows: the bookkeeping of a loop may cost as much as what is done in it.
+#[inline(always)]
+fn each_order<const USUAL: usize>(
+    unrolled: bool,
+    orders: std::ops::Range<usize>,
+    mut next: impl FnMut(usize),
+) {
+    let mut rest = orders.start;
+    if unrolled && orders.start == USUAL {
+        macro_rules! each {
+            ($($k:literal)*) => {
+                $(
+                    if $k >= USUAL {
+                        if orders.end <= $k {
+                            return;
+                        }
+                        next($k);
+                    }
+                )*
+            };
+        }
+        each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19);
+        rest = 20;
+    }
+    for k in rest..orders.end {
+        next(k);
+    }
+}

@@ -1,0 +1,132 @@
+//! What does a polynomial in time say of the motion within its step?
+//!
+//! Functions of coefficients alone, so that a step that was kept is read as the one that has just been made.
+
+use super::order::ROOM;
+use crate::numeric::{GaussLegendre, Number, Scalar};
+
+/// The coefficients, each times its power of `h`.
+#[inline]
+pub(crate) fn scaled<T: Scalar>(y: &[T], h: T) -> [T; ROOM] {
+    let mut scaled = [T::zero(); ROOM];
+    let mut power = T::of(1.0);
+    for (k, (slot, c)) in scaled.iter_mut().zip(y).enumerate() {
+        if k > 0 {
+            power = power * h;
+        }
+        *slot = *c * power;
+    }
+    scaled
+}
+
+/// The value at time `t` into the step.
+#[inline]
+pub(crate) fn value<T: Scalar>(y: &[T], t: T) -> T {
+    let mut sum = T::zero();
+    for c in y.iter().rev() {
+        sum = sum * t + *c;
+    }
+    sum
+}
+
+/// The time derivative at time `t` into the step.
+#[inline]
+pub(crate) fn slope<T: Scalar>(y: &[T], t: T) -> T {
+    let mut sum = T::zero();
+    for k in (1..y.len()).rev() {
+        sum = sum * t + y[k] * T::whole(k);
+    }
+    sum
+}
+
+/// A bound of how far the displacement leaves, within a step of length `h`, the chord between its ends: an eighth of the
+/// square of the length times the largest acceleration.
+#[inline(always)]
+pub(crate) fn chord_deviation<T: Number>(y: &[T], h: T) -> T {
+    let (mut sum, mut power) = (T::zero(), h);
+    for (k, c) in y.iter().enumerate().skip(2) {
+        power = power * h;
+        sum += c.abs() * power * T::whole(k * (k - 1));
+    }
+    sum * T::of(0.125)
+}
+
+/// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base acceleration (`a`)
+/// times velocity; of the step's own polynomials by Gauss' rule. (Products truncated at their order miss, on a long
+/// step under a fast drive, a thousand times the tolerance.)
+#[inline(always)]
+pub(crate) fn integrals<T: Number, const WORK: bool>(
+    y: &[T],
+    a: &[T],
+    rule: &GaussLegendre<T>,
+    from: T,
+    to: T,
+) -> (T, T) {
+    let length = to - from;
+    let (mut squared, mut power) = (T::zero(), T::zero());
+    let (nodes, weights) = (rule.nodes(), rule.weights());
+    let mut done = 0;
+    // Four at a time, each by name: arrays would go through memory.
+    while nodes.len() - done >= 4 {
+        let time = |i: usize| from + length * nodes[done + i];
+        let times = (time(0), time(1), time(2), time(3));
+        let v = at_four_times(y.len(), |k| y[k] * T::whole(k), 1, times);
+        let weight = |i: usize| weights[done + i];
+        squared += v.0 * v.0 * weight(0);
+        squared += v.1 * v.1 * weight(1);
+        squared += v.2 * v.2 * weight(2);
+        squared += v.3 * v.3 * weight(3);
+        if WORK {
+            let base = at_four_times(a.len(), |k| a[k], 0, times);
+            power += base.0 * v.0 * weight(0);
+            power += base.1 * v.1 * weight(1);
+            power += base.2 * v.2 * weight(2);
+            power += base.3 * v.3 * weight(3);
+        }
+        done += 4;
+    }
+    while done < nodes.len() {
+        let time = from + length * nodes[done];
+        let mut v = T::zero();
+        for k in (1..y.len()).rev() {
+            v = v * time + y[k] * T::whole(k);
+        }
+        squared += v * v * weights[done];
+        if WORK {
+            let mut base = T::zero();
+            for c in a.iter().rev() {
+                base = base * time + *c;
+            }
+            power += base * v * weights[done];
+        }
+        done += 1;
+    }
+    (squared * length, power * length)
+}
+
+/// The integral of the displacement over (from, to) within the step.
+pub(crate) fn moment<T: Scalar>(y: &[T], rule: &GaussLegendre<T>, from: T, to: T) -> T {
+    let length = to - from;
+    let parts = rule.nodes().iter().zip(rule.weights());
+    parts.fold(T::zero(), |sum, (node, weight)| sum + value(y, from + length * *node) * *weight) * length
+}
+
+/// The polynomial of the coefficients `first..count`, the lowest of them the constant, at four times.
+#[inline(always)]
+fn at_four_times<T: Number>(
+    count: usize,
+    coefficient: impl Fn(usize) -> T,
+    first: usize,
+    (t0, t1, t2, t3): (T, T, T, T),
+) -> (T, T, T, T) {
+    let zero = T::zero();
+    let (mut v0, mut v1, mut v2, mut v3) = (zero, zero, zero, zero);
+    for k in (first..count).rev() {
+        let c = coefficient(k);
+        v0 = v0 * t0 + c;
+        v1 = v1 * t1 + c;
+        v2 = v2 * t2 + c;
+        v3 = v3 * t3 + c;
+    }
+    (v0, v1, v2, v3)
+}

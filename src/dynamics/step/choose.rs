@@ -1,0 +1,147 @@
+//! Choice of the length of a step of free flight.
+
+use super::settings::{RESIDUAL, ROUNDINGS};
+use super::stepper::{MOST_HALVINGS, Step, Stepper};
+use crate::dynamics::drive::Drive;
+use crate::dynamics::series::{Endpoint, SEEDED};
+use crate::dynamics::state::{BY_JERK, MotionState, Touch};
+use crate::numeric::Scalar;
+
+/// The order up to which the series of a rebound is extended at once: all that the drive's first coefficients are there for.
+const FEW: usize = SEEDED + 1;
+
+impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
+    /// Extends the series as far as the step needs; none where the coefficients are not finite.
+    ///
+    /// Coefficients may vanish one after the other without the next one vanishing (a high power from its flat
+    /// middle, tones that cancel), and then the last ones promise too long a step. So each step is checked
+    /// against the equation of motion at its end, and halved until it holds.
+    pub fn choose_step(&mut self, state: &MotionState<T>, flight: Option<T>, left: T) -> Option<Step<T>> {
+        let length = match flight {
+            Some(flight) if self.expand_for(state, flight) => flight,
+            _ => {
+                self.expand(state);
+                let natural = self.natural_step();
+                flight.map_or(natural, |flight| flight.smaller(natural))
+            }
+        };
+        self.shorten(state, length, left)
+    }
+
+    fn natural_step(&self) -> T {
+        let s = &self.settings;
+        T::of(self.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest))
+    }
+
+    /// The step of up to length `h` that ends in time, and with which the equation of motion holds.
+    pub fn shorten(&mut self, state: &MotionState<T>, mut h: T, left: T) -> Option<Step<T>> {
+        let border = self.drive.segment_end(state.segment);
+        for attempt in 0..MOST_HALVINGS {
+            if !(h > T::zero()) {
+                return None;
+            }
+            if attempt > 0 {
+                self.work.add(self.costs.check);
+            }
+            let mut arrival = None;
+            if left <= h {
+                h = left;
+                arrival = Some(self.end);
+            }
+            if let Some(border) = border {
+                let to_border = self.clock.between(&state.at, &border);
+                if to_border <= h {
+                    h = to_border;
+                    arrival = Some(border);
+                }
+            }
+            let end = self.series.state(h);
+            if self.step_holds(state, h, &end) {
+                return Some(Step { length: h, arrival, end });
+            }
+            if self.series.known <= self.settings.order {
+                self.expand(state);
+                h = h.smaller(self.natural_step());
+            } else {
+                h = h * T::of(0.5);
+            }
+        }
+        None
+    }
+
+    /// Extends the series to the full order.
+    fn expand(&mut self, state: &MotionState<T>) {
+        if let (2, Some(Touch { order: BY_JERK.., .. })) = (self.series.known, state.touch) {
+            self.push(state);
+        }
+        let mode = self.mode(state);
+        let order = self.settings.order;
+        self.series.extend(order, &mode.force, self.equation.damping, self.drive, &mut self.cursor);
+    }
+
+    fn push(&mut self, state: &MotionState<T>) {
+        let mode = self.mode(state);
+        let next = self.series.known;
+        self.series.extend(next, &mode.force, self.equation.damping, self.drive, &mut self.cursor);
+        if self.series.known == 3
+            && let Some(Touch { order: BY_JERK.., .. }) = state.touch
+        {
+            self.series.y[2] = T::zero(); // a release: the net force is 0 by definition
+        }
+    }
+
+    /// Extends the series, just begun, until two terms in a row are negligible over `flight`, against the rebound's own
+    /// speed; false where the full order is not enough for that.
+    pub fn expand_for(&mut self, state: &MotionState<T>, flight: T) -> bool {
+        let negligible = state.v.abs() * T::of(self.settings.tolerance * 0.1);
+        let mode = self.mode(state);
+        let (order, damping) = (self.settings.order, self.equation.damping);
+        let Self { series, drive, cursor, .. } = self;
+        let mut known = series.known;
+        let mut power = T::of(1.0);
+        let mut small = 0;
+        while known <= order {
+            if known == series.known {
+                // the first few are always needed; a drive goes on once for each of the others
+                series.extend(known.max(FEW).min(order), &mode.force, damping, *drive, cursor);
+            }
+            power = power * flight;
+            if known >= 3 {
+                let term = (series.y[known] * power).abs() * T::whole(known);
+                small = if term <= negligible { small + 1 } else { 0 };
+            }
+            known += 1;
+            if small == 2 {
+                series.known = known;
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and
+    /// rounding ask: the residual is what the first neglected terms leave.
+    pub fn step_holds(
+        &mut self,
+        state: &MotionState<T>,
+        h: T,
+        &Endpoint { y, v, acceleration, .. }: &Endpoint<T>,
+    ) -> bool {
+        let mode = self.mode(state);
+        let at = self.clock.advance(&state.at, h);
+        let series = &self.series;
+        let base = self.drive.value(&self.clock, &at, state.segment, || series.base(h), &mut self.cursor);
+        let sum = (acceleration + self.equation.damping * v) + base;
+        let residual = (mode.force.at(y) + sum).abs() * h;
+        let order = self.series.known - 1;
+        let speed = if order < self.settings.order { state.v.abs() } else { self.settings.speed };
+        let allowed = T::of(RESIDUAL * order as f64 * self.settings.tolerance) * speed;
+        if residual <= allowed {
+            return true;
+        }
+        // larger than asked for: rounding?
+        let (_, _, rounding) = mode.force.value(y);
+        let size = acceleration.abs() + (self.equation.damping * v).abs() + base.abs();
+        residual <= (rounding + size * T::of(T::EPSILON)) * h * T::of(ROUNDINGS)
+    }
+}

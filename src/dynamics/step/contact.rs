@@ -1,0 +1,158 @@
+//! Choice of a step of contact with a compliant stop, and the first event within it.
+
+use super::path::Path;
+use super::penetration::{FEWEST_LEVELS, Penetration, Start};
+use super::settings::{RESIDUAL, ROUNDINGS};
+use super::stepper::{MOST_HALVINGS, Stepper};
+use crate::dynamics::clock::Instant;
+use crate::dynamics::drive::Drive;
+use crate::dynamics::equation::{End, EndKind};
+use crate::dynamics::series::MAX_ORDER;
+use crate::dynamics::state::{Contact, HELD, MotionState};
+use crate::numeric::{PolynomialRoots, Scalar, fast_log2};
+
+/// The least speed that the tolerance in contact is relative to, as a share of the scene's. It is relative to the speed that
+/// the energy in the contact makes, up to the scene's own: a mass that trembles on its stop moves at some thousandth of
+/// that, and errors of the scene's size would be all that is seen of it. Far below, they are not seen at all.
+const LEAST_SPEED: f64 = 1e-4;
+
+/// The tolerance of a step in contact relative to that of free flight. A contact takes a dozen steps, which all err to one
+/// side, and an elastic mass makes thousands of contacts: its energy then drifts by thousandths of the tolerance in each.
+/// It costs one step in ten.
+const CONTACT_SHARE: f64 = 0.03;
+
+/// What the order of a contact's series is above that of free flight, for that.
+const CONTACT_ORDERS: usize = 2;
+
+/// Where a step of contact ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Reached {
+    /// Where it was chosen to, or at the end of the run or the drive's segment.
+    Time,
+    Surface,
+    ClipChange,
+    End(End),
+}
+
+/// A step of contact that has been chosen.
+pub(crate) struct ContactStep<T> {
+    /// As chosen, and as kept, in the parameter.
+    pub whole: T,
+    pub length: T,
+    pub duration: T,
+    pub reached: Reached,
+    pub arrival: Option<Instant<T>>,
+}
+
+impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
+    /// Expands the contact and chooses how far it holds. None where the coefficients are not finite.
+    pub fn choose_contact_step(
+        &mut self,
+        state: &MotionState<T>,
+        end: End,
+        left: T,
+        path: &mut Penetration<T>,
+    ) -> Option<ContactStep<T>> {
+        let mode = self.mode(state);
+        let damping = self.equation.damping;
+        let order = (self.settings.order + CONTACT_ORDERS).min(MAX_ORDER);
+        let sign = end.sign::<T>();
+        let start = Start {
+            root: state.depth.root,
+            speed: sign * state.v,
+            sign,
+            surface: self.equation.surface(end)? - mode.origin,
+            clipped: matches!(state.contact, Contact::Clipped(_)),
+        };
+        self.drive.seed(&self.clock, &state.at, state.segment, path.seeded(), &mut self.cursor);
+        self.evaluations += 1;
+        self.work.add(self.costs.contact);
+        let mut levels = FEWEST_LEVELS.min(D::ZERO_FROM);
+        path.expand(&start, order, levels, &mode.force, damping);
+        // As far as the speed of the step's start would bring it in the longest time.
+        let (u, w) = (start.root.to_f64(), start.speed.abs().to_f64());
+        let longest = self.settings.longest;
+        let cap = 2.0 * longest / (u + (u * u + w * longest).sqrt());
+        let stored = self.equation.compliant?.stored(start.root);
+        let energetic = (start.speed * start.speed + stored + stored).sqrt();
+        let speed = self.settings.speed.smaller(energetic.larger(self.settings.speed * T::of(LEAST_SPEED)));
+        let tolerance = self.settings.tolerance * CONTACT_SHARE;
+        let settings = (fast_log2(speed.to_f64()), self.settings.tolerance_log2 + CONTACT_SHARE.log2());
+        let mut whole = T::of(path.natural_step(settings.0, settings.1, cap));
+        let border = self.drive.segment_end(state.segment);
+        let allowed = T::of(RESIDUAL * order as f64 * tolerance) * speed;
+        for _ in 0..MOST_HALVINGS {
+            if !(whole > T::zero()) {
+                return None;
+            }
+            let (share, mut reached) = self.first_event(state, whole, path);
+            let mut length = share * whole;
+            let mut duration = path.time(length);
+            if levels < D::ZERO_FROM && levels < order {
+                let neglected = path.neglected_drive(self.drive, &mut self.cursor, duration);
+                if neglected > T::of(tolerance) * speed {
+                    // A drive as fast as the contact: all its terms.
+                    self.work.add(self.costs.contact);
+                    levels = order;
+                    path.extend_drive(levels, self.drive, &mut self.cursor);
+                    path.expand(&start, order, levels, &mode.force, damping);
+                    whole = T::of(path.natural_step(settings.0, settings.1, cap));
+                    continue;
+                }
+            }
+            let mut arrival = None;
+            let mut until = |time: T, at| {
+                if time <= duration {
+                    (length, duration) = (path.parameter(time, length), time);
+                    (reached, arrival) = (Reached::Time, Some(at));
+                }
+            };
+            until(left, self.end);
+            if let Some(border) = border {
+                until(self.clock.between(&state.at, &border), border);
+            }
+            let residual = path.residual(length, &mode.force, damping);
+            let rounding = residual.size * T::of(T::EPSILON * ROUNDINGS);
+            if residual.error.abs() * length <= allowed || residual.error.abs() <= rounding {
+                return Some(ContactStep { whole, length, duration, reached, arrival });
+            }
+            self.work.add(self.costs.check);
+            whole = length * T::of(0.5);
+        }
+        None
+    }
+
+    /// The first event within a step of `whole`, as a share of it.
+    fn first_event(&self, state: &MotionState<T>, whole: T, path: &Penetration<T>) -> (T, Reached) {
+        let mut first = (T::of(1.0), Reached::Time);
+        let mut earlier = |share: Option<T>, reached: Reached| {
+            if let Some(share) = share.filter(|share| *share <= first.0) {
+                first = (share, reached);
+            }
+        };
+        earlier(path.separation(whole), Reached::Surface);
+        earlier(path.turn(whole, state.depth.clip_changed), Reached::ClipChange);
+        let mode = self.mode(state);
+        let n = path.known();
+        for at in [End::Low, End::High] {
+            let (level, kind) = mode.end(at);
+            let touch = state.touch.filter(|touch| touch.end == at);
+            if kind == EndKind::Compliant || touch.is_some_and(|touch| touch.order == HELD) {
+                continue;
+            }
+            let mut g = path.scaled(whole);
+            for c in &mut g[1..n] {
+                *c = -(at.sign::<T>() * *c);
+            }
+            g[0] = at.sign::<T>() * (level - state.x);
+            let mut from = usize::from(touch.is_some());
+            while from + 1 < n && g[from] == T::zero() {
+                from += 1;
+            }
+            let g = &g[from..n];
+            let share = if g[0] > T::zero() { PolynomialRoots::new(g).first() } else { Some(T::zero()) };
+            earlier(share, Reached::End(at));
+        }
+        first
+    }
+}

@@ -1,0 +1,117 @@
+//! How long does a rebound fly that is pressed back onto its stop?
+//!
+//! Before a mass comes to rest it bounces a dozen times, each time a fraction as fast; most impacts of a run are such.
+//! Their flights are all but parabolas, so they need no search: with the gap as the variable, which is 0 at the start by
+//! definition, the flight ends where a polynomial with one root is 0, and a method of third order from the parabola's own
+//! end finds that to the last digit in two or three steps, however short the flight.
+
+use super::stepper::Stepper;
+use crate::dynamics::drive::Drive;
+use crate::dynamics::equation::{End, EndKind};
+use crate::dynamics::series::Endpoint;
+use crate::dynamics::state::{BY_SPEED, MotionState, Touch};
+use crate::numeric::Scalar;
+
+/// The most steps to the root; each takes the error to its third power.
+const MOST_STEPS: usize = 12;
+
+impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
+    /// Whether the next step is one of the full order, on which nothing need be known of a surface that the mass stands on
+    /// but that it leaves it by its speed.
+    pub fn flies_freely(&mut self, state: &MotionState<T>) -> bool {
+        match state.touch {
+            None => true,
+            Some(Touch { order: BY_SPEED, .. }) => {
+                self.seed(state);
+                self.pressed_rebound(state)
+                    .is_none_or(|(end, rates)| self.short_flight(state, end, rates).is_none())
+            }
+            Some(_) => false,
+        }
+    }
+
+    /// Whether the mass has just been thrown off a stop that it is pressed on, and off which: with the outward acceleration
+    /// with which it is pressed there and its first two derivatives. Expects the drive to be seeded.
+    pub fn pressed_rebound(&self, state: &MotionState<T>) -> Option<(End, [T; 3])> {
+        let Some(Touch { end, order: BY_SPEED }) = state.touch else { return None };
+        if !matches!(self.mode(state).end(end).1, EndKind::Stop | EndKind::Compliant) {
+            return None;
+        }
+        let rates = self.seeded_contact_acceleration(end);
+        (rates[0] > T::zero()).then_some((end, rates))
+    }
+
+    /// A time in which a rebound that is pressed back is back, where neither the drive nor the mechanism changes the press
+    /// much meanwhile, and off a compliant stop in any case; none where it is a flight like any other.
+    pub fn short_flight(&self, state: &MotionState<T>, end: End, [press, jerk, _]: [T; 3]) -> Option<T> {
+        let (speed, damping) = (state.v.abs(), self.equation.damping);
+        let stiffness = self.equation.stop(end).map_or(T::zero(), |stop| stop.stiffness.abs());
+        let flight = T::of(3.0) * speed / press;
+        let change = (jerk.abs() + stiffness * speed + damping * press) * flight;
+        (self.equation.compliant.is_some() || change < press * T::of(1.5)).then_some(flight)
+    }
+
+    /// The flight from the stop that the mass has just been thrown off back to it: its end, its length, and where it
+    /// leads; none where it may be longer than `flight`, or is too far from a parabola for its end to be known without
+    /// a search. Expects the series to be begun.
+    pub fn rebound(&mut self, state: &MotionState<T>, flight: T, left: T) -> Option<(End, T, Endpoint<T>)> {
+        let Some(Touch { end, order: BY_SPEED }) = state.touch else { return None };
+        let (level, kind) = self.mode(state).end(end);
+        let border = self.drive.segment_end(state.segment);
+        let before = |border| flight < self.clock.between(&state.at, &border);
+        if kind != EndKind::Stop || !(flight < left) || !border.is_none_or(before) {
+            return None;
+        }
+        if !self.expand_for(state, flight) {
+            return None;
+        }
+        let length = self.parabola_like(end.sign(), flight)?;
+        let landing = self.series.state(length);
+        // Nowhere near the other end.
+        let (other, _) = self.mode(state).end(end.other());
+        if !((other - level).abs() > landing.bound) || !self.step_holds(state, length, &landing) {
+            return None;
+        }
+        Some((end, length, landing))
+    }
+
+    /// Where gap / time, positive at 0 and falling all the way up to `flight`, is 0.
+    fn parabola_like(&self, sign: T, flight: T) -> Option<T> {
+        let zero = T::zero();
+        let y = &self.series.y[1..self.series.known];
+        // The slope is that of the parabola, give or take what all the others can come to.
+        let mut others = zero;
+        for (k, c) in y.iter().enumerate().skip(2).rev() {
+            others = others * flight + c.abs() * T::whole(k);
+        }
+        let others = others * flight;
+        let falls = sign * y[1];
+        if !(falls > others) {
+            return None;
+        }
+        if y.iter().rev().fold(zero, |gap, c| gap * flight - sign * *c) > zero {
+            return None;
+        }
+        let mut t = -(y[0] / y[1]);
+        for _ in 0..MOST_STEPS {
+            let (mut value, mut slope, mut bend) = (zero, zero, zero);
+            for c in y.iter().rev() {
+                bend = bend * t + slope;
+                slope = slope * t + value;
+                value = value * t - sign * *c;
+            }
+            let newton = value / slope;
+            let bent = newton * bend / slope;
+            let change = newton + newton * bent;
+            t -= change;
+            if !(t > zero && t <= flight) {
+                return None;
+            }
+            let close = T::of(T::ROUGH);
+            if change.abs() <= t * close && bent.abs() <= close {
+                return Some(t); // what is left is the third power of that
+            }
+        }
+        None
+    }
+}

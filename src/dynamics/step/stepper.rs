@@ -1,0 +1,128 @@
+//! The stepper: equation, drive and clock, and the series of the step that is being made.
+
+use super::penetration::Penetration;
+use super::settings::Settings;
+use super::work::{Costs, Work};
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::drive::{Drive, base_at};
+use crate::dynamics::equation::{End, Equation, Mode};
+use crate::dynamics::series::{Endpoint, Series};
+use crate::dynamics::state::MotionState;
+use crate::numeric::Scalar;
+
+/// A step halved so often is no step.
+pub(super) const MOST_HALVINGS: u32 = 200;
+
+/// What makes steps from states: all that they need beside the state itself, and nothing of what is recorded.
+pub(crate) struct Stepper<'a, T: Scalar, D: Drive<T>> {
+    pub equation: &'a Equation<T>,
+    pub drive: &'a D,
+    pub clock: Clock<T>,
+    pub settings: Settings<T>,
+    pub series: Series<T>,
+    pub cursor: D::Cursor,
+    /// Workspace of contact with a compliant stop, made at the first.
+    pub penetration: Option<Box<Penetration<T>>>,
+    /// The end of the run.
+    pub end: Instant<T>,
+    pub evaluations: u64,
+    pub work: Work<'a>,
+    pub costs: Costs,
+}
+
+/// A step of free flight that has been chosen.
+pub(crate) struct Step<T> {
+    pub length: T,
+    /// The instant at which it ends, where that is the end of the run or of the drive's segment.
+    pub arrival: Option<Instant<T>>,
+    /// What the polynomial says of its end.
+    pub end: Endpoint<T>,
+}
+
+impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
+    pub fn new(
+        equation: &'a Equation<T>,
+        drive: &'a D,
+        clock: Clock<T>,
+        settings: Settings<T>,
+        end: Instant<T>,
+        work: Work<'a>,
+    ) -> Self {
+        Self {
+            equation,
+            drive,
+            clock,
+            costs: Costs::new(settings.order, equation.most_products(), drive),
+            settings,
+            series: Series::new(equation.most_products()),
+            cursor: D::Cursor::default(),
+            penetration: None,
+            end,
+            evaluations: 0,
+            work,
+        }
+    }
+
+    #[inline]
+    pub fn mode(&self, state: &MotionState<T>) -> &'a Mode<T> {
+        &self.equation.modes[state.mode]
+    }
+
+    /// Fills the first coefficients of the drive.
+    #[inline]
+    pub fn seed(&mut self, state: &MotionState<T>) {
+        self.drive.seed(&self.clock, &state.at, state.segment, &mut self.series.a, &mut self.cursor);
+    }
+
+    /// Acceleration of the base in m/s^2 at instants within a segment of the drive.
+    pub fn base(&self, segment: usize) -> impl Fn(&Instant<T>) -> f64 + use<'a, T, D> {
+        let (drive, clock, unit) = (self.drive, self.clock, self.equation.unit);
+        move |at| base_at(drive, &clock, segment, at, unit)
+    }
+
+    /// The time to the end of the run.
+    #[inline]
+    pub fn left(&self, state: &MotionState<T>) -> T {
+        self.clock.between(&state.at, &self.end)
+    }
+
+    /// An instant in s.
+    pub fn seconds(&self, state: &MotionState<T>) -> f64 {
+        self.clock.seconds(&state.at)
+    }
+
+    /// The end of the drive's segment or of the run, whichever comes first.
+    pub fn segment_limit(&self, state: &MotionState<T>) -> Instant<T> {
+        match self.drive.segment_end(state.segment) {
+            Some(border) if self.clock.between(&border, &self.end) > T::zero() => border,
+            _ => self.end,
+        }
+    }
+
+    /// Enters the drive's next segment where the present one has ended.
+    pub fn pass_segment_end(&self, state: &mut MotionState<T>) -> bool {
+        let end = self.drive.segment_end(state.segment);
+        let ended = end.is_some_and(|border| self.clock.between(&state.at, &border) <= T::zero());
+        state.segment += usize::from(ended);
+        ended
+    }
+
+    /// Outward acceleration of a mass held at the stop of `end`, and its first two time derivatives.
+    pub fn contact_acceleration(&mut self, state: &MotionState<T>, end: End) -> [T; 3] {
+        self.seed(state);
+        self.seeded_contact_acceleration(end)
+    }
+
+    /// The same, where the drive has been seeded.
+    pub fn seeded_contact_acceleration(&self, end: End) -> [T; 3] {
+        let (a, sign) = (&self.series.a, end.sign::<T>());
+        let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.press);
+        [stop - sign * a[0], -(sign * a[1]), -(sign * a[2] * T::of(2.0))]
+    }
+
+    /// What rounding may make of it.
+    pub fn contact_acceleration_rounding(&self, end: End) -> T {
+        let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.press_rounding);
+        stop + self.series.a[0].abs() * T::of(4.0 * T::EPSILON)
+    }
+}

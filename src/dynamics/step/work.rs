@@ -1,0 +1,187 @@
+//! The work of a run, and when it is spent: budgets bound what is computed, not what is simulated.
+//!
+//! Work is counted in units of about ten nanoseconds of one core. A step of free flight costs more with the order of its
+//! series, the degree of the force and each part of the drive; a step of contact with a compliant stop, a search for a
+//! release and a lap that is told again for the sake of a list cost what they were measured to. What a completed cycle
+//! adds by multiplication costs nothing, so that a run which comes back is done however long it is. Samples, events and
+//! ledger are not counted: what is watched does not decide how a run ends, unless laps have to be told again for it.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::dynamics::drive::Drive;
+use crate::numeric::Scalar;
+
+/// Units that one run may take: about ten seconds of one core, and at least 2e7 steps of a cubic force under one sine at
+/// any tolerance.
+pub(crate) const WORK_BUDGET: u64 = 1_000_000_000;
+
+/// Impacts that one run may make one by one, those that laps add by multiplication not among them.
+pub(crate) const IMPACT_BUDGET: u64 = 2_000_000;
+
+/// Units between two looks at the cancel flag: 200 steps of a simple scene, some tenths of a millisecond.
+const LOOK: u64 = 10_000;
+
+/// A sample, beside the sum of the drive's parts.
+const SAMPLE: u64 = 10;
+
+/// An arrival at a surface, whose instant is a root of the step's polynomial.
+pub(crate) const ARRIVAL: u64 = 50;
+
+/// An entry of a kept cycle that is told again.
+pub(crate) const TOLD: u64 = 10;
+
+/// What the pieces of a run's work cost, in units.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Costs {
+    /// A step of free flight.
+    pub step: u64,
+    /// The check of a step once more, after it was halved.
+    pub check: u64,
+    /// An expansion in contact with a compliant stop.
+    pub contact: u64,
+    /// A sample of the motion and the base.
+    sample: u64,
+}
+
+impl Costs {
+    /// Of series of this order, forces that take up to `products` products of series beyond the first, and a drive.
+    pub fn new<T: Scalar, D: Drive<T>>(order: usize, products: usize, drive: &D) -> Self {
+        let (order, products) = (order as u64, products as u64);
+        let own = drive.cost(order as usize);
+        let step = 20 + order * order * (2 + 2 * products) / 80 + own;
+        Self {
+            step,
+            check: 5 + products + own / 2,
+            contact: step + 120 + order * order / 3,
+            sample: SAMPLE + own,
+        }
+    }
+
+    /// Samples between two looks at the cancel flag.
+    pub fn samples_per_look(&self) -> u64 {
+        (LOOK / self.sample).max(1)
+    }
+}
+
+/// Work done, and when to look whether the run is to go on.
+#[derive(Debug, Clone)]
+pub(crate) struct Work<'a> {
+    done: u64,
+    impacts: u64,
+    next_look: u64,
+    cancel: Option<&'a AtomicBool>,
+}
+
+impl<'a> Work<'a> {
+    pub fn new(cancel: Option<&'a AtomicBool>) -> Self {
+        Self { done: 0, impacts: 0, next_look: LOOK, cancel }
+    }
+
+    /// Units done.
+    pub fn done(&self) -> u64 {
+        self.done
+    }
+
+    /// Impacts made one by one.
+    pub fn impacts(&self) -> u64 {
+        self.impacts
+    }
+
+    #[inline]
+    pub fn add(&mut self, units: u64) {
+        self.done += units;
+    }
+
+    #[inline]
+    pub fn add_impacts(&mut self, count: u64) {
+        self.impacts += count;
+    }
+
+    /// Whether this much more is within the budgets.
+    pub fn has_room_for(&self, units: u64) -> bool {
+        self.done + units < WORK_BUDGET && self.impacts < IMPACT_BUDGET
+    }
+
+    /// Whether a budget is spent.
+    pub fn is_spent(&self) -> bool {
+        !self.has_room_for(0)
+    }
+
+    /// Pieces of this cost up to the next look at the cancel flag, at least one.
+    pub fn pieces_until_look(&self, cost: u64) -> u64 {
+        (self.next_look.saturating_sub(self.done) / cost.max(1)).max(1)
+    }
+
+    /// Whether the run is told to stop; looks at the flag now and then.
+    #[inline]
+    pub fn is_told_to_stop(&mut self) -> bool {
+        if self.done < self.next_look {
+            return false;
+        }
+        self.next_look = self.done + LOOK;
+        self.is_cancelled()
+    }
+
+    /// Whether the run is told to stop; looks at the flag.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::drive::Still;
+    use crate::dynamics::drive::composite::Composite;
+
+    #[test]
+    fn a_simple_scene_may_take_twenty_million_steps_at_any_tolerance() {
+        for order in 8..=23 {
+            let costs = Costs::new::<f64, _>(order, 1, &Still { acceleration: 0.0 });
+            assert!(WORK_BUDGET / costs.step >= 20_000_000, "{order} {costs:?}");
+        }
+        const { assert!(IMPACT_BUDGET >= 2_000_000) };
+    }
+
+    #[test]
+    fn looks_are_as_much_work_apart_whatever_a_piece_costs() {
+        let told = AtomicBool::new(true);
+        for cost in [1, 30, 9_999, 10_000, 3_000_000] {
+            let mut work = Work::new(Some(&told));
+            let mut pieces = 0;
+            while !work.is_told_to_stop() {
+                work.add(cost);
+                pieces += 1;
+            }
+            assert_eq!(pieces, LOOK.div_ceil(cost));
+            assert!(work.pieces_until_look(cost) <= pieces.max(1));
+        }
+    }
+
+    #[test]
+    fn every_part_of_a_drive_costs_its_share() {
+        let drive = |lines: usize| {
+            let tone = crate::dynamics::drive::tone::Tone {
+                amplitude: 1.0,
+                frequency: 1.0,
+                ratio: crate::dynamics::drive::tone::TurnsPerCycle::Rounded(1.0),
+                phase: 0.0,
+                quarter: false,
+                ramp: None,
+            };
+            Composite {
+                constant: 0.0,
+                tones: vec![tone; lines],
+                chirps: vec![],
+                records: vec![],
+                segment_ends: vec![],
+                common_cycles: None,
+                reach: 1.0,
+                fastest: 1.0,
+            }
+        };
+        let step = |lines| Costs::new(16, 1, &drive(lines)).step;
+        assert!(step(4096) > 500 * step(1) && step(64) > 5 * step(1));
+        assert_eq!(Costs::new(16, 1, &drive(4096)).samples_per_look(), 1);
+    }
+}
