@@ -132,20 +132,6 @@ fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     paths.into_iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))
 }
 
-/// Puts the stop of one side to a distance in mm from the middle.
-pub fn put_side(stops: &mut Stops, right: bool, mm: f64) {
-    match stops {
-        Stops::None => {}
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => *travel_limit_mm = mm,
-        Stops::Uneven { left_mm, right_mm, .. } => {
-            let own = if right { right_mm } else { left_mm };
-            if own.is_some() {
-                *own = Some(mm);
-            }
-        }
-    }
-}
-
 fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let mut changed = restitution_ui(ui, session, width);
     changed |= geometry::preload_ui(ui, session, width);

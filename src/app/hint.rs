@@ -3,7 +3,6 @@
 use eframe::egui::{RichText, Ui};
 
 use crate::dynamics::EventKind;
-use crate::scene::Stops;
 
 use super::session::Session;
 use super::status::grams;
@@ -144,8 +143,5 @@ impl Hint {
 
 /// The travel limit of stops alike on both sides.
 fn limit_mm(session: &Session) -> Option<f64> {
-    match session.scene().stops {
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => Some(travel_limit_mm),
-        _ => None,
-    }
+    session.scene().stops.travel_limit_mm()
 }

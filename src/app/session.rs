@@ -10,9 +10,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::dynamics::Model;
+use crate::dynamics::Summary;
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
 use crate::scene::{self, Excitation, Scene, Stops};
-use crate::study::{Settled, Thresholds};
+use crate::study::Thresholds;
 
 use super::accuracy::Accuracy;
 use super::document::Editor;
@@ -44,7 +45,7 @@ pub struct Card {
     /// The scene.
     pub scene: Scene,
     /// What it settles to, once that is known.
-    pub settled: Option<Settled>,
+    pub settled: Option<Summary>,
     /// How much shaking it takes, once that is known.
     pub thresholds: Option<Thresholds>,
 }
@@ -59,7 +60,7 @@ pub struct Session {
     fault: Option<String>,
     /// The motion.
     pub player: Player,
-    settled: Latest<Settled>,
+    settled: Latest<Summary>,
     thresholds: Latest<Thresholds>,
     /// The travel limit in mm with which it would cross; searched for only when somebody asks.
     stops_that_cross: Latest<Option<f64>>,
@@ -350,7 +351,7 @@ impl Session {
     }
 
     /// What the motion settles to; of an earlier scene while the answer is still to come.
-    pub fn settled(&self) -> Option<&Settled> {
+    pub fn settled(&self) -> Option<&Summary> {
         self.settled.newest()
     }
 
@@ -420,7 +421,7 @@ impl Session {
         Some(Told {
             scene: self.scene(),
             model: &self.model,
-            summary: &settled.summary,
+            summary: settled,
             thresholds: self.thresholds.current(),
             origin: self.asked_from,
             now: self.player.watch().time(),
@@ -464,16 +465,5 @@ fn first_stops(scene: &Scene, model: &Model) -> Stops {
     match scene.stops {
         Stops::None => hinted().unwrap_or_else(suiting),
         stops => stops,
-    }
-}
-
-/// The stops of a scene in mm, left and right; none where a side is open.
-pub fn stop_distances(scene: &Scene) -> (Option<f64>, Option<f64>) {
-    match scene.stops {
-        scene::Stops::None => (None, None),
-        scene::Stops::Rigid { travel_limit_mm, .. } | scene::Stops::Hertz { travel_limit_mm, .. } => {
-            (Some(-travel_limit_mm), Some(travel_limit_mm))
-        }
-        scene::Stops::Uneven { left_mm, right_mm, .. } => (left_mm.map(|mm| -mm), right_mm),
     }
 }

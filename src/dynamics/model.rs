@@ -275,25 +275,11 @@ impl Model {
 }
 
 fn stop_pair(stops: &Stops) -> Option<StopPair> {
-    let at = |mm: f64, sign: f64, restitution: f64| Some(StopAt { x: sign * (mm / 1e3), restitution });
-    match *stops {
-        Stops::None => None,
-        Stops::Hertz { travel_limit_mm, .. } => {
-            let [left, right] = [-1.0, 1.0].map(|sign| at(travel_limit_mm, sign, 1.0));
-            Some(StopPair { left, right })
-        }
-        Stops::Rigid { travel_limit_mm, restitution } => {
-            let [left, right] = [-1.0, 1.0].map(|sign| at(travel_limit_mm, sign, restitution));
-            Some(StopPair { left, right })
-        }
-        Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => {
-            let of = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(1.0);
-            Some(StopPair {
-                left: left_mm.and_then(|mm| at(mm, -1.0, of(restitution_left, restitution_right))),
-                right: right_mm.and_then(|mm| at(mm, 1.0, of(restitution_right, restitution_left))),
-            })
-        }
-    }
+    let [left, right] = stops.limits_mm();
+    let [of_left, of_right] = stops.restitutions().map(|own| own.unwrap_or(1.0));
+    let left = left.map(|mm| StopAt { x: -(mm / 1e3), restitution: of_left });
+    let right = right.map(|mm| StopAt { x: mm / 1e3, restitution: of_right });
+    (*stops != Stops::None).then_some(StopPair { left, right })
 }
 
 fn start_state(

@@ -32,6 +32,7 @@ mod presets;
 mod ranges;
 mod record;
 mod shape;
+mod stops;
 mod text;
 
 pub use arguments::arguments;
@@ -48,4 +49,5 @@ pub use manifest::{PROGRAM, is_manifest};
 pub use presets::{PRESETS, Preset, TABLES, Table, export};
 pub use ranges::MAX_COEFFICIENTS;
 pub use record::{Record, RecordError};
+pub use stops::Stops;
 pub use text::{LARGEST_SCENE, write};

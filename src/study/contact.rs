@@ -144,14 +144,8 @@ pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
             format!("restitution {} there; {}", short(stop.restitution(speed)), wanted.join(", "))
         }
         None => {
-            let own = match *stops {
-                Stops::Rigid { restitution, .. } => [Some(restitution), None],
-                Stops::Uneven { left_mm, right_mm, restitution_left: left, restitution_right: right } => {
-                    [left_mm.and(left.or(right)), right_mm.and(right.or(left))]
-                }
-                Stops::None | Stops::Hertz { .. } => [None, None],
-            };
-            let mut own: Vec<f64> = own.into_iter().flatten().collect();
+            let there = stops.limits_mm().into_iter().zip(stops.restitutions());
+            let mut own: Vec<f64> = there.filter_map(|(limit, own)| limit.and(own)).collect();
             own.dedup();
             let own = own.into_iter().map(|e| match loss(e) {
                 Some(loss) => format!("a restitution of {e} there takes loss_s_per_m: {loss}"),

@@ -350,13 +350,7 @@ fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
 }
 
 fn right_stop(scene: &Scene) -> Option<f64> {
-    match scene.stops {
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
-            Some(travel_limit_mm / 1e3)
-        }
-        Stops::Uneven { right_mm, .. } => right_mm.map(|mm| mm / 1e3),
-        Stops::None => None,
-    }
+    scene.stops.limits_mm()[1].map(|mm| mm / 1e3)
 }
 
 /// The amplitude in g at which the base's push reaches the force that presses the mass on the stop that it rests on.

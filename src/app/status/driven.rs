@@ -4,7 +4,6 @@ use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, Summary};
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
-use super::super::session::stop_distances;
 use super::numbers::{between, grams, limit_mm, mm, seconds, speed, times};
 use super::remedy::{amplitude, remedy};
 use super::{Kind, Sentence, ended};
@@ -306,8 +305,8 @@ fn untouched(told: &Told) -> String {
     if touched || rests || told.model.stop_positions() == (None, None) {
         return String::new();
     }
-    match stop_distances(told.scene) {
-        (Some(left), Some(right)) if left == -right => {
+    match told.scene.stops.limits_mm() {
+        [Some(left), Some(right)] if left == right => {
             format!(" Stops at ±{} mm are not touched.", limit_mm(right))
         }
         _ => " The stops are not touched.".to_owned(),

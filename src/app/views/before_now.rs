@@ -7,9 +7,9 @@ use crate::app::session::Card;
 use crate::app::status::{Kind, grams, mm, speed};
 use crate::app::widgets::kind_shapes;
 use crate::app::words::explained;
+use crate::dynamics::Summary;
 use crate::dynamics::{Outcome, Regime};
 use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};
-use crate::study::Settled;
 
 use super::ViewContext;
 
@@ -70,14 +70,12 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
         row_ui(
             ui,
             &both("RMS velocity", &|card| {
-                value(card, |s| s.summary.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))
+                value(card, |s| s.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))
             }),
         );
         row_ui(
             ui,
-            &both("reach", &|card| {
-                value(card, |s| s.summary.max_abs_x.map(|reach| format!("{} mm", mm(reach))))
-            }),
+            &both("reach", &|card| value(card, |s| s.max_abs_x.map(|reach| format!("{} mm", mm(reach))))),
         );
         row_ui(ui, &both("crosses from", &crosses_from));
     });
@@ -167,7 +165,7 @@ fn dash() -> String {
     "-".to_owned()
 }
 
-fn value(card: &Card, of: impl Fn(&Settled) -> Option<String>) -> String {
+fn value(card: &Card, of: impl Fn(&Summary) -> Option<String>) -> String {
     card.settled.as_ref().and_then(of).unwrap_or_else(dash)
 }
 
@@ -235,18 +233,18 @@ fn start(scene: &Scene) -> String {
     }
 }
 
-fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Settled>) {
+fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>) {
     let Some(settled) = settled else {
         ui.label("-");
         return;
     };
-    if settled.summary.outcome != Outcome::Done {
+    if settled.outcome != Outcome::Done {
         ui.label("the run ended early");
         return;
     }
-    let (kind, name) = match settled.summary.regime {
+    let (kind, name) = match settled.regime {
         Regime::Rest => (Kind::Resting, "resting"),
-        Regime::Intrawell if settled.summary.releases > 0 => (Kind::Intrawell, "hopping"),
+        Regime::Intrawell if settled.releases > 0 => (Kind::Intrawell, "hopping"),
         Regime::Intrawell => (Kind::Intrawell, "intrawell"),
         Regime::Interwell => (Kind::Interwell, "interwell"),
         Regime::Irregular => (Kind::Irregular, "irregular"),

@@ -36,7 +36,7 @@ impl Span {
                 (low, high) = (low.min(x), high.max(x));
             }
         };
-        let settled = session.settled().and_then(|settled| settled.summary.range).unwrap_or((0.0, 0.0));
+        let settled = session.settled().and_then(|settled| settled.range).unwrap_or((0.0, 0.0));
         let reach = [settled.0.min(seen.0), settled.1.max(seen.1)];
         if let Some(barrier) = &model.mechanism.landscape.barrier {
             show(barrier.left_well * ROOM);
