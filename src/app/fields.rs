@@ -1,6 +1,7 @@
 //! The numbers of a scene as the window shows them: what each is called, how far its slider goes, what may be typed.
 
 use crate::dynamics::STANDARD_GRAVITY;
+use crate::numeric::round;
 use crate::scene::{FieldPath, Mechanism, Scene, Stops};
 
 use super::session::Session;
@@ -253,21 +254,13 @@ pub fn suiting_limit(well_mm: Option<f64>) -> f64 {
 
 /// The least number of one or two digits that is not below `value`.
 pub fn round_up(value: f64) -> f64 {
-    let power = 10_f64.powf(value.log10().floor());
-    let digits = [1.0, 1.2, 1.5, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0];
-    decimal(digits.iter().map(|digit| digit * power).find(|to| *to >= value * (1.0 - 1e-9)).unwrap_or(value))
+    let digits = [1.0, 1.2, 1.5, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+    round::round_up(value, &digits)
 }
 
 /// 1, 2 or 5 times a power of ten, not above `value`.
 pub fn below(value: f64) -> f64 {
-    let power = 10_f64.powf(value.log10().floor());
-    decimal(
-        [5.0, 2.0, 1.0]
-            .map(|digit| digit * power)
-            .into_iter()
-            .find(|own| *own <= value * (1.0 + 1e-9))
-            .unwrap_or(power),
-    )
+    round::round_down(value, &round::ONE_TWO_FIVE)
 }
 
 /// The number of six digits: what products of round numbers are meant to be.

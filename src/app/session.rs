@@ -9,8 +9,7 @@ mod hands;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::dynamics::Model;
-use crate::dynamics::Summary;
+use crate::dynamics::{Model, Summary};
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
 use crate::scene::{self, Excitation, Scene, Stops};
 use crate::study::Thresholds;

@@ -21,7 +21,6 @@ mod axis;
 mod check;
 mod columns;
 mod data;
-mod decimal;
 mod document;
 mod error;
 mod fields;
@@ -32,6 +31,7 @@ mod presets;
 mod ranges;
 mod record;
 mod shape;
+mod steps;
 mod stops;
 mod text;
 

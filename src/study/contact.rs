@@ -7,7 +7,8 @@ use std::time::Duration;
 use super::table::{Table, Values};
 use crate::dynamics::{EventKind, Model, Outcome, Request, Summary};
 use crate::mechanics::Hertz;
-use crate::numeric::short;
+use crate::numeric::round::{ONE_TWO_FIVE, round_up};
+use crate::numeric::{bisect, short};
 use crate::scene::Stops;
 
 /// Positions of the speed on a table: more than a picture needs.
@@ -21,7 +22,7 @@ const SPEEDS: usize = 401;
 /// known the value is missing. All are closed forms: see [`Hertz`].
 pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
     let stop = model.compliant?;
-    let top = round_up(2.0 * model.scales.speed);
+    let top = round_up(2.0 * model.scales.speed, &ONE_TWO_FIVE);
     let last = (SPEEDS - 1) as f64;
     let speeds: Vec<f64> = (0..SPEEDS).map(|i| top * i as f64 / last).collect();
     let column = |of: &dyn Fn(f64) -> f64| Values::Numbers(speeds.iter().map(|v| of(*v)).collect());
@@ -47,12 +48,7 @@ pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
 pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
     let material = stop.material?;
     let yields = |v: f64| material.pressure(stop.peak_force(mass, v)) > material.yield_pressure();
-    let (mut low, mut high) = (-30.0, 30.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        *(if yields(10_f64.powf(middle)) { &mut high } else { &mut low }) = middle;
-    }
-    Some(10_f64.powf(high))
+    Some(10_f64.powf(bisect(-30.0, 30.0, 60, |power| !yields(10_f64.powf(power))).1))
 }
 
 /// One sentence where the contact of a run was pressed beyond what its material bears.
@@ -159,24 +155,4 @@ pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
         "stops are struck at {} m/s (median of the first impacts of {flights} {window}): {what}",
         short(speed)
     ))
-}
-
-/// The first of 1, 2 or 5 times a power of ten that is not below `value`, which is above 0.
-fn round_up(value: f64) -> f64 {
-    let exponent = value.log10().floor() as i32;
-    let steps = [1.0, 2.0, 5.0, 10.0];
-    let found = steps.iter().map(|step| format!("{step}e{exponent}").parse().unwrap_or(value));
-    found.into_iter().find(|step| *step >= value).unwrap_or(value)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_axis_of_speeds_ends_on_a_round_number() {
-        for (value, up) in [(0.96, 1.0), (1.0, 1.0), (1.01, 2.0), (0.003, 0.005), (70.0, 100.0)] {
-            assert_eq!(round_up(value), up);
-        }
-    }
 }

@@ -2,6 +2,8 @@
 
 use super::table::{Table, Values};
 use crate::mechanics::{Equilibrium, Mechanism};
+use crate::numeric::Decimal;
+use crate::numeric::round::decade;
 use crate::scene::Scene;
 
 /// Positions of a force curve where nobody says how many.
@@ -66,19 +68,15 @@ pub fn default_positions(scene: &Scene, mechanism: &Mechanism, points: usize) ->
 
 /// `value` above 0 rounded up to two significant digits, as the double nearest to that decimal.
 fn two_digits_up(value: f64) -> f64 {
-    let exponent = value.log10().floor() as i32 - 1;
+    let exponent = decade(value) - 1;
     let digits = (value / 10_f64.powi(exponent)).ceil();
     format!("{digits}e{exponent}").parse().unwrap_or(value)
 }
 
 /// `mm` in m: the double nearest to the decimal that `mm` spells, so that 0.3 mm is 3e-4 m.
 pub fn metres(mm: f64) -> f64 {
-    let text = format!("{mm:e}");
-    let shifted = text.split_once('e').and_then(|(mantissa, exponent)| {
-        let exponent: i32 = exponent.parse().ok()?;
-        format!("{mantissa}e{}", exponent - 3).parse().ok()
-    });
-    shifted.unwrap_or(mm / 1e3)
+    let shifted = Decimal::shortest(mm).map(|own| Decimal { exponent: own.exponent - 3, ..own });
+    shifted.map_or(mm / 1e3, |own| own.value().copysign(mm))
 }
 
 /// Positions in m of the left and the right stop; NaN where there is none.

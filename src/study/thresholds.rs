@@ -16,6 +16,7 @@ use super::sweep::CellFaults;
 use super::table::{Table, Values};
 use crate::dynamics::{Model, Regime, Request, STANDARD_GRAVITY, Summary};
 use crate::mechanics::{BuildError, Landscape, Mechanism};
+use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
 use crate::scene::{Excitation, FieldPath, Files, Scene, Start, Stops};
 
 /// What begins at a threshold.
@@ -263,7 +264,7 @@ fn multiple(value: f64, unit: f64) -> f64 {
 
 /// One in the last of three significant digits of a value.
 fn third_digit(value: f64) -> f64 {
-    10_f64.powf(value.log10().floor() - 2.0)
+    10_f64.powi(decade(value) - 2)
 }
 
 /// The field of the amplitude of a sine.
@@ -381,13 +382,10 @@ pub fn stops_that_cross(
         return Some(None);
     };
     let well_mm = well.x.abs() * 1e3;
-    let (leading, place) = round_step(well_mm / FEWEST_STOPS);
+    let step = round_down(well_mm / FEWEST_STOPS, &ONE_TWO_FIVE);
     let mut trial = Scene { start: Start::Rest, ..scene.clone() };
-    for i in (1..=(well_mm / (leading * 10_f64.powi(place))).floor() as u32).rev() {
-        // the decimal itself, not a sum of steps
-        let count = leading * f64::from(i);
-        let travel_limit_mm =
-            if place < 0 { count / 10_f64.powi(-place) } else { count * 10_f64.powi(place) };
+    for i in (1..=(well_mm / step).floor() as u32).rev() {
+        let travel_limit_mm = multiple(f64::from(i) * step, step);
         trial.stops = Stops::Rigid { travel_limit_mm, restitution };
         let Ok(model) = Model::build(&trial, Arc::clone(mechanism)) else { continue };
         let until_settled = Some(longest(&model));
@@ -402,12 +400,4 @@ pub fn stops_that_cross(
         }
     }
     Some(None)
-}
-
-/// The largest of 1, 2 and 5 times a power of ten that is not above `most`, as the digit and the power.
-fn round_step(most: f64) -> (f64, i32) {
-    let place = most.log10().floor();
-    let share = most / 10_f64.powf(place);
-    let digit = [5.0, 2.0].into_iter().find(|digit| *digit <= share).unwrap_or(1.0);
-    (digit, place as i32)
 }

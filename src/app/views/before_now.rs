@@ -7,8 +7,7 @@ use crate::app::session::Card;
 use crate::app::status::{Kind, grams, mm, speed};
 use crate::app::widgets::kind_shapes;
 use crate::app::words::explained;
-use crate::dynamics::Summary;
-use crate::dynamics::{Outcome, Regime};
+use crate::dynamics::{Outcome, Regime, Summary};
 use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};
 
 use super::ViewContext;

@@ -11,6 +11,7 @@ use super::problem::Problem;
 use super::tally::{State, Tally};
 use super::{Keep, MethodRun};
 use crate::dynamics::{Model, Phase, Side};
+use crate::numeric::bisect;
 
 /// A pressed rebound slower than this share of the scene's speed is a rest: what a user of such a solver writes, who
 /// has no sum of a chatter.
@@ -123,16 +124,8 @@ impl Step {
                 }
             }
         }
-        let mut high = 1.0;
         // to 2^-60 of the step: a contact at its very begin has no relative digits to find
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if gap(middle) > 0.0 { low = middle } else { high = middle }
-        }
-        Some(high)
+        Some(bisect(low, 1.0, 60, |share| gap(share) > 0.0).1)
     }
 }
 
@@ -253,15 +246,9 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
 fn release(press: impl Fn(f64) -> f64, from: f64, end: f64, stride: f64) -> f64 {
     let mut low = from;
     while low < end {
-        let mut high = (low + stride).min(end);
+        let high = (low + stride).min(end);
         if press(high) <= 0.0 {
-            loop {
-                let middle = 0.5 * (low + high);
-                if middle <= low || middle >= high {
-                    return high;
-                }
-                if press(middle) > 0.0 { low = middle } else { high = middle }
-            }
+            return bisect(low, high, u32::MAX, |t| press(t) > 0.0).1;
         }
         low = high;
     }
