@@ -11,13 +11,14 @@ use super::result::Run;
 use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
 use crate::numeric::{Ratio, Scalar};
 use crate::scene::Record;
+use crate::system::clock::ThreadClock;
 
 /// Cycle of the clock without a drive, in kernel time units.
 const SHORTEST_CYCLE: f64 = 1.0 / 65536.0;
 
 /// Runs the model in numbers of type `T`; where `recurs`, a cycle that comes back may complete the run.
 pub(crate) fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64, recurs: bool) -> Run {
-    let watch = cpu_time::ThreadTime::now();
+    let watch = ThreadClock::start();
     let unit = model.scales.unit();
     let equation = Equation::<T>::new(model, unit);
     let clock = clock(model, unit);
@@ -26,7 +27,7 @@ pub(crate) fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64, r
         Form::Sine(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
         Form::Composite(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
     };
-    run.summary.cpu_s = watch.elapsed().as_secs_f64();
+    run.summary.cpu_s = watch.seconds();
     run
 }
 

@@ -1,7 +1,6 @@
 //! Compliant stops: one impact over the impact speed, yielding, and the speeds that a scene's impacts have.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use super::table::{Table, Values};
@@ -10,6 +9,7 @@ use crate::mechanics::Hertz;
 use crate::numeric::round::{ONE_TWO_FIVE, round_up};
 use crate::numeric::{bisect, short};
 use crate::scene::Stops;
+use crate::system::threads;
 
 /// Positions of the speed on a table: more than a picture needs.
 const SPEEDS: usize = 401;
@@ -119,19 +119,7 @@ pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
     if *stops == Stops::None {
         return None;
     }
-    let cancel = AtomicBool::new(false);
-    let Strikes { speed, count, settled } = std::thread::scope(|scope| {
-        let (done, wait) = channel::<()>();
-        let cancel = &cancel;
-        scope.spawn(move || {
-            if wait.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
-                cancel.store(true, Ordering::Relaxed);
-            }
-        });
-        let found = strikes(model, cancel);
-        drop(done);
-        found
-    })?;
+    let Strikes { speed, count, settled } = threads::within(PATIENCE, |cancel| strikes(model, cancel))?;
     let loss = |restitution: f64| Hertz::struck_for(restitution).map(|struck| short(struck / speed));
     let window = if settled { "in the settled window" } else { "in the run, before its settled window" };
     let what = match model.compliant {

@@ -7,9 +7,6 @@
 
 use std::sync::Arc;
 
-use rayon::ThreadPool;
-use rayon::prelude::*;
-
 use super::Task;
 use super::grid::Grid;
 use super::sweep::CellFaults;
@@ -18,6 +15,7 @@ use crate::dynamics::{Model, Regime, Request, STANDARD_GRAVITY, Summary};
 use crate::mechanics::{BuildError, Landscape, Mechanism};
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
 use crate::scene::{Excitation, FieldPath, Files, Scene, Start, Stops};
+use crate::system::threads::Pool;
 
 /// What begins at a threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -149,30 +147,26 @@ pub fn threshold_table(
     (scene, files): (&Scene, &Files),
     grid: Option<&Grid>,
     asked: (&Scan, Onset),
-    pool: &ThreadPool,
+    pool: &Pool,
     task: &Task,
 ) -> Option<Result<Table, CellFaults>> {
-    let cell = |index: u64| {
-        let mut scene = scene.clone();
-        grid.inspect(|grid| grid.apply(index, &mut scene));
-        let faults =
-            |faults| CellFaults { cell: grid.map_or_else(String::new, |grid| grid.describe(index)), faults };
+    let unsolved = Found { value: None, windows: 0, without_gap: None };
+    let cell = |scene: &mut Scene, index: usize| {
+        grid.inspect(|grid| grid.apply(index as u64, scene));
         let mechanism = match Mechanism::build(&scene.mechanism, files) {
             Ok(mechanism) => Arc::new(mechanism),
-            Err(BuildError::Wrong(fault)) => return Some(Err(faults(vec![fault]))),
-            Err(BuildError::Unsolved(_)) => {
-                return Some(Ok(Found { value: None, windows: 0, without_gap: None }));
+            Err(BuildError::Unsolved(_)) => return Ok(unsolved),
+            Err(BuildError::Wrong(fault)) => {
+                let cell = grid.map_or_else(String::new, |grid| grid.describe(index as u64));
+                return Err(Some(CellFaults { cell, faults: vec![fault] }));
             }
         };
-        threshold(&scene, &mechanism, files, asked, task).map(Ok)
+        threshold(scene, &mechanism, files, asked, task).ok_or(None)
     };
     let cells = grid.map_or(1, Grid::cells);
-    let all: Option<Result<Vec<Found>, CellFaults>> = pool.install(|| {
-        (0..cells as usize).into_par_iter().with_max_len(1).map(|index| cell(index as u64)).collect()
-    });
-    let found = match all? {
+    let found = match pool.map(cells as usize, || scene.clone(), cell) {
         Ok(found) => found,
-        Err(faults) => return Some(Err(faults)),
+        Err(ended) => return ended.map(Err),
     };
     let mut table = Table::new();
     for (place, column) in grid.iter().flat_map(|grid| grid.columns()).enumerate() {

@@ -5,13 +5,12 @@
 //! control. Contact is looked for as general solvers do, by the sign of the gap at the end of a step, and its root on the
 //! continuous extension is bisected to rounding: an excursion inside a step is not seen.
 
-use cpu_time::ThreadTime;
-
 use super::problem::Problem;
 use super::tally::{State, Tally};
 use super::{Keep, MethodRun};
 use crate::dynamics::{Model, Phase, Side};
 use crate::numeric::bisect;
+use crate::system::clock::ThreadClock;
 
 /// A pressed rebound slower than this share of the scene's speed is a rest: what a user of such a solver writes, who
 /// has no sum of a chatter.
@@ -135,7 +134,7 @@ impl Step {
 /// slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths of the forcing period (or of
 /// the duration) and bisection. Ends early where the force curve ends, and after 2e7 attempts.
 pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
-    let watch = ThreadTime::now();
+    let watch = ThreadClock::start();
     let problem = Problem::new(model);
     let mut tally = Tally::new(&problem, keep);
     let scales = model.scales;
@@ -238,7 +237,7 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
         now = next;
     }
     let mut run = tally.finish(&problem, now, phase, (steps, evaluations));
-    run.statistics.cpu_s = watch.elapsed().as_secs_f64();
+    run.statistics.cpu_s = watch.seconds();
     run
 }
 
