@@ -65,7 +65,7 @@ fn sweep() {
     let grid = Grid::new(document.axes(&over).unwrap()).unwrap();
     let cells = grid.cells() as f64;
     let sweep = Sweep::new(&document.scene, &document.files, grid);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let pool = interwell::system::threads::Pool::new(1).unwrap();
     let cancel = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &cancel };
     let mut times: Vec<f64> = (0..shared::rounds(SLOW))

@@ -264,7 +264,7 @@ fn jobs() {
     let size = if shared::is_measured() { (151, 401) } else { (3, 4) };
     let mut first = None;
     for jobs in (0..).map(|power| 1 << power).take_while(|jobs| *jobs <= cores) {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build().unwrap();
+        let pool = interwell::system::threads::Pool::new(jobs).unwrap();
         let mut all = Vec::new();
         for _ in 0..shared::rounds(3) {
             let sweep = Sweep::new(&document.scene, &document.files, grid(&document, size));

@@ -65,6 +65,7 @@
 //!
 //! | layer | holds |
 //! | --- | --- |
+//! | [`system`] | threads, clocks and files of the machine |
 //! | [`numeric`] | mathematics that knows no mechanics |
 //! | [`scene`] | what a person writes: fields, units, ranges, files, presets |
 //! | [`mechanics`] | the restoring force and its landscape of wells and barrier |
@@ -89,6 +90,7 @@ pub mod numeric;
 pub mod output;
 pub mod scene;
 pub mod study;
+pub mod system;
 
 /// The README's program compiles.
 #[cfg(doctest)]

@@ -1,10 +1,10 @@
 //! `presets`: which scenes are built in, and where can one have them as files?
 
-use std::fs;
 use std::path::Path;
 
 use interwell::output::Sink;
 use interwell::scene::{PRESETS, export};
+use interwell::system::files;
 
 use super::failure::Failure;
 use super::options::PresetsOptions;
@@ -31,17 +31,17 @@ pub fn run(options: &PresetsOptions) -> Result<(), Failure> {
 
 /// Writes scenes and tables into `folder`, all or, where a file of that name differs, none.
 fn write(folder: &Path, force: bool) -> Result<String, Failure> {
-    if !folder.is_dir() {
+    if !files::is_folder(folder) {
         let folder = folder.display();
         return Err(Failure::argument(format!("--write {folder}: there is no such folder; make it first")));
     }
-    let files = export();
+    let all = export();
     let differs = |name: &str, text: &str| {
         let path = folder.join(name);
-        path.exists() && fs::read(path).ok().as_deref() != Some(text.as_bytes())
+        files::exists(&path) && files::bytes(&path).ok().as_deref() != Some(text.as_bytes())
     };
     let differing: Vec<&str> =
-        files.iter().filter(|(name, text)| differs(name, text)).map(|(name, _)| name.as_str()).collect();
+        all.iter().filter(|(name, text)| differs(name, text)).map(|(name, _)| name.as_str()).collect();
     if !differing.is_empty() && !force {
         let message = format!(
             "--write {}: {} there and not as built in; nothing was written: choose another folder, or \
@@ -55,7 +55,7 @@ fn write(folder: &Path, force: bool) -> Result<String, Failure> {
         return Err(Failure::argument(message));
     }
     let mut written = String::new();
-    for (name, text) in &files {
+    for (name, text) in &all {
         let path = folder.join(name);
         let mut sink = Sink::open(&path)?;
         sink.put(text)

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
 
-use cpu_time::ProcessTime;
 use interwell::dynamics::Model;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Origin, Sink, header, rows, same_target};
 use interwell::scene::{Document, SceneError, is_manifest, is_scene_file};
 use interwell::study::Table;
+use interwell::system::clock::{ProcessClock, WallClock};
+use interwell::system::files::{canonical, is_file};
 
 use super::failure::Failure;
 use super::options::Common;
@@ -18,19 +18,19 @@ use super::{interrupt, say};
 /// When a command's work began, by both clocks.
 #[derive(Debug, Clone, Copy)]
 pub struct Watch {
-    wall: Instant,
-    cpu: ProcessTime,
+    wall: WallClock,
+    cpu: ProcessClock,
 }
 
 impl Watch {
     /// Begins now.
     pub fn start() -> Self {
-        Self { wall: Instant::now(), cpu: ProcessTime::now() }
+        Self { wall: WallClock::start(), cpu: ProcessClock::start() }
     }
 
     /// Time on the wall since then, in s.
     pub fn wall_s(&self) -> f64 {
-        self.wall.elapsed().as_secs_f64()
+        self.wall.seconds()
     }
 
     /// What this call of the program was, and how long it has worked on `jobs` threads.
@@ -39,7 +39,7 @@ impl Watch {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             arguments: std::env::args_os().skip(1).map(|own| own.to_string_lossy().into_owned()).collect(),
             wall_s: self.wall_s(),
-            cpu_s: self.cpu.elapsed().as_secs_f64(),
+            cpu_s: self.cpu.seconds(),
             jobs,
         }
     }
@@ -171,8 +171,7 @@ pub fn open<const N: usize>(
     inputs: &[PathBuf],
     outputs: [Option<(&str, &Path)>; N],
 ) -> Result<[Option<Sink>; N], Failure> {
-    let place = |path: &Path| std::fs::canonicalize(path).ok();
-    let inputs: Vec<_> = inputs.iter().filter_map(|input| place(input)).collect();
+    let inputs: Vec<_> = inputs.iter().filter_map(|input| canonical(input)).collect();
     let mut sinks = [const { None::<Sink> }; N];
     for (i, output) in outputs.iter().enumerate() {
         let Some((option, path)) = output else { continue };
@@ -180,11 +179,11 @@ pub fn open<const N: usize>(
             let path = path.display();
             Err(Failure::argument(format!("{option} {path} would overwrite {what}: name another file")))
         };
-        if place(path).is_some_and(|path| path.is_file() && inputs.contains(&path)) {
+        if canonical(path).is_some_and(|path| is_file(&path) && inputs.contains(&path)) {
             return would_overwrite("the scene or a file that it reads");
         } else if is_scene_file(path) {
             return would_overwrite("a scene");
-        } else if *option == MANIFEST && path.is_file() && !is_manifest(path) {
+        } else if *option == MANIFEST && is_file(path) && !is_manifest(path) {
             return would_overwrite("a file that is no manifest of a sweep");
         }
         let sink = Sink::open(path)?;

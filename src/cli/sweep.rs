@@ -13,6 +13,8 @@ use interwell::study::{
     first_crossing, release_line,
 };
 
+use interwell::system::threads::{Pool, processors};
+
 use super::failure::{Failure, wrong_cell};
 use super::options::{Common, SweepOptions as Arguments};
 use super::picture::{Picture, caption, ranges};
@@ -44,7 +46,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     if picture.is_some() {
         can_show(sweep.grid(), &options.quantity, &sweep.empty_table())?;
     }
-    let (threads, pool) = pool(common)?;
+    let pool = pool(common)?;
     let beside = beside.as_deref().map(|path| (MANIFEST, path));
     let outputs = [Some(("--out", common.out())), picture.map(|own| own.output()), beside];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
@@ -87,7 +89,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         let data =
             common.out().file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let grid = sweep.grid();
-        let origin = watch.origin(threads);
+        let origin = watch.origin(pool.count());
         let text = manifest(&document, grid, &tally, &origin, &data);
         write_text(&mut sinks[2], &text)?;
     }
@@ -162,13 +164,10 @@ fn manifest_path(out: &Path) -> Option<PathBuf> {
     })
 }
 
-/// As many threads as were asked for, and how many these are.
-pub fn pool(common: &Common) -> Result<(usize, rayon::ThreadPool), Failure> {
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = common.jobs.map_or_else(cores, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let refused = |error| Failure::Failed(anyhow::anyhow!("cannot start {threads} threads: {error}"));
-    Ok((threads, pool.map_err(refused)?))
+/// As many threads as were asked for.
+pub fn pool(common: &Common) -> Result<Pool, Failure> {
+    let count = common.jobs.map_or_else(processors, usize::from);
+    Pool::new(count).map_err(|error| Failure::Failed(error.into()))
 }
 
 /// The error of a cell that is wrong, with the places of its faults.

@@ -28,7 +28,7 @@ pub fn run(options: &ThresholdOptions) -> Result<(), Failure> {
         )));
     }
     let onset = Onset::ALL.into_iter().find(|onset| onset.name() == options.of).unwrap_or(Onset::Crossing);
-    let (_, pool) = pool(common)?;
+    let pool = pool(common)?;
     let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", common.out()))])?;
     let task = Task { tick: &|| (), cancel: interrupt::listen() };
     let found =

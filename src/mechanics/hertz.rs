@@ -17,7 +17,7 @@
 
 use std::f64::consts::PI;
 
-use crate::numeric::even_half;
+use crate::numeric::{bisect, even_half};
 use crate::scene::Stops;
 
 /// Poisson's ratio where a scene gives none: aluminium's, as for flexures.
@@ -102,12 +102,9 @@ impl Hertz {
             return None;
         }
         // The restitution lies between 1 - (2/3) a v and 1/(a v).
-        let (mut low, mut high) = ((0.5 * (1.0 - restitution)).ln(), -restitution.ln());
+        let (low, high) = ((0.5 * (1.0 - restitution)).ln(), -restitution.ln());
         let one = |struck: f64| Self { stiffness: 1.0, loss: struck, material: None }.restitution(1.0);
-        for _ in 0..80 {
-            let middle = 0.5 * (low + high);
-            *(if one(middle.exp()) > restitution { &mut low } else { &mut high }) = middle;
-        }
+        let (low, high) = bisect(low, high, 80, |logarithm| one(logarithm.exp()) > restitution);
         Some((0.5 * (low + high)).exp())
     }
 

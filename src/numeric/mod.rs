@@ -1,23 +1,28 @@
 //! Mathematics that knows no mechanics: number types, root isolation, fits, sums, decimals.
 
+mod bisect;
 mod decimal;
 mod double_double;
 pub mod fit;
 mod lanes;
 mod quadrature;
 mod quick;
+mod ratio;
 pub mod real_roots;
 mod roots;
+pub mod round;
 mod scalar;
 mod short;
 mod sum;
 
-pub use decimal::Ratio;
-pub(crate) use decimal::greatest_common_divisor;
+pub use bisect::bisect;
+pub use decimal::Decimal;
 pub use double_double::DoubleDouble;
 pub use lanes::Lanes;
 pub use quadrature::{GaussLegendre, MOST_POINTS, even_half};
 pub(crate) use quick::{fast_exp2, fast_log2};
+pub use ratio::Ratio;
+pub(crate) use ratio::greatest_common_divisor;
 pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::{Number, Scalar};
 pub use short::short;

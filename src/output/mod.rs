@@ -8,7 +8,6 @@ mod json;
 mod manifest;
 mod number;
 mod plot;
-mod sink;
 mod text;
 
 pub use csv::{header, rows};
@@ -20,5 +19,6 @@ pub use plot::{
     SweepPicture, Theme, UnknownFormat, accuracy_figure, can_show, contact_figure, curve_figure, quantities,
     run_figure, speed_unit, sweep_about, sweep_figure, viridis,
 };
-pub use sink::{OpenError, Sink, is_regular, same_target, write_file};
 pub use text::aligned;
+
+pub use crate::system::{OpenError, Sink, is_regular, same_target, write_file};

@@ -3,10 +3,11 @@
 use std::collections::HashSet;
 
 use super::data::{Scene, SweepAxis};
-use super::decimal::{Decimal, Grid};
 use super::fields::{Field, FieldPath, numeric_fields};
 use super::ranges::{Spec, number_text};
+use super::steps::EvenSteps;
 use super::text::clip;
+use crate::numeric::Decimal;
 
 /// The most values that one axis may have. A map is refused by its number of cells, long before; this
 /// keeps the list of values itself within 80 MB.
@@ -29,7 +30,7 @@ pub struct Axis {
 
 impl Axis {
     /// Reads `FIELD=FROM:TO:STEP` or `FIELD=a,b,c` for a scene. Values are decimal-exact (see
-    /// `decimal`); the error is a sentence without the argument, which the caller knows.
+    /// `steps`); the error is a sentence without the argument, which the caller knows.
     pub fn parse(argument: &str, scene: &Scene) -> Result<Self, String> {
         let Some((field, values)) = argument.split_once('=') else {
             return Err(
@@ -50,7 +51,7 @@ impl Axis {
             };
             let parts = [read(from)?, read(to)?, read(step)?];
             steps = Some(parts.map(Decimal::value));
-            write_out(Grid::new(parts[0], parts[1], parts[2])?)?
+            write_out(EvenSteps::new(parts[0], parts[1], parts[2])?)?
         } else {
             let listed: Result<Vec<f64>, String> =
                 values.split(',').map(|text| Ok(read(text)?.value())).collect();
@@ -82,7 +83,7 @@ impl Axis {
         let parts = (read("from", axis.from)?, read("to", axis.to)?, read("step", axis.step)?);
         let below = axis.to < axis.from;
         let part = if axis.step > 0.0 && below { "to" } else { "step" };
-        let grid = Grid::new(parts.0, parts.1, parts.2).map_err(|problem| (part, problem.to_owned()))?;
+        let grid = EvenSteps::new(parts.0, parts.1, parts.2).map_err(|problem| (part, problem.to_owned()))?;
         let values = write_out(grid).map_err(|problem| ("step", problem))?;
         let part = if spec.range.contains(axis.from) { "to" } else { "from" };
         own(values, Some([axis.from, axis.to, axis.step])).within(spec).map_err(|problem| (part, problem))
@@ -151,7 +152,7 @@ pub(super) fn unknown(kind: &str, field: &str, known: &[String]) -> String {
     format!("the scene has no {kind} `{}`; it has: {known}{more}", clip(field))
 }
 
-fn write_out(grid: Grid) -> Result<Vec<f64>, String> {
+fn write_out(grid: EvenSteps) -> Result<Vec<f64>, String> {
     match usize::try_from(grid.count()) {
         Ok(count) if count <= LARGEST_AXIS => Ok((0..count as u128).map(|i| grid.at(i).value()).collect()),
         _ => Err(too_long(grid.count())),

@@ -10,6 +10,7 @@ use super::error::Fault;
 use super::fields::{Field, FieldPath, for_each};
 use super::ranges::{HIGH_HZ, LOW_HZ, MAX_COEFFICIENTS, number_text};
 use super::shape;
+use super::stops::Stops;
 
 /// The most sines that an excitation may have, the lines of noises included: four noises of the most lines. Each takes
 /// part in every step of a run.
@@ -135,19 +136,6 @@ fn hertz(field: &str, stops: &Stops, checked: &mut Checked) {
     }
 }
 
-/// Distances of the stops in mm; an open side is at infinity.
-fn distances(stops: &Stops) -> (f64, f64) {
-    match *stops {
-        Stops::None => (f64::INFINITY, f64::INFINITY),
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
-            (travel_limit_mm, travel_limit_mm)
-        }
-        Stops::Uneven { left_mm, right_mm, .. } => {
-            (left_mm.unwrap_or(f64::INFINITY), right_mm.unwrap_or(f64::INFINITY))
-        }
-    }
-}
-
 /// Whether a field has been found at fault already: it is not blamed twice.
 pub(super) fn known_bad(field: &str, checked: &Checked) -> bool {
     checked.faults.iter().any(|fault| fault.field == field)
@@ -156,7 +144,7 @@ pub(super) fn known_bad(field: &str, checked: &Checked) -> bool {
 /// What two fields say together. A value that is out of its own range is not blamed twice.
 fn relations(scene: &Scene, checked: &mut Checked) {
     if let Start::At { x_mm, .. } = scene.start {
-        let (left, right) = distances(&scene.stops);
+        let [left, right] = scene.stops.limits_mm().map(|mm| mm.unwrap_or(f64::INFINITY));
         let bad_stop = checked.faults.iter().any(|fault| fault.field.starts_with("stops"));
         if (x_mm > right || x_mm < -left) && !bad_stop && !known_bad("start.x_mm", checked) {
             let (side, at) = if x_mm > right { ("right", right) } else { ("left", -left) };

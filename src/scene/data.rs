@@ -14,6 +14,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::record::Record;
+use super::stops::Stops;
 
 /// A scene: one mechanism, how it is shaken and stopped, and how long it runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -143,62 +144,6 @@ pub enum Damping {
     Coefficient {
         /// c in N s/m, 0 to 1e30.
         c_n_s_per_m: f64,
-    },
-}
-
-/// Travel limits.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum Stops {
-    /// Nothing in the way.
-    #[default]
-    None,
-    /// Equal rigid stops on both sides.
-    Rigid {
-        /// Distance of each stop from x = 0 in mm, 1e-15 to 1e15.
-        travel_limit_mm: f64,
-        /// Coefficient of restitution, 0 to 1.
-        restitution: f64,
-    },
-    /// Rigid stops that differ; a side left out is open.
-    Uneven {
-        /// Distance of the left stop from x = 0 in mm, 1e-15 to 1e15.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        left_mm: Option<f64>,
-        /// Distance of the right stop from x = 0 in mm, 1e-15 to 1e15.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        right_mm: Option<f64>,
-        /// Restitution of the left stop, 0 to 1; left out, the right stop's.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        restitution_left: Option<f64>,
-        /// Restitution of the right stop, 0 to 1; left out, the left stop's.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        restitution_right: Option<f64>,
-    },
-    /// Equal compliant stops on both sides: point contacts by Hertz, with the loss of Hunt and Crossley. Pressed in by
-    /// d, one pushes back with k d^1.5 (1 + a d'), and it never pulls. k is given, or follows from the two equal
-    /// cylinders of one material, crossed at a right angle, that each stop is made of.
-    Hertz {
-        /// Distance of each stop from x = 0 in mm, 1e-15 to 1e15.
-        travel_limit_mm: f64,
-        /// Stiffness k in N/m^1.5, 1e-60 to 1e60; left out where the cylinders are given.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        stiffness_n_per_m1_5: Option<f64>,
-        /// Loss a in s/m, 0 to 1e30. The restitution depends on loss times impact speed alone: 2.427 gives 0.36.
-        loss_s_per_m: f64,
-        /// Radius of the cylinders in mm, 1e-15 to 1e15.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        radius_mm: Option<f64>,
-        /// Young's modulus of the cylinders in GPa, 1e-60 to 1e60.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        young_gpa: Option<f64>,
-        /// Poisson's ratio of the cylinders, 0 to 0.49; left out, 0.34.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        poisson: Option<f64>,
-        /// Yield strength of the cylinders in GPa, 1e-60 to 1e60; left out, 0.276 (aluminium 6061-T6). It has no part
-        /// in the motion; a run warns where the contact's pressure passes 1.6 times it.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        yield_gpa: Option<f64>,
     },
 }
 

@@ -14,6 +14,7 @@ use super::presets::{self, PRESETS};
 use super::ranges::number_text;
 use super::record;
 use super::text::{self, LARGEST_SCENE, clip, explain};
+use crate::system::files;
 
 /// How many faults an error names; the rest it counts. A list may hold a million NaN.
 const MOST_FAULTS: usize = 50;
@@ -385,5 +386,6 @@ fn parse_number(text: &str) -> Option<f64> {
 /// Whether there is a scene at `path`: a file whose name ends in `.ron`, mistaken or not, or whose text is one.
 pub fn is_scene_file(path: &Path) -> bool {
     let named = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
-    path.is_file() && (named || read_text(path, LARGEST_SCENE).is_ok_and(|text| text::parse(&text).is_ok()))
+    files::is_file(path)
+        && (named || read_text(path, LARGEST_SCENE).is_ok_and(|text| text::parse(&text).is_ok()))
 }

@@ -12,6 +12,7 @@ use serde::de::DeserializeOwned;
 
 use super::data::*;
 use super::ranges::{self, Spec};
+use super::stops::Stops;
 use super::text;
 
 /// One step of a path, as the walk knows it.

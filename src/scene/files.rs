@@ -1,12 +1,12 @@
 //! The files that a scene names, and what is said where they cannot be read.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::presets;
 use super::text::clip;
+use crate::system::files;
 
 /// The largest table that is read, 64 MB: some two million rows.
 pub const LARGEST_TABLE: usize = 64 << 20;
@@ -107,10 +107,10 @@ pub(super) enum ReadError {
 /// than that.
 pub(super) fn read_text(path: &Path, largest: usize) -> Result<String, ReadError> {
     let unusable = |problem: String| Err(ReadError::Unusable(problem));
-    if path.is_dir() {
+    if files::is_folder(path) {
         return unusable("is a directory; a file is needed".to_owned());
     }
-    match File::open(path) {
+    match files::open(path) {
         Ok(file) => read_from(file, largest).map_err(ReadError::Unusable),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(ReadError::Missing),
         Err(error) => unusable(format!("cannot be read: {error}")),

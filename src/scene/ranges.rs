@@ -146,7 +146,7 @@ mod tests {
     /// checked for a field of that name.
     #[test]
     fn documented_ranges_are_the_checked_ones() {
-        let source = include_str!("data.rs");
+        let source = concat!(include_str!("data.rs"), include_str!("stops.rs"));
         let mut doc = String::new();
         let mut seen = Vec::new();
         for line in source.lines().map(str::trim) {

@@ -8,6 +8,7 @@ use ron::extensions::Extensions;
 
 use super::data::*;
 use super::locate::{Place, Places};
+use super::stops::Stops;
 
 /// The largest scene text that is read: some thousand times a long scene, and parsed at once.
 pub const LARGEST_SCENE: usize = 4 << 20;

@@ -1,14 +1,15 @@
 //! Compliant stops: one impact over the impact speed, yielding, and the speeds that a scene's impacts have.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use super::table::{Table, Values};
 use crate::dynamics::{EventKind, Model, Outcome, Request, Summary};
 use crate::mechanics::Hertz;
-use crate::numeric::short;
+use crate::numeric::round::{ONE_TWO_FIVE, round_up};
+use crate::numeric::{bisect, short};
 use crate::scene::Stops;
+use crate::system::threads;
 
 /// Positions of the speed on a table: more than a picture needs.
 const SPEEDS: usize = 401;
@@ -21,7 +22,7 @@ const SPEEDS: usize = 401;
 /// known the value is missing. All are closed forms: see [`Hertz`].
 pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
     let stop = model.compliant?;
-    let top = round_up(2.0 * model.scales.speed);
+    let top = round_up(2.0 * model.scales.speed, &ONE_TWO_FIVE);
     let last = (SPEEDS - 1) as f64;
     let speeds: Vec<f64> = (0..SPEEDS).map(|i| top * i as f64 / last).collect();
     let column = |of: &dyn Fn(f64) -> f64| Values::Numbers(speeds.iter().map(|v| of(*v)).collect());
@@ -47,12 +48,7 @@ pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
 pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
     let material = stop.material?;
     let yields = |v: f64| material.pressure(stop.peak_force(mass, v)) > material.yield_pressure();
-    let (mut low, mut high) = (-30.0, 30.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        *(if yields(10_f64.powf(middle)) { &mut high } else { &mut low }) = middle;
-    }
-    Some(10_f64.powf(high))
+    Some(10_f64.powf(bisect(-30.0, 30.0, 60, |power| !yields(10_f64.powf(power))).1))
 }
 
 /// One sentence where the contact of a run was pressed beyond what its material bears.
@@ -123,19 +119,7 @@ pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
     if *stops == Stops::None {
         return None;
     }
-    let cancel = AtomicBool::new(false);
-    let Strikes { speed, count, settled } = std::thread::scope(|scope| {
-        let (done, wait) = channel::<()>();
-        let cancel = &cancel;
-        scope.spawn(move || {
-            if wait.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
-                cancel.store(true, Ordering::Relaxed);
-            }
-        });
-        let found = strikes(model, cancel);
-        drop(done);
-        found
-    })?;
+    let Strikes { speed, count, settled } = threads::within(PATIENCE, |cancel| strikes(model, cancel))?;
     let loss = |restitution: f64| Hertz::struck_for(restitution).map(|struck| short(struck / speed));
     let window = if settled { "in the settled window" } else { "in the run, before its settled window" };
     let what = match model.compliant {
@@ -144,14 +128,8 @@ pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
             format!("restitution {} there; {}", short(stop.restitution(speed)), wanted.join(", "))
         }
         None => {
-            let own = match *stops {
-                Stops::Rigid { restitution, .. } => [Some(restitution), None],
-                Stops::Uneven { left_mm, right_mm, restitution_left: left, restitution_right: right } => {
-                    [left_mm.and(left.or(right)), right_mm.and(right.or(left))]
-                }
-                Stops::None | Stops::Hertz { .. } => [None, None],
-            };
-            let mut own: Vec<f64> = own.into_iter().flatten().collect();
+            let there = stops.limits_mm().into_iter().zip(stops.restitutions());
+            let mut own: Vec<f64> = there.filter_map(|(limit, own)| limit.and(own)).collect();
             own.dedup();
             let own = own.into_iter().map(|e| match loss(e) {
                 Some(loss) => format!("a restitution of {e} there takes loss_s_per_m: {loss}"),
@@ -165,24 +143,4 @@ pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
         "stops are struck at {} m/s (median of the first impacts of {flights} {window}): {what}",
         short(speed)
     ))
-}
-
-/// The first of 1, 2 or 5 times a power of ten that is not below `value`, which is above 0.
-fn round_up(value: f64) -> f64 {
-    let exponent = value.log10().floor() as i32;
-    let steps = [1.0, 2.0, 5.0, 10.0];
-    let found = steps.iter().map(|step| format!("{step}e{exponent}").parse().unwrap_or(value));
-    found.into_iter().find(|step| *step >= value).unwrap_or(value)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_axis_of_speeds_ends_on_a_round_number() {
-        for (value, up) in [(0.96, 1.0), (1.0, 1.0), (1.01, 2.0), (0.003, 0.005), (70.0, 100.0)] {
-            assert_eq!(round_up(value), up);
-        }
-    }
 }

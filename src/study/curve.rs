@@ -2,7 +2,9 @@
 
 use super::table::{Table, Values};
 use crate::mechanics::{Equilibrium, Mechanism};
-use crate::scene::{Scene, Stops};
+use crate::numeric::Decimal;
+use crate::numeric::round::decade;
+use crate::scene::Scene;
 
 /// Positions of a force curve where nobody says how many.
 pub const CURVE_POINTS: u32 = 401;
@@ -51,7 +53,7 @@ fn default_range_mm(scene: &Scene, mechanism: &Mechanism) -> (f64, f64) {
     const MARGIN: f64 = 1.15;
     const PLAIN: f64 = 10.0;
     let equilibria = mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x.abs() * 1e3);
-    let farthest = equilibria.chain(stops_mm(&scene.stops).into_iter().flatten()).fold(0.0, f64::max);
+    let farthest = equilibria.chain(scene.stops.limits_mm().into_iter().flatten()).fold(0.0, f64::max);
     let reach = if farthest > 0.0 { two_digits_up(MARGIN * farthest) } else { PLAIN };
     let (left, right) = mechanism.curve.domain();
     ((-reach).max(left * 1e3), reach.min(right * 1e3))
@@ -66,35 +68,20 @@ pub fn default_positions(scene: &Scene, mechanism: &Mechanism, points: usize) ->
 
 /// `value` above 0 rounded up to two significant digits, as the double nearest to that decimal.
 fn two_digits_up(value: f64) -> f64 {
-    let exponent = value.log10().floor() as i32 - 1;
+    let exponent = decade(value) - 1;
     let digits = (value / 10_f64.powi(exponent)).ceil();
     format!("{digits}e{exponent}").parse().unwrap_or(value)
 }
 
 /// `mm` in m: the double nearest to the decimal that `mm` spells, so that 0.3 mm is 3e-4 m.
 pub fn metres(mm: f64) -> f64 {
-    let text = format!("{mm:e}");
-    let shifted = text.split_once('e').and_then(|(mantissa, exponent)| {
-        let exponent: i32 = exponent.parse().ok()?;
-        format!("{mantissa}e{}", exponent - 3).parse().ok()
-    });
-    shifted.unwrap_or(mm / 1e3)
-}
-
-/// Distances in mm of the left and the right stop from x = 0.
-fn stops_mm(stops: &Stops) -> [Option<f64>; 2] {
-    match *stops {
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
-            [Some(travel_limit_mm); 2]
-        }
-        Stops::Uneven { left_mm, right_mm, .. } => [left_mm, right_mm],
-        Stops::None => [None; 2],
-    }
+    let shifted = Decimal::shortest(mm).map(|own| Decimal { exponent: own.exponent - 3, ..own });
+    shifted.map_or(mm / 1e3, |own| own.value().copysign(mm))
 }
 
 /// Positions in m of the left and the right stop; NaN where there is none.
 pub fn stop_positions(scene: &Scene) -> (f64, f64) {
-    let [left, right] = stops_mm(&scene.stops).map(|stop| stop.map_or(f64::NAN, metres));
+    let [left, right] = scene.stops.limits_mm().map(|stop| stop.map_or(f64::NAN, metres));
     (-left, right)
 }
 

@@ -4,7 +4,7 @@ use super::grid::Grid;
 use super::table::{Table, Values};
 use crate::dynamics::{Regime, STANDARD_GRAVITY};
 use crate::mechanics::Mechanism;
-use crate::scene::{Axis, Excitation, Scene, Start, Stops};
+use crate::scene::{Axis, Excitation, Scene, Start};
 
 /// The fields that the release in closed form joins.
 const LIMIT: &str = "stops.travel_limit_mm";
@@ -20,8 +20,9 @@ const POINTS: usize = 400;
 /// Only for a grid over these two fields, from rest; only for travel limits inside the right-hand
 /// well, because further out the mass rests in the well and not on the stop.
 pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option<Table> {
-    let stopped = matches!(scene.stops, Stops::Rigid { .. } | Stops::Hertz { .. });
-    let asked = stopped && matches!(scene.excitation, Excitation::Sine { .. }) && scene.start == Start::Rest;
+    let asked = scene.stops.travel_limit_mm().is_some()
+        && matches!(scene.excitation, Excitation::Sine { .. })
+        && scene.start == Start::Rest;
     let limits = axis(grid, LIMIT).filter(|_| asked && axis(grid, AMPLITUDE).is_some())?;
     let well = mechanism.landscape.right_stable()?.x;
     let from = limits.values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -8,23 +8,16 @@ use crate::dynamics::{Model, Outcome, Phase, Request, Sample, Side, Summary};
 /// longest transients of the prototype take.
 const PATIENCE: f64 = 1000.0;
 
-/// The settled motion of one run.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settled {
-    /// Its statistics.
-    pub summary: Summary,
-}
-
 /// Runs `model` for its settled motion, on beyond its duration until the motion repeats or some 1000 forcing periods have
 /// passed without that; under an amplitude ramp to the ramp's end, but no longer. None where it was cancelled.
-pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Settled> {
+pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Summary> {
     let until_settled = model.forcing_period.map(|period| model.duration + PATIENCE * period);
     let ramp = until_settled.and_then(|until| model.ramp_end().map(|end| end.min(until)));
     let mut model = model.clone();
     model.duration = ramp.map_or(model.duration, |end| end.max(model.duration));
     let run = model.run(&Request { ledger: true, cancel: Some(cancel), until_settled, ..Request::default() });
     let cancelled = matches!(run.summary.outcome, Outcome::Cancelled { .. });
-    (!cancelled).then_some(Settled { summary: run.summary })
+    (!cancelled).then_some(run.summary)
 }
 
 /// Whether a run of `model` gets through its first `seconds`.

@@ -7,10 +7,6 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
-
-use rayon::ThreadPool;
-use rayon::prelude::*;
 
 use super::Task;
 use super::fields::SummaryField;
@@ -19,6 +15,8 @@ use super::table::{Table, Values};
 use crate::dynamics::{Model, Request, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
+use crate::system::clock::WallClock;
+use crate::system::threads::Pool;
 
 /// The columns that every sweep has after those of its fields.
 pub const STANDARD: [&str; 7] =
@@ -126,8 +124,8 @@ impl Tally {
 const CELLS_PER_THREAD: u64 = 512;
 const MOST_CELLS_PER_THREAD: u64 = 1 << 14;
 
-/// A short time for a chunk.
-const SHORT: Duration = Duration::from_millis(300);
+/// A short time for a chunk in s.
+const SHORT: f64 = 0.3;
 
 /// Cells that a thread runs together: several times the lanes of any processor, so that few of them fly alone at the end.
 const BATCH: usize = 128;
@@ -184,7 +182,7 @@ impl Sweep {
 
     /// Builds every cell without running it; the first one that is wrong, with all its faults. A mechanism that is
     /// not solved is no fault but an outcome. A cancelled check finds nothing.
-    pub fn validate(&self, pool: &ThreadPool, task: &Task) -> Result<(), CellFaults> {
+    pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         let faults = |scene: &mut Scene, index: u64| {
             if task.is_cancelled() {
                 return None;
@@ -194,41 +192,34 @@ impl Sweep {
                 Err(faults) => Some(CellFaults { cell: self.grid.describe(index), faults }),
             }
         };
-        let cells = (0..self.grid.cells()).into_par_iter();
-        let first = pool
-            .install(|| cells.map_init(|| self.base.clone(), faults).find_first(Option::is_some).flatten());
-        first.map_or(Ok(()), Err)
+        pool.find_first(self.grid.cells(), || self.base.clone(), faults).map_or(Ok(()), Err)
     }
 
     /// Runs every cell on `pool` and hands the rows to `write`, chunk by chunk in order. `write`
     /// answers whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
     pub fn run<E>(
         &self,
-        pool: &ThreadPool,
+        pool: &Pool,
         task: &Task,
         mut write: impl FnMut(&Table) -> Result<bool, E>,
     ) -> Result<Tally, SweepEnd<E>> {
-        let threads = pool.current_num_threads() as u64;
+        let threads = pool.count() as u64;
         let mut chunk = CELLS_PER_THREAD * threads;
         let mut tally = Tally::default();
         while tally.cells < self.grid.cells() {
-            let (begin, watch) = (tally.cells, Instant::now());
+            let (begin, clock) = (tally.cells, WallClock::start());
             let end = (begin + chunk).min(self.grid.cells());
-            let batches = (begin..end).step_by(BATCH).map(|from| from..(from + BATCH as u64).min(end));
-            let run = |scene: &mut Scene, batch: std::ops::Range<u64>| {
-                let cells = batch.collect::<Vec<_>>();
+            let batches: Vec<u64> = (begin..end).step_by(BATCH).collect();
+            let run = |scene: &mut Scene, batch: usize| {
+                let cells: Vec<u64> = (batches[batch]..end).take(BATCH).collect();
                 let rows = self.run_batch(&cells, scene, task);
                 cells.iter().for_each(|_| (task.tick)());
-                rows
+                if task.is_cancelled() { Err(()) } else { Ok(rows) }
             };
-            let batches = batches.collect::<Vec<_>>().into_par_iter().with_max_len(1);
-            let rows: Vec<Vec<Cell>> = pool.install(|| batches.map_init(|| self.base.clone(), run).collect());
-            let rows = rows.concat();
-            if watch.elapsed() < SHORT {
+            let rows = pool.map(batches.len(), || self.base.clone(), run);
+            let rows = rows.map_err(|()| SweepEnd::Cancelled)?.concat();
+            if clock.seconds() < SHORT {
                 chunk = (2 * chunk).min(MOST_CELLS_PER_THREAD * threads);
-            }
-            if task.is_cancelled() {
-                return Err(SweepEnd::Cancelled);
             }
             tally.cells = end;
             rows.iter().for_each(|row| tally.count(row));
@@ -244,7 +235,7 @@ impl Sweep {
     /// Whether all of them were run, which a cancelled task's are not.
     pub fn run_cells(
         &self,
-        pool: &ThreadPool,
+        pool: &Pool,
         task: &Task,
         cells: &[u64],
         each: &(dyn Fn(u64, Cell) + Sync),
@@ -252,7 +243,7 @@ impl Sweep {
         // A shared counter keeps the order that a recursive split would lose, and no thread waits for a part.
         let next = AtomicUsize::new(0);
         let batches: Vec<&[u64]> = cells.chunks(SHOWN).collect();
-        pool.broadcast(|_| {
+        pool.everywhere(|| {
             let mut scene = self.base.clone();
             while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
                 let rows = self.run_batch(batch, &mut scene, task);
@@ -366,7 +357,7 @@ mod tests {
         let sweep = Sweep::new(&document.scene, &document.files, grid);
         let error = FlexureError::NotConverged { x: 1e-3, residual: 1.0 };
         *sweep.mechanisms[1].lock().unwrap() = Some(Err(error.into()));
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let pool = Pool::new(2).unwrap();
         let cancel = AtomicBool::new(false);
         let task = Task { tick: &|| (), cancel: &cancel };
         sweep.validate(&pool, &task).unwrap();

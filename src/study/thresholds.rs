@@ -7,16 +7,15 @@
 
 use std::sync::Arc;
 
-use rayon::ThreadPool;
-use rayon::prelude::*;
-
 use super::Task;
 use super::grid::Grid;
 use super::sweep::CellFaults;
 use super::table::{Table, Values};
 use crate::dynamics::{Model, Regime, Request, STANDARD_GRAVITY, Summary};
 use crate::mechanics::{BuildError, Landscape, Mechanism};
+use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
 use crate::scene::{Excitation, FieldPath, Files, Scene, Start, Stops};
+use crate::system::threads::Pool;
 
 /// What begins at a threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,30 +147,26 @@ pub fn threshold_table(
     (scene, files): (&Scene, &Files),
     grid: Option<&Grid>,
     asked: (&Scan, Onset),
-    pool: &ThreadPool,
+    pool: &Pool,
     task: &Task,
 ) -> Option<Result<Table, CellFaults>> {
-    let cell = |index: u64| {
-        let mut scene = scene.clone();
-        grid.inspect(|grid| grid.apply(index, &mut scene));
-        let faults =
-            |faults| CellFaults { cell: grid.map_or_else(String::new, |grid| grid.describe(index)), faults };
+    let unsolved = Found { value: None, windows: 0, without_gap: None };
+    let cell = |scene: &mut Scene, index: usize| {
+        grid.inspect(|grid| grid.apply(index as u64, scene));
         let mechanism = match Mechanism::build(&scene.mechanism, files) {
             Ok(mechanism) => Arc::new(mechanism),
-            Err(BuildError::Wrong(fault)) => return Some(Err(faults(vec![fault]))),
-            Err(BuildError::Unsolved(_)) => {
-                return Some(Ok(Found { value: None, windows: 0, without_gap: None }));
+            Err(BuildError::Unsolved(_)) => return Ok(unsolved),
+            Err(BuildError::Wrong(fault)) => {
+                let cell = grid.map_or_else(String::new, |grid| grid.describe(index as u64));
+                return Err(Some(CellFaults { cell, faults: vec![fault] }));
             }
         };
-        threshold(&scene, &mechanism, files, asked, task).map(Ok)
+        threshold(scene, &mechanism, files, asked, task).ok_or(None)
     };
     let cells = grid.map_or(1, Grid::cells);
-    let all: Option<Result<Vec<Found>, CellFaults>> = pool.install(|| {
-        (0..cells as usize).into_par_iter().with_max_len(1).map(|index| cell(index as u64)).collect()
-    });
-    let found = match all? {
+    let found = match pool.map(cells as usize, || scene.clone(), cell) {
         Ok(found) => found,
-        Err(faults) => return Some(Err(faults)),
+        Err(ended) => return ended.map(Err),
     };
     let mut table = Table::new();
     for (place, column) in grid.iter().flat_map(|grid| grid.columns()).enumerate() {
@@ -263,7 +258,7 @@ fn multiple(value: f64, unit: f64) -> f64 {
 
 /// One in the last of three significant digits of a value.
 fn third_digit(value: f64) -> f64 {
-    10_f64.powf(value.log10().floor() - 2.0)
+    10_f64.powi(decade(value) - 2)
 }
 
 /// The field of the amplitude of a sine.
@@ -350,13 +345,7 @@ fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
 }
 
 fn right_stop(scene: &Scene) -> Option<f64> {
-    match scene.stops {
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
-            Some(travel_limit_mm / 1e3)
-        }
-        Stops::Uneven { right_mm, .. } => right_mm.map(|mm| mm / 1e3),
-        Stops::None => None,
-    }
+    scene.stops.limits_mm()[1].map(|mm| mm / 1e3)
 }
 
 /// The amplitude in g at which the base's push reaches the force that presses the mass on the stop that it rests on.
@@ -387,13 +376,10 @@ pub fn stops_that_cross(
         return Some(None);
     };
     let well_mm = well.x.abs() * 1e3;
-    let (leading, place) = round_step(well_mm / FEWEST_STOPS);
+    let step = round_down(well_mm / FEWEST_STOPS, &ONE_TWO_FIVE);
     let mut trial = Scene { start: Start::Rest, ..scene.clone() };
-    for i in (1..=(well_mm / (leading * 10_f64.powi(place))).floor() as u32).rev() {
-        // the decimal itself, not a sum of steps
-        let count = leading * f64::from(i);
-        let travel_limit_mm =
-            if place < 0 { count / 10_f64.powi(-place) } else { count * 10_f64.powi(place) };
+    for i in (1..=(well_mm / step).floor() as u32).rev() {
+        let travel_limit_mm = multiple(f64::from(i) * step, step);
         trial.stops = Stops::Rigid { travel_limit_mm, restitution };
         let Ok(model) = Model::build(&trial, Arc::clone(mechanism)) else { continue };
         let until_settled = Some(longest(&model));
@@ -408,12 +394,4 @@ pub fn stops_that_cross(
         }
     }
     Some(None)
-}
-
-/// The largest of 1, 2 and 5 times a power of ten that is not above `most`, as the digit and the power.
-fn round_step(most: f64) -> (f64, i32) {
-    let place = most.log10().floor();
-    let share = most / 10_f64.powf(place);
-    let digit = [5.0, 2.0].into_iter().find(|digit| *digit <= share).unwrap_or(1.0);
-    (digit, place as i32)
 }

@@ -3,6 +3,8 @@
 //! `--dt 0.1` means 0.1, 0.2, 0.3, not 0.30000000000000004: a time is the double nearest to k times
 //! the *decimal* step, and a 60th of a forcing period of 1/3 s is the double nearest to k/180.
 
+use crate::numeric::{Decimal, greatest_common_divisor};
+
 /// The largest number of samples of one run: they take 1 GB of memory.
 pub const MAX_SAMPLES: u64 = 10_000_000;
 
@@ -46,17 +48,10 @@ impl Fraction {
     /// The decimal number that the shortest text of `value` spells; none where it is not above 0 or
     /// needs more than 38 digits, in which case decimals mean nothing to a person either.
     fn decimal(value: f64) -> Option<Self> {
-        if !value.is_finite() || value <= 0.0 {
-            return None;
-        }
-        let text = format!("{value:e}");
-        let (mantissa, exponent) = text.split_once('e')?;
-        let exponent: i32 = exponent.parse().ok()?;
-        let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-        let digits: u128 = format!("{whole}{fraction}").parse().ok()?;
-        let scale = exponent - fraction.len() as i32;
-        let power = 10_u128.checked_pow(scale.unsigned_abs())?;
-        Some(if scale >= 0 {
+        let Decimal { digits, exponent } = Decimal::shortest(value).filter(|own| own.digits > 0)?;
+        let digits = digits.unsigned_abs();
+        let power = 10_u128.checked_pow(exponent.unsigned_abs())?;
+        Some(if exponent >= 0 {
             Self { numerator: digits.checked_mul(power)?, denominator: 1 }
         } else {
             Self { numerator: digits, denominator: power }
@@ -81,7 +76,7 @@ impl Fraction {
         };
         let mut denominator = self.denominator;
         if numerator >= EXACT || denominator >= EXACT {
-            let divisor = gcd(numerator, denominator);
+            let divisor = greatest_common_divisor(numerator, denominator);
             (numerator, denominator) = (numerator / divisor, denominator / divisor);
         }
         // Both exact: one correctly rounded division. Beyond that the parser's rounding where the
@@ -101,13 +96,6 @@ impl Fraction {
         let below = whole.denominator.checked_mul(self.numerator)?;
         u64::try_from(above / below).ok()
     }
-}
-
-fn gcd(mut a: u128, mut b: u128) -> u128 {
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    a.max(1)
 }
 
 /// The step between even samples.

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// A folder may name those before it, nothing after it. `cli` and `app` stand side by side.
-const ORDER: [&str; 8] = ["numeric", "scene", "mechanics", "dynamics", "study", "output", "cli", "app"];
+const ORDER: [&str; 9] =
+    ["system", "numeric", "scene", "mechanics", "dynamics", "study", "output", "cli", "app"];
 
 fn allowed(layer: &str, used: &str) -> bool {
     let place = |name: &str| ORDER.iter().position(|own| *own == name);
@@ -179,4 +180,34 @@ fn folders_of_the_window_use_only_those_below_them() {
     }
     assert!(files.len() > 50, "only {} files found in {}", files.len(), window.display());
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What a line names of the machine: its threads, clocks or files.
+fn of_the_machine(line: &str) -> Option<&'static str> {
+    let names = ["std::fs", "fs::", "tempfile", ".is_file()", ".is_dir()", ".exists()", ".canonicalize()"]
+        .into_iter()
+        .chain(["std::thread", "rayon", "cpu_time::", "SystemTime", "time::Instant", "Duration, Instant"]);
+    let code = line.split("//").next().unwrap_or_default();
+    names.into_iter().find(|name| code.contains(name))
+}
+
+#[test]
+fn threads_clocks_and_files_are_named_in_one_folder_alone() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&src, &mut files);
+    // The window still reaches its own threads, clocks and files.
+    let exempt = ["system", "app"].map(|folder| src.join(folder));
+    let mut wrong = Vec::new();
+    for file in files.iter().filter(|file| !exempt.iter().any(|folder| file.starts_with(folder))) {
+        let text = fs::read_to_string(file).unwrap();
+        // tests within a file stand at its end
+        let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+        for (i, line) in code.lines().enumerate() {
+            wrong.extend(of_the_machine(line).map(|name| format!("{}:{}: {name}", file.display(), i + 1)));
+        }
+    }
+    assert!(wrong.is_empty(), "reach these through src/system:\n{}", wrong.join("\n"));
+    assert_eq!(of_the_machine("let t = std::time::Instant::now(); // std::fs"), Some("time::Instant"));
+    assert_eq!(of_the_machine("at: Instant<T>, // std::fs"), None);
 }

@@ -7,14 +7,15 @@ use interwell::dynamics::{Model, Request};
 use interwell::mechanics::{ForceCurve, Mechanism, Piece};
 use interwell::scene::{Document, Files};
 use interwell::study::*;
+use interwell::system::threads::Pool;
 
 fn model(document: &Document) -> Model {
     let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
     Model::build(&document.scene, Arc::new(mechanism)).unwrap()
 }
 
-fn pool(threads: usize) -> rayon::ThreadPool {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap()
+fn pool(threads: usize) -> Pool {
+    Pool::new(threads).unwrap()
 }
 
 fn sweep(over: &[&str]) -> Sweep {

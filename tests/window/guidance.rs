@@ -26,7 +26,7 @@ fn the_ways_to_cross_hold() {
     // that is what it does there, and not a step further out
     let regime = |mm: f64| {
         let stops = format!("stops=Rigid(travel_limit_mm: {mm}, restitution: 0.36)");
-        session("first-look", &[&stops]).settled().unwrap().summary.regime
+        session("first-look", &[&stops]).settled().unwrap().regime
     };
     let limit: f64 = limit.parse().unwrap();
     assert_eq!(regime(limit), Regime::Interwell);

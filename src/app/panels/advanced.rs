@@ -136,16 +136,13 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
 
 /// Equal stops as stops that may differ, and back; back, both are as the right one, where it is there.
 fn other_kind(stops: Stops) -> Stops {
+    let ([left_mm, right_mm], [restitution_left, restitution_right]) =
+        (stops.limits_mm(), stops.restitutions());
     match stops {
-        Stops::Rigid { travel_limit_mm, restitution } => Stops::Uneven {
-            left_mm: Some(travel_limit_mm),
-            right_mm: Some(travel_limit_mm),
-            restitution_left: Some(restitution),
-            restitution_right: Some(restitution),
-        },
-        Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => Stops::Rigid {
+        Stops::Rigid { .. } => Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right },
+        Stops::Uneven { .. } => Stops::Rigid {
             travel_limit_mm: right_mm.or(left_mm).unwrap_or(1.5),
-            restitution: restitution_right.or(restitution_left).unwrap_or(0.36),
+            restitution: restitution_right.unwrap_or(0.36),
         },
         Stops::None | Stops::Hertz { .. } => stops,
     }

@@ -6,7 +6,7 @@ use crate::app::session::Session;
 use crate::app::ui::style::strong_family;
 use crate::app::words::status::grams;
 use crate::dynamics::EventKind;
-use crate::scene::{Excitation, Stops};
+use crate::scene::Excitation;
 
 /// How far in mm the stops are moved before the trade-off counts as tried.
 const TRIED_MM: f64 = 0.3;
@@ -192,8 +192,5 @@ fn hardest_mm(session: &Session) -> Option<f64> {
 
 /// The travel limit of stops alike on both sides.
 fn limit_mm(session: &Session) -> Option<f64> {
-    match session.scene().stops {
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => Some(travel_limit_mm),
-        _ => None,
-    }
+    session.scene().stops.travel_limit_mm()
 }

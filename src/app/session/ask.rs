@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::words::status;
-use crate::scene::{Excitation, Stops};
+use crate::scene::Excitation;
 use crate::study;
 
 use super::Session;
@@ -41,8 +41,9 @@ impl Session {
             && !self.editor.in_gesture()
         {
             let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
-            let restitution =
-                restitution(&scene.stops).or(restitution(&self.remembered_stops)).unwrap_or(1.0);
+            let own =
+                [&scene.stops, &self.remembered_stops].into_iter().find_map(|stops| stops.restitutions()[1]);
+            let restitution = own.unwrap_or(1.0);
             self.stops_that_cross.ask(&self.wake, move |cancel| {
                 let task = study::Task { tick: &|| (), cancel };
                 study::stops_that_cross(&scene, &mechanism, restitution, &task)
@@ -127,14 +128,5 @@ impl Session {
         }
         self.follow_accuracy();
         self.accuracy.wait(most);
-    }
-}
-
-/// The coefficient of restitution of stops that have one.
-fn restitution(stops: &Stops) -> Option<f64> {
-    match stops {
-        Stops::None | Stops::Hertz { .. } => None,
-        Stops::Rigid { restitution, .. } => Some(*restitution),
-        Stops::Uneven { restitution_left, restitution_right, .. } => restitution_right.or(*restitution_left),
     }
 }

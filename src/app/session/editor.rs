@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use crate::output::write_file;
-use crate::scene::{Document, Files, Scene, SceneError, Source, Start, Stops, numeric_fields, write};
+use crate::scene::{Document, Files, Scene, SceneError, Source, Start, numeric_fields, write};
 
 use super::bring::{bring, follow};
 
@@ -202,15 +202,8 @@ fn text_of(scene: &Scene) -> Result<String, String> {
 
 /// A start beyond a stop is no start: a stop that is moved over it carries it along.
 pub(in crate::app) fn keep_start_inside(scene: &mut Scene) {
-    let (left, right) = match scene.stops {
-        Stops::None => return,
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
-            (-travel_limit_mm, travel_limit_mm)
-        }
-        Stops::Uneven { left_mm, right_mm, .. } => {
-            (left_mm.map_or(f64::NEG_INFINITY, |mm| -mm), right_mm.unwrap_or(f64::INFINITY))
-        }
-    };
+    let [left, right] = scene.stops.limits_mm();
+    let (left, right) = (left.map_or(f64::NEG_INFINITY, |mm| -mm), right.unwrap_or(f64::INFINITY));
     if let Start::At { x_mm, .. } = &mut scene.start {
         if *x_mm > right {
             *x_mm = right;
@@ -223,6 +216,7 @@ pub(in crate::app) fn keep_start_inside(scene: &mut Scene) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Stops;
 
     fn editor() -> Editor {
         Editor::open("first-look").unwrap()

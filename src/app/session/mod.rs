@@ -17,10 +17,10 @@ use std::time::Duration;
 
 use crate::app::task::{Latest, Wake};
 use crate::app::words::status::{self, Sentence, Told};
-use crate::dynamics::{Model, Outcome};
+use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
 use crate::scene::{self, Excitation, Scene, Stops};
-use crate::study::{self, Settled, Thresholds};
+use crate::study::{self, Thresholds};
 
 use accuracy::Accuracy;
 pub use build::CannotRun;
@@ -74,7 +74,7 @@ pub struct Card {
     /// The scene.
     pub scene: Scene,
     /// What it settles to, once that is known.
-    pub settled: Option<Settled>,
+    pub settled: Option<Summary>,
     /// How much shaking it takes, once that is known.
     pub thresholds: Option<Thresholds>,
 }
@@ -89,7 +89,7 @@ pub struct Session {
     fault: Option<String>,
     /// The motion.
     pub player: Player,
-    settled: Latest<Settled>,
+    settled: Latest<Summary>,
     thresholds: Latest<Thresholds>,
     /// The travel limit in mm with which it would cross; searched for only when somebody asks.
     stops_that_cross: Latest<Option<f64>>,
@@ -417,7 +417,7 @@ impl Session {
 
     /// Whether what the motion settles to crosses the barrier; none while that is not known.
     pub fn crosses(&self) -> Option<bool> {
-        let summary = &self.settled.current()?.summary;
+        let summary = self.settled.current()?;
         (self.fault.is_none() && summary.outcome == Outcome::Done).then_some(summary.crossings > 0)
     }
 
@@ -435,7 +435,7 @@ impl Session {
     }
 
     /// What the motion settles to; of an earlier scene while the answer is still to come.
-    pub fn settled(&self) -> Option<&Settled> {
+    pub fn settled(&self) -> Option<&Summary> {
         self.settled.newest()
     }
 
@@ -506,7 +506,7 @@ impl Session {
         Some(Told {
             scene: self.scene(),
             model: &self.model,
-            summary: &settled.summary,
+            summary: settled,
             thresholds: self.thresholds.current(),
             origin: self.asked_from,
             now: self.player.watch().time(),

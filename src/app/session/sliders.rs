@@ -42,11 +42,7 @@ impl FieldInfo {
 fn travel(session: &Session) -> Reach {
     let (saved, limits) = (session.editor.saved(), [session.remembered_stops(), session.scene().stops]);
     let well = session.opened().well_mm;
-    let furthest = |stops: &Stops| match *stops {
-        Stops::None => None,
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => Some(travel_limit_mm),
-        Stops::Uneven { left_mm, right_mm, .. } => left_mm.into_iter().chain(right_mm).reduce(f64::max),
-    };
+    let furthest = |stops: &Stops| stops.limits_mm().into_iter().flatten().reduce(f64::max);
     let stops = || furthest(&saved.stops).or_else(|| limits.iter().find_map(furthest));
     let size = well.filter(|mm| *mm > 0.0).or_else(stops).unwrap_or(10.0);
     let step = below(size / 130.0);

@@ -5,13 +5,11 @@ use eframe::egui::{self, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
 use crate::app::session::Card;
 use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::fields::name_and_unit;
-use crate::app::words::fields::stop_distances;
 use crate::app::words::meanings::{explained, meaning};
 use crate::app::words::numbers::{decimals_for, exact, shown};
 use crate::app::words::status::{Kind, grams, mm_beside, seconds, speed};
-use crate::dynamics::{Outcome, Regime};
+use crate::dynamics::{Outcome, Regime, Summary};
 use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};
-use crate::study::Settled;
 
 use super::ViewContext;
 
@@ -83,16 +81,14 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
         };
         row_ui(
             ui,
-            &both(RMS, &|card| {
-                value(card, |s| s.summary.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))
-            }),
+            &both(RMS, &|card| value(card, |s| s.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))),
         );
         row_ui(
             ui,
             &both("reach", &|card| {
-                let (left, right) = stop_distances(&card.scene);
-                let stops = (left.map(|mm| mm * 1e-3), right.map(|mm| mm * 1e-3));
-                value(card, |s| s.summary.max_abs_x.map(|reach| format!("{} mm", mm_beside(reach, stops))))
+                let [left, right] = card.scene.stops.limits_mm();
+                let stops = (left.map(|mm| -mm * 1e-3), right.map(|mm| mm * 1e-3));
+                value(card, |s| s.max_abs_x.map(|reach| format!("{} mm", mm_beside(reach, stops))))
             }),
         );
         row_ui(ui, &both("crosses from", &crosses_from));
@@ -109,8 +105,8 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
 const RMS: &str = "RMS velocity";
 
 /// What the RMS velocity is, and over which time it was taken.
-fn rms_words(settled: &Settled) -> String {
-    let (from, to) = settled.summary.window;
+fn rms_words(settled: &Summary) -> String {
+    let (from, to) = settled.window;
     let time = format!("from {} to {} after the start or the last change", seconds(from), seconds(to));
     format!("{}\n\nHere it was taken {time}.", meaning(RMS).unwrap_or_default())
 }
@@ -193,7 +189,7 @@ fn dash() -> String {
     "-".to_owned()
 }
 
-fn value(card: &Card, of: impl Fn(&Settled) -> Option<String>) -> String {
+fn value(card: &Card, of: impl Fn(&Summary) -> Option<String>) -> String {
     card.settled.as_ref().and_then(of).unwrap_or_else(dash)
 }
 
@@ -261,18 +257,18 @@ fn start(scene: &Scene) -> String {
     }
 }
 
-fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Settled>) {
+fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>) {
     let Some(settled) = settled else {
         ui.label("-");
         return;
     };
-    if settled.summary.outcome != Outcome::Done {
+    if settled.outcome != Outcome::Done {
         ui.label("the run ended early");
         return;
     }
-    let (kind, name) = match settled.summary.regime {
+    let (kind, name) = match settled.regime {
         Regime::Rest => (Kind::Resting, "resting"),
-        Regime::Intrawell if settled.summary.releases > 0 => (Kind::Intrawell, "hopping"),
+        Regime::Intrawell if settled.releases > 0 => (Kind::Intrawell, "hopping"),
         Regime::Intrawell => (Kind::Intrawell, "intrawell"),
         Regime::Interwell => (Kind::Interwell, "interwell"),
         Regime::Irregular => (Kind::Irregular, "irregular"),

@@ -11,6 +11,7 @@ use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::numbers::three;
 use crate::app::words::status::Kind;
 use crate::dynamics::{Model, Phase, Sample};
+use crate::numeric::bisect;
 use crate::study::between;
 
 use super::chart::Chart;
@@ -169,11 +170,8 @@ fn square_at(curve: &crate::mechanics::ForceCurve, top: f64) -> impl Fn(f64) -> 
 }
 
 /// Where `height` comes to 0 between a place where it is above and one where it is not, as near as is seen.
-fn turning(height: &impl Fn(f64) -> f64, mut above: f64, mut below: f64) -> f64 {
-    for _ in 0..20 {
-        let middle = 0.5 * (above + below);
-        if height(middle) > 0.0 { above = middle } else { below = middle }
-    }
+fn turning(height: &impl Fn(f64) -> f64, above: f64, below: f64) -> f64 {
+    let (above, below) = bisect(above, below, 20, |x| height(x) > 0.0);
     0.5 * (above + below)
 }
 

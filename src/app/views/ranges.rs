@@ -5,6 +5,7 @@
 
 use crate::app::session::Session;
 use crate::dynamics::STANDARD_GRAVITY;
+use crate::numeric::round::round_up;
 
 /// Pushes in g that an axis of the base's acceleration has room for.
 const PUSHES: [f64; 14] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.6, 1.0, 1.5, 2.2, 3.2, 5.0, 10.0, 20.0];
@@ -25,8 +26,7 @@ pub fn room_for_push(push: f64) -> f64 {
 
 /// The end of an axis that holds `value`, which is above 0.
 pub fn axis_end(value: f64) -> f64 {
-    let power = 10_f64.powf(value.log10().floor());
-    let end = ENDS.iter().map(|end| end * power).find(|end| *end >= value).unwrap_or(10.0 * power);
+    let end = round_up(value, &ENDS);
     if end.is_finite() && end > 0.0 { end } else { 1.0 }
 }
 

@@ -3,6 +3,7 @@
 use eframe::egui::{Rangef, Rect};
 
 use crate::app::session::Session;
+use crate::numeric::round::{ONE_TWO_FIVE, round_up};
 
 use super::ranges::axis_end;
 
@@ -36,7 +37,7 @@ impl Span {
                 (low, high) = (low.min(x), high.max(x));
             }
         };
-        let settled = session.settled().and_then(|settled| settled.summary.range).unwrap_or((0.0, 0.0));
+        let settled = session.settled().and_then(|settled| settled.range).unwrap_or((0.0, 0.0));
         let reach = [settled.0.min(seen.0), settled.1.max(seen.1)];
         if let Some(barrier) = &model.mechanism.landscape.barrier {
             show(barrier.left_well * ROOM);
@@ -99,9 +100,7 @@ impl Span {
 
 /// Round numbers from `low` to `high`, some `count` of them, in thousandths of the unit given, and decimals to write them.
 pub(super) fn ticks(low: f64, high: f64, count: f64) -> (Vec<f64>, usize) {
-    let rough = (high - low) / count.max(1.0);
-    let power = 10_f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= rough).unwrap_or(rough);
+    let step = round_up((high - low) / count.max(1.0), &ONE_TWO_FIVE);
     if !(step > 0.0 && step.is_finite()) {
         return (Vec::new(), 0);
     }

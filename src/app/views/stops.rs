@@ -5,9 +5,8 @@ use eframe::egui::{self, CursorIcon, Rect, Sense, Shape, Stroke, Ui, pos2, vec2}
 use crate::app::session::Session;
 use crate::app::ui::style::GRAB;
 use crate::app::ui::widgets::arrows;
-use crate::app::words::fields::{info, stop_distances};
+use crate::app::words::fields::info;
 use crate::app::words::numbers::{decimal, decimals, shown};
-use crate::scene::Stops;
 
 use super::ViewContext;
 
@@ -30,8 +29,8 @@ pub fn stops_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, top: f32
 
 /// The stops of what is shown in mm, and whether a hand can move them: those of the past, where they were others, it cannot.
 fn shown_stops(session: &Session) -> ([Option<f64>; 2], bool) {
-    let (left, right) = stop_distances(session.scene());
-    let present = [left, right];
+    let [left, right] = session.scene().stops.limits_mm();
+    let present = [left.map(|mm| -mm), right];
     if !session.player.is_past() {
         return (present, true);
     }
@@ -91,7 +90,7 @@ pub fn stops_beside_ui(
             let place = context.span.world_from_screen(pointer.x - way * (radius + 0.5 * WALL), rect) * 1e3;
             // of the prototype a hundredth of a millimetre, which is finer than a hand
             let distance = decimal((f64::from(way) * place / fine).round() * fine).max(step);
-            changed |= context.session.edit(|scene| put_side(&mut scene.stops, way > 0.0, distance));
+            changed |= context.session.edit(|scene| scene.stops.set_limit(way > 0.0, distance));
             let text = words(distance);
             let align = if way > 0.0 { egui::Align2::LEFT_TOP } else { egui::Align2::RIGHT_TOP };
             let at = pos2(x + way * (WALL + 5.0), top);
@@ -104,7 +103,7 @@ pub fn stops_beside_ui(
             if moved != 0.0 {
                 let distance = decimal(((mm.abs() / step).round() + moved) * step).max(step);
                 context.session.press(name, ui.input(|input| input.time));
-                changed |= context.session.edit(|scene| put_side(&mut scene.stops, way > 0.0, distance));
+                changed |= context.session.edit(|scene| scene.stops.set_limit(way > 0.0, distance));
             }
         }
         if response.drag_stopped() {
@@ -124,18 +123,4 @@ fn hatching(wall: Rect, way: f32, stroke: Stroke) -> Vec<Shape> {
         Shape::line_segment([pos2(inner + way * 3.0, y), pos2(outer, (y + 6.0).min(wall.bottom()))], stroke)
     };
     (0..count.min(400)).map(line).collect()
-}
-
-/// Puts the stop of one side to a distance in mm from the middle.
-fn put_side(stops: &mut Stops, right: bool, mm: f64) {
-    match stops {
-        Stops::None => {}
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => *travel_limit_mm = mm,
-        Stops::Uneven { left_mm, right_mm, .. } => {
-            let own = if right { right_mm } else { left_mm };
-            if own.is_some() {
-                *own = Some(mm);
-            }
-        }
-    }
 }

@@ -1,6 +1,6 @@
 //! Table of the numeric fields of a scene: name on the screen, unit, limits, range of the slider.
 
-use crate::scene::{Scene, Stops};
+use crate::scene::Scene;
 
 /// What sets how far a slider goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -187,17 +187,6 @@ pub fn in_words(text: &str, scene: &Scene) -> String {
         }
     }
     text
-}
-
-/// The stops of a scene in mm, left and right; none where a side is open.
-pub fn stop_distances(scene: &Scene) -> (Option<f64>, Option<f64>) {
-    match scene.stops {
-        Stops::None => (None, None),
-        Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => {
-            (Some(-travel_limit_mm), Some(travel_limit_mm))
-        }
-        Stops::Uneven { left_mm, right_mm, .. } => (left_mm.map(|mm| -mm), right_mm),
-    }
 }
 
 #[cfg(test)]

@@ -1,22 +1,16 @@
 //! Formats of numbers in fields and on axes, and round numbers for their ends and steps.
 
+use crate::numeric::round;
+
 /// The least number of one or two digits that is not below `value`.
 pub fn round_up(value: f64) -> f64 {
-    let power = 10_f64.powf(value.log10().floor());
-    let digits = [1.0, 1.2, 1.5, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0];
-    decimal(digits.iter().map(|digit| digit * power).find(|to| *to >= value * (1.0 - 1e-9)).unwrap_or(value))
+    let digits = [1.0, 1.2, 1.5, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+    round::round_up(value, &digits)
 }
 
 /// 1, 2 or 5 times a power of ten, not above `value`.
 pub fn below(value: f64) -> f64 {
-    let power = 10_f64.powf(value.log10().floor());
-    decimal(
-        [5.0, 2.0, 1.0]
-            .map(|digit| digit * power)
-            .into_iter()
-            .find(|own| *own <= value * (1.0 + 1e-9))
-            .unwrap_or(power),
-    )
+    round::round_down(value, &round::ONE_TWO_FIVE)
 }
 
 /// The number of six digits: what products of round numbers are meant to be.

@@ -69,9 +69,9 @@ fn run_all(models: &[Model], request: &Request) -> Vec<Run> {
     // Motions of one order share their steps; tolerances differ only where a sweep is over them.
     together.sort_by(|a, b| b.model.tolerance.total_cmp(&a.model.tolerance));
     for alike in together.chunk_by(|a, b| a.model.tolerance == b.model.tolerance) {
-        let watch = cpu_time::ThreadTime::now();
+        let watch = crate::system::clock::ThreadClock::start();
         fly_together(alike, request, &mut runs);
-        let share = watch.elapsed().as_secs_f64() / alike.len() as f64;
+        let share = watch.seconds() / alike.len() as f64;
         for own in alike {
             if let Some(run) = &mut runs[own.place] {
                 run.summary.cpu_s = share;

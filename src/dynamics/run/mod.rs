@@ -16,6 +16,7 @@ use crate::dynamics::result::{Outcome, Request, Run};
 use crate::dynamics::state::{Contact, Flow};
 use crate::dynamics::step::work::{IMPACT_BUDGET, WORK_BUDGET};
 use crate::numeric::{DoubleDouble, Scalar};
+use crate::system::clock::ThreadClock;
 use event_free::FastPath;
 
 impl Model {
@@ -37,7 +38,7 @@ impl Model {
 
 /// Runs the model in numbers of type `T`; where `recurs`, a cycle that comes back may complete the run.
 fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64, recurs: bool) -> Run {
-    let watch = cpu_time::ThreadTime::now();
+    let watch = ThreadClock::start();
     let unit = model.scales.unit();
     let equation = Equation::<T>::new(model, unit);
     let clock = clock(model, unit);
@@ -46,7 +47,7 @@ fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64, recurs: bool
         Form::Sine(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
         Form::Composite(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
     };
-    run.summary.cpu_s = watch.elapsed().as_secs_f64();
+    run.summary.cpu_s = watch.seconds();
     run
 }
 

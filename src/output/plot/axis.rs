@@ -1,5 +1,7 @@
 //! Axes: where one begins and ends, and the numbers at it.
 
+use crate::numeric::round::{ONE_TWO_FIVE, decade, round_up};
+
 /// A range of values with its ticks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
@@ -42,10 +44,10 @@ impl Axis {
     /// An axis from `low` to `high` with some `count` ticks at 1, 2 or 5 times a power of ten.
     pub fn between(low: f64, high: f64, count: usize, label: &str) -> Self {
         let (low, high) = proper(low, high);
-        let step = step((high - low) / count.max(1) as f64);
+        let step = round_up((high - low) / count.max(1) as f64, &ONE_TWO_FIVE);
         // The common power of ten is taken out where plain numbers would be long.
         let largest = low.abs().max(high.abs());
-        let power = largest.log10().floor() as i32;
+        let power = decade(largest);
         let power = if (-3..5).contains(&power) { 0 } else { power };
         let scale = 10_f64.powi(power);
         let decimals = (power - (step.log10() + 1e-9).floor() as i32).clamp(0, 12) as usize;
@@ -114,13 +116,6 @@ fn proper(low: f64, high: f64) -> (f64, f64) {
     let half = if low == 0.0 || low.abs() < 1e-280 { 1.0 } else { 0.1 * low.abs() };
     let middle = 0.5 * low + 0.5 * high;
     (middle - half, middle + half)
-}
-
-/// The least of 1, 2, 5 times a power of ten that is not below `rough`.
-fn step(rough: f64) -> f64 {
-    let power = 10_f64.powi(rough.log10().floor() as i32);
-    let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * power >= rough * (1.0 - 1e-9));
-    factor.unwrap_or(10.0) * power
 }
 
 /// A whole number as an exponent.

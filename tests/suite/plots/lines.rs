@@ -10,7 +10,7 @@ use interwell::study::{Grid, Sweep, Table, Task, Values, first_crossing, release
 fn swept(document: &Document, over: &[&str]) -> (Grid, Table) {
     let grid = Grid::new(document.axes(over).unwrap()).unwrap();
     let sweep = Sweep::new(&document.scene, &document.files, grid.clone());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+    let pool = interwell::system::threads::Pool::new(2).unwrap();
     let cancel = AtomicBool::new(false);
     let mut rows = Table::new();
     let write = |table: &Table| {

@@ -46,7 +46,7 @@ fn a_sweep_is_the_same_bytes_for_any_number_of_threads() {
         for threads in [1, 2, 3] {
             let grid = Grid::new(axes.clone()).unwrap();
             let sweep = Sweep::new(scene, &Files::default(), grid);
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = interwell::system::threads::Pool::new(threads).unwrap();
             if sweep.validate(&pool, &task).is_err() {
                 return Ok(false);
             }

@@ -10,11 +10,10 @@ mod place;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use rayon::ThreadPoolBuilder;
-
 use crate::app::task::{Stream, Wake};
 use crate::scene::{Scene, SweepAxis};
 use crate::study::{self, Cell};
+use crate::system::threads::{Pool, processors};
 
 use super::editor::Editor;
 
@@ -227,11 +226,10 @@ impl Mapping {
         let known: Vec<bool> = map.cells.iter().map(Option::is_some).collect();
         let generation = self.generation;
         // one core stays for the window
-        let threads =
-            std::thread::available_parallelism().map_or(1, |cores| cores.get().saturating_sub(1).max(1));
+        let threads = processors().saturating_sub(1).max(1);
         self.begun = Some(Instant::now());
         self.task = Stream::start(wake, move |cancel, each| {
-            let Ok(pool) = ThreadPoolBuilder::new().num_threads(threads).build() else { return };
+            let Ok(pool) = Pool::new(threads) else { return };
             let task = study::Task { tick: &|| (), cancel };
             let mut begin = 0;
             for end in levels.ends {

@@ -1,6 +1,5 @@
 //! The sentence of a mass that is shaken.
 
-use crate::app::words::fields::stop_distances;
 use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, Summary};
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
@@ -310,8 +309,8 @@ fn untouched(told: &Told) -> String {
     if touched || rests || told.model.stop_positions() == (None, None) {
         return String::new();
     }
-    match stop_distances(told.scene) {
-        (Some(left), Some(right)) if left == -right => {
+    match told.scene.stops.limits_mm() {
+        [Some(left), Some(right)] if left == right => {
             format!(" Stops at ±{} mm are not touched.", limit_mm(right))
         }
         _ => " The stops are not touched.".to_owned(),

@@ -2,7 +2,7 @@
 
 use crate::dynamics::{Regime, Summary};
 use crate::scene::{Excitation, Scene, Stops};
-use crate::study::{Settled, Thresholds};
+use crate::study::Thresholds;
 
 use super::numbers::{grams, grams_apart, grams_up};
 
@@ -66,10 +66,10 @@ fn capital(text: &str) -> String {
 /// What it would take to cross, or to cross every period: more shaking or stops, where they were searched for.
 ///
 /// `stops_mm` is the travel limit that [`study::stops_that_cross`](crate::study::stops_that_cross) found.
-pub fn ways(scene: &Scene, settled: &Settled, thresholds: &Thresholds, stops_mm: Option<f64>) -> String {
+pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm: Option<f64>) -> String {
     let Some(g) = amplitude(scene) else { return String::new() };
     let stops = stops_mm.map(|limit| format!("with stops at ±{} mm", at_least_one_decimal(limit)));
-    match settled.summary.regime {
+    match settled.regime {
         Regime::OneWell => "There is no barrier, so nothing to cross.".to_owned(),
         Regime::Interwell | Regime::Crossing => {
             "It crosses already, again and again in the same way.".to_owned()

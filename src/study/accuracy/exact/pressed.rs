@@ -3,7 +3,7 @@
 
 use super::dd;
 use super::elementary::{sine_turns, turns};
-use crate::numeric::{DoubleDouble, Number, Scalar};
+use crate::numeric::{DoubleDouble, Number, Scalar, bisect};
 
 /// In the gap y from the stop: y'' = -press + amplitude sin(2 pi frequency t), y >= 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,12 +47,7 @@ impl Pressed {
         let gap = |t: DoubleDouble| self.flight(start, from, t).0;
         let zero = DoubleDouble::zero();
         let first = (1..4 * 4096).find(|i| gap(from + step * dd(f64::from(*i))) <= zero)?;
-        let mut low = from + step * dd(f64::from(first - 1));
-        let mut high = from + step * dd(f64::from(first));
-        for _ in 0..110 {
-            let middle = (low + high) * dd(0.5);
-            if gap(middle) > zero { low = middle } else { high = middle }
-        }
-        Some(high)
+        let [low, high] = [first - 1, first].map(|i| from + step * dd(f64::from(i)));
+        Some(bisect(low, high, 110, |t| gap(t) > zero).1)
     }
 }

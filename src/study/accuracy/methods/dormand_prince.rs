@@ -5,12 +5,12 @@
 //! control. Contact is looked for as general solvers do, by the sign of the gap at the end of a step, and its root on the
 //! continuous extension is bisected to rounding: an excursion inside a step is not seen.
 
-use cpu_time::ThreadTime;
-
 use super::problem::Problem;
 use super::tally::{State, Tally};
 use super::{Keep, MethodRun};
 use crate::dynamics::{Model, Phase, Side};
+use crate::numeric::bisect;
+use crate::system::clock::ThreadClock;
 
 /// A pressed rebound slower than this share of the scene's speed is a rest: what a user of such a solver writes, who
 /// has no sum of a chatter.
@@ -123,16 +123,8 @@ impl Step {
                 }
             }
         }
-        let mut high = 1.0;
         // to 2^-60 of the step: a contact at its very begin has no relative digits to find
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if gap(middle) > 0.0 { low = middle } else { high = middle }
-        }
-        Some(high)
+        Some(bisect(low, 1.0, 60, |share| gap(share) > 0.0).1)
     }
 }
 
@@ -142,7 +134,7 @@ impl Step {
 /// slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths of the forcing period (or of
 /// the duration) and bisection. Ends early where the force curve ends, and after 2e7 attempts.
 pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
-    let watch = ThreadTime::now();
+    let watch = ThreadClock::start();
     let problem = Problem::new(model);
     let mut tally = Tally::new(&problem, keep);
     let scales = model.scales;
@@ -245,7 +237,7 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
         now = next;
     }
     let mut run = tally.finish(&problem, now, phase, (steps, evaluations));
-    run.statistics.cpu_s = watch.elapsed().as_secs_f64();
+    run.statistics.cpu_s = watch.seconds();
     run
 }
 
@@ -253,15 +245,9 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
 fn release(press: impl Fn(f64) -> f64, from: f64, end: f64, stride: f64) -> f64 {
     let mut low = from;
     while low < end {
-        let mut high = (low + stride).min(end);
+        let high = (low + stride).min(end);
         if press(high) <= 0.0 {
-            loop {
-                let middle = 0.5 * (low + high);
-                if middle <= low || middle >= high {
-                    return high;
-                }
-                if press(middle) > 0.0 { low = middle } else { high = middle }
-            }
+            return bisect(low, high, u32::MAX, |t| press(t) > 0.0).1;
         }
         low = high;
     }

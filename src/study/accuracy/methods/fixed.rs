@@ -1,11 +1,10 @@
 //! Fixed steps with clamp and bounce.
 
-use cpu_time::ThreadTime;
-
 use super::problem::Problem;
 use super::tally::{State, Tally};
 use super::{Keep, MethodRun, Scheme};
 use crate::dynamics::{Model, Phase, Side};
+use crate::system::clock::ThreadClock;
 
 /// Steps between two looks at the cancel flag.
 const CANCEL_STRIDE: u64 = 1 << 14;
@@ -20,7 +19,7 @@ const MOST_STEPS: f64 = 1e8;
 /// the user of such a method sees them; an impact has the time at the end of its step. A step that is not above 0, or
 /// makes more than 1e8 of them, is taken as the shortest allowed. Ends early where the force curve ends.
 pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> MethodRun {
-    let watch = ThreadTime::now();
+    let watch = ThreadClock::start();
     let problem = Problem::new(model);
     let wanted = (model.duration / step).ceil();
     let count = if wanted >= 1.0 { wanted.min(MOST_STEPS) } else { MOST_STEPS } as u64;
@@ -82,7 +81,7 @@ pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> Meth
         taken = i;
     }
     let mut run = tally.finish(&problem, now, Phase::Free, (taken, evaluations));
-    run.statistics.cpu_s = watch.elapsed().as_secs_f64();
+    run.statistics.cpu_s = watch.seconds();
     run
 }
 

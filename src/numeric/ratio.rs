@@ -1,0 +1,68 @@
+//! Exact ratio of two decimal numbers.
+
+use super::decimal::Decimal;
+
+/// A ratio of whole numbers in lowest terms, denominator above 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ratio {
+    /// Numerator.
+    pub numerator: u64,
+    /// Denominator.
+    pub denominator: u64,
+}
+
+impl Ratio {
+    /// The ratio of two positive finite numbers, each taken as the shortest decimal text that parses
+    /// back to it (3.1 is 31/10). None where a term of the lowest form would pass 2^53: such
+    /// numbers are best taken as having no common measure.
+    pub fn of_decimals(a: f64, b: f64) -> Option<Self> {
+        let positive = |value| Decimal::shortest(value).filter(|own| own.digits > 0);
+        let (a, b) = (positive(a)?, positive(b)?);
+        let shift = a.exponent - b.exponent;
+        if shift.abs() > 17 {
+            return None;
+        }
+        let scale = 10_u128.pow(shift.unsigned_abs());
+        let (a, b) = (a.digits.unsigned_abs(), b.digits.unsigned_abs());
+        let (n, d) = if shift >= 0 { (a * scale, b) } else { (a, b * scale) };
+        let g = greatest_common_divisor(n, d);
+        let fits = |v: u128| u64::try_from(v).ok().filter(|v| *v <= 1 << 53);
+        Some(Self { numerator: fits(n / g)?, denominator: fits(d / g)? })
+    }
+
+    /// Fractional part of `count` times the ratio, rounded once.
+    pub fn fraction_of_multiple(self, count: u64) -> f64 {
+        if self.denominator == 1 {
+            return 0.0;
+        }
+        let d = u128::from(self.denominator);
+        let rest = u128::from(count) * u128::from(self.numerator) % d;
+        rest as f64 / d as f64
+    }
+}
+
+/// Greatest common divisor (Euclid).
+pub(crate) fn greatest_common_divisor(mut a: u128, mut b: u128) -> u128 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ratios_of_decimal_texts() {
+        let ratio = |a, b| Ratio::of_decimals(a, b).map(|r| (r.numerator, r.denominator));
+        assert_eq!(ratio(3.1, 3.0), Some((31, 30)));
+        assert_eq!(ratio(0.1, 0.3), Some((1, 3)));
+        assert_eq!(ratio(6.0, 3.0), Some((2, 1)));
+        assert_eq!(ratio(1e-3, 2e5), Some((1, 200_000_000)));
+        assert_eq!(ratio(1e-9, 1e9), None);
+        let r = Ratio { numerator: 31, denominator: 30 };
+        assert_eq!(r.fraction_of_multiple(30), 0.0);
+        assert_eq!(r.fraction_of_multiple(31), 1.0 / 30.0);
+    }
+}

@@ -1,0 +1,103 @@
+//! Travel limits.
+
+use serde::{Deserialize, Serialize};
+
+/// Travel limits.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Stops {
+    /// Nothing in the way.
+    #[default]
+    None,
+    /// Equal rigid stops on both sides.
+    Rigid {
+        /// Distance of each stop from x = 0 in mm, 1e-15 to 1e15.
+        travel_limit_mm: f64,
+        /// Coefficient of restitution, 0 to 1.
+        restitution: f64,
+    },
+    /// Rigid stops that differ; a side left out is open.
+    Uneven {
+        /// Distance of the left stop from x = 0 in mm, 1e-15 to 1e15.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        left_mm: Option<f64>,
+        /// Distance of the right stop from x = 0 in mm, 1e-15 to 1e15.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        right_mm: Option<f64>,
+        /// Restitution of the left stop, 0 to 1; left out, the right stop's.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        restitution_left: Option<f64>,
+        /// Restitution of the right stop, 0 to 1; left out, the left stop's.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        restitution_right: Option<f64>,
+    },
+    /// Equal compliant stops on both sides: point contacts by Hertz, with the loss of Hunt and Crossley. Pressed in by
+    /// d, one pushes back with k d^1.5 (1 + a d'), and it never pulls. k is given, or follows from the two equal
+    /// cylinders of one material, crossed at a right angle, that each stop is made of.
+    Hertz {
+        /// Distance of each stop from x = 0 in mm, 1e-15 to 1e15.
+        travel_limit_mm: f64,
+        /// Stiffness k in N/m^1.5, 1e-60 to 1e60; left out where the cylinders are given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        stiffness_n_per_m1_5: Option<f64>,
+        /// Loss a in s/m, 0 to 1e30. The restitution depends on loss times impact speed alone: 2.427 gives 0.36.
+        loss_s_per_m: f64,
+        /// Radius of the cylinders in mm, 1e-15 to 1e15.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        radius_mm: Option<f64>,
+        /// Young's modulus of the cylinders in GPa, 1e-60 to 1e60.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        young_gpa: Option<f64>,
+        /// Poisson's ratio of the cylinders, 0 to 0.49; left out, 0.34.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        poisson: Option<f64>,
+        /// Yield strength of the cylinders in GPa, 1e-60 to 1e60; left out, 0.276 (aluminium 6061-T6). It has no part
+        /// in the motion; a run warns where the contact's pressure passes 1.6 times it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        yield_gpa: Option<f64>,
+    },
+}
+
+impl Stops {
+    /// Distances of the left and the right stop from x = 0 in mm; none on an open side.
+    pub fn limits_mm(&self) -> [Option<f64>; 2] {
+        match *self {
+            Self::None => [None; 2],
+            Self::Rigid { travel_limit_mm, .. } | Self::Hertz { travel_limit_mm, .. } => {
+                [Some(travel_limit_mm); 2]
+            }
+            Self::Uneven { left_mm, right_mm, .. } => [left_mm, right_mm],
+        }
+    }
+
+    /// The distance in mm that both stops share.
+    pub fn travel_limit_mm(&self) -> Option<f64> {
+        if matches!(self, Self::Uneven { .. }) { None } else { self.limits_mm()[0] }
+    }
+
+    /// Coefficients of restitution on the left and on the right, the other one's where one is left out; none
+    /// for compliant stops.
+    pub fn restitutions(&self) -> [Option<f64>; 2] {
+        match *self {
+            Self::None | Self::Hertz { .. } => [None; 2],
+            Self::Rigid { restitution, .. } => [Some(restitution); 2],
+            Self::Uneven { restitution_left: left, restitution_right: right, .. } => {
+                [left.or(right), right.or(left)]
+            }
+        }
+    }
+
+    /// Moves the stop of one side; equal stops both. An open side stays open.
+    pub fn set_limit(&mut self, right: bool, mm: f64) {
+        match self {
+            Self::None => {}
+            Self::Rigid { travel_limit_mm, .. } | Self::Hertz { travel_limit_mm, .. } => {
+                *travel_limit_mm = mm
+            }
+            Self::Uneven { left_mm, right_mm, .. } => {
+                let own = if right { right_mm } else { left_mm };
+                *own = own.map(|_| mm);
+            }
+        }
+    }
+}
