@@ -42,7 +42,7 @@ fn main() {
     for tolerance in ["1e-6", "1e-9"] {
         let set = format!("run.tolerance={tolerance}");
         let model = |well: &[&str], drive: &[&str]| {
-            shared::model("nominal-cubic", &[well, drive, &[set.as_str()]].concat())
+            shared::preset("nominal-cubic", &[well, drive, &[set.as_str()]].concat())
         };
         let (sine, still) = (Some((1.1, 3.0)), (9e-3, 0.0));
         by_hand("one well, sine", tolerance, &model(&ONE_WELL, &[SINE]), sine, (0.0, 0.0));
@@ -62,7 +62,7 @@ fn main() {
         ("ledger", Request { ledger: true, ..none }),
         ("1000 samples", Request { sample_times: &times, ..none }),
     ];
-    let free = |more: &[&str]| shared::model("nominal-cubic", &[&["stops=None", SINE], more].concat());
+    let free = |more: &[&str]| shared::preset("nominal-cubic", &[&["stops=None", SINE], more].concat());
     let p1 = free(&[]);
     let far = "stops=Rigid(travel_limit_mm: 1e6, restitution: 0.36)";
     let silent =
@@ -73,7 +73,7 @@ fn main() {
     for (name, request) in &asked {
         compare(&format!("no stops: {name}"), (&p1, &none), (&p1, request));
     }
-    let p2 = shared::model("nominal-cubic", &[]);
+    let p2 = shared::preset("nominal-cubic", &[]);
     for (name, request) in &asked {
         compare(&format!("stops at 4 mm: {name}"), (&p2, &none), (&p2, request));
     }

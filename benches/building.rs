@@ -27,9 +27,9 @@ fn main() {
     row("check it", QUICK, || cubic.check().unwrap());
     let build = |document: &Document| Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
     row("curve of a cubic, with its landscape", QUICK, || build(&cubic));
-    let paper = shared::document("paper", &[]);
+    let paper = shared::changed("paper", &[]);
     row("curve of the preset `paper`: solve its flexures", SLOW * 11, || build(&paper));
-    let solid = shared::document("paper-table", &[]);
+    let solid = shared::changed("paper-table", &[]);
     row("curve of the preset `paper-table`: read and fit a table", SLOW * 11, || build(&solid));
     for points in [100, 1000, 10_000] {
         let table = table(points);
@@ -60,7 +60,7 @@ fn table(points: u32) -> String {
 
 /// A sweep of cells in which nothing moves: what is left is the sweep itself, its scenes, models and rows.
 fn sweep() {
-    let document = shared::document("nominal-cubic", &["excitation.amplitude_g=0", "stops=None"]);
+    let document = shared::changed("nominal-cubic", &["excitation.amplitude_g=0", "stops=None"]);
     let over = ["run.duration_s=10:11:0.0001"];
     let grid = Grid::new(document.axes(&over).unwrap()).unwrap();
     let cells = grid.cells() as f64;

@@ -100,7 +100,7 @@ fn flexures() {
         ("stops, its cycle comes back", &[]),
         ("stops, integrated to its end", &["run.recurrence=false"]),
     ] {
-        let mut model = shared::model("paper", changes);
+        let mut model = shared::preset("paper", changes);
         let exact = model.run_reference(&Request::default(), REFERENCE).summary.rms_velocity.unwrap();
         for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
             model.tolerance = tolerance;
@@ -123,7 +123,7 @@ fn duration() {
         let (duration, settle) = (format!("run.duration_s={seconds}"), format!("run.settle_s={seconds}e-1"));
         let at = |changes: &[&str]| {
             let changes = [changes, &["run.tolerance=1e-6", &duration, &settle]].concat();
-            shared::model("nominal-cubic", &changes)
+            shared::preset("nominal-cubic", &changes)
         };
         let (_, free) = alone_and_together(&at(&["stops=None", "excitation.amplitude_g=1.1"]));
         let (closed, _) = alone_and_together(&at(&[]));
@@ -142,7 +142,7 @@ fn impacts() {
     println!("| --- | --- | --- | --- | --- |");
     for restitution in ["0", "0.2", "0.36", "0.5", "0.6"] {
         let own = format!("stops.restitution={restitution}");
-        let model = shared::model("nominal-cubic", &[&own, "run.tolerance=1e-6", "run.recurrence=false"]);
+        let model = shared::preset("nominal-cubic", &[&own, "run.tolerance=1e-6", "run.recurrence=false"]);
         let run = model.run(&Request::default()).summary;
         let (alone, _) = alone_and_together(&model);
         let (cpu, step) = (alone * 1e6, alone * 1e9 / run.steps as f64);
@@ -153,8 +153,8 @@ fn impacts() {
 fn map_size() {
     println!("\n| map | cells | with stops | a cell | without stops | a cell |");
     println!("| --- | --- | --- | --- | --- | --- |");
-    let stopped = shared::document("nominal-cubic", &["run.tolerance=1e-6"]);
-    let free = shared::document("nominal-cubic", &["run.tolerance=1e-6", "stops=None"]);
+    let stopped = shared::changed("nominal-cubic", &["run.tolerance=1e-6"]);
+    let free = shared::changed("nominal-cubic", &["run.tolerance=1e-6", "stops=None"]);
     for (limits, amplitudes) in [(6, 11), (21, 51), (41, 101), (81, 201)] {
         let with = cells(&stopped, (limits, amplitudes));
         let without = cells(&free, (0, amplitudes));
@@ -217,7 +217,8 @@ fn step() {
     let (scalar, wide) = (peak(false), peak(true));
     for (tolerance, order) in [("1e-3", 9), ("1e-6", 13), ("1e-9", 16), ("1e-12", 20)] {
         let tolerance = format!("run.tolerance={tolerance}");
-        let model = shared::model("nominal-cubic", &["stops=None", "excitation.amplitude_g=1.1", &tolerance]);
+        let model =
+            shared::preset("nominal-cubic", &["stops=None", "excitation.amplitude_g=1.1", &tolerance]);
         let steps = model.run(&Request::default()).summary.steps as f64;
         let (alone, together) = alone_and_together(&model);
         let work = operations(order) as f64;
@@ -245,7 +246,7 @@ fn measures() {
         ("`paper`, 41 x 101 cells", "paper", &["run.tolerance=1e-6"], (41, 101)),
     ];
     for (name, scene, changes, size) in rows {
-        let on = cells(&shared::document(scene, changes), size);
+        let on = cells(&shared::changed(scene, changes), size);
         let mut off = on.clone();
         off.iter_mut().for_each(|model| model.recurrence = false);
         let all = [cpu_of(&on, true), cpu_of(&on, false), cpu_of(&off, true), cpu_of(&off, false)];
@@ -260,7 +261,7 @@ fn jobs() {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     println!("\n| jobs ({cores} cores) | P3 of 151 x 401 cells, wall | against one |");
     println!("| --- | --- | --- |");
-    let document = shared::document("nominal-cubic", &["run.tolerance=1e-6"]);
+    let document = shared::changed("nominal-cubic", &["run.tolerance=1e-6"]);
     let size = if shared::is_measured() { (151, 401) } else { (3, 4) };
     let mut first = None;
     for jobs in (0..).map(|power| 1 << power).take_while(|jobs| *jobs <= cores) {

@@ -44,9 +44,9 @@ fn main() {
 }
 
 fn runs() {
-    let free = shared::model("nominal-cubic", &["stops=None", "excitation.amplitude_g=1.1"]);
-    let stopped = shared::model("nominal-cubic", &[]);
-    let integrated = shared::model("nominal-cubic", &["run.recurrence=false"]);
+    let free = shared::preset("nominal-cubic", &["stops=None", "excitation.amplitude_g=1.1"]);
+    let stopped = shared::preset("nominal-cubic", &[]);
+    let integrated = shared::preset("nominal-cubic", &["run.recurrence=false"]);
     let kept = Request { events: true, ..Request::default() };
     let mut rows = Vec::new();
     for (name, model) in
@@ -98,7 +98,7 @@ fn relative(summary: &Summary, exact: &Summary) -> f64 {
 }
 
 fn map() {
-    let mut models = cells(&shared::document("nominal-cubic", &[]));
+    let mut models = cells(&shared::changed("nominal-cubic", &[]));
     if !shared::is_measured() {
         models = models.into_iter().step_by(97).collect();
     }

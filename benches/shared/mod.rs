@@ -5,15 +5,15 @@
 //! slow second slows both. (Criterion and divan measure by the wall clock and show no error beside the time.)
 
 // Each bench uses its part.
-#![allow(dead_code)]
+#![allow(dead_code, unused_imports)]
+
+#[path = "../../tests/shared/mod.rs"]
+mod scenes;
 
 use std::hint::black_box;
-use std::sync::Arc;
 
 use cpu_time::ThreadTime;
-use interwell::dynamics::Model;
-use interwell::mechanics::Mechanism;
-use interwell::scene::Document;
+pub use scenes::{changed, preset};
 
 /// `many` under `cargo bench`; 1 where the benches are only tried, as `cargo test --benches` does.
 pub fn rounds(many: usize) -> usize {
@@ -23,23 +23,6 @@ pub fn rounds(many: usize) -> usize {
 /// Whether `cargo bench` runs this.
 pub fn is_measured() -> bool {
     std::env::args().any(|argument| argument == "--bench")
-}
-
-/// A built-in scene with fields changed, each as `FIELD=VALUE`.
-pub fn document(name: &str, changes: &[&str]) -> Document {
-    let mut document = Document::load(name).unwrap();
-    for change in changes {
-        document.set(change).unwrap();
-    }
-    document.check().unwrap();
-    document
-}
-
-/// The same as run.
-pub fn model(name: &str, changes: &[&str]) -> Model {
-    let document = document(name, changes);
-    let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
-    Model::build(&document.scene, Arc::new(mechanism)).unwrap()
 }
 
 /// CPU time of `work` in s.

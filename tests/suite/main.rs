@@ -22,6 +22,8 @@ mod presets;
 mod properties;
 mod recurrence;
 mod scene;
+#[path = "../shared/mod.rs"]
+mod shared;
 mod studies;
 mod support;
 mod untrusted;

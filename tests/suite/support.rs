@@ -1,29 +1,9 @@
-//! What the numerical tests share: a scene's text made into a run, and comparisons that show their digits.
-
-use std::sync::{Arc, OnceLock};
+//! Models and runs of scenes, and comparisons that show their digits.
 
 use interwell::dynamics::{Event, EventKind, Model, Request, Run};
-use interwell::mechanics::Mechanism;
-use interwell::scene::{self, Document, Files};
+use interwell::scene::{Document, Files};
 
-/// The model of a document that must be without faults.
-fn build(document: &Document) -> Model {
-    document.check().unwrap();
-    Model::build(&document.scene, mechanism(document)).unwrap()
-}
-
-/// The mechanism of a document that must be without faults. The prototype's flexures are solved once in a
-/// test binary, by whoever comes first: tests make hundreds of models of them.
-pub fn mechanism(document: &Document) -> Arc<Mechanism> {
-    static PROTOTYPE: OnceLock<(scene::Mechanism, Arc<Mechanism>)> = OnceLock::new();
-    let solved =
-        |document: &Document| Arc::new(Mechanism::build(&document.scene.mechanism, &document.files).unwrap());
-    let (described, prototype) = PROTOTYPE.get_or_init(|| {
-        let paper = Document::load("paper").unwrap();
-        (paper.scene.mechanism.clone(), solved(&paper))
-    });
-    if document.scene.mechanism == *described { prototype.clone() } else { solved(document) }
-}
+pub use crate::shared::{build, changed, mechanism, preset};
 
 /// The model of a scene's text, `title` left out.
 pub fn model(text: &str) -> Model {
@@ -34,20 +14,6 @@ pub fn model(text: &str) -> Model {
 /// The unit double well, m = 1, F = x^3 - x, with the other fields in `rest`.
 pub fn unit_well(rest: &str) -> Model {
     model(&format!("mass_g: 1000, mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1), {rest}"))
-}
-
-/// A built-in scene with fields changed, each as `FIELD=VALUE`.
-pub fn changed(name: &str, changes: &[&str]) -> Document {
-    let mut document = Document::load(name).unwrap();
-    for change in changes {
-        document.set(change).unwrap();
-    }
-    document
-}
-
-/// The model of a built-in scene with fields changed.
-pub fn preset(name: &str, changes: &[&str]) -> Model {
-    build(&changed(name, changes))
 }
 
 /// A run with events and ledger.

@@ -9,10 +9,7 @@ use interwell::app::window::Window;
 use interwell::app::window::menu::Command;
 use interwell::study::accuracy::methods::Scheme;
 
-use crate::support::{LONG, command, session, window};
-
-const WIDE: [f32; 2] = [1280.0, 720.0];
-const PROJECTED: [f32; 2] = [853.0, 480.0];
+use crate::support::{LONG, PROJECTED, WIDE, command, session, window};
 
 /// The view over the whole window, with everything worked out.
 fn filled(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {

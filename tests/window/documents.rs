@@ -1,6 +1,6 @@
-//! Scenes come and go: unsaved changes, files, the clipboard, what is written.
+//! Scenes that come and go: unsaved changes, files and the folders that they name, dialogs.
 
-use eframe::egui::{self, Event, Key, OutputCommand};
+use eframe::egui::{self, Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
@@ -8,51 +8,36 @@ use interwell::app::window::Window;
 use interwell::app::window::leave::Next;
 use interwell::app::window::menu::Command;
 
-use crate::support::window;
+use crate::support::{WIDE, command, window};
 
-const WIDE: [f32; 2] = [1280.0, 720.0];
-
-fn opened() -> Harness<'static, Window> {
+pub fn opened() -> Harness<'static, Window> {
     window("first-look", WIDE, Settings::default())
 }
 
-fn title(harness: &Harness<'static, Window>) -> String {
+pub fn title(harness: &Harness<'static, Window>) -> String {
     harness.state().session.scene().title.clone()
-}
-
-fn ask(harness: &mut Harness<'static, Window>, command: Command) {
-    let ctx = harness.ctx.clone();
-    harness.state_mut().carry_out(&ctx, command);
-    harness.run_steps(3);
-}
-
-fn copied(harness: &Harness<'static, Window>) -> Option<String> {
-    harness.output().platform_output.commands.iter().find_map(|command| match command {
-        OutputCommand::CopyText(text) => Some(text.clone()),
-        _ => None,
-    })
 }
 
 #[test]
 fn unsaved_changes_are_asked_about() {
     let mut harness = opened();
-    ask(&mut harness, Command::OpenPreset("duffing"));
+    command(&mut harness, Command::OpenPreset("duffing"));
     let other = title(&harness);
     assert_ne!(other, "First look");
     harness.state_mut().session.edit_once(|scene| scene.mass_g *= 2.0);
-    ask(&mut harness, Command::OpenPreset("first-look"));
+    command(&mut harness, Command::OpenPreset("first-look"));
     harness.get_by_label("Save the changes?");
     harness.get_by_label("Cancel").click();
     harness.run_steps(3);
     assert_eq!(title(&harness), other);
     assert!(harness.query_by_label("Save the changes?").is_none());
-    ask(&mut harness, Command::OpenPreset("first-look"));
+    command(&mut harness, Command::OpenPreset("first-look"));
     harness.get_by_label("Don't save").click();
     harness.run_steps(3);
     assert_eq!(title(&harness), "First look");
     // Escape stays
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
-    ask(&mut harness, Command::Quit);
+    command(&mut harness, Command::Quit);
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     assert!(harness.query_by_label("Save the changes?").is_none());
@@ -67,19 +52,19 @@ fn saved_first_and_then_gone_on() {
     let ctx = harness.ctx.clone();
     harness.state_mut().save_to(&ctx, &path);
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
-    ask(&mut harness, Command::OpenPreset("duffing"));
+    command(&mut harness, Command::OpenPreset("duffing"));
     harness.get_by_label("Save").click();
     harness.run_steps(3);
     assert_ne!(title(&harness), "First look");
     assert!(std::fs::read_to_string(&path).unwrap().contains("16.0"));
     assert!(harness.state().recent[0].ends_with("own.ron"));
     let recent = harness.state().recent[0].clone();
-    ask(&mut harness, Command::OpenRecent(recent));
+    command(&mut harness, Command::OpenRecent(recent));
     assert_eq!(harness.state().session.scene().mass_g, 16.0);
     // where it cannot be saved the changes stay, and so does the scene
     std::fs::remove_dir_all(folder.path()).unwrap();
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 17.0);
-    ask(&mut harness, Command::OpenPreset("duffing"));
+    command(&mut harness, Command::OpenPreset("duffing"));
     harness.get_by_label("Save").click();
     harness.run_steps(3);
     assert!(harness.state().message().is_some_and(|text| text.contains("there is no folder")));
@@ -95,141 +80,23 @@ fn comments_go_only_when_it_has_been_said() {
     let mut harness = opened();
     harness.state_mut().open_another(path.to_str().unwrap());
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
-    ask(&mut harness, Command::Save);
+    command(&mut harness, Command::Save);
     harness.get_by_label_contains("has comments");
     harness.get_by_label("Cancel").click();
     harness.run_steps(3);
     assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
-    ask(&mut harness, Command::Save);
+    command(&mut harness, Command::Save);
     harness.get_by_label("Save").click();
     harness.run_steps(3);
     assert!(!std::fs::read_to_string(&path).unwrap().contains("//"));
     assert!(!harness.state().session.editor.is_dirty());
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 17.0);
-    ask(&mut harness, Command::Save);
+    command(&mut harness, Command::Save);
     assert!(!harness.state().session.editor.is_dirty());
 }
 
-fn harness_text() -> String {
+pub fn harness_text() -> String {
     interwell::app::session::editor::Editor::open("first-look").unwrap().text().unwrap()
-}
-
-#[test]
-fn scenes_go_through_the_clipboard() {
-    let mut harness = opened();
-    harness.event(Event::Copy);
-    harness.step();
-    let text = copied(&harness).unwrap();
-    assert_eq!(text, harness_text());
-    harness.event(Event::Paste(text.replace("First look", "Pasted")));
-    harness.run_steps(3);
-    assert_eq!(title(&harness), "Pasted");
-    harness.event(Event::Paste("(title: \"wrong\")".into()));
-    harness.run_steps(3);
-    assert!(harness.state().message().is_some_and(|text| text.contains("`mass_g` is missing")));
-    assert_eq!(title(&harness), "Pasted");
-    ask(&mut harness, Command::CopyCommand);
-    assert!(harness.state().message().is_some_and(|text| text.contains("save it first")));
-}
-
-#[test]
-fn the_command_line_says_what_is_shown() {
-    let mut harness = opened();
-    harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
-    harness.step();
-    harness.state_mut().session.restart();
-    let ctx = harness.ctx.clone();
-    harness.state_mut().carry_out(&ctx, Command::CopyCommand);
-    harness.step();
-    assert_eq!(copied(&harness).unwrap(), "interwell --headless simulate first-look --set mass_g=16");
-    assert!(harness.state().told().is_some_and(|text| text.starts_with("Copied: ")));
-}
-
-/// The words of a copied command as its arguments.
-fn arguments(line: &str) -> Vec<String> {
-    let words = line.strip_prefix("interwell ").unwrap().split(' ');
-    words.map(|word| word.trim_matches('\'').to_owned()).collect()
-}
-
-#[test]
-fn a_motion_that_was_changed_on_its_way_is_reproduced() {
-    for preset in ["first-look", "uneven-stops", "bouncing-ball"] {
-        let mut harness = window(preset, WIDE, Settings::default());
-        harness.state_mut().session.player.speed = 1.0;
-        harness.run_steps(50);
-        harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
-        harness.run_steps(30);
-        let ctx = harness.ctx.clone();
-        harness.state_mut().carry_out(&ctx, Command::CopyCommand);
-        harness.step();
-        let line = copied(&harness).unwrap();
-        assert!(line.contains("start"), "{line}");
-        assert!(harness.state().told().is_some_and(|text| text.ends_with("present state on")));
-        // the frame after the copy has gone on already
-        let session = &mut harness.state_mut().session;
-        let here = interwell::app::export::command_line(session).unwrap().0;
-        let output =
-            assert_cmd::Command::cargo_bin("interwell").unwrap().args(arguments(&here)).output().unwrap();
-        assert!(output.status.success(), "{here}: {}", String::from_utf8_lossy(&output.stderr));
-        let text = String::from_utf8(output.stdout).unwrap();
-        let mut lines = text.lines();
-        let x = lines.next().unwrap().split(',').position(|name| name == "x_m").unwrap();
-        let rows: Vec<Vec<&str>> = lines.take(120).map(|line| line.split(',').collect()).collect();
-        let begin = session.player.watch().time();
-        let number = |text: &str| text.parse::<f64>().unwrap();
-        for row in &rows {
-            session.player.seek(f64::INFINITY);
-            session.player.go_to(interwell::app::session::player::Goal::Time(begin + number(row[0])));
-            while session.player.goal().is_some() {
-                session.player.tick(0.0);
-            }
-            let (own, theirs) = (session.player.state().x, number(row[x]));
-            assert!((own - theirs).abs() < 1e-7, "{here}: {own} {theirs} at {}", row[0]);
-        }
-    }
-}
-
-#[test]
-fn a_motion_that_no_scene_continues_is_said_to_be_another() {
-    let mut harness = window("paper-ramp", WIDE, Settings::default());
-    harness.run_steps(5);
-    harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
-    harness.run_steps(5);
-    ask(&mut harness, Command::CopyCommand);
-    assert!(harness.state().told().is_some_and(|text| text.ends_with("and is another")));
-}
-
-#[test]
-fn the_motion_is_written_with_the_columns_of_the_command_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("motion.csv");
-    let mut harness = opened();
-    harness.state_mut().write_motion(&path);
-    let text = std::fs::read_to_string(&path).unwrap();
-    let mut lines = text.lines();
-    assert_eq!(lines.next(), Some("t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase"));
-    assert!(lines.next().is_some_and(|first| first.contains(",0.00718") && first.ends_with(",free")));
-    harness.state_mut().write_motion(&folder.path().join("no/folder.csv"));
-    assert!(harness.state().message().is_some_and(|text| text.contains("there is no folder")));
-}
-
-#[test]
-fn events_and_force_curve_are_those_of_the_command_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("out.csv");
-    let mut harness = opened();
-    harness.state_mut().session.switch_stops(true);
-    harness.run_steps(30);
-    harness.state_mut().write_events(&path);
-    let text = std::fs::read_to_string(&path).unwrap();
-    assert!(text.starts_with("t_s,kind,side,v_in_m_per_s,v_out_m_per_s\n"), "{text}");
-    assert_eq!(text.lines().count(), 1 + harness.state().session.player.watch().events().len());
-    assert!(text.lines().count() > 1);
-    harness.state_mut().write_curve(&path);
-    let command =
-        ["--headless", "curve", "first-look", "--set", "stops=Rigid(travel_limit_mm:1.5,restitution:0.36)"];
-    let output = assert_cmd::Command::cargo_bin("interwell").unwrap().args(command).output().unwrap();
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), String::from_utf8(output.stdout).unwrap());
 }
 
 #[test]
@@ -269,7 +136,7 @@ fn no_key_acts_behind_a_dialog_or_in_a_field() {
     };
     // unsaved changes: the focus is on a button, which Space would press
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
-    ask(&mut harness, Command::Quit);
+    command(&mut harness, Command::Quit);
     harness.get_by_label("Cancel").focus();
     harness.run_steps(2);
     for key in [Key::P, Key::D, Key::C, Key::Num1, Key::Period, Key::Home, Key::PageUp] {
@@ -360,30 +227,6 @@ fn takes_its_files_along(preset: &str) {
 }
 
 #[test]
-fn a_pasted_scene_has_no_command_for_its_map() {
-    let mut harness = opened();
-    harness.event(Event::Paste(harness_text().replace("First look", "Pasted")));
-    harness.run_steps(3);
-    ask(&mut harness, Command::Arrange(interwell::scene::Layout::Map));
-    ask(&mut harness, Command::CopyMapCommand);
-    assert!(harness.state().message().is_some_and(|text| text.contains("save it first")));
-    assert_eq!(copied(&harness), None);
-}
-
-#[test]
-fn the_whole_run_is_written_as_the_command_line_writes_it() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("run.csv");
-    let mut harness = opened();
-    harness.state_mut().write_run(path.clone());
-    harness.state_mut().wait_for_run(crate::support::LONG);
-    assert_eq!(harness.state().told(), Some("Saved run.csv"));
-    let command = ["--headless", "simulate", "first-look"];
-    let output = assert_cmd::Command::cargo_bin("interwell").unwrap().args(command).output().unwrap();
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), String::from_utf8(output.stdout).unwrap());
-}
-
-#[test]
 fn a_file_may_be_called_like_a_built_in_scene() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("built-in paper.ron");
@@ -402,7 +245,7 @@ fn enter_closes_a_message() {
     let mut harness = opened();
     harness.get_by_role_and_label(egui::accesskit::Role::Slider, "amplitude").focus();
     harness.run_steps(2);
-    ask(&mut harness, Command::About);
+    command(&mut harness, Command::About);
     assert!(harness.state().message().is_some());
     harness.key_press(Key::Enter);
     harness.run_steps(3);

@@ -6,9 +6,7 @@ use interwell::app::ui::settings::Settings;
 use interwell::dynamics::EventKind;
 use interwell::scene::Stops;
 
-use crate::support::{LONG, says, window};
-
-const WIDE: [f32; 2] = [1280.0, 720.0];
+use crate::support::{LONG, WIDE, says, window};
 
 #[test]
 fn it_opens_and_plays() {

@@ -6,9 +6,7 @@ use interwell::app::ui::settings::Settings;
 use interwell::mechanics::FLEXURE_TOLERANCE;
 use interwell::scene::Mechanism;
 
-use crate::support::{session, window};
-
-const WIDE: [f32; 2] = [1280.0, 720.0];
+use crate::support::{WIDE, session, window};
 
 fn preload(mechanism: &Mechanism) -> f64 {
     match mechanism {

@@ -10,10 +10,7 @@ use interwell::app::window::menu::Command;
 use interwell::dynamics::EventKind;
 use interwell::scene::{PRESETS, Stops};
 
-use crate::support::{command, window};
-
-const WIDE: [f32; 2] = [1280.0, 720.0];
-const PROJECTED: [f32; 2] = [853.0, 480.0];
+use crate::support::{PROJECTED, WIDE, command, window};
 
 /// Presses a key and lets some frames pass.
 fn press(harness: &mut Harness<'_, Window>, key: Key) {

@@ -6,9 +6,7 @@ use interwell::app::ui::settings::Settings;
 use interwell::dynamics::Regime;
 use interwell::scene::{Excitation, Stops};
 
-use crate::support::{LONG, session, window};
-
-const WIDE: [f32; 2] = [1280.0, 720.0];
+use crate::support::{LONG, WIDE, session, window};
 
 /// What is said of the ways to cross, once it is found.
 fn ways(preset: &str, changes: &[&str]) -> String {

@@ -5,9 +5,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use interwell::app::ui::settings::Settings;
 use interwell::scene::Stops;
 
-use crate::support::{says, window};
-
-const WIDE: [f32; 2] = [1280.0, 720.0];
+use crate::support::{WIDE, says, window};
 
 #[test]
 fn the_mass_is_held_moved_and_let_go() {

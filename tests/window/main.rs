@@ -15,6 +15,9 @@ mod quiet;
 mod random;
 mod screen;
 mod sentences;
+#[path = "../shared/mod.rs"]
+mod shared;
 mod support;
 mod typing;
 mod views;
+mod written;

@@ -7,20 +7,12 @@ use interwell::app::ui::settings::Settings;
 use interwell::app::window::Window;
 use interwell::scene::{Layout, Start, Stops, SweepAxis};
 
-use crate::support::{LONG, session, window};
-
-const WIDE: [f32; 2] = [1280.0, 720.0];
+use crate::shared::axis;
+use crate::support::{LONG, WIDE, session, window};
 
 /// A small map, so that a test takes no longer than it must.
 fn axes(steps: (f64, f64)) -> [SweepAxis; 2] {
-    let axis = |field: &str, from, to, step| SweepAxis {
-        field: field.to_owned(),
-        from,
-        to,
-        step,
-        values: Vec::new(),
-    };
-    [axis("stops.travel_limit_mm", 1.0, 3.0, steps.0), axis("excitation.amplitude_g", 0.5, 1.5, steps.1)]
+    [axis("stops.travel_limit_mm", (1.0, 3.0, steps.0)), axis("excitation.amplitude_g", (0.5, 1.5, steps.1))]
 }
 
 fn open(preset: &str, size: [f32; 2], steps: (f64, f64)) -> Harness<'static, Window> {

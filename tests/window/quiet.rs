@@ -11,10 +11,8 @@ use interwell::scene::{Layout, PRESETS, SweepAxis};
 use interwell::study::Watch;
 
 use crate::screen::Screen;
-use crate::support::LONG;
-
-const WIDE: [f32; 2] = [1280.0, 720.0];
-const PROJECTED: [f32; 2] = [853.0, 480.0];
+use crate::shared::axis;
+use crate::support::{LONG, PROJECTED, WIDE};
 
 /// Frames in which what moves by itself comes to its end: tooltips, rings, axes that glide.
 const GLIDING: usize = 60;
@@ -24,14 +22,7 @@ const CALLED: Duration = Duration::from_millis(100);
 
 /// A map for which the shaking is no axis.
 fn axes(step: f64) -> [SweepAxis; 2] {
-    let axis = |field: &str, from, to, step| SweepAxis {
-        field: field.to_owned(),
-        from,
-        to,
-        step,
-        values: Vec::new(),
-    };
-    [axis("stops.travel_limit_mm", 1.0, 3.0, step), axis("excitation.frequency_hz", 2.0, 4.0, step)]
+    [axis("stops.travel_limit_mm", (1.0, 3.0, step)), axis("excitation.frequency_hz", (2.0, 4.0, step))]
 }
 
 /// Waits for what runs in the background, and for what glides; then no frame is asked for.

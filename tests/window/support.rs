@@ -11,7 +11,12 @@ use interwell::app::session::editor::Editor;
 use interwell::app::ui::settings::Settings;
 use interwell::app::window::menu::Command;
 use interwell::app::window::{Window, prepare};
-use interwell::scene::Document;
+
+use crate::shared::changed;
+
+/// Sizes of a window: of a small screen, and of one that is shown by a projector.
+pub const WIDE: [f32; 2] = [1280.0, 720.0];
+pub const PROJECTED: [f32; 2] = [853.0, 480.0];
 
 /// Long enough for any answer on a busy machine.
 pub const LONG: Duration = Duration::from_secs(60);
@@ -39,11 +44,7 @@ pub fn command(harness: &mut Harness<'_, Window>, command: Command) {
 
 /// A session on a built-in scene with fields changed, its answers there.
 pub fn session(preset: &str, changes: &[&str]) -> Session {
-    let mut document = Document::load(preset).unwrap();
-    for change in changes {
-        document.set(change).unwrap();
-    }
-    let mut session = Session::new(Editor::new(document), Arc::new(|| ())).unwrap();
+    let mut session = Session::new(Editor::new(changed(preset, changes)), Arc::new(|| ())).unwrap();
     session.wait(LONG);
     session
 }

@@ -10,10 +10,7 @@ use interwell::app::window::layouts::Room;
 use interwell::app::window::menu::Command;
 use interwell::scene::{Layout, PRESETS, Stops};
 
-use crate::support::{command, session, window};
-
-const WIDE: [f32; 2] = [1280.0, 720.0];
-const PROJECTED: [f32; 2] = [853.0, 480.0];
+use crate::support::{PROJECTED, WIDE, command, session, window};
 
 fn study(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {
     let mut harness = window(preset, size, Settings::default());
