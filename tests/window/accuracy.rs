@@ -106,17 +106,17 @@ fn covered_it_says_nothing() {
     let mut harness = filled("paper", WIDE);
     harness.key_press(Key::C);
     harness.run_steps(3);
-    assert!(!is_there(&harness, "of processor time") && !is_there(&harness, "Error about"));
+    assert!(!is_there(&harness, "of processor time") && !is_there(&harness, "Path error about"));
 }
 
 #[test]
 fn the_status_line_says_the_error_or_how_long_to_trust() {
     for (preset, words) in [
-        ("paper", "Error about "),
-        ("random-shaking", "Error about "),
-        ("duffing-chaos", "Chaotic: trust it up to about "),
+        ("paper", "Path error about "),
+        ("random-shaking", "Path error about "),
+        ("duffing-chaos", "Chaotic: path reliable up to "),
         // the mass rattles at the wall of taut flexures without a rhythm
-        ("first-look", "Chaotic: trust it up to about "),
+        ("first-look", "Chaotic: path reliable up to "),
     ] {
         for size in [WIDE, PROJECTED] {
             let mut harness = window(preset, size, Settings::default());
@@ -133,7 +133,7 @@ fn nothing_is_said_of_what_is_not_known() {
     let mut session = session("paper", &[]);
     let (short, long) = session.trust().unwrap();
     assert!(
-        short.starts_with("Error about") && long.contains("1e-11") && long.contains("10 s"),
+        short.starts_with("Path error about") && long.contains("1e-11") && long.contains("10 s"),
         "{short} {long}"
     );
     // in the midst of a gesture

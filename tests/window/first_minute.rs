@@ -152,7 +152,7 @@ fn a_small_window_shows_it_without_scrolling() {
     for label in ["Well", "Mechanism", "Displacement", "pause", "More"] {
         assert!(inside(harness.get_by_label(label).rect()), "{label}");
     }
-    for name in ["amplitude", "at ±"] {
+    for name in ["amplitude", "travel limit ±"] {
         assert!(inside(harness.get_by_role_and_label(Role::Slider, name).rect()), "{name}");
     }
     harness.get_by_label("More").click();

@@ -51,6 +51,11 @@ fn the_hint_leads_on_and_ends() {
             *amplitude_g = 1.4;
         }
     });
+    harness.run_steps(3);
+    harness.state_mut().session.wait(LONG);
+    harness.run_steps(3);
+    // it is known before it is seen
+    harness.get_by_label("Now it will cross.");
     harness.run_steps(200);
     harness.get_by_label("Harder shaking made it cross.");
     harness.get_by_label_contains("Now go back to 0.900 g and switch the stops on");

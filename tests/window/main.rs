@@ -10,6 +10,7 @@ mod guidance;
 mod keyboard;
 mod map;
 mod memory;
+mod newcomer;
 mod past;
 mod quiet;
 mod random;

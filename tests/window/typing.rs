@@ -88,13 +88,14 @@ fn what_is_no_number_is_refused_in_words() {
     let before = harness.state().session.scene().clone();
     for (name, text, words) in [
         ("amplitude", "abc", "“abc” is no number: amplitude stays 1 g"),
-        ("amplitude", "1e9", "amplitude may be -10000 to 10000 g"),
-        ("at ±", "0", "at ± may be 0.001 to 1000000 mm"),
-        ("at ±", "-2", "at ± may be 0.001 to 1000000 mm"),
+        ("amplitude", "1e9", "amplitude may be 0 to 10000 g"),
+        ("amplitude", "-3", "-3 g was not taken: amplitude may be 0 to 10000 g"),
+        ("travel limit ±", "0", "travel limit ± may be 0.001 to 1000000 mm"),
+        ("travel limit ±", "-2", "travel limit ± may be 0.001 to 1000000 mm"),
         ("frequency", "0", "frequency may be 0.01 to 100000 Hz"),
         ("restitution", "1.5", "restitution may be 0 to 1"),
         ("run length", "1e9", "run length may be 0.01 to 1000000 s"),
-        ("mass", "1,5", "It takes a point"),
+        ("mass", "1,500", "Write it with a point"),
     ] {
         type_into(&mut harness, name, text);
         assert_eq!(*harness.state().session.scene(), before, "{name}: {text}");
@@ -102,8 +103,11 @@ fn what_is_no_number_is_refused_in_words() {
     }
     // what can be taken ends the words
     type_into(&mut harness, "amplitude", "0.8");
-    assert!(harness.query_by_label_contains("It takes a point").is_none());
+    assert!(harness.query_by_label_contains("Write it with a point").is_none());
     assert_eq!(harness.state().session.amplitude_g(), Some(0.8));
+    // a comma stands for a point where it can stand for nothing else
+    type_into(&mut harness, "amplitude", "1,2");
+    assert_eq!(harness.state().session.amplitude_g(), Some(1.2));
 }
 
 #[test]
@@ -117,13 +121,13 @@ fn what_two_fields_say_together_is_said_with_their_names() {
         scene.stops = Stops::Rigid { travel_limit_mm: 0.0, restitution: 0.5 };
     });
     let fault = harness.state().session.sentence().text;
-    assert!(fault.starts_with("This scene cannot run: stops at ± = 0 mm: must be"), "{fault}");
+    assert!(fault.starts_with("This scene cannot run: travel limit ± = 0 mm: must be"), "{fault}");
 }
 
 #[test]
 fn the_stops_that_are_off_come_when_they_are_moved() {
     let mut harness = window("first-look", [1280.0, 720.0], Settings::default());
-    let slider = harness.get_by_role_and_label(Role::Slider, "at ±");
+    let slider = harness.get_by_role_and_label(Role::Slider, "travel limit ±");
     slider.set_value_accesskit(2.25);
     harness.run_steps(3);
     let stops = |harness: &Harness<'static, Window>| harness.state().session.scene().stops;
@@ -132,7 +136,7 @@ fn the_stops_that_are_off_come_when_they_are_moved() {
     harness.run_steps(3);
     assert_eq!(stops(&harness), Stops::None);
     let shown = |harness: &Harness<'static, Window>| {
-        harness.get_by_role_and_label(Role::Slider, "at ±").accesskit_node().numeric_value()
+        harness.get_by_role_and_label(Role::Slider, "travel limit ±").accesskit_node().numeric_value()
     };
     assert_eq!(shown(&harness), Some(2.25));
     // the start again, the stops that would come with it
@@ -177,7 +181,7 @@ fn presses_of_a_key_are_one_step_and_one_before() {
     harness.run_steps(2);
     assert_eq!(before(&harness), Some(0.95));
     // another field is another gesture at once
-    harness.get_by_role_and_label(Role::Slider, "at ±").focus();
+    harness.get_by_role_and_label(Role::Slider, "travel limit ±").focus();
     harness.run_steps(2);
     harness.key_press(Key::ArrowRight);
     harness.run_steps(2);

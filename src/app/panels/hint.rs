@@ -172,7 +172,7 @@ fn answer(session: &Session) -> String {
         None => ", and near the well less again.".to_owned(),
     };
     if session.crosses() == Some(false) {
-        text += " Here the push is too weak to carry it over.";
+        text += " Here this push does not carry it over.";
     }
     text
 }

@@ -25,6 +25,11 @@ const MECHANISM_SHARE: f32 = 0.4;
 const STUDY_COLUMN: f32 = 0.34;
 const COMPACT_SHARE: f32 = 0.5;
 
+/// Room in points beside a title, for the button beside the titles, and the least size of a title.
+const TITLE_MARGIN: f32 = 6.0;
+const BUTTON: f32 = 34.0;
+const LEAST_TITLE: f32 = 9.5;
+
 /// How much room there is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Room {
@@ -161,9 +166,27 @@ impl Tiling {
         Some(place)
     }
 
+    /// The size of the titles with which the tabs that share a place stand beside each other whole.
+    fn title_size(&self, ui: &Ui) -> f32 {
+        let width = |id: &TileId| {
+            let view = self.tree.tiles.get_pane(id).filter(|_| self.tree.is_visible(*id))?;
+            let font = egui::FontId::proportional(BODY);
+            Some(ui.painter().layout_no_wrap(view.name().to_owned(), font, egui::Color32::PLACEHOLDER).size().x)
+        };
+        let fitting = |(id, tile): (&TileId, &Tile<View>)| {
+            let Tile::Container(Container::Tabs(tabs)) = tile else { return None };
+            let widths: Vec<f32> = tabs.children.iter().filter_map(width).collect();
+            let room = self.tree.tiles.rect(*id)?.width() - BUTTON - 2.0 * TITLE_MARGIN * widths.len() as f32;
+            Some(BODY * room / widths.iter().sum::<f32>().max(1.0))
+        };
+        let least = self.tree.tiles.iter().filter_map(fitting).fold(BODY, f32::min);
+        least.max(LEAST_TITLE)
+    }
+
     /// Draws the views. Whether one changed something; `fill` is set where a view asks for the whole window.
     pub fn ui(&mut self, ui: &mut Ui, context: &mut ViewContext<'_>, fill: &mut Option<View>) -> bool {
-        let mut behavior = Behavior { context, changed: false, fill };
+        let title = self.title_size(ui);
+        let mut behavior = Behavior { context, changed: false, fill, title };
         self.tree.ui(&mut behavior, ui);
         behavior.changed
     }
@@ -270,11 +293,17 @@ struct Behavior<'a, 'b> {
     context: &'a mut ViewContext<'b>,
     changed: bool,
     fill: &'a mut Option<View>,
+    /// Size of the titles.
+    title: f32,
 }
 
 impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
     fn tab_title_for_pane(&mut self, view: &View) -> WidgetText {
-        egui::RichText::new(view.name()).size(BODY).into()
+        egui::RichText::new(view.name()).size(self.title).into()
+    }
+
+    fn tab_title_spacing(&self, _: &egui::Visuals) -> f32 {
+        TITLE_MARGIN
     }
 
     fn pane_ui(&mut self, ui: &mut Ui, _: TileId, view: &mut View) -> UiResponse {

@@ -259,13 +259,14 @@ fn motion_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, session: &Session) {
 }
 
 fn view_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling, settings: Settings) {
-    item(ui, asked, "Arrange as Look", Some(command(Key::Num1)), true, Command::Arrange(Layout::Look));
-    item(ui, asked, "Arrange as Study", Some(command(Key::Num2)), true, Command::Arrange(Layout::Study));
-    item(ui, asked, "Arrange as Map", Some(command(Key::Num3)), true, Command::Arrange(Layout::Map));
-    item(ui, asked, "Your own arrangement", Some(command(Key::Num4)), true, Command::ArrangeOwn);
-    let keep = tiling.room() != Room::Compact;
-    item(ui, asked, "Keep this as your own", None, keep, Command::KeepOwn);
-    ui.separator();
+    ui.menu_button("Arrangement", |ui| {
+        item(ui, asked, "Look", Some(command(Key::Num1)), true, Command::Arrange(Layout::Look));
+        item(ui, asked, "Study", Some(command(Key::Num2)), true, Command::Arrange(Layout::Study));
+        item(ui, asked, "Map", Some(command(Key::Num3)), true, Command::Arrange(Layout::Map));
+        item(ui, asked, "Your own", Some(command(Key::Num4)), true, Command::ArrangeOwn);
+        let keep = tiling.room() != Room::Compact;
+        item(ui, asked, "Keep this as your own", None, keep, Command::KeepOwn);
+    });
     let mut wanted = settings;
     ui.checkbox(&mut wanted.projector, "Projector").on_hover_text("Light, larger, thicker lines (P)");
     ui.checkbox(&mut wanted.dark, "Dark").on_hover_text("Light letters on a dark ground (D)");
