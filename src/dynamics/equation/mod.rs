@@ -1,8 +1,8 @@
-//! What does the integrator run on? The model in kernel units: time in a power of two of a second, mass 1.
+//! Equation of motion in kernel units: time in a power of two of a second, mass 1.
 //!
-//! Each piece of the force curve becomes an *mode*: the interval in which the mass moves under one
-//! polynomial, and what stands at its two ends (a stop, a break behind which the next piece begins, the end
-//! of the known curve). The mode is the mode of the motion.
+//! Each piece of the force curve becomes a *mode*: the interval in which the mass moves under one polynomial,
+//! and what stands at its two ends (a stop, a break behind which the next piece begins, the end of the known
+//! curve).
 
 pub(crate) mod force;
 
@@ -104,9 +104,9 @@ impl<T: Scalar> Mode<T> {
 pub(crate) struct Stop<T> {
     pub restitution: T,
     /// Outward acceleration by the mechanism alone at the stop: positive presses.
-    pub press: T,
-    /// Rounding error of `press`.
-    pub press_rounding: T,
+    pub acceleration: T,
+    /// Its rounding error.
+    pub acceleration_rounding: T,
     /// Slope of force over mass at the stop.
     pub stiffness: T,
 }
@@ -125,8 +125,8 @@ pub(crate) struct Equation<T> {
     pub unit: f64,
 }
 
-/// The modes with the surface of a compliant stop at `x` between two of them; a curve that ends there or before has
-/// no stop.
+/// The modes with the surface of a compliant stop at `x` between two of them; a curve that ends there or
+/// before has no stop.
 fn cut<T: Scalar>(modes: Vec<Mode<T>>, x: T) -> Vec<Mode<T>> {
     let mut parts = Vec::with_capacity(modes.len() + 1);
     let last = modes.len() - 1;
@@ -193,8 +193,8 @@ impl<T: Scalar> Equation<T> {
                 let (f, slope, size) = mode.force.value(T::of(s.x) - mode.origin);
                 Stop {
                     restitution: T::of(s.restitution),
-                    press: -(sign * f),
-                    press_rounding: size,
+                    acceleration: -(sign * f),
+                    acceleration_rounding: size,
                     stiffness: slope,
                 }
             })
@@ -214,8 +214,8 @@ impl<T: Scalar> Equation<T> {
         self.modes.iter().map(|mode| mode.force.products()).max().unwrap_or(0)
     }
 
-    /// The mode of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant stop the one
-    /// outside it.
+    /// The mode of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant
+    /// stop the one outside it.
     pub fn mode_at(&self, x: T, piece: usize) -> usize {
         if self.compliant.is_none() {
             return piece;

@@ -1,4 +1,5 @@
-//! Steps: how long one is, what it runs into, and how it is read, in free flight and in contact with a compliant stop.
+//! Steps in free flight and in contact with a compliant stop: their length, their first event, and how they
+//! are read.
 
 mod choose;
 pub(crate) mod chord;

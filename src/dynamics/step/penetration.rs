@@ -1,21 +1,22 @@
-//! How does the mass move while it presses a compliant stop in?
+//! Series of the motion in contact with a compliant stop.
 //!
-//! Depth d in the stop and inward speed w obey d' = w and w' = A - k d^1.5 (1 + a w), A what everything but the stop
-//! does. d^1.5 has no power series in time at touch-down and at separation, so a series in time loses its order there.
-//! With the root u of the depth, d = u^2, and a parameter s with dt = u ds, the same motion is
+//! Depth d in the stop and inward speed w obey d' = w and w' = A - k d^1.5 (1 + a w), A what everything but
+//! the stop does. d^1.5 has no power series in time at touch-down and at separation, so a series in time
+//! loses its order there. With the root u of the depth, d = u^2, and a parameter s with dt = u ds, the same
+//! motion is
 //!
 //! ```text
 //! du/ds = w/2,    dw/ds = u (A - k u^3 (1 + a w)),    dt/ds = u,
 //! ```
 //!
-//! polynomial throughout. u rises from 0 with the finite slope w/2 and, at the separation, passes through 0 as any smooth
-//! function does: near touch-down s is 2 sqrt(t/w), the root of the time since touch, and the whole contact is as smooth
-//! as free flight, at any order and with no grading of steps. (The change of time is Sundman's of 1912, that of the
-//! coordinate Levi-Civita's of 1920, made for collisions of bodies.) Its one singular place is a touch without speed,
-//! u = w = 0, where s never begins: see `NUDGE` in `compliant`.
+//! polynomial throughout. u rises from 0 with the finite slope w/2 and, at the separation, passes through 0
+//! as any smooth function does: near touch-down s is 2 sqrt(t/w), the root of the time since touch, and the
+//! whole contact is as smooth as free flight, at any order and with no grading of steps. (The change of time
+//! is Sundman's of 1912, that of the coordinate Levi-Civita's of 1920, made for collisions of bodies.) Its
+//! one singular place is a touch without speed, u = w = 0, where s never begins: see `NUDGE` in `compliant`.
 //!
-//! The base's acceleration is known as a series in time and is composed with t(s). A contact lasts a fraction of a
-//! millisecond, so that a few terms of a slow drive are all there is of it; a fast one takes them all.
+//! The base's acceleration is known as a series in time and is composed with t(s). A contact lasts a fraction
+//! of a millisecond, so that a few terms of a slow drive are all there is of it; a fast one takes them all.
 
 use super::path::Path;
 use crate::dynamics::drive::Drive;
@@ -36,7 +37,7 @@ pub(crate) struct Penetration<T> {
     pub speed: [T; ROOM],
     /// Time since the step's start.
     time: [T; ROOM],
-    /// Force of the stop over stiffness: u^3 (1 + a w); 0 where the stop clipped behind.
+    /// Force of the stop over stiffness: u^3 (1 + a w); 0 where the contact is clipped.
     push: [T; ROOM],
     depth: [T; ROOM],
     cube: [T; ROOM],
@@ -55,7 +56,7 @@ pub(crate) struct Penetration<T> {
     sign: T,
     /// Displacement of the untouched stop from the piece's origin.
     surface: T,
-    /// The stop does not push: it would have to pull.
+    /// The contact is clipped: the stop would have to pull.
     clipped: bool,
 }
 
@@ -117,8 +118,8 @@ impl<T: Scalar> Penetration<T> {
         }
     }
 
-    /// Expands the motion from `start` to `order` in s, with `levels` terms of the base's acceleration over time (at
-    /// least one, and no more than are known).
+    /// Expands the motion from `start` to `order` in s, with `levels` terms of the base's acceleration over
+    /// time (at least one, and no more than are known).
     pub fn expand(
         &mut self,
         start: &Start<T>,
@@ -158,7 +159,8 @@ impl<T: Scalar> Penetration<T> {
         self.inner.known = order + 1;
     }
 
-    /// Coefficient `k` of the base's acceleration over s: a nested form in the time, the innermost level first.
+    /// Coefficient `k` of the base's acceleration over s: a nested form in the time, the innermost level
+    /// first.
     fn compose(&mut self, k: usize) {
         let a = &self.inner.a;
         let constant = |level: usize| if k == 0 { a[level] } else { T::zero() };
@@ -178,8 +180,8 @@ impl<T: Scalar> Penetration<T> {
         self.base[k] = self.nested[0][k];
     }
 
-    /// The longest step in s whose first neglected term in the speed stays below `tolerance` times the scene's speed;
-    /// from several of the last coefficients, as in free flight.
+    /// The longest step in s whose first neglected term in the speed stays below `tolerance` times the
+    /// scene's speed; from several of the last coefficients, as in free flight.
     pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
         let first = self.order.saturating_sub(3).max(1);
         let mut radius = f64::INFINITY;
@@ -244,9 +246,9 @@ impl<T: Scalar> Penetration<T> {
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { Some(T::zero()) }
     }
 
-    /// The share of a step of `h` at which the stop begins or ceases to trail, where the loss would make it pull:
-    /// 1 + a w changes its sign. `passed`: it is 0 by definition at the step's start.
-    pub fn turn(&self, h: T, passed: bool) -> Option<T> {
+    /// The share of a step of `h` at which the contact becomes clipped or ceases to be: 1 + a w changes its
+    /// sign. `passed`: it is 0 by definition at the step's start.
+    pub fn clip_change(&self, h: T, passed: bool) -> Option<T> {
         if !(self.stop.loss > T::zero()) {
             return None;
         }
@@ -260,7 +262,8 @@ impl<T: Scalar> Penetration<T> {
         }
         g[0] += if self.clipped { T::of(-1.0) } else { T::of(1.0) };
         let from = usize::from(passed);
-        // On the wrong side it is there by rounding: it clip_changed where it only touched, and goes on so.
+        // On the wrong side it is there by rounding: the change was a mere touch, and the contact goes on as
+        // it was.
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { None }
     }
 
@@ -285,7 +288,8 @@ impl<T: Scalar> Penetration<T> {
         Residual { error: slope - u * acceleration, size: size + u.abs() * rounding / T::of(T::EPSILON) }
     }
 
-    /// Energy over mass that the stop keeps over (from, to): by its loss, or, where it clipped, what it had stored.
+    /// Energy over mass that the stop keeps over (from, to): by its loss, or, where it is clipped, what it
+    /// had stored.
     pub fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
         if self.clipped {
             return self.stored(self.root_at(from)) - self.stored(self.root_at(to));
@@ -306,7 +310,8 @@ impl<T: Scalar> Penetration<T> {
         self.stop.stored(u)
     }
 
-    /// The largest force over mass within a step of `h`, up to its share `until`, where it may exceed `known`.
+    /// The largest force over mass within a step of `h`, up to its share `until`, where it may exceed
+    /// `known`.
     pub fn peak(&self, h: T, until: T, known: T) -> T {
         let scaled = self.powers(&self.push, h);
         let n = self.order + 1;
@@ -320,7 +325,8 @@ impl<T: Scalar> Penetration<T> {
         for k in 1..n {
             slope[k - 1] = scaled[k] * T::of(k as f64);
         }
-        // The force of a touch-down rises like the cube of the parameter; its first slope that is not 0 decides.
+        // The force of a touch-down rises like the cube of the parameter; its first slope that is not 0
+        // decides.
         let first = slope[..n - 1].iter().position(|c| *c != T::zero());
         if let Some(first) = first {
             let slope = &mut slope[first..n - 1];
@@ -363,8 +369,8 @@ impl<T: Scalar> Path<T> for Penetration<T> {
     fn time(&self, parameter: T) -> T {
         self.at(&self.time, parameter)
     }
-    /// Time grows along a step of contact, but ceases to at its ends, where it can be inverted to half the digits; the
-    /// mass moves as little there.
+    /// Time grows along a step of contact, but ceases to at its ends, where it can be inverted to half the
+    /// digits; the mass moves as little there.
     fn parameter(&self, time: T, length: T) -> T {
         if !(time > T::zero()) {
             return T::zero();
