@@ -37,9 +37,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             self.state.depth = Depth { root: depth.sqrt(), clip_changed: false };
             self.record.touch(&self.state.at, end.side(), self.state.v, false);
             if self.state.contact == Contact::Free {
-                let loss = self.stepper.equation.compliant.map_or(T::zero(), |stop| stop.loss);
-                let pulls = T::of(1.0) + loss * (sign * self.state.v) < T::zero();
-                self.state.contact = if pulls { Contact::Clipped(end) } else { Contact::Compressing(end) };
+                let stop = self.stepper.equation.compliant;
+                let clipped = stop.is_some_and(|stop| stop.is_clipped(sign * self.state.v));
+                self.state.contact = if clipped { Contact::Clipped(end) } else { Contact::Compressing(end) };
             }
             return true;
         }
@@ -104,7 +104,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         match reached {
             Reached::Time => {}
             Reached::Surface => (root, x) = (T::zero(), surface),
-            Reached::ClipChange => speed = T::of(-1.0) / self.stepper.equation.compliant?.loss,
+            Reached::ClipChange => speed = self.stepper.equation.compliant?.clipping_speed(),
             Reached::End(at) => {
                 x = mode.end(at).0;
                 root = (sign * (x - surface)).sqrt();

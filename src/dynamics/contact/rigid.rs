@@ -15,8 +15,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// The mass reaches the stop of `end` with outward speed `speed` > 0.
     pub fn strike(&mut self, end: End, speed: T) {
         let sign = end.sign::<T>();
-        let restitution = self.stepper.equation.stop(end).map_or(T::of(1.0), |s| s.restitution);
-        let rebound = restitution * speed;
+        let rebound = self.stepper.equation.stop(end).map_or(speed, |stop| stop.rebound(speed));
         self.stepper.work.add_impacts(1);
         // 0 - keeps a rebound of 0 from being -0
         let (v_in, v_out) = (sign * speed, T::zero() - sign * rebound);

@@ -4,6 +4,7 @@
 mod choose;
 pub(crate) mod chord;
 pub(crate) mod contact;
+mod contact_path;
 mod exit;
 pub(crate) mod path;
 pub(crate) mod penetration;
