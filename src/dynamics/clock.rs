@@ -1,4 +1,4 @@
-//! What time is it, exactly, after a billion periods?
+//! Clock: time as whole cycles and a phase, exact after any number of cycles.
 //!
 //! Time is a whole number of cycles and a phase within the cycle. The cycle is the forcing period (of the
 //! fastest tone, where there are several); without a drive it is a power of two near the scene's time

@@ -1,4 +1,4 @@
-//! One motion: its state, what makes its steps, and what records them.
+//! Motion: the state, the stepper that advances it and the recorder that watches it.
 //!
 //! The run is a chain of free flights in one mode each and of rests on a stop. A step of a flight is a
 //! Taylor series (`series`); its polynomial is also the dense output, and contacts, breaks and crossings are
@@ -9,13 +9,13 @@
 //! Three habits keep events sound:
 //!
 //! - After a located event the state is put exactly on the surface, and the next step knows it ([`Touch`]):
-//!   its gap polynomial starts with coefficients that are 0 by definition (one after a rebound or a break, two
-//!   after a plastic impact, three after a release), so it is divided by that power of time and the same
-//!   contact cannot be found again, however short the flight. Since x = D exactly, the gap needs no difference
-//!   of large numbers: a flight of 1e-6 m/s is as exact, relatively, as one of 1 m/s.
-//! - A pressed rebound announces its own length, 2 v / a; the series is then extended only until its terms are
-//!   negligible over that length: four or five coefficients where a full step has sixteen. Its end is the one root of
-//!   that series in the gap, found without a search (`rebound`).
+//!   its gap polynomial starts with coefficients that are 0 by definition (one after a rebound or a break,
+//!   two after a plastic impact, three after a release), so it is divided by that power of time and the same
+//!   contact cannot be found again, however short the flight. Since x = D exactly, the gap needs no
+//!   difference of large numbers: a flight of 1e-6 m/s is as exact, relatively, as one of 1 m/s.
+//! - A pressed rebound announces its own length, 2 v / a; the series is then extended only until its terms
+//!   are negligible over that length: four or five coefficients where a full step has sixteen. Its end is the
+//!   one root of that series in the gap, found without a search (`rebound`).
 //! - What remains of a chatter once it is short is summed in closed form (Nordmark and Piiroinen 2009).
 //!
 //! [`Touch`]: super::state::Touch
@@ -38,15 +38,15 @@ pub(crate) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     pub stepper: Stepper<'a, T, D>,
     pub state: MotionState<T>,
     pub record: Recorder<'a, T, LEDGER>,
-    /// All that the recorder is told, where a cycle is waited for.
+    /// The recorder calls since the first labelled release, where the run may recur.
     pub log: Option<Box<Log<T>>>,
     pub steps: u64,
-    /// Since when, in which segment of the drive, a release has been searched for and not been found.
+    /// The segment of the drive and the instant since which a search has found no release.
     pub searched: Option<(usize, Instant<T>)>,
-    /// Whether the run may be completed from a cycle that comes back, and whether its mirror image would be a motion too.
+    /// Whether the run may be completed from a recurrence, and whether the mirror image of a motion is one.
     pub recurs: bool,
     pub symmetric: bool,
-    /// The mass has just been let go, and how.
+    /// The identity of the release that has just happened.
     pub label: Option<Label<T>>,
     /// Time in s up to which the run goes on until the motion repeats.
     pub until_settled: Option<f64>,
@@ -85,7 +85,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         }
     }
 
-    /// Where `recurs`, lets the run be completed from a cycle that comes back.
+    /// Where `recurs`, lets the run be completed from a recurrence.
     pub fn with_recurrence(mut self, recurs: bool, model: &Model) -> Self {
         self.recurs = recurs;
         self.symmetric = recurs && model.is_symmetric();
@@ -103,7 +103,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         self.record.barrier_side = point.barrier_side;
     }
 
-    /// Tells the recorder what happened, and keeps it where a log is kept.
+    /// Passes a call to the recorder, and to the log where there is one.
     pub fn tell(&mut self, told: Call<T>) {
         if let Some(log) = &mut self.log {
             log.add(told);

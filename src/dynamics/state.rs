@@ -1,4 +1,4 @@
-//! State of a motion: what it carries from one step to the next.
+//! State of a motion: everything that its next step depends on.
 
 use super::clock::Instant;
 use super::equation::End;
@@ -19,7 +19,7 @@ pub(crate) const BY_ACCELERATION: usize = 2;
 pub(crate) const BY_JERK: usize = 3;
 /// Nothing up to the fourth coefficient opens the gap: what follows decides.
 pub(crate) const UNDECIDED: usize = 5;
-/// The surface is not there for one step: neither side of a break claims a mass that stands on it.
+/// The surface is ignored for one step: on neither side of a break does the mass leave it.
 pub(crate) const HELD: usize = usize::MAX;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,9 +29,10 @@ pub(crate) enum Contact {
     Resting(End),
     /// At rest in an equilibrium that nothing disturbs.
     Motionless,
-    /// Pressing in the compliant stop of this end.
+    /// In contact with the compliant stop of this end.
     Compressing(End),
-    /// Behind its surface, with the stop not following: it would have to pull.
+    /// In clipped contact with it: behind its surface, where the stop does not follow, since it would have to
+    /// pull.
     Clipped(End),
 }
 
@@ -40,12 +41,12 @@ pub(crate) enum Contact {
 pub(crate) struct Depth<T> {
     /// Root of the depth; 0 outside.
     pub root: T,
-    /// The stop began or ceased to trail right here.
+    /// The contact became clipped, or ceased to be, right here.
     pub clip_changed: bool,
 }
 
-/// Everything that the next step depends on. The drive's rolling state is no part of it: it only keeps
-/// what would be computed again, to the bit.
+/// The state of a motion. The cursor of the drive's series is no part of it: that only keeps what would be
+/// computed again, to the bit.
 ///
 /// `E` is room for state variables that go on with displacement and velocity; without any it takes no space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,9 +60,9 @@ pub(crate) struct MotionState<T, E = ()> {
     pub segment: usize,
     pub touch: Option<Touch>,
     pub contact: Contact,
-    /// When a release clip_changed out to be none.
+    /// The instant of a release that turned out to be none.
     pub refused: Option<Instant<T>>,
-    /// Whether the mass has been handed across a break without moving.
+    /// Whether the mass has changed its mode at a break without moving.
     pub turned_back: bool,
     pub depth: Depth<T>,
 }
@@ -134,7 +135,8 @@ pub(crate) struct Checkpoint<T> {
     pub barrier_side: i8,
 }
 
-/// Which release this is. All of it is computed from the drive alone.
+/// Identity of a release from rest, computed from the drive alone: equal labels are followed by equal
+/// motions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Label<T> {
     pub end: End,

@@ -1,4 +1,4 @@
-//! LiveOutput from one piece of the force curve to the next.
+//! Transition from one piece of the force curve to the next.
 
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
@@ -13,8 +13,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.state.touch = Some(Touch { end: end.other(), order: BY_SPEED });
     }
 
-    /// The mass stands on the break at `end` of its mode with no speed: the first derivative of its motion that is
-    /// not 0 (to the rounding of its terms) chooses the side; where none is, it stays on this one.
+    /// The mass stands on the break at `end` of its mode with no speed: the first derivative of its motion
+    /// that is not 0 (to the rounding of its terms) chooses the side; where none is, it stays on this one.
     pub fn balance(&mut self, end: End) {
         let sign = end.sign::<T>();
         let mode = self.stepper.mode(&self.state);

@@ -1,13 +1,14 @@
-//! How does the mass touch a compliant stop, press it in and separate from it?
+//! Contact with a compliant stop: touch, compression, separation.
 //!
-//! Contact is a phase of the motion like flight: steps of a series (`penetration`), with the base shaking on and every
-//! event a root of the step's polynomials. It begins where free flight reaches the surface and ends where the root of the
-//! depth is 0 again; in between nothing of it is searched for in free flight, whose steps stay as long as ever.
+//! Contact is a phase of the motion like free flight: its steps are series (`penetration`), the drive goes
+//! on, and every event is a root of the step's polynomials. It begins where free flight reaches the surface
+//! and ends where the root of the depth is 0 again; outside it the stop costs the steps of free flight
+//! nothing.
 //!
-//! Resting on such a stop is an oscillation of some kilohertz about a depth of a tenth of a micrometre, and it is
-//! followed: on the prototype's stops at tolerance 1e-9 some 36 steps a period where it reaches up to the surface, and one
-//! or two where it has died out, since an explicit method cannot step over a stiffness that no longer shows. One impact
-//! takes 12 to 18 steps from tolerance 1e-3 to 1e-14.
+//! Resting on such a stop is an oscillation of some kilohertz about a depth of a tenth of a micrometre, and
+//! it is followed: on the prototype's stops at tolerance 1e-9 some 36 steps a period where it reaches up to
+//! the surface, and one or two where it has died out, since an explicit method cannot step over a stiffness
+//! that no longer shows. One impact takes 12 to 18 steps from tolerance 1e-3 to 1e-14.
 
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{End, EndKind};
@@ -19,9 +20,9 @@ use crate::dynamics::step::path::{Path, StepView};
 use crate::dynamics::step::penetration::Penetration;
 use crate::numeric::Scalar;
 
-/// Speed of a touch without speed, in roundings of a rounding of the speed scale. The parameter of a contact begins with a
-/// speed; a mass that is pressed onto the surface at rest gets one so small that it is nowhere seen: it grows with the
-/// press by some e-foldings, which are one step or two.
+/// Least speed of a touch, in eps^2 times the speed scale. The parameter of a contact needs a speed to begin
+/// with. A mass that is pressed onto the surface at rest gets this one, which no output shows: it grows by
+/// some e-foldings within one or two steps.
 const NUDGE: f64 = 1.0;
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
@@ -36,16 +37,17 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             self.state.depth = Depth { root: depth.sqrt(), clip_changed: false };
             self.record.touch(&self.state.at, end.side(), self.state.v, false);
             if self.state.contact == Contact::Free {
-                let loss = self.stepper.equation.compliant.map_or(T::zero(), |stop| stop.loss);
-                let pulls = T::of(1.0) + loss * (sign * self.state.v) < T::zero();
-                self.state.contact = if pulls { Contact::Clipped(end) } else { Contact::Compressing(end) };
+                let stop = self.stepper.equation.compliant;
+                let clipped = stop.is_some_and(|stop| stop.is_clipped(sign * self.state.v));
+                self.state.contact = if clipped { Contact::Clipped(end) } else { Contact::Compressing(end) };
             }
             return true;
         }
         false
     }
 
-    /// The mass is at the surface of the compliant stop of `end`, with this outward speed, 0 or of either sign.
+    /// The mass is at the surface of the compliant stop of `end`, with this outward speed, 0 or of either
+    /// sign.
     pub fn meet(&mut self, end: End, outward: T) {
         if outward > T::zero() {
             return self.enter_stop(end, outward);
@@ -102,7 +104,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         match reached {
             Reached::Time => {}
             Reached::Surface => (root, x) = (T::zero(), surface),
-            Reached::ClipChange => speed = T::of(-1.0) / self.stepper.equation.compliant?.loss,
+            Reached::ClipChange => speed = self.stepper.equation.compliant?.clipping_speed(),
             Reached::End(at) => {
                 x = mode.end(at).0;
                 root = (sign * (x - surface)).sqrt();

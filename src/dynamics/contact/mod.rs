@@ -1,4 +1,4 @@
-//! What happens where the mass is at an end of its mode: a stop, a break or the end of the curve.
+//! Events at the ends of a mode: a stop, a break, the end of the known curve.
 
 mod breaks;
 mod compliant;
@@ -13,7 +13,7 @@ use crate::dynamics::state::{BY_ACCELERATION, BY_SPEED, Contact, Flow, HELD, Tou
 use crate::numeric::Scalar;
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
-    /// Decides what a start on a surface is.
+    /// Starts the motion: a mass that begins on a surface rests, strikes, leaves or passes it.
     pub fn place_at_start(&mut self) {
         if self.stepper.equation.compliant.is_some() && self.start_inside_a_stop() {
             return;
@@ -56,7 +56,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         match kind {
             EndKind::Stop if outward > T::zero() => self.strike(end, outward),
             EndKind::Stop if at_once => {
-                // It was let go where the press is 0 to rounding, and does not leave: it rests on.
+                // It was released where the contact acceleration is 0 to rounding, and does not leave: it
+                // rests on.
                 self.state.refused = Some(self.state.at);
                 self.state.v = T::zero();
                 self.begin_rest(end);

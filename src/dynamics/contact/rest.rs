@@ -10,14 +10,15 @@ use crate::dynamics::state::{BY_ACCELERATION, BY_JERK, Contact, Label, MotionSta
 use crate::dynamics::step::stepper::Stepper;
 use crate::numeric::Scalar;
 
-/// Share of the clock's cycle by which the search for a release skips an instant at which the press only
-/// touched 0: well above what the rounding of a double root spans, well below any press worth resolving.
+/// Share of the clock's cycle by which the search for a release skips an instant at which the contact
+/// acceleration only touched 0: well above what the rounding of a double root spans, well below any change
+/// worth resolving.
 const PAST_A_TOUCH: f64 = 1e-6;
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
-    /// The mass stands at the stop of `end` with no speed: none where it is pressed on it, else the touch with which it
-    /// leaves. The first derivative of the pressing acceleration that is not 0 (to the rounding of its terms) decides; if
-    /// none is, nothing presses, and it stays there, free.
+    /// The mass stands at the stop of `end` with no speed: none where it is pressed on it, else the touch
+    /// with which it leaves. The first derivative of the contact acceleration that is not 0 (to the rounding
+    /// of its terms) decides; if all are 0, it stays there, free.
     pub fn leaves(&mut self, end: End) -> Option<Touch> {
         let rates = self.stepper.contact_acceleration(&self.state, end);
         let rounding = self.stepper.contact_acceleration_rounding(end);
@@ -64,22 +65,22 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let until = self.stepper.segment_limit(&self.state);
         let mut from = self.state.at;
         if self.state.refused == Some(self.state.at) {
-            // The press only touched 0 here, to rounding: look beyond.
+            // The contact acceleration only touched 0 here, to rounding: look beyond.
             from = self.stepper.clock.advance(&from, self.stepper.clock.period() * T::of(PAST_A_TOUCH));
         }
-        let threshold = self.stepper.equation.stop(end).map_or(T::zero(), |s| s.press);
-        let press = ContactAcceleration { threshold, sign: end.sign::<T>() };
+        let threshold = self.stepper.equation.stop(end).map_or(T::zero(), |s| s.acceleration);
+        let acceleration = ContactAcceleration { threshold, sign: end.sign::<T>() };
         let since = self.searched.take().filter(|(segment, _)| *segment == self.state.segment);
         let since = since.map_or(from, |(_, since)| since);
         let span = Span { from, until, segment: self.state.segment, since };
         let Stepper { drive, clock, cursor, .. } = &mut self.stepper;
-        let (fall, work) = drive.next_release(clock, &span, press, cursor);
+        let (root, work) = drive.next_release(clock, &span, acceleration, cursor);
         self.stepper.work.add(self.stepper.costs.check + work);
-        match fall {
-            ReleaseRoot::At(fall, turn) => {
-                self.stand(fall, phase);
+        match root {
+            ReleaseRoot::At(root, turn) => {
+                self.stand(root, phase);
                 self.release(end, BY_JERK);
-                self.label = turn.filter(|_| self.recurs).map(|turn| Label { end, turn, phase: fall.phase });
+                self.label = turn.filter(|_| self.recurs).map(|turn| Label { end, turn, phase: root.phase });
             }
             ReleaseRoot::NotBefore(later) => {
                 self.searched = Some((self.state.segment, since));
@@ -88,8 +89,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             ReleaseRoot::Never => {
                 self.stand(until, phase);
                 if self.stepper.pass_segment_end(&mut self.state) {
-                    let press = self.stepper.contact_acceleration(&self.state, end)[0];
-                    if press < -self.stepper.contact_acceleration_rounding(end) {
+                    let acceleration = self.stepper.contact_acceleration(&self.state, end)[0];
+                    if acceleration < -self.stepper.contact_acceleration_rounding(end) {
                         self.release(end, BY_ACCELERATION);
                     }
                 }

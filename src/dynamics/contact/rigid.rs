@@ -15,8 +15,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// The mass reaches the stop of `end` with outward speed `speed` > 0.
     pub fn strike(&mut self, end: End, speed: T) {
         let sign = end.sign::<T>();
-        let restitution = self.stepper.equation.stop(end).map_or(T::of(1.0), |s| s.restitution);
-        let rebound = restitution * speed;
+        let rebound = self.stepper.equation.stop(end).map_or(speed, |stop| stop.rebound(speed));
         self.stepper.work.add_impacts(1);
         // 0 - keeps a rebound of 0 from being -0
         let (v_in, v_out) = (sign * speed, T::zero() - sign * rebound);
@@ -29,34 +28,34 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
     }
 
-    /// A pressed rebound, slow enough: sums what remains of the chatter in closed form. Expects the
-    /// drive to be seeded.
+    /// After a rebound that is slow enough and pressed back: sums what remains of the chatter in closed form.
+    /// Expects the drive to be seeded.
     ///
-    /// The sum of the flights is S (1 - (2 j/a + g) S/6) + O(S^3), S = 2 v/(a (1 - e)), a the pressing
-    /// acceleration, j its rate, g = c/m. It is used where its own error is below the tolerance and the pressing
-    /// cannot end before it does.
+    /// The sum of the flights is S (1 - (2 j/a + g) S/6) + O(S^3), S = 2 v/(a (1 - e)), a the contact
+    /// acceleration, j its rate, g = c/m. It is used where its own error is below the tolerance and the
+    /// contact acceleration keeps its sign until the sum's end.
     pub fn sum_chatter(&mut self, end: End, rates: [T; 3]) -> bool {
         let Some(stop) = self.stepper.equation.stop(end) else { return false };
         let one = T::of(1.0);
         let speed = self.state.v.abs();
-        let [press, jerk, snap] = rates;
-        if !(press > T::zero()
+        let [acceleration, jerk, snap] = rates;
+        if !(acceleration > T::zero()
             && stop.restitution < one
             && speed < self.stepper.settings.speed * T::of(CHATTER_SPEED))
         {
             return false;
         }
         let damping = self.stepper.equation.damping;
-        let whole = T::of(2.0) * speed / (press * (one - stop.restitution));
-        let squares = (jerk.abs() / press) * (jerk.abs() / press)
+        let whole = T::of(2.0) * speed / (acceleration * (one - stop.restitution));
+        let squares = (jerk.abs() / acceleration) * (jerk.abs() / acceleration)
             + damping * damping
             + stop.stiffness.abs()
-            + snap.abs() / press;
+            + snap.abs() / acceleration;
         let change = whole * whole * squares;
         if change > T::of(2.5e-3) || whole * change > T::of(0.1 * self.stepper.settings.tolerance) {
             return false;
         }
-        let sum = whole * (one - (T::of(2.0) * jerk / press + damping) * whole / T::of(6.0));
+        let sum = whole * (one - (T::of(2.0) * jerk / acceleration + damping) * whole / T::of(6.0));
         let until = self.stepper.clock.advance(&self.state.at, sum);
         let limit = self.stepper.segment_limit(&self.state);
         if self.stepper.clock.between(&until, &limit) <= T::zero() {

@@ -1,4 +1,4 @@
-//! A sine of growing frequency, and how its series goes on.
+//! Chirp: a sine of growing frequency, and its series.
 
 use crate::dynamics::clock::{Clock, Instant};
 use crate::numeric::{DoubleDouble, Number, Scalar};
@@ -38,7 +38,7 @@ impl<T: Scalar> Chirp<T> {
 }
 
 /// The next coefficients of sine and cosine of a phase with rate w and growth b, from the last two of each:
-/// (k + 1) s\[k+1\] = w c\[k\] + b c\[k-1\], and the cosine likewise with the sign clip_changed.
+/// (k + 1) s\[k+1\] = w c\[k\] + b c\[k-1\], and the cosine likewise with the sign turned.
 pub(crate) fn next_chirp<T: Scalar>(last: &mut ChirpState<T>, share: T) {
     let ChirpState { sine, cosine, rate, growth, .. } = *last;
     let s = (rate * cosine[1] + growth * cosine[0]) * share;

@@ -151,13 +151,13 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         &self,
         clock: &Clock<T>,
         span: &Span<T>,
-        press: ContactAcceleration<T>,
+        acceleration: ContactAcceleration<T>,
         cursor: &mut Self::Cursor,
     ) -> (ReleaseRoot<T>, u64) {
-        if press.threshold - press.sign * self.constant > self.reach {
+        if acceleration.threshold - acceleration.sign * self.constant > self.reach {
             return (ReleaseRoot::Never, 0);
         }
-        let mut search = Search::new(self, clock, press, span.segment);
+        let mut search = Search::new(self, clock, acceleration, span.segment);
         (search.fastest, search.reach) = (self.fastest, self.reach);
         search.common_cycles = self.common_cycles.filter(|_| span.segment >= self.segment_ends.len());
         search.parts = self.tones.len() + 4 * self.chirps.len() + self.records.len();

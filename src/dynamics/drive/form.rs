@@ -1,4 +1,4 @@
-//! Choice of a model's drive: the simplest form that it has, built in kernel units.
+//! Builder of a model's drive: its simplest form, in kernel units.
 
 use super::Still;
 use super::base_at;
@@ -51,8 +51,8 @@ pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
 
 pub(crate) fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
     let frequency = model.excitation.fastest().unwrap_or_else(|| {
-        // Without a drive: so short a cycle that its phase is exact, a power of two of the time unit, and not so
-        // many cycles that they could not be counted.
+        // Without a drive: so short a cycle that its phase is exact, a power of two of the time unit, and not
+        // so many cycles that they could not be counted.
         let units = model.duration / unit;
         1.0 / (unit * SHORTEST_CYCLE.max((units.log2().ceil() - 50.0).exp2()))
     });
@@ -128,7 +128,7 @@ fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite
         segment_ends: ends.iter().map(|e| clock.at(*e)).collect(),
         // a ramp that outlasts the run never lets it repeat
         common_cycles: drive.common_cycles().map(|c| c as i64).filter(|_| !outlasting),
-        // a bound: rounding must not hide a fall
+        // a bound: rounding must not hide a root
         reach: T::of(reach * square * (1.0 + 1e-9)),
         fastest: T::tau() * T::of(fastest),
     }

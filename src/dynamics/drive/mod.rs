@@ -1,8 +1,8 @@
-//! How does the base accelerate, as a series about any instant?
+//! Drive: acceleration of the base in kernel units, as a series about any instant.
 //!
-//! Three forms, one chosen per run, so that a scene pays only for what it names: a constant, one sine, a sum
-//! of anything. A tone is evaluated from the clock's exact phase at the start of a
-//! step and continued by its own series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so nothing drifts and no library
+//! There are three forms, a constant, one sine and a sum of anything, and one is chosen per run, so that a
+//! scene pays only for what it names. A tone is evaluated from the clock's exact phase at the start of a step
+//! and continued by its own series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so nothing drifts and no library
 //! function is called.
 
 mod chirp;
@@ -21,7 +21,8 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
     /// Whether half a cycle of the clock later it is always the opposite.
     const ODD: bool = false;
 
-    /// What it adds to the cost of a step with a series of this order, in units of [`work`](crate::dynamics::step::work).
+    /// What it adds to the cost of a step with a series of this order, in units of
+    /// [`work`](crate::dynamics::step::work).
     fn cost(&self, _order: usize) -> u64 {
         0
     }
@@ -62,33 +63,34 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
     /// The instant at which segment `segment` ends, where one follows.
     fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
 
-    /// The next instant in the span at which the press, positive now, changes sign, and the work that it took to find it.
-    /// The span lies within one segment.
+    /// The next instant in the span at which the contact acceleration, positive now, changes sign, and the
+    /// work of finding it. The span lies within one segment.
     fn next_release(
         &self,
         clock: &Clock<T>,
         span: &Span<T>,
-        press: ContactAcceleration<T>,
+        acceleration: ContactAcceleration<T>,
         cursor: &mut Self::Cursor,
     ) -> (ReleaseRoot<T>, u64);
 }
 
-/// When the press on a stop ends.
+/// Release root: the instant at which the contact acceleration on a stop changes sign.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ReleaseRoot<T> {
-    /// It changes sign here. Where the drive repeats and this root was computed from the drive alone, with the cycle of
-    /// the clock within the common period: a root of equal cycle and phase is the same.
+    /// Here. Where the drive repeats and the root was computed from the drive alone, the clock's cycle within
+    /// the common period comes with it: a root of equal cycle and phase is the same.
     At(Instant<T>, Option<i64>),
-    /// It does not within the span.
+    /// Not within the span.
     Never,
-    /// Not up to here; ask again (a search is broken off now and then, so that its work is counted).
+    /// Not up to here; the search goes on from here (it is interrupted now and then, so that its work is
+    /// counted).
     NotBefore(Instant<T>),
 }
 
 impl<T: Scalar> ReleaseRoot<T> {
-    /// At `fall` where that lies before the end of the span.
-    pub fn within(clock: &Clock<T>, fall: Instant<T>, turn: Option<i64>, until: &Instant<T>) -> Self {
-        if clock.between(&fall, until) > T::zero() { Self::At(fall, turn) } else { Self::Never }
+    /// At `root` where that lies before the end of the span.
+    pub fn within(clock: &Clock<T>, root: Instant<T>, turn: Option<i64>, until: &Instant<T>) -> Self {
+        if clock.between(&root, until) > T::zero() { Self::At(root, turn) } else { Self::Never }
     }
 }
 
@@ -98,11 +100,12 @@ pub(crate) struct Span<T> {
     pub from: Instant<T>,
     pub until: Instant<T>,
     pub segment: usize,
-    /// Since when it is known not to have changed sign within this segment; `from` where that is not known.
+    /// The instant since which no root was found within this segment; `from` where none was searched for.
     pub since: Instant<T>,
 }
 
-/// The outward acceleration of a mass at rest on a stop: threshold - sign a(t).
+/// Contact acceleration: the outward acceleration that a mass at rest on a stop would have without it,
+/// threshold - sign a(t). While it is positive the mass stays.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactAcceleration<T> {
     /// What the mechanism contributes.

@@ -1,20 +1,20 @@
-//! Search for the instant at which a drive of any form lets go of a mass that rests on a stop.
+//! Search for the release root under a drive of any form.
 //!
-//! The search walks ahead in strides. Over each the contact acceleration is a polynomial, the series of the drive, and
-//! its first root is the release. A stride in which it has none is passed.
+//! The search walks ahead in strides. Over each the contact acceleration is a polynomial, the series of the
+//! drive, and its first root is the release. A stride in which it has none is passed.
 
 use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, SEEDED};
 use crate::numeric::{PolynomialRoots, Scalar};
 
-/// How long a stride is, in radians of the fastest tone, and the order of its series: the first neglected term,
-/// 2^27/27!, is below rounding.
+/// How long a stride is, in radians of the fastest tone, and the order of its series: the first neglected
+/// term, 2^27/27!, is below rounding.
 const STRIDE_RADIANS: f64 = 2.0;
 const STRIDE_ORDER: usize = 26;
 
-/// Work of a search before it reports where it stands: some milliseconds, and for two or three tones of everyday
-/// frequencies longer than their common period.
+/// Work of a search before it reports where it stands: some milliseconds, and for two or three tones of
+/// everyday frequencies longer than their common period.
 const SEARCH_WORK: u64 = 500_000;
 
 /// What a stride costs beside the parts of the drive, and what each of them costs, in units of
@@ -29,7 +29,7 @@ const SAME_ROOT: f64 = 1e-12;
 pub(super) struct Search<'a, T: Scalar, D: Drive<T>> {
     pub drive: &'a D,
     pub clock: &'a Clock<T>,
-    pub press: ContactAcceleration<T>,
+    pub acceleration: ContactAcceleration<T>,
     pub segment: usize,
     /// Angular frequency of the fastest part of the drive that moves; 0 without one.
     pub fastest: T,
@@ -50,7 +50,12 @@ struct Stride<T> {
 }
 
 impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
-    pub fn new(drive: &'a D, clock: &'a Clock<T>, press: ContactAcceleration<T>, segment: usize) -> Self {
+    pub fn new(
+        drive: &'a D,
+        clock: &'a Clock<T>,
+        acceleration: ContactAcceleration<T>,
+        segment: usize,
+    ) -> Self {
         let zero = T::zero();
         let mut inverse = [zero; ROOM];
         for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
@@ -60,7 +65,7 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
         Self {
             drive,
             clock,
-            press,
+            acceleration,
             segment,
             fastest: zero,
             reach: zero,
@@ -89,21 +94,21 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
             let h = if turning { longest.smaller(left) } else { left };
             let Stride { g, order } = self.stride(&at, h, cursor);
             // Below 0 by no more than rounding it only touches: the way to the bottom of a parabola.
-            let rounding = (self.press.threshold.abs() + self.reach) * T::of(8.0 * T::EPSILON);
+            let rounding = (self.acceleration.threshold.abs() + self.reach) * T::of(8.0 * T::EPSILON);
             let touches = |slope: T, curvature: T| {
                 curvature > T::zero() && slope * slope <= T::of(2.0) * curvature * rounding
             };
             let across = |curvature: T| T::of(4.0) * (rounding / curvature).sqrt();
-            let press = PolynomialRoots::new(&g[..=order]);
+            let acceleration = PolynomialRoots::new(&g[..=order]);
             let (s, slope, curvature) = if g[0] > T::zero() {
-                let Some(s) = press.first() else {
+                let Some(s) = acceleration.first() else {
                     at = clock.advance(&at, h);
                     if self.common_cycles.is_some_and(|cycles| at.cycle > since.cycle + cycles) {
                         return (ReleaseRoot::Never, work); // one common period without a root: there is none
                     }
                     continue;
                 };
-                let (_, slope, curvature) = press.value_and_slopes(s);
+                let (_, slope, curvature) = acceleration.value_and_slopes(s);
                 (s, slope, curvature)
             } else {
                 (T::zero(), g[1], T::of(2.0) * g[2.min(order)])
@@ -114,11 +119,11 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
                 // rounding: it rises, the root comes later
                 at = clock.advance(&at, T::of(2.0) * rounding / slope * h);
             } else {
-                let fall = clock.advance(&at, s * h);
-                let own = self.own_root(&fall, cursor);
+                let root = clock.advance(&at, s * h);
+                let own = self.own_root(&root, cursor);
                 let own = own.filter(|(own, _)| clock.between(&from, own) > T::zero());
-                let (fall, turn) = own.map_or((fall, None), |(own, turn)| (own, Some(turn)));
-                return (ReleaseRoot::within(clock, fall, turn, &until), work);
+                let (root, turn) = own.map_or((root, None), |(own, turn)| (own, Some(turn)));
+                return (ReleaseRoot::within(clock, root, turn, &until), work);
             }
         }
         (ReleaseRoot::NotBefore(at), work)
@@ -126,7 +131,7 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
 
     /// The contact acceleration over a stride of length `h` from `at`.
     fn stride(&mut self, at: &Instant<T>, h: T, cursor: &mut D::Cursor) -> Stride<T> {
-        let Self { drive, a, inverse, press: ContactAcceleration { threshold, sign }, .. } = self;
+        let Self { drive, a, inverse, acceleration: ContactAcceleration { threshold, sign }, .. } = self;
         drive.seed(self.clock, at, self.segment, a, cursor);
         let order = if self.fastest > T::zero() { STRIDE_ORDER } else { 1 };
         for k in SEEDED..=order {
@@ -142,10 +147,10 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
         Stride { g, order }
     }
 
-    /// The root near `fall`, computed from the drive alone, and the clock's cycle within the common period: whenever
-    /// the search that found it began, it is the same number. None where the drive does not repeat, or by more than
+    /// The root near `found`, computed from the drive alone, and the clock's cycle within the common period:
+    /// it is the same number whenever the search began. None where the drive does not repeat, or by more than
     /// rounding.
-    fn own_root(&mut self, fall: &Instant<T>, cursor: &mut D::Cursor) -> Option<(Instant<T>, i64)> {
+    fn own_root(&mut self, root: &Instant<T>, cursor: &mut D::Cursor) -> Option<(Instant<T>, i64)> {
         let cycles = self.common_cycles?;
         if !(self.fastest > T::zero()) {
             return None;
@@ -153,10 +158,10 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
         // Strides that do not depend on the search: quarters of the cycle, in each cycle alike.
         let clock = self.clock;
         let stride = clock.period() * T::of(0.25);
-        let quarter = (fall.phase / stride).floor().smaller(T::of(3.0));
-        let start = Instant { cycle: fall.cycle, phase: quarter * stride };
+        let quarter = (root.phase / stride).floor().smaller(T::of(3.0));
+        let start = Instant { cycle: root.cycle, phase: quarter * stride };
         let Stride { g, order } = self.stride(&start, stride, cursor);
-        let near = clock.between(&start, fall) / stride;
+        let near = clock.between(&start, root) / stride;
         let mut found = None;
         PolynomialRoots::new(&g[..=order]).each_sign_change(|s| {
             if (s - near).abs() <= T::of(SAME_ROOT) {

@@ -1,4 +1,4 @@
-//! What does one tone do, and when does it let go of a mass on a stop?
+//! Tone: one sine with an optional amplitude ramp, its series, and its release root.
 
 use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
@@ -91,16 +91,16 @@ impl<T: Scalar> Tone<T> {
     }
 }
 
-/// One sine. Its frequency is the clock's, so a fall repeats at one phase of the cycle.
+/// One sine. Its frequency is the clock's, so its release root is at one phase of the cycle.
 #[derive(Debug, Clone)]
 pub(crate) struct Sine<T> {
     pub tone: Tone<T>,
 }
 
-/// Where a tone was last evaluated, and what it and its time derivative were per unit amplitude.
-pub(crate) type Looked<T> = Option<(Instant<T>, (T, T))>;
+/// Where a tone was evaluated last, with its value and time derivative per unit amplitude.
+pub(crate) type LastValue<T> = Option<(Instant<T>, (T, T))>;
 
-/// The series of a tone of this curvature, -(2 pi frequency)^2.
+/// Harmonic drive: the series of a tone of this curvature, -(2 pi frequency)^2.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Harmonic<T> {
     pub curvature: T,
@@ -133,9 +133,9 @@ impl<T: Scalar> Sine<T> {
         self.tone.after(at.phase, self.tone.phase)
     }
 
-    /// The same, where it was looked at last if that was there.
+    /// The same, from the last evaluation if that was at the same instant.
     #[inline(always)]
-    pub fn looked(&self, at: &Instant<T>, last: &Looked<T>) -> (T, T) {
+    pub fn unit_from(&self, at: &Instant<T>, last: &LastValue<T>) -> (T, T) {
         match last {
             Some((when, unit)) if when == at => *unit,
             _ => self.unit(at),
@@ -144,8 +144,8 @@ impl<T: Scalar> Sine<T> {
 }
 
 impl<T: Scalar> Tail<T> for Sine<T> {
-    /// A step begins where the check of the last one looked.
-    type Cursor = Looked<T>;
+    /// A step begins where the last one was checked.
+    type Cursor = LastValue<T>;
 
     #[inline(always)]
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], _: &mut Self::Cursor) {
@@ -221,16 +221,16 @@ impl<T: Scalar> Drive<T> for Sine<T> {
             phase = T::zero();
         }
         let behind = from.phase - phase;
-        // A fall behind by no more than rounding is now.
+        // A root that is past by no more than rounding is now.
         let slack = clock.period() * T::of(8.0 * T::EPSILON);
         // The one root of each cycle; "now" is a guess at it.
-        let (fall, turn) = if behind <= T::zero() {
+        let (root, turn) = if behind <= T::zero() {
             (Instant { cycle: from.cycle, phase }, Some(0))
         } else if behind <= slack {
             (from, None)
         } else {
             (Instant { cycle: from.cycle + 1, phase }, Some(0))
         };
-        (ReleaseRoot::within(clock, fall, turn, &until), 0)
+        (ReleaseRoot::within(clock, root, turn, &until), 0)
     }
 }

@@ -1,115 +1,24 @@
-//! What does the integrator run on? The model in kernel units: time in a power of two of a second, mass 1.
+//! Equation of motion in kernel units: time in a power of two of a second, mass 1.
 //!
-//! Each piece of the force curve becomes an *mode*: the interval in which the mass moves under one
-//! polynomial, and what stands at its two ends (a stop, a break behind which the next piece begins, the end
-//! of the known curve). The mode is the mode of the motion.
+//! Each piece of the force curve becomes a *mode*: the interval in which the mass moves under one polynomial,
+//! and what stands at its two ends (a stop, a break behind which the next piece begins, the end of the known
+//! curve).
 
 pub(crate) mod force;
+mod mode;
+mod stop;
 
 use crate::dynamics::model::Model;
 use crate::dynamics::model::stops::StopAt;
-use crate::dynamics::result::Side;
 use crate::numeric::Scalar;
 use force::PieceForce;
+use mode::cut;
+
+pub(crate) use mode::{End, EndKind, Mode};
+pub(crate) use stop::{Compliant, Stop};
 
 /// Stands in for an end that does not exist; far, yet safe to compute with.
 pub(crate) const FAR: f64 = 1e200;
-
-/// What stands at an end of a mode.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum EndKind {
-    /// A rigid stop.
-    Stop,
-    /// The surface of a compliant stop, free flight on one side and contact on the other.
-    Compliant,
-    /// A break: the neighbouring piece begins.
-    Break,
-    /// Nothing is known beyond.
-    Unknown,
-}
-
-/// One end of a mode: low (left) or high (right).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum End {
-    Low,
-    High,
-}
-
-impl End {
-    /// -1 for low, +1 for high.
-    #[inline]
-    pub fn sign<T: Scalar>(self) -> T {
-        match self {
-            Self::Low => T::of(-1.0),
-            Self::High => T::of(1.0),
-        }
-    }
-
-    /// The side that it is on.
-    pub fn side(self) -> Side {
-        match self {
-            Self::Low => Side::Left,
-            Self::High => Side::Right,
-        }
-    }
-
-    pub fn other(self) -> Self {
-        match self {
-            Self::Low => Self::High,
-            Self::High => Self::Low,
-        }
-    }
-}
-
-/// A compliant stop: stiffness d^1.5 (1 + loss d') over mass, kernel units.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Compliant<T> {
-    pub stiffness: T,
-    pub loss: T,
-}
-
-impl<T: Scalar> Compliant<T> {
-    /// Elastic energy over mass at a root of the depth.
-    pub fn stored(&self, root: T) -> T {
-        let square = root * root;
-        self.stiffness * (square * square * root) * T::of(2.0) / T::of(5.0)
-    }
-}
-
-/// The interval in which one polynomial rules.
-#[derive(Debug, Clone)]
-pub(crate) struct Mode<T> {
-    /// The piece of the force curve that it lies in.
-    pub piece: usize,
-    pub force: PieceForce<T>,
-    pub origin: T,
-    pub low: T,
-    pub high: T,
-    pub low_kind: EndKind,
-    pub high_kind: EndKind,
-}
-
-impl<T: Scalar> Mode<T> {
-    #[inline]
-    pub fn end(&self, end: End) -> (T, EndKind) {
-        match end {
-            End::Low => (self.low, self.low_kind),
-            End::High => (self.high, self.high_kind),
-        }
-    }
-}
-
-/// What a stop does to the mass that touches it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Stop<T> {
-    pub restitution: T,
-    /// Outward acceleration by the mechanism alone at the stop: positive presses.
-    pub press: T,
-    /// Rounding error of `press`.
-    pub press_rounding: T,
-    /// Slope of force over mass at the stop.
-    pub stiffness: T,
-}
 
 /// The equation of motion in kernel units.
 #[derive(Debug, Clone)]
@@ -123,29 +32,6 @@ pub(crate) struct Equation<T> {
     pub compliant: Option<Compliant<T>>,
     /// Seconds per kernel time unit.
     pub unit: f64,
-}
-
-/// The modes with the surface of a compliant stop at `x` between two of them; a curve that ends there or before has
-/// no stop.
-fn cut<T: Scalar>(modes: Vec<Mode<T>>, x: T) -> Vec<Mode<T>> {
-    let mut parts = Vec::with_capacity(modes.len() + 1);
-    let last = modes.len() - 1;
-    for (index, mut mode) in modes.into_iter().enumerate() {
-        if mode.low < x && x < mode.high {
-            let beyond = Mode { low: x, low_kind: EndKind::Compliant, ..mode.clone() };
-            (mode.high, mode.high_kind) = (x, EndKind::Compliant);
-            parts.extend([mode, beyond]);
-            continue;
-        }
-        if mode.low == x && index > 0 {
-            mode.low_kind = EndKind::Compliant;
-        }
-        if mode.high == x && index < last {
-            mode.high_kind = EndKind::Compliant;
-        }
-        parts.push(mode);
-    }
-    parts
 }
 
 impl<T: Scalar> Equation<T> {
@@ -193,8 +79,8 @@ impl<T: Scalar> Equation<T> {
                 let (f, slope, size) = mode.force.value(T::of(s.x) - mode.origin);
                 Stop {
                     restitution: T::of(s.restitution),
-                    press: -(sign * f),
-                    press_rounding: size,
+                    acceleration: -(sign * f),
+                    acceleration_rounding: size,
                     stiffness: slope,
                 }
             })
@@ -214,8 +100,8 @@ impl<T: Scalar> Equation<T> {
         self.modes.iter().map(|mode| mode.force.products()).max().unwrap_or(0)
     }
 
-    /// The mode of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant stop the one
-    /// outside it.
+    /// The mode of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant
+    /// stop the one outside it.
     pub fn mode_at(&self, x: T, piece: usize) -> usize {
         if self.compliant.is_none() {
             return piece;

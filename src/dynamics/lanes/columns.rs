@@ -1,4 +1,8 @@
-//! What do the lanes hold in common while they fly, and how do they go on by one step?
+//! Columns of a batch: what the lanes hold, and one event-free step of all of them.
+//!
+//! The event-free step is written three times: here, as the general step of a motion alone (`step/choose.rs`
+//! with `run/flight.rs`), and as its fast path (`run/event_free.rs`). The three do the same arithmetic and
+//! must stay equal to the bit.
 
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::tone::{Harmonic, Sine};
@@ -10,16 +14,16 @@ use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::numeric::{CompensatedSum, GaussLegendre, Lanes, Number, Scalar};
 
 /// One motion under a sine, without a ledger.
-pub(super) type Flight<'a> = Motion<'a, f64, Sine<f64>, false>;
+pub(super) type LaneMotion<'a> = Motion<'a, f64, Sine<f64>, false>;
 
 /// The lanes, in columns.
 pub(crate) struct Columns<const W: usize> {
-    /// Which lanes fly.
-    pub flying: [bool; W],
-    /// Steps taken and passages of the top since a lane was filled.
-    flown: Lanes<W>,
-    crossed: Lanes<W>,
-    // what stays while a lane is in one mode of one run
+    /// Which lanes are active.
+    pub active: [bool; W],
+    /// Steps taken and crossings of the barrier since a lane was loaded.
+    steps: Lanes<W>,
+    crossings: Lanes<W>,
+    // constant while a lane is in one mode of one run
     /// Which run and which mode that is.
     of: [(usize, usize); W],
     force: PieceForce<Lanes<W>>,
@@ -36,13 +40,13 @@ pub(crate) struct Columns<const W: usize> {
     longest: [f64; W],
     allowed: Lanes<W>,
     period: Lanes<W>,
-    // what stays while nothing happens
-    /// The top that crossings are counted at, NaN without one, and the side of it.
+    // constant over event-free steps
+    /// The barrier that crossings are counted at, NaN without one, and the side of it.
     barrier: Lanes<W>,
     side: Lanes<W>,
     border: Clocks<W>,
-    /// Whether each step is kept, in case the motion comes back.
-    pub kept: [bool; W],
+    /// Whether each step is logged, in case the motion recurs.
+    pub logged: [bool; W],
     /// Whether the time up to there lies in the settled window.
     pub inside: [bool; W],
     // what changes with each step
@@ -76,8 +80,8 @@ impl<const W: usize> Clocks<W> {
         Instant { cycle: self.cycle.0[lane] as i64, phase: self.phase.0[lane] }
     }
 
-    /// As [`Clock::advance`](crate::dynamics::clock::Clock::advance) by up to a cycle; of more the phase lies beyond the
-    /// cycle.
+    /// As [`Clock::advance`](crate::dynamics::clock::Clock::advance) by up to a cycle; of more the phase lies
+    /// beyond the cycle.
     #[inline(always)]
     fn advance(&self, by: &Lanes<W>, period: &Lanes<W>) -> Self {
         let mut later = *self;
@@ -117,10 +121,10 @@ impl<const W: usize> CompensatedSums<W> {
     }
 }
 
-/// A step that all lanes have tried.
+/// A step computed in all lanes.
 pub(crate) struct Trial<const W: usize> {
-    /// Those that flew and did not take it: something may happen on it.
-    pub landed: [bool; W],
+    /// Active lanes that did not take it, since an event is possible on it.
+    pub stopped: [bool; W],
     /// Those that took it.
     pub taken: [bool; W],
     /// Whether the polynomial satisfies the equation at the step's end.
@@ -153,9 +157,9 @@ impl<const W: usize> Columns<W> {
         let clocks = Clocks { cycle: zero, phase: zero };
         let sums = CompensatedSums { sum: zero, carry: zero };
         Self {
-            flying: [false; W],
-            flown: zero,
-            crossed: zero,
+            active: [false; W],
+            steps: zero,
+            crossings: zero,
             of: [(usize::MAX, 0); W],
             force: PieceForce::new(vec![zero], false),
             origin: zero,
@@ -174,7 +178,7 @@ impl<const W: usize> Columns<W> {
             barrier: zero,
             side: zero,
             border: clocks,
-            kept: [false; W],
+            logged: [false; W],
             inside: [false; W],
             touch: zero,
             x: zero,
@@ -189,13 +193,13 @@ impl<const W: usize> Columns<W> {
         }
     }
 
-    /// Takes a motion into the air, as number `index` of the runs; false where the others fly under a force of another
-    /// shape.
-    pub fn fill(&mut self, lane: usize, index: usize, motion: &Flight) -> bool {
+    /// Loads a motion into a lane, as number `index` of the runs; false where the active lanes have a force
+    /// of another shape.
+    pub fn load(&mut self, lane: usize, index: usize, motion: &LaneMotion) -> bool {
         let mode = motion.stepper.mode(&motion.state);
         let (count, odd) = (mode.force.coefficients().len(), mode.force.is_odd());
         if self.force.coefficients().len() != count || self.force.is_odd() != odd {
-            if self.flying.contains(&true) {
+            if self.active.contains(&true) {
                 return false;
             }
             self.force = PieceForce::new(vec![Lanes([0.0; W]); count], odd);
@@ -224,7 +228,7 @@ impl<const W: usize> Columns<W> {
         self.barrier.0[lane] = chord.barrier.unwrap_or(f64::NAN);
         self.side.0[lane] = f64::from(chord.side);
         self.border.set(lane, &chord.border);
-        self.kept[lane] = motion.log.is_some();
+        self.logged[lane] = motion.log.is_some();
         self.inside[lane] = chord.inside;
         (self.low.0[lane], self.high.0[lane]) = (chord.low, chord.high);
         self.squared.set(lane, &chord.squared);
@@ -233,15 +237,15 @@ impl<const W: usize> Columns<W> {
         (self.x.0[lane], self.v.0[lane]) = (motion.state.x, motion.state.v);
         self.at.set(lane, &motion.state.at);
         (self.value.0[lane], self.slope.0[lane]) =
-            motion.stepper.drive.looked(&motion.state.at, &motion.stepper.cursor);
-        self.flown.0[lane] = 0.0;
-        self.crossed.0[lane] = 0.0;
-        self.flying[lane] = true;
+            motion.stepper.drive.unit_from(&motion.state.at, &motion.stepper.cursor);
+        self.steps.0[lane] = 0.0;
+        self.crossings.0[lane] = 0.0;
+        self.active[lane] = true;
         true
     }
 
-    /// Goes on with the motion of a lane whose last step is kept.
-    pub fn follow(&self, lane: usize, motion: &mut Flight) {
+    /// Copies the state of a lane to its motion, whose last step is to be logged.
+    pub fn copy_state(&self, lane: usize, motion: &mut LaneMotion) {
         (motion.state.x, motion.state.v) = (self.x.0[lane], self.v.0[lane]);
         motion.state.at = self.at.get(lane);
         motion.state.turned_back = false;
@@ -249,16 +253,16 @@ impl<const W: usize> Columns<W> {
         motion.record.barrier_side = self.side.0[lane] as i8;
     }
 
-    /// Gives a lane back to its motion.
-    pub fn land(&mut self, lane: usize, motion: &mut Flight) {
-        self.flying[lane] = false;
-        let flown = self.flown.0[lane] as u64;
-        if flown == 0 {
+    /// Stores a lane back to its motion.
+    pub fn store(&mut self, lane: usize, motion: &mut LaneMotion) {
+        self.active[lane] = false;
+        let steps = self.steps.0[lane] as u64;
+        if steps == 0 {
             return;
         }
-        motion.steps += flown;
-        motion.stepper.work.add(flown * motion.stepper.costs.step);
-        motion.stepper.evaluations += flown;
+        motion.steps += steps;
+        motion.stepper.work.add(steps * motion.stepper.costs.step);
+        motion.stepper.evaluations += steps;
         (motion.state.x, motion.state.v) = (self.x.0[lane], self.v.0[lane]);
         motion.state.at = self.at.get(lane);
         motion.stepper.cursor = Some((motion.state.at, (self.value.0[lane], self.slope.0[lane])));
@@ -269,10 +273,10 @@ impl<const W: usize> Columns<W> {
             self.squared.get(lane),
             self.covered.get(lane),
         );
-        motion.record.end_event_free_crossings(self.side.0[lane] as i8, self.crossed.0[lane] as u64);
+        motion.record.end_event_free_crossings(self.side.0[lane] as i8, self.crossings.0[lane] as u64);
     }
 
-    /// Tries one step in all lanes, and takes it where nothing happens.
+    /// Computes one step in all lanes and takes it where it is event-free.
     #[inline(always)]
     pub fn step(
         &mut self,
@@ -304,13 +308,13 @@ impl<const W: usize> Columns<W> {
         let residual = (self.force.at(end.y) + sum).abs() * length;
 
         let mut squared = Lanes([0.0; W]);
-        let bend = polynomial::chord_deviation(&series.y[..=order], length);
+        let deviation = polynomial::chord_deviation(&series.y[..=order], length);
         if self.inside.contains(&true) {
             squared = polynomial::integrals::<_, false>(&series.y[..=order], &[], rule, squared, length).0;
         }
         let start = series.y[0] + self.origin;
         let x = end.y + self.origin;
-        let (mut holds, mut landed, mut took) = ([false; W], [false; W], [false; W]);
+        let (mut holds, mut stopped, mut took) = ([false; W], [false; W], [false; W]);
         for lane in 0..W {
             let (length, period) = (length.0[lane], self.period.0[lane]);
             let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
@@ -319,7 +323,8 @@ impl<const W: usize> Columns<W> {
             let held = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
 
             let (bound, limits) = (end.bound.0[lane], (self.low_end.0[lane], self.high_end.0[lane]));
-            let chord = Chord { start: start.0[lane], end: x.0[lane], bound, bend: bend.0[lane], limits };
+            let chord =
+                Chord { start: start.0[lane], end: x.0[lane], bound, deviation: deviation.0[lane], limits };
             let (clear_low, clear_high) = chord.is_clear();
             let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
             let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
@@ -330,22 +335,22 @@ impl<const W: usize> Columns<W> {
             let clear = clear_low & clear_high;
             let (low, high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
 
-            // Without a top to cross, what compares with it is NaN and says no.
-            let (top, side, inside) = (self.barrier.0[lane], self.side.0[lane], self.inside[lane]);
-            let (from, to) = ((chord.start - top) * side, (chord.end - top) * side);
-            let (near, onto, passed) = ((chord.start - top).abs() <= bound, to == 0.0, to < 0.0);
-            let monotone = 8.0 * chord.bend < self.v.0[lane].abs() * length;
+            // Without a barrier every comparison with it is false, since it is NaN.
+            let (barrier, side, inside) = (self.barrier.0[lane], self.side.0[lane], self.inside[lane]);
+            let (from, to) = ((chord.start - barrier) * side, (chord.end - barrier) * side);
+            let (near, onto, passed) = ((chord.start - barrier).abs() <= bound, to == 0.0, to < 0.0);
+            let monotone = 8.0 * chord.deviation < self.v.0[lane].abs() * length;
             // outside the window only their number counts
             let countable = !inside & (length + length < left);
-            let clear_of_top =
+            let clear_of_barrier =
                 !(near | passed | onto) | (monotone & (from > 0.0) & !onto & (!passed | countable));
 
-            let quiet = clear & held & clear_of_top & !(turns & inside) & (length < left);
-            let quiet = quiet & (at.phase.0[lane] < period) & (end.v.0[lane].abs() < f64::INFINITY);
-            let taken = quiet & self.flying[lane];
+            let event_free = clear & held & clear_of_barrier & !(turns & inside) & (length < left);
+            let event_free = event_free & (at.phase.0[lane] < period) & (end.v.0[lane].abs() < f64::INFINITY);
+            let taken = event_free & self.active[lane];
             holds[lane] = held;
             took[lane] = taken;
-            landed[lane] = !quiet & self.flying[lane];
+            stopped[lane] = !event_free & self.active[lane];
 
             let measured = taken & inside;
             let (squared, covered) =
@@ -359,8 +364,8 @@ impl<const W: usize> Columns<W> {
             set(&mut self.covered.carry.0[lane], covered.1, measured);
             let crosses = taken & passed;
             set(&mut self.side.0[lane], -side, crosses);
-            self.crossed.0[lane] += if crosses { 1.0 } else { 0.0 };
-            self.flown.0[lane] += if taken { 1.0 } else { 0.0 };
+            self.crossings.0[lane] += if crosses { 1.0 } else { 0.0 };
+            self.steps.0[lane] += if taken { 1.0 } else { 0.0 };
             set(&mut self.touch.0[lane], 0.0, taken);
             set(&mut self.x.0[lane], chord.end, taken);
             set(&mut self.v.0[lane], end.v.0[lane], taken);
@@ -369,6 +374,6 @@ impl<const W: usize> Columns<W> {
             set(&mut self.value.0[lane], value.0[lane], taken);
             set(&mut self.slope.0[lane], slope.0[lane], taken);
         }
-        Trial { landed, taken: took, holds, length, end, at, value, slope, squared }
+        Trial { stopped, taken: took, holds, length, end, at, value, slope, squared }
     }
 }

@@ -1,14 +1,15 @@
-//! Many runs at once: how do several masses fly in step, each with its own time and its own step?
+//! Batched runs: the event-free steps of several motions by the same instructions.
 //!
-//! Each lane holds a motion. As long as it flies freely, all that its steps need (the series, how far it holds, where
-//! it leads, the check against the equation, clock and drive, the sums and extremes of the settled window) lies in
-//! columns and is done for all lanes by the same instructions. A step on which something may happen (a surface or the
-//! top near by, a turning point that may be an extreme, a border of the window, a strobe) is not taken there: the lane
-//! lands, its motion does that step as if it had no company, and flies on. A lane whose run has ended takes up the next.
-//! The arithmetic is that of a motion alone, operation for operation, so the result has the same bits whatever the
-//! width, the company and the processor.
+//! Each lane holds a motion, with its own time and its own step length. As long as the steps of a lane are
+//! event-free, all that they need (series, step length, end state, residual, clock and drive, sums and
+//! extremes of the settled window) lies in columns and is computed for all lanes by the same instructions. A
+//! step on which an event is possible (a surface or the barrier near by, a turning point that may be an
+//! extreme, a border of the window, a stroboscopic state) is not taken there: the lane is stored back to its
+//! motion, which takes that step alone, and is then loaded again. A lane whose run has ended starts the next
+//! run. The arithmetic is that of a motion alone, operation for operation, so the result has the same bits
+//! for any width, batch and processor.
 //!
-//! The width is that of the processor at hand, found out when it runs.
+//! The width is chosen at run time by the processor.
 
 mod columns;
 
@@ -25,15 +26,17 @@ use crate::dynamics::series::{SEEDED, Series};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::path::StepView;
 use crate::dynamics::step::stepper::Step;
+use crate::system::clock::ThreadClock;
 use crate::numeric::{GaussLegendre, Lanes, Scalar};
-use columns::{Columns, Flight, Trial};
+use columns::{Columns, LaneMotion, Trial};
 
-/// Lanes where registers hold eight numbers: two registers a column, so that one addition need not wait for the last.
+/// Lanes where registers hold eight numbers: two registers a column, so that one addition need not wait for
+/// the last.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 const WIDEST: usize = 16;
 
-/// Steps of the company between two looks at what no step looks at: the budget, and whether the run is to go on.
-const STRIDE: u64 = 256;
+/// Steps of the batch between two checks of the budget and the cancel flag.
+const BATCH_STEPS: u64 = 256;
 
 /// A run and what it is made of.
 struct Prepared<'a> {
@@ -44,8 +47,9 @@ struct Prepared<'a> {
 }
 
 impl Model {
-    /// Runs several models with nothing listed, many at once where the processor can: what [`run`](Self::run) gives for
-    /// each, bit for bit, in their order; `until_settled` as in [`Request`]. The CPU time of all is shared evenly between them.
+    /// Runs several models with nothing listed, many at once where the processor can: what [`run`](Self::run)
+    /// gives for each, bit for bit, in their order; `until_settled` as in [`Request`]. The CPU time of all is
+    /// shared evenly between them.
     pub fn run_all(models: &[Self], until_settled: Option<f64>, cancel: Option<&AtomicBool>) -> Vec<Run> {
         run_all(models, &Request { cancel, until_settled, ..Request::default() })
     }
@@ -56,21 +60,21 @@ impl Model {
 /// Those that cannot share their steps with others are run alone.
 fn run_all(models: &[Model], request: &Request) -> Vec<Run> {
     let mut runs: Vec<Option<Run>> = models.iter().map(|_| None).collect();
-    let mut together = Vec::new();
+    let mut batched = Vec::new();
     for (place, model) in models.iter().enumerate() {
         let unit = model.scales.unit();
         match form(model, &clock(model, unit)) {
             Form::Sine(drive) if model.compliant.is_none() && !model.motionless => {
-                together.push(Prepared { model, equation: Equation::new(model, unit), drive, place });
+                batched.push(Prepared { model, equation: Equation::new(model, unit), drive, place });
             }
             _ => runs[place] = Some(model.run(request)),
         }
     }
     // Motions of one order share their steps; tolerances differ only where a sweep is over them.
-    together.sort_by(|a, b| b.model.tolerance.total_cmp(&a.model.tolerance));
-    for alike in together.chunk_by(|a, b| a.model.tolerance == b.model.tolerance) {
-        let watch = crate::system::clock::ThreadClock::start();
-        fly_together(alike, request, &mut runs);
+    batched.sort_by(|a, b| b.model.tolerance.total_cmp(&a.model.tolerance));
+    for alike in batched.chunk_by(|a, b| a.model.tolerance == b.model.tolerance) {
+        let watch = ThreadClock::start();
+        run_batch(alike, request, &mut runs);
         let share = watch.seconds() / alike.len() as f64;
         for own in alike {
             if let Some(run) = &mut runs[own.place] {
@@ -82,26 +86,26 @@ fn run_all(models: &[Model], request: &Request) -> Vec<Run> {
 }
 
 /// Runs models of one tolerance in as many lanes as the processor has.
-fn fly_together(prepared: &[Prepared], request: &Request, runs: &mut [Option<Run>]) {
+fn run_batch(prepared: &[Prepared], request: &Request, runs: &mut [Option<Run>]) {
     if prepared.len() == 1 {
         return; // alone
     }
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         if let Some(wide) = pulp::x86::V4::try_new() {
-            return wide.vectorize(Wide(Bundle::<WIDEST>::new(prepared, request, runs)));
+            return wide.vectorize(Wide(Batch::<WIDEST>::new(prepared, request, runs)));
         }
         if let Some(wide) = pulp::x86::V3::try_new() {
-            return wide.vectorize(Wide(Bundle::<8>::new(prepared, request, runs)));
+            return wide.vectorize(Wide(Batch::<8>::new(prepared, request, runs)));
         }
     }
-    Bundle::<4>::new(prepared, request, runs).run();
+    Batch::<4>::new(prepared, request, runs).run();
 }
 
-/// What is run by instructions that not every processor has. (A type of its own and no closure: a closure's body would
-/// be compiled apart, for every processor.)
+/// What is run by instructions that not every processor has. (A type of its own and no closure: a closure's
+/// body would be compiled apart, for every processor.)
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-struct Wide<'a, 'r, const W: usize>(Bundle<'a, 'r, W>);
+struct Wide<'a, 'r, const W: usize>(Batch<'a, 'r, W>);
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 impl<const W: usize> pulp::NullaryFnOnce for Wide<'_, '_, W> {
@@ -116,11 +120,11 @@ impl<const W: usize> pulp::NullaryFnOnce for Wide<'_, '_, W> {
 /// A lane: a motion, and what it began as.
 struct Lane<'a> {
     index: usize,
-    motion: Box<Flight<'a>>,
+    motion: Box<LaneMotion<'a>>,
     begun: Begun<f64>,
 }
 
-struct Bundle<'a, 'r, const W: usize> {
+struct Batch<'a, 'r, const W: usize> {
     prepared: &'a [Prepared<'a>],
     request: &'a Request<'a>,
     runs: &'r mut [Option<Run>],
@@ -133,7 +137,7 @@ struct Bundle<'a, 'r, const W: usize> {
     tolerance_log2: f64,
 }
 
-impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
+impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     fn new(prepared: &'a [Prepared<'a>], request: &'a Request<'a>, runs: &'r mut [Option<Run>]) -> Self {
         let most = prepared.iter().map(|own| own.equation.most_products()).max().unwrap_or(0);
         let mut bundle = Self {
@@ -149,7 +153,7 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
             tolerance_log2: 0.0,
         };
         for lane in 0..W {
-            bundle.take_up(lane);
+            bundle.start_next(lane);
         }
         if let Some(first) = bundle.lanes.iter().flatten().next() {
             let settings = &first.motion.stepper.settings;
@@ -161,7 +165,7 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
     }
 
     /// Puts the next run into a lane.
-    fn take_up(&mut self, lane: usize) {
+    fn start_next(&mut self, lane: usize) {
         self.lanes[lane] = self.prepared.get(self.next).map(|own| {
             let clock = clock(own.model, own.equation.unit);
             let (model, request) = (own.model, self.request);
@@ -179,7 +183,7 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
             let own = &self.prepared[index];
             self.runs[own.place] = Some(motion.finish(own.model, &begun, outcome));
         }
-        self.take_up(lane);
+        self.start_next(lane);
     }
 
     #[inline(always)]
@@ -187,29 +191,29 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
         let mut rounds = 0;
         loop {
             for lane in 0..W {
-                if !self.columns.flying[lane] {
-                    self.bring_to_flight(lane);
+                if !self.columns.active[lane] {
+                    self.prepare_lane(lane);
                 }
             }
-            if !self.columns.flying.contains(&true) {
+            if !self.columns.active.contains(&true) {
                 return;
             }
             loop {
                 let trial = self.columns.step(&mut self.series, &self.rule, self.order, self.tolerance_log2);
                 rounds += 1;
                 for lane in 0..W {
-                    if trial.taken[lane] & self.columns.kept[lane] {
-                        self.keep(lane, &trial);
+                    if trial.taken[lane] & self.columns.logged[lane] {
+                        self.log_step(lane, &trial);
                     }
                 }
-                if rounds % STRIDE == 0 {
-                    self.look_round();
+                if rounds % BATCH_STEPS == 0 {
+                    self.check_budgets();
                     break;
                 }
-                if trial.landed.contains(&true) {
+                if trial.stopped.contains(&true) {
                     for lane in 0..W {
-                        if trial.landed[lane] {
-                            self.land(lane, &trial);
+                        if trial.stopped[lane] {
+                            self.store(lane, &trial);
                         }
                     }
                     break;
@@ -218,9 +222,9 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
         }
     }
 
-    /// Goes on with a lane by itself until it flies freely, under a force of the shape that the others have, or there is
-    /// nothing more to run.
-    fn bring_to_flight(&mut self, lane: usize) {
+    /// Goes on with the motion of a lane alone until its steps are event-free and its force has the shape
+    /// that the other lanes have, or no run is left.
+    fn prepare_lane(&mut self, lane: usize) {
         while let Some(own) = &mut self.lanes[lane] {
             let left = match own.motion.left() {
                 Ok(left) => left,
@@ -232,8 +236,8 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
             let motion = &mut own.motion;
             if motion.state.contact == Contact::Free
                 && motion.stepper.flies_freely(&motion.state)
-                && motion.has_budget_for(2 * STRIDE)
-                && self.columns.fill(lane, own.index, motion)
+                && motion.has_budget_for(2 * BATCH_STEPS)
+                && self.columns.load(lane, own.index, motion)
             {
                 return;
             }
@@ -243,11 +247,11 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
         }
     }
 
-    /// Gives a lane back to its motion, and takes by it the step on which something may happen.
-    fn land(&mut self, lane: usize, trial: &Trial<W>) {
+    /// Stores a lane back to its motion, which takes the step on which an event is possible.
+    fn store(&mut self, lane: usize, trial: &Trial<W>) {
         let Some(own) = &mut self.lanes[lane] else { return };
         let motion = &mut own.motion;
-        self.columns.land(lane, motion);
+        self.columns.store(lane, motion);
         let left = motion.stepper.clock.between(&motion.state.at, &motion.stepper.end);
         let flow = if trial.holds[lane] && trial.length.0[lane] < left {
             copy_lane(&self.series, lane, self.order, &mut motion.stepper.series);
@@ -264,8 +268,8 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
         }
     }
 
-    /// Keeps the step that a lane has just taken.
-    fn keep(&mut self, lane: usize, trial: &Trial<W>) {
+    /// Logs the step that a lane has just taken.
+    fn log_step(&mut self, lane: usize, trial: &Trial<W>) {
         let Some(own) = &mut self.lanes[lane] else { return };
         let motion = &mut own.motion;
         copy_lane(&self.series, lane, self.order, &mut motion.stepper.series);
@@ -286,25 +290,25 @@ impl<'a, 'r, const W: usize> Bundle<'a, 'r, W> {
         if let Some(log) = &mut motion.log {
             log.add_step(&view);
         }
-        self.columns.follow(lane, motion);
+        self.columns.copy_state(lane, motion);
         motion.mark();
-        self.columns.kept[lane] = motion.log.is_some();
+        self.columns.logged[lane] = motion.log.is_some();
     }
 
-    /// Looks at what is not looked at in flight: whether the run is to go on.
-    fn look_round(&mut self) {
+    /// Checks budgets and the cancel flag.
+    fn check_budgets(&mut self) {
         for lane in 0..W {
             let Some(own) = &mut self.lanes[lane] else { continue };
-            if !self.columns.flying[lane] {
+            if !self.columns.active[lane] {
                 continue;
             }
             let motion = &mut own.motion;
-            self.columns.land(lane, motion);
+            self.columns.store(lane, motion);
             if motion.stepper.work.is_cancelled() {
                 let outcome = Outcome::Cancelled { at: motion.stepper.clock.seconds(&motion.state.at) };
                 self.end(lane, outcome);
-            } else if motion.has_budget_for(2 * STRIDE) {
-                self.columns.fill(lane, own.index, motion);
+            } else if motion.has_budget_for(2 * BATCH_STEPS) {
+                self.columns.load(lane, own.index, motion);
             }
         }
     }

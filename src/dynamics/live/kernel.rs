@@ -1,7 +1,7 @@
-//! What does the integrator need to go on from a step's end, to look into a step, and to stop within one?
+//! Kernel of a live run: continues from a step's end, samples within a step, stops within one.
 //!
-//! Built once for a model; a [`Motion`] is made from it for every call and thrown away. That costs some microseconds
-//! and keeps the integrator free of any thought of being continued.
+//! Built once for a model; a [`Motion`] is made from it for every call and thrown away. That costs some
+//! microseconds and keeps the integrator free of any thought of being continued.
 
 use crate::dynamics::clock::Clock;
 use crate::dynamics::drive::form::{Form, clock, form};
@@ -10,10 +10,10 @@ use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::{Event, Outcome, Request, Sample};
-use crate::dynamics::state::{Checkpoint, Contact};
+use crate::dynamics::state::{Checkpoint, Contact, MotionState};
 
-/// Work of one call, in units of [`work`](crate::dynamics::step::work): some tens of milliseconds. More is only asked for where
-/// impacts crowd without end, or a step takes long.
+/// Work of one call, in units of [`work`](crate::dynamics::step::work): some tens of milliseconds. More is
+/// only asked for where impacts crowd without end, or a step takes long.
 const WORK_PER_CALL: u64 = 2_000_000;
 
 /// Energies in kernel units, per mass.
@@ -85,7 +85,8 @@ impl Kernel {
 
     /// Acceleration of the base in m/s^2.
     pub fn base(&self, carried: &Checkpoint<f64>) -> f64 {
-        with_drive!(self, drive => base_at(drive, &self.clock, carried.state.segment, &carried.state.at, self.unit()))
+        let MotionState { at, segment, .. } = &carried.state;
+        with_drive!(self, drive => base_at(drive, &self.clock, *segment, at, self.unit()))
     }
 
     /// Acceleration of the base in m/s^2 at a time in s.
@@ -220,7 +221,8 @@ impl Kernel {
         into.extend(motion.record.samples);
     }
 
-    /// The state at `now` in s, where that lies between `tail` and `head`, and the energies from the tail to there.
+    /// The state at `now` in s, where that lies between `tail` and `head`, and the energies from the tail to
+    /// there.
     pub fn present(
         &self,
         model: &Model,

@@ -1,13 +1,14 @@
-//! How does a motion go on that is changed while it runs?
+//! Live run: a motion that is changed while it runs.
 //!
-//! A [`Live`] run is the integrator of [`Model::run`] without an end: it steps ahead of the time that it has been
-//! advanced to, and what it hands out never depends on how often it was asked. So a run that is advanced in any
-//! pieces takes the same steps as one that is not, to the bit; a time between two steps is looked at by taking the
-//! last step once more, up to there.
+//! A [`Live`] run is the integrator of [`Model::run`] without an end: it steps ahead of the time that it has
+//! been advanced to, and what it hands out never depends on how often it was asked. So a run that is advanced
+//! in any pieces takes the same steps as one that is not, to the bit; a time between two steps is unit_from
+//! at by taking the last step once more, up to there.
 //!
-//! A change of the model takes effect at the present time: the state is kept as far as the new stops and the new
-//! curve allow, and the drive goes on in phase. Whatever energy a change puts in or takes out by itself (a stop
-//! dragged over the mass, a new potential under it, a mass put elsewhere) is in the ledger as moved by hand.
+//! A change of the model takes effect at the present time: the state is kept as far as the new stops and the
+//! new curve allow, and the drive goes on in phase. Whatever energy a change puts in or takes out by itself
+//! (a stop dragged over the mass, a new potential under it, a mass put elsewhere) is in the ledger as moved
+//! by hand.
 
 mod kernel;
 mod phase;
@@ -33,8 +34,8 @@ pub struct LiveOutput {
     pub events: Vec<Event>,
 }
 
-/// Where the energy of a live run went since it began, in J. `stored` is what is there now less what was there at the
-/// start: work + by hand - damping - impact = stored.
+/// Energy balance of a live run since it began, in J. `stored` is what is there now less what was there at
+/// the start: work + by hand - damping - impact = stored.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LiveLedger {
     /// Work of the base on the mass.
@@ -74,8 +75,8 @@ pub struct Live {
 }
 
 impl Live {
-    /// A run from the model's own start, at time 0. What happens at once (a start pressed on a stop rests) comes
-    /// with the first [`advance`](Self::advance).
+    /// A run from the model's own start, at time 0. What happens at once (a start pressed on a stop rests)
+    /// comes with the first [`advance`](Self::advance).
     pub fn new(model: &Model) -> Self {
         let asked = (model.duration, model.settle);
         let model = without_end(model.clone());
@@ -114,8 +115,8 @@ impl Live {
         self.ended.filter(|outcome| outcome.ended_at().is_some_and(|at| self.now >= at))
     }
 
-    /// Advances to `to` in s and appends what happens on the way: samples at `times`, ascending, later than the
-    /// present and not later than `to`, and the events up to `to`.
+    /// Advances to `to` in s and appends what happens on the way: samples at `times`, ascending, later than
+    /// the present and not later than `to`, and the events up to `to`.
     ///
     /// False where the work of one call was used up or the run ended before `to`; the present time then says
     /// how far it came, and no sample beyond it was made.
@@ -200,9 +201,9 @@ impl Live {
 
     /// From now on the mass moves as `model` says. Its start, duration and settled window do not act.
     ///
-    /// The time goes on, and with it whatever is a function of time (a record, a chirp, a ramp). Tones go on in
-    /// phase also where their frequency changes. The mass keeps its place and speed; a stop that now lies on
-    /// the other side of it carries it along, as the end of the known curve does, and takes its speed.
+    /// The time goes on, and with it whatever is a function of time (a record, a chirp, a ramp). Tones go on
+    /// in phase also where their frequency changes. The mass keeps its place and speed; a stop that now lies
+    /// on the other side of it carries it along, as the end of the known curve does, and takes its speed.
     pub fn change(&mut self, model: &Model, into: &mut LiveOutput) {
         self.shifts = phase::shifts(&self.model, model, &self.shifts, self.now);
         self.asked = (model.duration, model.settle);
@@ -212,8 +213,8 @@ impl Live {
         self.go_on(next, (state.x, state.v), state.phase, into);
     }
 
-    /// Puts the mass to `x` in m with velocity `v` in m/s, as far as the stops let it. What is no number changes nothing,
-    /// nor does a state whose energy is none.
+    /// Puts the mass to `x` in m with velocity `v` in m/s, as far as the stops let it. What is no number
+    /// changes nothing, nor does a state whose energy is none.
     pub fn place(&mut self, x: f64, v: f64, into: &mut LiveOutput) {
         if !(x.is_finite() && v.is_finite()) {
             return;
@@ -259,8 +260,9 @@ impl Live {
         into.samples.push(self.sample(&start));
     }
 
-    /// A model whose run begins at the present state and phase and lasts as long as the scene's own: what will
-    /// become of this motion. None under a ramp, a chirp or a record, which are functions of the time since the start.
+    /// A model whose run begins at the present state and phase and lasts as long as the scene's own: what
+    /// will become of this motion. None under a ramp, a chirp or a record, which are functions of the time
+    /// since the start.
     pub fn from_here(&self) -> Option<Model> {
         let drive = &self.model.excitation;
         let repeats = drive.chirps.is_empty() && drive.records.is_empty();
@@ -278,8 +280,8 @@ impl Live {
 }
 
 impl LiveLedger {
-    /// What is left over: work + by hand - damping - impact - stored in J. Each term is integrated on its own, so it
-    /// is not 0 but as small as the tolerance makes it.
+    /// What is left over: work + by hand - damping - impact - stored in J. Each term is integrated on its
+    /// own, so it is not 0 but as small as the tolerance makes it.
     pub fn residual_j(&self) -> f64 {
         self.work_j + self.by_hand_j - self.damping_j - self.impact_j - self.stored_j
     }
@@ -326,8 +328,8 @@ fn energy(model: &Model, (x, v): (f64, f64)) -> f64 {
     kinetic + potential
 }
 
-/// A state with the mass between the stops, or pressed in by up to `depth`, and within the known curve; where it had to
-/// be carried there, it has no speed.
+/// A state with the mass between the stops, or pressed in by up to `depth`, and within the known curve; where
+/// it had to be carried there, it has no speed.
 fn held_within(model: &Model, (x, v): (f64, f64), depth: f64) -> (f64, f64) {
     let domain = model.mechanism.curve.domain();
     let stops = model.stops;

@@ -1,4 +1,4 @@
-//! How does a drive go on in phase when it is changed?
+//! Phase of a drive that is changed: it goes on without a jump.
 //!
 //! Every tone is amplitude sin(2 pi f t + phase) of one running time, so that nothing has to be done when its
 //! amplitude changes. When its frequency changes at time t, its phase has to grow by (f - f') t turns.
@@ -7,8 +7,9 @@ use crate::dynamics::model::Model;
 use crate::dynamics::model::excitation::{ExcitationParts, TonePart};
 use crate::numeric::{DoubleDouble, Scalar};
 
-/// The turns by which each tone of `new` has to be ahead of its scene from `now` in s on, if those of `old` were ahead by
-/// `shifts`. Tones correspond by their order; a drive with another number of them begins as its scene says.
+/// The turns by which each tone of `new` has to be ahead of its scene from `now` in s on, if those of `old`
+/// were ahead by `shifts`. Tones correspond by their order; a drive with another number of them begins as its
+/// scene says.
 pub(crate) fn shifts(old: &Model, new: &Model, shifts: &[f64], now: f64) -> Vec<f64> {
     let (from, to) = (&old.excitation.tones, &new.excitation.tones);
     if from.len() != to.len() {

@@ -1,24 +1,24 @@
-//! How fast is a motion, and how hard is it pushed? What a picture of it has to have room for.
+//! Characteristic times, accelerations and signal ranges of a model, by which a picture is scaled.
 
 use std::f64::consts::TAU;
 
 use super::Model;
 
-/// What an axis makes room for where nothing shakes, in m/s^2.
+/// Range of an axis of base acceleration without an excitation, in m/s^2.
 const UNSHAKEN: f64 = super::excitation::STANDARD_GRAVITY;
 
 /// Multiple of its root mean square that a noise is given room for; more is rare.
 const NOISE_ROOM: f64 = 2.5;
 
 impl Model {
-    /// A typical time in s in which the motion does something and comes back: the forcing period; without one that of the
-    /// drive's middle frequency; without a drive that of the mechanism, [`swing`](Self::swing).
+    /// Characteristic time of the motion in s: the forcing period; without one the period of the excitation's
+    /// middle frequency; without an excitation the [`natural_time`](Self::natural_time).
     pub fn pace(&self) -> f64 {
         self.forcing_period.or_else(|| self.rhythm()).unwrap_or_else(|| self.swing())
     }
 
-    /// A typical period in s of a drive that has none: of the middle of a noise's band, of the fast end of a chirp, and of
-    /// how often a record passes its mean.
+    /// Characteristic period in s of an excitation that has none: of the middle of a noise's band, of the
+    /// fast end of a chirp, of the mean crossings of a record.
     fn rhythm(&self) -> Option<f64> {
         let drive = &self.excitation;
         let noises = drive.noises.iter().map(|noise| 2.0 / (noise.low + noise.high));
@@ -29,8 +29,8 @@ impl Model {
         all.filter(|time| time.is_finite() && *time > 0.0).reduce(f64::min)
     }
 
-    /// A typical time in s of the mechanism, whatever shakes it: the period of small oscillations in the stiffest well; without
-    /// a stiffness the flight to a stop and back; without both the scene's own time scale.
+    /// Characteristic time of the mechanism in s: the period of small oscillations in the stiffest well;
+    /// without a stiffness twice the time of flight to a stop; without both the scene's time scale.
     pub fn swing(&self) -> f64 {
         let landscape = &self.mechanism.landscape;
         let wells = landscape.equilibria.iter().filter(|own| own.stable);
@@ -43,7 +43,7 @@ impl Model {
             .unwrap_or(TAU * self.scales.time)
     }
 
-    /// The time in s in which the mass would fly from its start to a stop, its acceleration staying as it is there.
+    /// Time of flight in s from the start to a stop under the constant acceleration of the start.
     fn flight(&self) -> Option<f64> {
         let (x, v) = self.start;
         let a = -self.mechanism.curve.force(x) / self.mass;
@@ -57,7 +57,7 @@ impl Model {
         [left, right].into_iter().flatten().filter_map(to).reduce(f64::min)
     }
 
-    /// The largest acceleration of the base in m/s^2 that a picture makes room for.
+    /// Range of the base acceleration in m/s^2.
     pub fn largest_push(&self) -> f64 {
         let drive = &self.excitation;
         let tones = drive.tones.iter().filter(|tone| !tone.noise);
@@ -72,7 +72,8 @@ impl Model {
         drive.constant.abs() + parts.iter().sum::<f64>()
     }
 
-    /// Amplitude in m/s^2 and angular frequency in 1/s of the drive, where it is a single sine and nothing else.
+    /// Amplitude in m/s^2 and angular frequency in 1/s of the drive, where it is a single sine and nothing
+    /// else.
     pub fn single_sine(&self) -> Option<(f64, f64)> {
         let drive = &self.excitation;
         let alone = drive.constant == 0.0 && drive.chirps.is_empty() && drive.records.is_empty();
@@ -84,14 +85,15 @@ impl Model {
         }
     }
 
-    /// Acceleration of the mass in m/s^2 relative to the base while it touches no stop, by the equation of motion
-    /// m a = -F(x) - c v - m a_b, at a displacement in m, a velocity in m/s and an acceleration of the base in m/s^2.
+    /// Acceleration of the mass in m/s^2 relative to the base while it touches no stop, by the equation of
+    /// motion m a = -F(x) - c v - m a_b, at a displacement in m, a velocity in m/s and an acceleration of the
+    /// base in m/s^2.
     pub fn acceleration(&self, x: f64, v: f64, base_accel: f64) -> f64 {
         -(self.mechanism.curve.force(x) + self.damping * v) / self.mass - base_accel
     }
 }
 
-/// Mean time between two passages of a signal through its mean.
+/// Mean time between two crossings of a signal through its mean.
 fn between_passages(times: &[f64], values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     let passages = values.windows(2).filter(|pair| (pair[0] > mean) != (pair[1] > mean)).count();

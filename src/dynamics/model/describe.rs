@@ -1,12 +1,12 @@
-//! What does a scene model, and what does it leave out? In words, for `check`.
+//! Description of a model in words, for `check`.
 
 use crate::dynamics::model::{Model, StopAt};
 use crate::mechanics::Hertz;
 use crate::numeric::short;
 
 impl Model {
-    /// The model in words: a line for each thing that is modelled, then what is left out. The force curve and the
-    /// meaning of a damping ratio are told elsewhere.
+    /// The model in words: a line for each thing that is modelled, then what is left out. The force curve and
+    /// the meaning of a damping ratio are told elsewhere.
     pub fn describe(&self) -> Vec<String> {
         let mut lines = vec![format!("proof mass {} g", short(self.mass * 1e3))];
         let mut absent = Vec::new();
@@ -107,8 +107,9 @@ impl Model {
 /// Impact speeds in m/s at which a compliant stop is described: a gentle one and a hard one of the prototype.
 const SPEEDS: [f64; 2] = [0.1, 0.5];
 
-/// Steps of the integrator in a period of the oscillation on a compliant stop, measured on the prototype at the default
-/// tolerance: at a quiet rest, whose depth follows the drive, and trembling without loss as far as the surface.
+/// Steps of the integrator in a period of the oscillation on a compliant stop, measured on the prototype at
+/// the default tolerance: at a quiet rest, whose depth follows the drive, and trembling without loss as far
+/// as the surface.
 const STEPS_PER_PERIOD: (f64, f64) = (1.5, 36.0);
 
 /// What a compliant stop is, what one impact on it does, and what resting on it costs.
@@ -116,7 +117,8 @@ fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
     let place = |at: Option<f64>| short(at.unwrap_or(f64::NAN) * 1e3);
     let (left, right) = model.stop_positions();
     let mut lines = vec![format!(
-        "compliant stops at {} and {} mm: contact by Hertz, k = {} N/m^1.5, loss by Hunt and Crossley, a = {} s/m",
+        "compliant stops at {} and {} mm: contact by Hertz, k = {} N/m^1.5, loss by Hunt and Crossley, \
+         a = {} s/m",
         place(left),
         place(right),
         short(stop.stiffness),
@@ -147,8 +149,8 @@ fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
         let stiffness = 1.5 * stop.stiffness * depth.sqrt();
         let frequency = (stiffness / model.mass).sqrt() / std::f64::consts::TAU;
         lines.push(format!(
-            "resting on one is an oscillation of {} Hz about a depth of {} um, and it is followed: each second of it takes \
-             some {} steps where it is quiet and up to {} where it trembles",
+            "resting on one is an oscillation of {} Hz about a depth of {} um, and it is followed: each second \
+             of it takes some {} steps where it is quiet and up to {} where it trembles",
             short(frequency),
             short(depth * 1e6),
             short((frequency * STEPS_PER_PERIOD.0).round()),

@@ -1,4 +1,4 @@
-//! How does the base move? The excitation of a scene in SI, flattened.
+//! Excitation of a scene in SI: its parts, which add up.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -140,8 +140,8 @@ impl ExcitationParts {
     }
 
     /// Sines f_k = low + (k + u_k) (high - low)/lines, each of amplitude rms sqrt(2/lines), phases and u_k
-    /// uniform in \[0, 1) from ChaCha8 seeded with `seed`: for each line first u, then the phase, each from the
-    /// upper 53 bits of 64. Stable across versions and machines, the same for any duration.
+    /// uniform in \[0, 1) from ChaCha8 seeded with `seed`: for each line first u, then the phase, each from
+    /// the upper 53 bits of 64. Stable across versions and machines, the same for any duration.
     fn noise(&mut self, noise: NoisePart) {
         let mut random = ChaCha8Rng::seed_from_u64(noise.seed);
         let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;

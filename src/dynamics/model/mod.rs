@@ -69,8 +69,8 @@ impl Model {
                     let c = 2.0 * xi * (k * mass).sqrt();
                     if !c.is_finite() {
                         let problem = format!(
-                            "makes no finite damping coefficient with the stiffness {k:e} N/m of the equilibrium; use \
-                             Coefficient(c_n_s_per_m: ..) instead"
+                            "makes no finite damping coefficient with the stiffness {k:e} N/m of the equilibrium; \
+                             use Coefficient(c_n_s_per_m: ..) instead"
                         );
                         faults.push(fault("damping.xi", xi, problem));
                     }
@@ -150,23 +150,24 @@ impl Model {
         self.stops.map_or((None, None), |pair| (at(pair.left), at(pair.right)))
     }
 
-    /// Kinetic energy and potential in J at a displacement in m and a velocity in m/s; the potential is 0 at x = 0 and
-    /// holds what a compliant stop stores.
+    /// Kinetic energy and potential in J at a displacement in m and a velocity in m/s; the potential is 0 at
+    /// x = 0 and holds what a compliant stop stores.
     pub fn energies(&self, x: f64, v: f64) -> (f64, f64) {
         let potential = self.mechanism.curve.potential(x);
         let pressed = self.compliant.zip(self.pressed_depth(x)).map(|(own, (depth, _))| own.energy(depth));
         (0.5 * self.mass * v * v, pressed.map_or(potential, |stored| potential + stored))
     }
 
-    /// How deep in m a mass at `x` in m has pressed a stop in, and whether that is the right one; none outside both.
+    /// How deep in m a mass at `x` in m has pressed a stop in, and whether that is the right one; none
+    /// outside both.
     pub fn pressed_depth(&self, x: f64) -> Option<(f64, bool)> {
         let (left, right) = self.stop_positions();
         let right = right.map(|stop| (x - stop, true));
         left.map(|stop| (stop - x, false)).into_iter().chain(right).find(|(depth, _)| *depth > 0.0)
     }
 
-    /// Whether the mirror image of a free motion is one, and crosses where the motion does: an odd curve, stops alike on
-    /// both sides.
+    /// Whether the mirror image of a free motion is one, and crosses where the motion does: an odd curve,
+    /// stops alike on both sides.
     pub(crate) fn is_symmetric(&self) -> bool {
         let (left, right) = self.stops.map_or((None, None), |pair| (pair.left, pair.right));
         let alike = match (left, right) {
@@ -208,7 +209,8 @@ impl Model {
         self.rhythm == Rhythm::Periodic
     }
 
-    /// Whether a run may go on until the motion repeats: the drive does, and the settled window holds two periods of it.
+    /// Whether a run may go on until the motion repeats: the drive does, and the settled window holds two
+    /// periods of it.
     pub fn can_settle(&self) -> bool {
         self.repeats() && self.window_periods().0 >= 2
     }

@@ -1,7 +1,7 @@
-//! Relative to what are errors small? One length, one speed, one time for a scene.
+//! Scales of a scene: the length, speed and time that the tolerance is relative to.
 //!
-//! The rule, covariant under a change of units; from mechanism, drive and start alone, since a stop that is never reached
-//! must not change a bit:
+//! The rule, covariant under a change of units; from mechanism, drive and start alone, since a stop that is
+//! never reached must not change a bit:
 //!
 //! - rate w: the square root of the largest stiffness magnitude over mass among the wells' inner sides and
 //!   the barrier (one well: at it; none: at the start); without stiffness the drive's fastest tone;
@@ -9,15 +9,15 @@
 //!   beyond a kink is the slope just inside the kink, as for a damping ratio: flexures rest some um beyond
 //!   theirs, where the force is a wall of 30 times the stiffness, and nothing here may jump while a slider
 //!   moves the well across;
-//! - length L: the largest of half the distance between the wells, the start's distance from the
-//!   barrier (or the single equilibrium, or 0), start speed over w, and the sum over the parts of
-//!   the drive of amplitude over w and the larger of w and the part's own rate (a fast part moves the mass that
-//!   far, by its first kick);
+//! - length L: the largest of half the distance between the wells, the start's distance from the barrier (or
+//!   the single equilibrium, or 0), start speed over w, and the sum over the parts of the drive of amplitude
+//!   over w and the larger of w and the part's own rate (a fast part moves the mass that far, by its first
+//!   kick);
 //! - speed L w, time 1/w.
 //!
-//! Two stops that leave the mass less than a hundredth of L bound it more than all that: the mass is soon at one of them,
-//! or it rests. L then falls with that room, and is the room itself where it is a ten-thousandth of L; w rises to the rate
-//! at which drive and start speed move the mass as far.
+//! Two stops that leave the mass less than a hundredth of L bound it more than all that: the mass is soon at
+//! one of them, or it rests. L then falls with that room, and is the room itself where it is a ten-thousandth
+//! of L; w rises to the rate at which drive and start speed move the mass as far.
 
 use super::excitation::ExcitationParts;
 use super::stops::StopPair;
@@ -33,18 +33,18 @@ pub struct Scales {
     pub speed: f64,
     /// Time in s.
     pub time: f64,
-    /// The longest step of the integrator in s, at a high order and at a low one: some radians of the rate; where nothing
-    /// sets a rate, the run.
+    /// The longest step of the integrator in s, at a high order and at a low one: some radians of the rate;
+    /// where nothing sets a rate, the run.
     pub(crate) longest_step: (f64, f64),
 }
 
-/// The longest step in units of the time scale. Only a motion far smaller than the length would let a step be longer, since
-/// the tolerance is relative to that. At high orders what is lost then is rounding; at lower ones a step is short enough for
-/// the series of an oscillation to hold to its own size (at order 16 to 3^17/17! = 4e-7), so that small motions are as true
-/// as others, and no noise of the size of the tolerance.
+/// The longest step in units of the time scale. Only a motion far smaller than the length would let a step be
+/// longer, since the tolerance is relative to that. At high orders what is lost then is rounding; at lower
+/// ones a step is short enough for the series of an oscillation to hold to its own size (at order 16 to
+/// 3^17/17! = 4e-7), so that small motions are as true as others, and no noise of the size of the tolerance.
 const LONGEST_STEP: (f64, f64) = (8.0, 3.0);
 
-/// How many times as large as the room between the stops the length is at most.
+/// The largest ratio of the length to the room between the stops.
 const FAR: f64 = 100.0;
 
 /// What the rule looks at. All SI, magnitudes.
@@ -122,7 +122,7 @@ impl Scales {
     }
 }
 
-/// Those of a scene.
+/// The scales of a scene.
 pub(crate) fn scales(
     scene: &Scene,
     mass: f64,

@@ -1,4 +1,4 @@
-//! State at which a run begins: checked, and in SI.
+//! State at which a run begins.
 
 use super::stops::StopPair;
 use crate::mechanics::{Hertz, Mechanism};
@@ -63,9 +63,9 @@ pub(crate) fn start_state(
     }
 }
 
-/// Where a mass rests that the mechanism presses on the compliant stop at `surface` towards the equilibrium at
-/// `equilibrium` beyond it, in m: where the stop's force is the mechanism's. The two meet between the surface, where the
-/// mechanism alone presses, and the equilibrium, where it does not.
+/// Where a mass rests that the mechanism presses on the compliant stop at `surface` towards the equilibrium
+/// at `equilibrium` beyond it, in m: where the stop's force is the mechanism's. The two meet between the
+/// surface, where the mechanism alone presses, and the equilibrium, where it does not.
 fn pressed_in(mechanism: &Mechanism, hertz: &Hertz, surface: f64, equilibrium: f64) -> f64 {
     let sign = (equilibrium - surface).signum();
     let pressed = |depth: f64| -sign * mechanism.curve.force(surface + sign * depth);

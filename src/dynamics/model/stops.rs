@@ -17,7 +17,7 @@ pub(crate) struct StopAt {
 }
 
 impl StopPair {
-    /// Those of a scene; none where it has no stops.
+    /// The stops of a scene; none where it has none.
     pub fn of(stops: &Stops) -> Option<Self> {
         let at = |mm: f64, sign: f64, restitution: f64| Some(StopAt { x: sign * (mm / 1e3), restitution });
         match *stops {

@@ -9,18 +9,19 @@ use crate::dynamics::step::path::{Path, StepView};
 use crate::numeric::Scalar;
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
-    /// Takes in the passages of the top within a step that starts `gap` to the right of it and ends on `end_side`.
+    /// Records the crossings of the barrier within a step that starts `gap` to the right of it and ends on
+    /// `end_side`.
     pub fn crossings<P: Path<T>>(&mut self, step: &StepView<T, P>, gap: T, end_side: i8) {
         let mut g = step.path.scaled(step.whole);
         g[0] = gap;
-        let Some(passages) = StepCrossings::new(&mut g[..step.path.known()], self.barrier_side, end_side)
+        let Some(crossings) = StepCrossings::new(&mut g[..step.path.known()], self.barrier_side, end_side)
         else {
             return;
         };
-        self.barrier_side = passages.from;
+        self.barrier_side = crossings.from;
         if !self.instants_matter(step) {
-            let count = passages.count();
-            self.barrier_side = passages.side_after(count);
+            let count = crossings.count();
+            self.barrier_side = crossings.side_after(count);
             self.counts.total_crossings += count as u64;
             if self.in_window(&step.at) {
                 self.counts.crossings += count as u64;
@@ -28,8 +29,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             return;
         }
         let mut found = [T::zero(); ROOM];
-        let mut count = passages.at_once;
-        passages.roots.each_sign_change(|s| {
+        let mut count = crossings.at_once;
+        crossings.roots.each_sign_change(|s| {
             let t = s * step.whole;
             if t > step.length || count == found.len() {
                 return false;
@@ -41,13 +42,14 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         if count == 0 {
             found[0] = step.length;
         }
-        for t in &found[..passages.settle(count)] {
+        for t in &found[..crossings.settle(count)] {
             self.crossing(step, *t);
         }
     }
 
-    /// Whether it must be known when within the step a crossing happens, not only that it does: events list it, and
-    /// so does what tells the regime; a step cut short or near an end of the window may hold a crossing beyond it.
+    /// Whether the instants of crossings within the step are needed, not only their number: for the list of
+    /// events, for the regime, and on a step cut short or near an end of the window, which may hold a
+    /// crossing beyond it.
     fn instants_matter<P: Path<T>>(&self, step: &StepView<T, P>) -> bool {
         // By two lengths: more than rounding can hide.
         let clear = |border: &Instant<T>| {

@@ -1,14 +1,14 @@
-//! What of a record changes on event-free steps.
+//! Recording of event-free steps.
 
 use super::recorder::Recorder;
 use crate::dynamics::clock::Instant;
 use crate::numeric::{CompensatedSum, GaussLegendre, Scalar};
 
-/// Share of the clock's cycle that a step on which nothing happens stays before the next border: more than rounding can
+/// Share of the clock's cycle by which an event-free step ends before the next border: more than rounding can
 /// hide.
 pub(crate) const MARGIN: f64 = 1e-9;
 
-/// What changes in a record while nothing happens, and up to when that may go on.
+/// The part of a record that event-free steps change, and the instant up to which they may be taken.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EventFree<T> {
     /// The end of the run, a border of the settled window or a strobe, whichever comes first.
@@ -17,7 +17,7 @@ pub(crate) struct EventFree<T> {
     pub inside: bool,
     /// Whether the instant of every crossing matters.
     pub listed: bool,
-    /// The top that crossings are counted at, and the side of it.
+    /// The barrier that crossings are counted at, and the side of it.
     pub barrier: Option<T>,
     pub side: i8,
     pub low: T,
@@ -27,13 +27,13 @@ pub(crate) struct EventFree<T> {
 }
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
-    /// Whether it need not be told of steps on which nothing happens: no samples are taken.
+    /// Whether event-free steps need not be recorded one by one: no samples are left to take.
     #[inline]
-    pub fn is_quiet(&self) -> bool {
+    pub fn needs_no_samples(&self) -> bool {
         self.next_time >= self.times.len()
     }
 
-    /// What it is to be told of steps after `at` on which nothing happens, up to `end`.
+    /// Begins a row of event-free steps at `at`, up to `end` at the latest.
     pub fn begin_event_free(&self, at: &Instant<T>, end: &Instant<T>) -> EventFree<T> {
         let until = |border: &Instant<T>| self.clock.between(at, border);
         let (from, to) = (&self.window.0, &self.window.1);
@@ -58,7 +58,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         }
     }
 
-    /// Takes in what such steps have changed.
+    /// Ends the row: takes over what its steps have changed.
     pub fn end_event_free(
         &mut self,
         (low, high): (T, T),
@@ -70,13 +70,13 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         self.covered = covered;
     }
 
-    /// The same of passages of the top before the settled window, and on which side they have led.
+    /// The same of crossings of the barrier before the settled window, and the side after them.
     pub fn end_event_free_crossings(&mut self, side: i8, count: u64) {
         self.barrier_side = side;
         self.counts.total_crossings += count;
     }
 
-    /// What integrals over a step are taken with.
+    /// Quadrature rule for integrals over a full step.
     pub fn rule_of_steps(&self) -> &'static GaussLegendre<T> {
         T::gauss_legendre(self.order / 2 + 1)
     }

@@ -9,8 +9,8 @@ use crate::numeric::Scalar;
 /// A recorder call other than a step. Velocities are signed, in kernel units.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Call<T> {
-    /// The mass stands still in this state (at rest on a stop, in an equilibrium, or in the last, unresolved bounces
-    /// of a chatter: with phase free, and with the speed at its first instant).
+    /// The mass stands still in this state (at rest on a stop, in an equilibrium, or in the last, unresolved
+    /// bounces of a chatter: with phase free, and with the speed at its first instant).
     Stand {
         at: Instant<T>,
         until: Instant<T>,
@@ -75,7 +75,7 @@ impl<T: Scalar> Call<T> {
 }
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
-    /// Takes in what happened; `base` is the acceleration of the base in m/s^2.
+    /// Records a call; `base` is the acceleration of the base in m/s^2.
     pub fn tell(&mut self, told: &Call<T>, base: impl FnMut(&Instant<T>) -> f64) {
         match told {
             Call::Stand { at, until, state, phase } => self.stand(at, until, *state, *phase, base),
@@ -144,8 +144,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         self.event(at, EventKind::Impact, side, v_in.to_f64() / self.unit, v_out.to_f64() / self.unit);
     }
 
-    /// The mass touches a compliant stop with this signed velocity in kernel units. `strikes`: it came from outside, and
-    /// does not stand there from the start.
+    /// The mass touches a compliant stop with this signed velocity in kernel units. `strikes`: it came from
+    /// outside, and does not stand there from the start.
     pub fn touch(&mut self, at: &Instant<T>, side: Side, v: T, strikes: bool) {
         if strikes {
             self.counts.total_impacts += 1;

@@ -1,4 +1,4 @@
-//! Laps that are added by multiplication.
+//! Laps of a recurrent motion, added to sums and counts by multiplication.
 
 use super::recorder::Recorder;
 use super::sums::{Counts, Sums};
@@ -34,8 +34,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         }
     }
 
-    /// Whether the time from `start` to `end` lies wholly inside the settled window, or wholly outside; none where it
-    /// does neither, or ends within rounding of a border.
+    /// Whether the time from `start` to `end` lies wholly inside the settled window, or wholly outside; none
+    /// where it does neither, or ends within rounding of a border.
     pub fn lies_inside(&self, start: &Instant<T>, end: &Instant<T>) -> Option<bool> {
         let clear = self.clock.period() * T::of(CLEAR);
         let (from, to) = &self.window;
@@ -73,8 +73,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         self.next_strobe = totals.next_strobe;
     }
 
-    /// Takes in `laps` more laps of `cycles` cycles of the clock, each like the one that led from `before` to `after`, the
-    /// present; all of them inside or all of them outside the window.
+    /// Adds `laps` more laps of `cycles` cycles of the clock, each like the one that led from `before` to
+    /// `after`, the present; all of them inside or all of them outside the window.
     pub fn repeat(&mut self, before: &Totals<T>, after: &Totals<T>, laps: i64, cycles: i64) {
         let times = T::of(laps as f64);
         let more = |sum: &mut CompensatedSum<T>, before: &CompensatedSum<T>, after: &CompensatedSum<T>| {

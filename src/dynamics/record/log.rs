@@ -11,7 +11,7 @@ use crate::dynamics::state::{Checkpoint, Label, MotionState};
 use crate::dynamics::step::path::{InTime, Path, StepView};
 use crate::numeric::{GaussLegendre, Scalar};
 
-/// A motion of more entries than this is not kept: a cycle that long would hardly fit into a run twice.
+/// The most entries of a log: a motion whose period has more would hardly repeat within a run.
 const MOST_ENTRIES: usize = 1 << 15;
 
 /// One recorder call, kept for replay.
@@ -32,7 +32,7 @@ struct Kept<T: Copy> {
     limits: (T, T),
     x: T,
     v: T,
-    /// Where the coefficients begin, and how many are of the displacement and of the base.
+    /// Where its coefficients begin, and the numbers of those of the displacement and of the base.
     first: usize,
     known: usize,
     base: usize,
@@ -69,7 +69,7 @@ impl<T: Scalar> InTime for KeptPath<'_, T> {
     }
 }
 
-/// Where the motion stood before it went on by a step or a rest.
+/// A checkpoint of the motion before a step or a rest.
 #[derive(Debug, Clone, Copy)]
 struct Mark<T> {
     point: Checkpoint<T>,
@@ -89,7 +89,7 @@ pub(crate) struct Log<T: Copy> {
     labels: Vec<(Label<T>, usize, Totals<T>)>,
 }
 
-/// Turns one cycle of a log into another: later by whole cycles of the clock.
+/// A shift in time by whole cycles of the clock.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Later(pub i64);
 
@@ -158,7 +158,7 @@ impl<T: Scalar> Log<T> {
         self.labels.push((label, self.marks.len(), totals));
     }
 
-    /// The release among those kept that `wanted` says yes to: the index of its mark, and the totals of then.
+    /// The first logged release that is `wanted`: the index of its mark, and the totals at that time.
     pub fn find(&self, wanted: impl Fn(&Label<T>) -> bool) -> Option<(usize, Totals<T>)> {
         self.labels.iter().find(|(label, ..)| wanted(label)).map(|(_, mark, totals)| (*mark, *totals))
     }
@@ -186,8 +186,7 @@ impl<T: Scalar> Log<T> {
         Checkpoint { state, barrier_side }
     }
 
-    /// Tells the recorder once more what it was told between two marks (to the end without a second), `later`; how many
-    /// entries those are.
+    /// Replays the recorder calls between two marks (to the end without a second), `later`; their number.
     pub fn play<const LEDGER: bool>(
         &self,
         record: &mut Recorder<T, LEDGER>,
@@ -227,8 +226,8 @@ impl<T: Scalar> Log<T> {
         entries.len()
     }
 
-    /// Appends the mirror image of everything from mark `first` on, later by half a cycle of the clock and `cycles`
-    /// whole ones; `modes` is their number.
+    /// Appends the mirror image of everything from mark `first` on, later by half a cycle of the clock and
+    /// `cycles` whole ones; `modes` is their number.
     pub fn append_mirrored(&mut self, first: usize, cycles: i64, modes: usize, clock: &Clock<T>) {
         let half = clock.period() * T::of(0.5);
         let instant = |at: &Instant<T>| {

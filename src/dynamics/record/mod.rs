@@ -1,4 +1,4 @@
-//! Record: what of a run is kept, and what comes out of it. Nothing here acts on the motion.
+//! Record of a run: samples, events, statistics, ledger. Nothing here acts on the motion.
 
 pub(crate) mod barrier;
 mod crossings;

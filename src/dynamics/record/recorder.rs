@@ -1,4 +1,4 @@
-//! What of a run is kept: samples, events, statistics, ledger. Nothing here acts on the motion.
+//! The recorder: samples, events, sums and counts of a run.
 
 use std::sync::atomic::AtomicBool;
 
@@ -10,8 +10,8 @@ use crate::dynamics::model::Model;
 use crate::dynamics::result::{Event, EventKind, Request, Sample, Side};
 use crate::numeric::{CompensatedSum, Scalar};
 
-/// The most stroboscopic states that are told one by one: some tenths of a second of one core, and more than a run makes
-/// whose steps are shorter than a forcing period. What comes after them is not judged.
+/// The most stroboscopic states that are recorded one by one: some tenths of a second of one core, and more
+/// than a run makes whose steps are shorter than a forcing period. Later ones are not judged.
 pub(crate) const MOST_STROBES: u32 = 1 << 22;
 
 pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
@@ -21,10 +21,10 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub times: &'a [f64],
     pub next_time: usize,
     pub cancel: Option<&'a AtomicBool>,
-    /// Samples between two looks at that, and since the last.
+    /// Samples between two checks of the cancel flag, and since the last.
     pub samples_per_look: u64,
     pub samples_since_look: u64,
-    /// Samples were left out since the run is told to stop.
+    /// Samples were left out since the run was cancelled.
     pub cut_short: bool,
     pub samples: Vec<Sample>,
     pub events: Option<Vec<Event>>,
@@ -49,7 +49,7 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub next_strobe: Option<Instant<T>>,
     /// Cycles of the clock in a forcing period.
     pub period_cycles: i64,
-    /// How many stroboscopic states may still be told one by one.
+    /// How many stroboscopic states may still be recorded one by one.
     pub strobes_left: u32,
     /// Forcing periods in the window.
     pub periods: u64,

@@ -4,8 +4,9 @@ use super::repeats::{Crossings, Strobe, Strobes};
 use crate::dynamics::model::excitation::Rhythm;
 use crate::dynamics::result::{First, Firsts, Side};
 
-/// Forcing periods of a run before irregular motion may be called settled. Without stops the prototype moves without
-/// a period for up to 180 of them before it finds one, and nothing in such a transient tells that it will end.
+/// Forcing periods of a run before irregular motion may be called settled. Without stops the prototype moves
+/// without a period for up to 180 of them before it finds one, and nothing in such a transient tells that it
+/// will end.
 const OLD_ENOUGH: u64 = 200;
 
 /// Forcing periods of a window whose halves can be compared.
@@ -14,7 +15,7 @@ const ENOUGH_TO_COMPARE: u64 = 8;
 /// Two halves agree where their means differ by at most so many standard errors.
 const STANDARD_ERRORS: f64 = 3.0;
 
-/// What a lap of a motion that comes back has told, kept to be told again.
+/// An observation of the judge, kept for replay.
 #[derive(Debug, Clone, Copy)]
 enum Call {
     Strobe(Strobe),
@@ -67,8 +68,8 @@ impl PeriodsWith {
     }
 }
 
-/// What is kept of a run to judge it. Times are in forcing periods since the first stroboscopic state, which is the first
-/// instant of the run at the window's phase, unless said otherwise.
+/// The data by which a run is judged. Times are in forcing periods since the first stroboscopic state, which
+/// is the first instant of the run at the window's phase, unless said otherwise.
 #[derive(Debug, Clone)]
 pub(crate) struct Judge {
     rhythm: Rhythm,
@@ -92,7 +93,8 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    /// Of a settled window of so many forcing periods, which begins with the stroboscopic state number `from`.
+    /// Of a settled window of so many forcing periods, which begins with the stroboscopic state number
+    /// `from`.
     pub fn new(rhythm: Rhythm, scales: (f64, f64), periods: u64, from: u64) -> Self {
         Self {
             rhythm,
@@ -112,8 +114,8 @@ impl Judge {
         }
     }
 
-    /// Whether the instants of crossings outside the window matter too: of a drive that changes what happened first is
-    /// told.
+    /// Whether the instants of crossings outside the window matter too: under a drive that changes the first
+    /// ones are reported.
     pub fn times_all_crossings(&self) -> bool {
         self.rhythm == Rhythm::Changing
     }
@@ -124,7 +126,8 @@ impl Judge {
         }
     }
 
-    /// A stroboscopic state; the integral of the squared velocity and the number of crossings since the window's begin.
+    /// A stroboscopic state; the integral of the squared velocity and the number of crossings since the
+    /// window's begin.
     pub fn strobe(&mut self, state: Strobe, squared_velocity: f64, crossings: u64) {
         self.keep(Call::Strobe(state));
         let number = self.strobes.seen();
@@ -176,17 +179,17 @@ impl Judge {
         (inside >= 0.0 && inside < self.periods as f64).then_some(inside)
     }
 
-    /// Keeps from now on what is told, to tell it again.
+    /// Begins to keep the observations for replay.
     pub fn begin_tape(&mut self) {
         self.tape = Some(Vec::new());
     }
 
-    /// Keeps no more.
+    /// Ends keeping them.
     pub fn end_tape(&mut self) {
         self.tape = None;
     }
 
-    /// How much has been kept.
+    /// The number of observations kept.
     pub fn taped(&self) -> usize {
         self.tape.as_ref().map_or(0, Vec::len)
     }
@@ -196,7 +199,7 @@ impl Judge {
         self.recurs_since.get_or_insert(since);
     }
 
-    /// Takes in `laps` more laps like the one that was kept between these two places, each of so many forcing periods.
+    /// Adds `laps` more laps like the one kept between these two indices, each of so many forcing periods.
     pub fn repeat(&mut self, from: usize, to: usize, laps: u64, periods: u64) {
         let Some(tape) = self.tape.take() else { return };
         // As many laps as any judgement looks back, and one more to see what each of them adds.
@@ -229,7 +232,8 @@ impl Judge {
         self.tape = Some(tape);
     }
 
-    /// Takes in `more` stroboscopic states like each of the last ones, none of them on another side of a border of the window.
+    /// Adds `more` stroboscopic states equal to the last one, none of them beyond the next border of the
+    /// window.
     pub fn skip_still(&mut self, more: u64) {
         self.strobes.skip(more, 1);
     }
@@ -239,8 +243,8 @@ impl Judge {
         self.period().is_some() || self.crossings.repeat()
     }
 
-    /// The smallest number of forcing periods, at most 12 and half the window, after which all stroboscopic states of the
-    /// window repeat, and the number of the state since which they have.
+    /// The smallest number of forcing periods, at most 12 and half the window, after which all stroboscopic
+    /// states of the window repeat, and the number of the state since which they have.
     fn repeats(&self) -> Option<(u32, u64)> {
         self.strobes.period().filter(|_| self.rhythm == Rhythm::Periodic)
     }
@@ -256,7 +260,8 @@ impl Judge {
         self.recurs_since.is_some() || self.period().is_some_and(steady)
     }
 
-    /// Whether the motion has settled, where the drive is such that this can be said; `moved` in the window at all.
+    /// Whether the motion has settled, where the drive is such that this can be said; `moved` in the window
+    /// at all.
     pub fn settled(&self, moved: bool) -> Option<bool> {
         match self.rhythm {
             Rhythm::Changing => None,
@@ -265,7 +270,7 @@ impl Judge {
         }
     }
 
-    /// Whether it is irregular for good, as far as can be told: old, and both halves of the window alike.
+    /// Whether it is irregular and stationary: old enough, and both halves of the window agree.
     fn is_stationary(&self) -> bool {
         self.strobes.seen() >= OLD_ENOUGH
             && self.period().is_none()

@@ -1,6 +1,7 @@
 //! Repetition of a motion: of its stroboscopic states and of its crossings, judged as they come.
 //!
-//! Nothing of the past is kept beyond the last twelve forcing periods, so a window may be as long as it likes.
+//! Nothing of the past is kept beyond the last twelve forcing periods, so a window may be as long as it
+//! likes.
 
 use std::collections::VecDeque;
 
@@ -35,7 +36,7 @@ impl Strobe {
 pub(crate) struct Strobes {
     /// Length and speed that states are compared by.
     scales: (f64, f64),
-    /// After how many states at most they may have come back.
+    /// The longest period that is unit_from for.
     longest: usize,
     seen: u64,
     /// The last of them, each at its number modulo [`LONGEST`].
@@ -48,14 +49,14 @@ pub(crate) struct Strobes {
 }
 
 impl Strobes {
-    /// Of a settled window of so many `periods` that begins with the state number `from`. A period is only accepted if the
-    /// window holds it twice.
+    /// Of a settled window of so many `periods` that begins with the state number `from`. A period is only
+    /// accepted if the window holds it twice.
     pub fn new(scales: (f64, f64), periods: u64, from: u64) -> Self {
         let (recent, longest) = ([Strobe::default(); LONGEST], LONGEST.min((periods / 2) as usize));
         Self { scales, longest, seen: 0, recent, since: [0; LONGEST], opening: Vec::new(), from }
     }
 
-    /// How many have been told.
+    /// The number of states so far.
     pub fn seen(&self) -> u64 {
         self.seen
     }
@@ -75,8 +76,8 @@ impl Strobes {
         self.seen += 1;
     }
 
-    /// Takes in `more` states of a motion that repeats exactly after every `lap` states, which divides `more`, and has
-    /// done so for twice as many states as are looked back at and four laps.
+    /// Adds `more` states of a motion that repeats exactly after every `lap` states, which divides `more`,
+    /// and has done so for twice as many states as are unit_from back at and four laps.
     pub fn skip(&mut self, more: u64, lap: u64) {
         for since in &mut self.since {
             // one that has not come back lately will not either
@@ -88,13 +89,13 @@ impl Strobes {
         self.seen += more;
     }
 
-    /// After how many states at most they may have come back.
+    /// The longest period that is unit_from for.
     pub fn longest(&self) -> usize {
         self.longest
     }
 
-    /// The smallest number of states after which all states of the window have come back, and the number of the state since
-    /// which they have.
+    /// The smallest number of states after which all states of the window have come back, and the number of
+    /// the state since which they have.
     pub fn period(&self) -> Option<(u32, u64)> {
         (1..=self.longest as u64).find_map(|q| {
             let since = self.since[q as usize - 1];
@@ -102,8 +103,8 @@ impl Strobes {
         })
     }
 
-    /// Whether the last states of the window are still where its first ones were, which a slow drift leaves although
-    /// neighbours agree.
+    /// Whether the last states of the window are still where its first ones were, which a slow drift leaves
+    /// although neighbours agree.
     pub fn is_steady(&self, period: u32) -> bool {
         let q = u64::from(period);
         (self.seen.saturating_sub(q)..self.seen).all(|number| {
@@ -125,18 +126,20 @@ impl Strobes {
 pub(crate) struct Crossings {
     /// Forcing periods in the window.
     periods: f64,
-    /// Those that may still wait for a partner: time in forcing periods since the window's start, and the well entered.
+    /// Those that may still wait for a partner: time in forcing periods since the window's start, and the
+    /// well entered.
     recent: VecDeque<(f64, Side)>,
     /// Crossings before the first of `recent`.
     gone: u64,
-    /// For each number of periods the first crossing without a partner so many periods later; none where one was missed.
+    /// For each number of periods the first crossing without a partner so many periods later; none where one
+    /// was missed.
     waiting: [Option<u64>; LONGEST],
     paired: [bool; LONGEST],
 }
 
 impl Crossings {
-    /// A window of so many forcing periods. A period is only accepted if the window holds it twice, so that every crossing
-    /// has a partner to be compared with.
+    /// A window of so many forcing periods. A period is only accepted if the window holds it twice, so that
+    /// every crossing has a partner to be compared with.
     pub fn new(periods: u64) -> Self {
         let waiting = std::array::from_fn(|own| (2 * (own as u64 + 1) <= periods).then_some(0));
         let paired = [false; LONGEST];
@@ -168,8 +171,8 @@ impl Crossings {
         }
     }
 
-    /// Takes in whole repetitions that last `periods` in all, of a motion that has repeated exactly for as long as a period
-    /// is looked for, and once more.
+    /// Adds whole repetitions that last `periods` in all, of a motion that has repeated exactly for as long
+    /// as a period is unit_from for, and once more.
     pub fn skip(&mut self, periods: f64) {
         for crossing in &mut self.recent {
             crossing.0 += periods;

@@ -13,15 +13,15 @@ use crate::dynamics::step::penetration::Penetration;
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
-    /// What integrals over a step are taken with: half as many points as a full series has coefficients, and no more than
-    /// a shorter one needs.
+    /// What integrals over a step are taken with: half as many points as a full series has coefficients, and
+    /// no more than a shorter one needs.
     #[inline]
     fn rule_of<P: Path<T>>(&self, path: &P) -> &'static GaussLegendre<T> {
         let points = self.order / 2 + 1;
         T::gauss_legendre(if P::IN_CONTACT { points } else { points.min(path.known() - 1) })
     }
 
-    /// Takes in a step of free flight, or of contact with a compliant stop.
+    /// Records a step of free flight, or of contact with a compliant stop.
     #[inline]
     pub fn step<P: Path<T>>(&mut self, step: &StepView<T, P>, mut base: impl FnMut(&Instant<T>) -> f64) {
         let overlap = self.overlap(&step.at, step.duration);
@@ -41,7 +41,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             }
         }
         if let Some((begin, end)) = overlap {
-            // (a time of contact is inverted to half its digits, which the ends of a whole step need not suffer)
+            // (a time of contact is inverted to half its digits, which the ends of a whole step need not
+            // suffer)
             let (from, to) = match full {
                 true => (T::zero(), step.length),
                 false => (step.path.parameter(begin, step.length), step.path.parameter(end, step.length)),
@@ -89,8 +90,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         }
     }
 
-    /// The time in s of the next sample, where it comes before `end`. A single step, or a rest, may hold all that there are,
-    /// each with the sum of a drive's tones: once the run is told to stop there are no more.
+    /// The time in s of the next sample, where it comes before `end`. A single step, or a rest, may hold all
+    /// that there are, each with the sum of a drive's tones: once the run is cancelled there are no more.
     pub fn next_sample(&mut self, end: f64) -> Option<f64> {
         let next = self.times.get(self.next_time).copied().filter(|t| *t < end)?;
         self.samples_since_look += 1;
@@ -111,7 +112,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             false => (step.x_at(from), step.x_at(to)),
         };
         let endless = T::of(f64::INFINITY);
-        let mut chord = Chord { start: first, end: last, bound: endless, bend: endless, limits: step.limits };
+        let mut chord =
+            Chord { start: first, end: last, bound: endless, deviation: endless, limits: step.limits };
         chord.bound = if full { step.bound } else { step.bound + step.bound };
         let (low, high, mut turns) = chord.extremes((self.low, self.high));
         if turns
@@ -119,7 +121,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             && step.length == step.whole
             && let Some((y, _)) = step.path.in_time()
         {
-            chord.bend = polynomial::chord_deviation(y, step.length);
+            chord.deviation = polynomial::chord_deviation(y, step.length);
             (_, _, turns) = chord.extremes((low, high));
         }
         (self.low, self.high) = (low, high);
@@ -131,7 +133,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 *slot = scaled[k] * T::whole(k);
             }
             if slope[0] < T::zero() {
-                // a value of 0 counts as negative: the mirrored motion must be told the same
+                // a value of 0 counts as negative: the mirrored motion must give the same
                 slope[..n - 1].iter_mut().for_each(|c| *c = -*c);
             }
             PolynomialRoots::new(&slope[..n - 1]).each_sign_change(|s| {
@@ -146,7 +148,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         }
     }
 
-    /// What a compliant stop took and how hard it was pressed, over a step in contact that has been taken in.
+    /// Records what a compliant stop dissipated, and its largest force, over a step of contact that has been
+    /// recorded.
     pub fn contact(&mut self, step: &StepView<T, Penetration<T>>) {
         if LEDGER {
             let rule = self.rule_of(step.path);

@@ -1,4 +1,4 @@
-//! What comes out of a record: the statistics, the regime and the energy ledger.
+//! Summary of a record: statistics, regime and energy ledger.
 
 use super::recorder::Recorder;
 use crate::dynamics::clock::Instant;

@@ -1,4 +1,4 @@
-//! Sums and counts of a record, and what they become with more laps of the same.
+//! Sums and counts of a record.
 
 use crate::numeric::{CompensatedSum, Scalar};
 

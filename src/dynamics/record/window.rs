@@ -1,4 +1,5 @@
-//! The settled window of a record: its borders, the stroboscopic states within and before it, and the next one.
+//! The settled window of a record: its borders, the stroboscopic states within and before it, and the next
+//! one.
 
 use super::recorder::Recorder;
 use super::repeats::Strobe;
@@ -7,8 +8,8 @@ use crate::dynamics::clock::Instant;
 use crate::dynamics::step::path::{Path, StepView};
 use crate::numeric::{CompensatedSum, Scalar};
 
-/// Stroboscopic states of a mass that stands still that are told one by one before some are passed over: more than a
-/// period is looked for.
+/// Stroboscopic states of a mass at rest that are recorded one by one before some are skipped: more than the
+/// longest period that is unit_from for.
 pub(crate) const STILL: u32 = 32;
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
@@ -36,8 +37,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         self.judge.strobe(state, self.settled.squared_velocity.value().to_f64(), self.counts.crossings);
     }
 
-    /// Passes over stroboscopic states of a mass that stands still up to `until`, all like the last ones, but for some
-    /// before the next border of the window.
+    /// Passes over stroboscopic states of a mass that stands still up to `until`, all like the last ones, but
+    /// for some before the next border of the window.
     pub(crate) fn skip_strobes(&mut self, until: &Instant<T>) {
         let Some(strobe) = &mut self.next_strobe else { return };
         let left = |border: &Instant<T>| {
@@ -90,8 +91,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         self.window.1
     }
 
-    /// The settled window begins anew at its end, where the run stands; where the new one ends, if that is not after
-    /// `until` in s and can be judged.
+    /// The settled window begins anew at its end, where the run stands; where the new one ends, if that is
+    /// not after `until` in s and can be judged.
     pub fn next_window(&mut self, until: f64) -> Option<Instant<T>> {
         let from = self.window.1;
         let length = self.periods as i64 * self.period_cycles;

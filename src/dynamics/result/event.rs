@@ -1,6 +1,6 @@
 //! Samples and events of a run.
 
-/// Whether the mass flies or is on a stop.
+/// Whether the mass moves freely or is on a stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// Between the stops, or touching one for an instant.
@@ -38,7 +38,8 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Work of the base on the mass in a second, -m a_b v, in W; `mass` in kg. Its integral is the ledger's work.
+    /// Work of the base on the mass in a second, -m a_b v, in W; `mass` in kg. Its integral is the ledger's
+    /// work.
     pub fn work_rate(&self, mass: f64) -> f64 {
         -mass * self.base_accel * self.v
     }
@@ -80,7 +81,7 @@ pub enum EventKind {
     Rest,
     /// The mass left a stop on which it rested.
     Release,
-    /// A passage of the barrier top.
+    /// A crossing of the barrier.
     Crossing,
     /// The mass touched a compliant stop.
     Contact,

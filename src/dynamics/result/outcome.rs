@@ -60,13 +60,13 @@ pub enum Outcome {
         /// Time in s.
         at: f64,
     },
-    /// It reached its duration, but its energy does not balance: by more than a hundred tolerances, or by a tenth of what
-    /// was moved. Only told of a run with a ledger.
+    /// It reached its duration, but its energy does not balance: by more than a hundred tolerances, or by a
+    /// tenth of what was moved. Only for a run with a ledger.
     Inaccurate {
         /// What is unaccounted for over the sum of the magnitudes moved.
         residual: f64,
     },
-    /// It was told to stop.
+    /// It was cancelled.
     Cancelled {
         /// Time in s.
         at: f64,
@@ -100,7 +100,7 @@ impl Outcome {
     }
 }
 
-/// On which side of the barrier top a motion is.
+/// The side of the barrier on which a motion is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// Never to the right of it.

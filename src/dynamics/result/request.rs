@@ -13,7 +13,8 @@ pub struct Request<'a> {
     pub ledger: bool,
     /// Set from elsewhere to end the run early with the outcome `Cancelled`.
     pub cancel: Option<&'a AtomicBool>,
-    /// Goes on, window after window, until the motion repeats or the next window would end after this time in s. Under a
-    /// drive that does not repeat, and where the window holds less than two forcing periods, nothing changes.
+    /// Goes on, window after window, until the motion repeats or the next window would end after this time in
+    /// s. Under a drive that does not repeat, and where the window holds less than two forcing periods,
+    /// nothing changes.
     pub until_settled: Option<f64>,
 }

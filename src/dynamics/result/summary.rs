@@ -28,15 +28,16 @@ pub struct First {
     pub amplitude: Option<f64>,
 }
 
-/// What happened first in a run under a drive that changes: an amplitude ramp, a chirp, noise, a record, tones without a
-/// common period.
+/// What happened first in a run under a drive that changes: an amplitude ramp, a chirp, noise, a record,
+/// tones without a common period.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Firsts {
     /// The mass left a stop on which it rested.
     pub release: Option<First>,
     /// It crossed the barrier.
     pub crossing: Option<First>,
-    /// From this crossing on it crossed in every forcing period up to the end of the run; none where the drive has none.
+    /// From this crossing on it crossed in every forcing period up to the end of the run; none where the
+    /// drive has none.
     pub crossing_in_every_period: Option<First>,
 }
 
@@ -63,7 +64,8 @@ pub struct Summary {
     pub max_abs_x: Option<f64>,
     /// Smallest and largest displacement in the settled window in m; none where the run ended before it.
     pub range: Option<(f64, f64)>,
-    /// Mean displacement over the settled window in m; none where the run ended before it, or no ledger was asked for.
+    /// Mean displacement over the settled window in m; none where the run ended before it, or no ledger was
+    /// asked for.
     pub mean_x: Option<f64>,
     /// Where the motion is in the settled window; none where the run ended before it, and for one well.
     pub side: Option<Place>,
@@ -75,9 +77,9 @@ pub struct Summary {
     pub crossing_periods: u64,
     /// Forcing periods of the settled window with a release in them.
     pub release_periods: u64,
-    /// Whether the motion has settled: it repeats, or it is irregular, at least 200 forcing periods old, and RMS velocity and
-    /// crossings in both halves of the window agree within three standard errors. Without a drive, whether it is at rest.
-    /// None under a drive that changes.
+    /// Whether the motion has settled: it repeats, or it is irregular, at least 200 forcing periods old, and
+    /// RMS velocity and crossings in both halves of the window agree within three standard errors. Without a
+    /// drive, whether it is at rest. None under a drive that changes.
     pub settled: Option<bool>,
     /// Since when in s the motion repeats; none where it does not.
     pub settles_at: Option<f64>,
@@ -97,9 +99,11 @@ pub struct Summary {
     pub rests: u64,
     /// Period of the response in forcing periods; none where it has none up to 12.
     pub period: Option<u32>,
-    /// Largest force in N of a compliant stop on the mass over the whole run; none where the stops are not compliant.
+    /// Largest force in N of a compliant stop on the mass over the whole run; none where the stops are not
+    /// compliant.
     pub peak_contact_force: Option<f64>,
-    /// Pressure in Pa at the middle of the contact under that force; none where the stop's material is not known.
+    /// Pressure in Pa at the middle of the contact under that force; none where the stop's material is not
+    /// known.
     pub peak_contact_pressure: Option<f64>,
     /// Whether that pressure is one at which the material yields.
     pub contact_yields: bool,

@@ -1,29 +1,33 @@
-//! The verdict on a run that has reached its end: whether its numbers are numbers, and whether its energy balances.
+//! Verdict on a run that has reached its end: whether its numbers are finite, and whether its energy
+//! balances.
 //!
-//! A ledger whose terms are integrated each by itself closes to the tolerance. Where it does not, by more than rounding
-//! makes of its terms, the motion is not one of the scene's: the outcome says so. A run without a ledger (a cell of a
-//! sweep) is only asked whether its numbers are finite.
+//! A ledger whose terms are integrated each by itself closes to the tolerance. Where it does not, by more
+//! than rounding makes of its terms, the motion is not one of the scene's: the outcome says so. A run without
+//! a ledger (a cell of a sweep) is only asked whether its numbers are finite.
 
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Ledger, Outcome, Run};
 
-/// The residual of a ledger that is allowed, in tolerances. The most of tens of thousands of drawn scenes was 4.
+/// The residual of a ledger that is allowed, in tolerances. The most of tens of thousands of drawn scenes was
+/// 4.
 const TOLERANCES: f64 = 100.0;
 
-/// The tolerance below which rounding is all that a ledger shows, and the roundings of force and place that add up in it.
+/// The tolerance below which rounding is all that a ledger shows, and the roundings of force and place that
+/// add up in it.
 const FINEST: f64 = 1e-13;
 const PLACES: f64 = 16.0;
 
-/// Steps whose errors add up to no more than the tolerance: those of an undamped mass between elastic stops all err to one
-/// side.
+/// Steps whose errors add up to no more than the tolerance: those of an undamped mass between elastic stops
+/// all err to one side.
 const MANY_STEPS: f64 = 1000.0;
 
-/// The share of the energy moved that may be missing of a motion so small that the tolerance, which is relative to the
-/// scene's scales, does not hold it to more. Below this share of the length scale nothing has moved.
+/// The share of the energy moved that may be missing of a motion so small that the tolerance, which is
+/// relative to the scene's scales, does not hold it to more. Below this share of the length scale nothing has
+/// moved.
 const MISSING: f64 = 0.1;
 const STILL: f64 = 1e-12;
 
-/// Where a motion has been and how fast, in m and m/s.
+/// Range and largest speed of a motion, in m and m/s.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Excursion {
     pub low: f64,

@@ -1,4 +1,4 @@
-//! Begin and end of a run.
+//! Start and end of a run.
 
 use super::balance::{Excursion, judged};
 use crate::dynamics::drive::Drive;
@@ -9,15 +9,15 @@ use crate::dynamics::record::summary::Ending;
 use crate::dynamics::result::{Outcome, Run};
 use crate::numeric::Scalar;
 
-/// What is kept of a run's first instant: the velocity, the mode and the place in it, and in J what a compliant stop
-/// stores.
+/// What is kept of a run's first instant: the velocity, the mode and the place in it, and in J what a
+/// compliant stop stores.
 pub(crate) struct Begun<T> {
     v: T,
     place: (usize, f64, f64),
 }
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
-    /// Puts the mass to its start.
+    /// Starts the motion.
     pub fn begin(&mut self, model: &Model) -> Begun<T> {
         let v = self.state.v;
         self.place_at_start();

@@ -1,9 +1,11 @@
-//! How does a mass fly as long as nothing happens to it?
+//! Fast path for consecutive steps without an event.
 //!
-//! Most steps of most scenes meet no stop, no break, no border of the drive or of the settled window. What the general
-//! step asks of each of them (a touch, a rest, a label, a sample, a strobe, the budgets) is asked here once for all of
-//! them, before the first: from one to the next only state, clock and what is summed go on. The first step on which
-//! something may happen is handed to the general step. The arithmetic is the same, so the result has the same bits.
+//! Most steps of most scenes meet no stop, no break, no border of the drive or of the settled window. What
+//! the general step checks each time (touch, rest, release, sample, stroboscopic state, budgets) is checked
+//! here once, before the first of them; from one to the next only state, clock and sums change. The first
+//! step on which an event is possible is left to the general step. The event-free step is written three
+//! times: here, as the general step of a motion alone (`step/choose.rs` with `run/flight.rs`), and for a
+//! batch (`lanes/columns.rs`). The three do the same arithmetic and must stay equal to the bit.
 
 use crate::dynamics::drive::Drive;
 use crate::dynamics::motion::Motion;
@@ -15,11 +17,11 @@ use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::dynamics::step::stepper::{Step, Stepper};
 use crate::numeric::Scalar;
 
-/// How a flight has ended.
+/// How a row of event-free steps has ended.
 pub(crate) enum FastPath<T> {
-    /// It has not ended: it is time to look at budgets and the cancel flag.
+    /// It has not: budgets and the cancel flag are due.
     On,
-    /// With this step, on which something may happen; the series holds it.
+    /// With this step, on which an event is possible; the series holds it.
     To(Step<T>),
     /// Before a step of up to this length, which must be chosen with more care; the series holds it.
     Before(T),
@@ -28,18 +30,18 @@ pub(crate) enum FastPath<T> {
 }
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
-    /// Takes steps for as long as nothing happens.
+    /// Takes steps as long as they are event-free.
     #[inline]
     pub fn event_free_steps(&mut self) -> FastPath<T> {
         let free = self.state.contact == Contact::Free && self.state.touch.is_none();
-        if LEDGER || !free || self.log.is_some() || !self.record.is_quiet() {
+        if LEDGER || !free || self.log.is_some() || !self.record.needs_no_samples() {
             return FastPath::Not;
         }
         let most = self.stepper.work.pieces_until_look(self.stepper.costs.step);
-        if self.has_budget_for(most) { self.fly_on(most) } else { FastPath::Not }
+        if self.has_budget_for(most) { self.take_event_free_steps(most) } else { FastPath::Not }
     }
 
-    fn fly_on(&mut self, most: u64) -> FastPath<T> {
+    fn take_event_free_steps(&mut self, most: u64) -> FastPath<T> {
         if self.stepper.pass_segment_end(&mut self.state) {
             return FastPath::On;
         }
@@ -55,7 +57,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let rule = record.rule_of_steps();
         let (mut at, mut x, mut v) = (state.at, state.x, state.v);
         let mut ended = FastPath::On;
-        let (mut flown, mut crossed) = (0, 0);
+        let (mut steps, mut crossed) = (0, 0);
         for _ in 0..most {
             drive.seed(clock, &at, segment, &mut series.a, cursor);
             series.begin(x - origin, v);
@@ -81,67 +83,67 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 start: series.y[0] + origin,
                 end: end.y + origin,
                 bound: end.bound,
-                bend: T::of(f64::INFINITY),
+                deviation: T::of(f64::INFINITY),
                 limits,
             };
-            let bend = || polynomial::chord_deviation(&series.y[..=settings.order], length);
+            let deviation = || polynomial::chord_deviation(&series.y[..=settings.order], length);
             let clear = x - limits.0 > end.bound && limits.1 - x > end.bound
-                || Chord { bend: bend(), ..chord }.is_clear() == (true, true);
-            let mut quiet = clear && end.v.is_finite();
-            // (without a top it is infinitely far away)
+                || Chord { deviation: deviation(), ..chord }.is_clear() == (true, true);
+            let mut event_free = clear && end.v.is_finite();
+            // (without a barrier it is infinitely far away)
             let gap = chord.start - now.barrier.unwrap_or(T::of(f64::NEG_INFINITY));
-            if quiet && !(gap.abs() > end.bound * T::of(CLEARANCE)) {
+            if event_free && !(gap.abs() > end.bound * T::of(CLEARANCE)) {
                 let step = (&series.y[..=settings.order], length, v);
-                match now.passages(&chord, step, length + length < left) {
+                match now.crossings(&chord, step, length + length < left) {
                     Some((side, count)) => {
                         now.side = side;
                         crossed += count;
                     }
-                    None => quiet = false,
+                    None => event_free = false,
                 }
             }
-            if now.inside && quiet {
+            if now.inside && event_free {
                 let y = &series.y[..=settings.order];
                 let squared = polynomial::integrals::<_, false>(y, &[], rule, T::zero(), length).0;
-                quiet = now.take_in(&chord, bend, (length, squared));
-                if !quiet {
+                event_free = now.record_step(&chord, deviation, (length, squared));
+                if !event_free {
                     series.measured = Some((length, squared));
                 }
             }
-            if !quiet {
+            if !event_free {
                 ended = FastPath::To(Step { length, arrival: None, end });
                 break;
             }
             (at, x, v) = (next, chord.end, end.v);
-            flown += 1;
+            steps += 1;
         }
-        if flown > 0 {
+        if steps > 0 {
             state.turned_back = false;
             (state.at, state.x, state.v) = (at, x, v);
             record.end_event_free((now.low, now.high), now.squared, now.covered);
             record.end_event_free_crossings(now.side, crossed);
         }
-        self.steps += flown;
-        work.add(flown * costs.step);
-        *evaluations += flown + u64::from(!matches!(ended, FastPath::On));
+        self.steps += steps;
+        work.add(steps * costs.step);
+        *evaluations += steps + u64::from(!matches!(ended, FastPath::On));
         ended
     }
 }
 
 impl<T: Scalar> EventFree<T> {
-    /// The side of the top after a step that comes near it, and how often the top is passed; none where it must be known
-    /// when. Of the step are given coefficients, length, and velocity at its start, and whether it ends well before the
-    /// border.
+    /// The side of the barrier after a step that comes near it, and the number of crossings; none where their
+    /// instants are needed. Of the step are given coefficients, length, and velocity at its start, and
+    /// whether it ends well before the border.
     #[inline(never)] // rare, and large
-    fn passages(&self, chord: &Chord<T>, (y, length, v): (&[T], T, T), early: bool) -> Option<(i8, u64)> {
-        let Some(top) = self.barrier else { return Some((self.side, 0)) };
-        let (gap, end) = (chord.start - top, side_of(chord.end, top));
+    fn crossings(&self, chord: &Chord<T>, (y, length, v): (&[T], T, T), early: bool) -> Option<(i8, u64)> {
+        let Some(barrier) = self.barrier else { return Some((self.side, 0)) };
+        let (gap, end) = (chord.start - barrier, side_of(chord.end, barrier));
         if end == self.side && gap.abs() > chord.bound {
             return Some((end, 0));
         }
         // Inside the window, and where it is listed, it must.
         let countable = early && !self.inside && !self.listed;
-        // Where the velocity keeps its sign the ends tell.
+        // Where the velocity keeps its sign the ends decide.
         let monotone = T::of(8.0) * polynomial::chord_deviation(y, length) < v.abs() * length;
         if monotone && self.side != 0 && end != 0 && side_of(gap, T::zero()) == self.side {
             return (countable || end == self.side).then(|| (end, u64::from(end != self.side)));
@@ -151,20 +153,26 @@ impl<T: Scalar> EventFree<T> {
         }
         let mut g = polynomial::scaled(y, length);
         g[0] = gap;
-        let Some(passages) = StepCrossings::new(&mut g[..y.len()], self.side, end) else {
+        let Some(crossings) = StepCrossings::new(&mut g[..y.len()], self.side, end) else {
             return Some((self.side, 0));
         };
-        let count = passages.count();
-        Some((passages.side_after(count), count as u64))
+        let count = crossings.count();
+        Some((crossings.side_after(count), count as u64))
     }
 
-    /// Takes in a step inside the settled window of this length and integral of the squared velocity, where no turning point
-    /// within it may be an extreme. What it `bends` by is only asked for where that may be.
+    /// Records a step inside the settled window of this length and integral of the squared velocity; false
+    /// where a turning point within it may be an extreme. Its deviation from the chord is only computed where
+    /// that decides.
     #[inline(always)]
-    fn take_in(&mut self, chord: &Chord<T>, bends: impl Fn() -> T, (length, squared): (T, T)) -> bool {
+    fn record_step(
+        &mut self,
+        chord: &Chord<T>,
+        deviation: impl Fn() -> T,
+        (length, squared): (T, T),
+    ) -> bool {
         let (low, high, mut turns) = chord.extremes((self.low, self.high));
         if turns {
-            (_, _, turns) = Chord { bend: bends(), ..*chord }.extremes((low, high));
+            (_, _, turns) = Chord { deviation: deviation(), ..*chord }.extremes((low, high));
         }
         if turns {
             return false;

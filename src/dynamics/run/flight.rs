@@ -66,8 +66,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
     }
 
-    /// Tells of a step that was chosen `h` long, of which `length` is kept, and goes to its end: at the state `(x, v)` and,
-    /// where that is known, the instant `arrival`, on the surface of the end `touched`.
+    /// Records a step that was chosen `h` long, of which `length` is kept, and goes to its end: at the state
+    /// `(x, v)` and, where that is known, the instant `arrival`, on the surface of the end `touched`.
     pub fn arrive(
         &mut self,
         (h, length): (T, T),

@@ -29,8 +29,8 @@ impl Model {
     }
 
     /// Runs the model once in double-double arithmetic, some 31 digits, with its own `tolerance` (1e-28 is
-    /// sensible): the reference that a run in doubles is measured against. About a hundred times slower; nothing of it is
-    /// completed from a cycle.
+    /// sensible): the reference that a run in doubles is measured against. About a hundred times slower;
+    /// nothing of it is completed from a cycle.
     pub fn run_reference(&self, request: &Request, tolerance: f64) -> Run {
         run::<DoubleDouble>(self, request, tolerance, false)
     }
@@ -116,7 +116,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         Ok(left)
     }
 
-    /// At the end of a settled window: whether the run goes on with another, since the motion does not repeat yet.
+    /// At the end of a settled window: whether the run goes on with another, since the motion does not repeat
+    /// yet.
     fn goes_on(&mut self) -> bool {
         let Some(until) = self.until_settled else { return false };
         self.record.last_strobe(&self.state.at, (self.state.x, self.state.v));
@@ -128,7 +129,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         next.is_some()
     }
 
-    /// How the run ends where its budget is spent, or it is told to.
+    /// How the run ends where a budget is spent or it is cancelled.
     #[inline]
     pub fn spent(&mut self) -> Flow {
         let told = self.stepper.work.is_told_to_stop();

@@ -1,21 +1,21 @@
-//! Recurrence: a motion that comes back to where it was completes its run without being integrated again.
+//! Recurrence: a run whose motion has come back to an earlier state is completed without integration.
 //!
-//! A mass that is let go from rest, by the press changing its sign under a drive that repeats, starts from a state
-//! that is known without comparing a measured number: it stands on the stop, has no speed, and the drive is where it
-//! is at that root of the press. So a release has a *label*: the stop, and the root within the drive's common period.
-//! Two releases with equal labels are followed by the same motion, bit for bit, one some cycles of the clock later:
-//! the integrator would do the same arithmetic again. (Where curve, stops and drive are symmetric, a release from
+//! A mass that is released from rest under a drive that repeats starts from a state that is known without
+//! comparing computed numbers: it is on the stop, has no speed, and the drive is where it is at that release
+//! root. So a release has a *label*: the stop, and the root within the drive's common period. Two releases
+//! with equal labels are followed by the same motion, bit for bit, one some cycles of the clock later: the
+//! integrator would do the same arithmetic again. (Where curve, stops and drive are symmetric, a release from
 //! the other stop half a period later is followed by the mirror image, to rounding.)
 //!
-//! From the first labelled release on, everything that the recorder is told is kept. Once a label comes back, the
-//! recorder is told the kept cycle again, lap by lap, which gives samples, events, windows that open or close within
-//! a lap, strobes and sums by the very same code. What laps that lie wholly inside or wholly outside the settled window
-//! add to sums and counts is multiplied, and they are told only where something of them is listed. The last, incomplete
-//! lap is told up to its last step, which is integrated.
+//! From the first labelled release on, every recorder call is kept in a log. Once a label comes back, the
+//! calls of that lap are replayed, lap by lap, which gives samples, events, windows that open or close within
+//! a lap, stroboscopic states and sums by the same code. Laps that lie wholly inside or wholly outside the
+//! settled window are added to sums and counts by multiplication, and replayed only where something in them
+//! is listed. The last, incomplete lap is replayed up to its last step, which is integrated.
 //!
-//! No labels: a release at once after an incomplete chatter or a plastic impact, one at the start or at a jump of the
-//! drive, one under a ramp, chirp, noise or record (no common period, or not yet), and compliant stops, on which
-//! nothing rests.
+//! No labels: a release at once after an incomplete chatter or a plastic impact, one at the start or at a
+//! jump of the drive, one under a ramp, chirp, noise or record (no common period, or not yet), and compliant
+//! stops, on which nothing rests.
 
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
@@ -26,11 +26,12 @@ use crate::dynamics::state::Label;
 use crate::dynamics::step::work::TOLD;
 use crate::numeric::Scalar;
 
-/// Share of the clock's cycle by which a lap must keep clear of what would set it apart: more than rounding can hide.
+/// Share of the clock's cycle by which a lap must keep clear of what would set it apart: more than rounding
+/// can hide.
 const CLEAR: f64 = 1e-9;
 
-/// Common periods of the drive after which a motion that has not come back is no longer kept: most cycles take one or two,
-/// and a motion that never rests again would be kept to its end.
+/// Common periods of the drive after which a motion that has not come back is no longer kept: most cycles
+/// take one or two, and a motion that never rests again would be kept to its end.
 const PATIENCE: i64 = 8;
 
 /// A run of laps that are alike for the recorder, and what one of them adds.
@@ -52,7 +53,8 @@ struct Lap<T> {
 }
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
-    /// The mass has just been let go with this label: completes the run where it has been let go so before.
+    /// The mass has just been released with this label: completes the run where a release had the same label
+    /// before.
     pub fn let_go(&mut self, label: Label<T>) {
         let Some(log) = self.log.take().filter(|log| log.has_room()) else {
             self.keep_from(Box::new(Log::new()), label);
@@ -83,7 +85,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.log = Some(log);
     }
 
-    /// Keeps where the motion stands, where a log is kept.
+    /// Adds a checkpoint to the log, where there is one.
     #[inline]
     pub fn mark(&mut self) {
         if self.log.is_some() {
@@ -110,7 +112,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         (close && count % 2 == 1).then_some(count)
     }
 
-    /// What has been told since mark `first`, where it lay wholly inside or outside the settled window.
+    /// What the lap since mark `first` has added, where it lay wholly inside or outside the settled window.
     fn like(&self, first: usize, log: &Log<T>, before: Totals<T>) -> Option<Like<T>> {
         let inside = self.record.lies_inside(&log.at(first), &self.state.at)?;
         Some(Like { inside, before, after: self.record.totals() })
@@ -168,8 +170,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.resume(&log.point_later(last, rest));
     }
 
-    /// Tells the recorder the next `laps` as far as something of them is listed; its sums stay, so that what they come to
-    /// does not depend on what is listed. To tell them again is work: how many of the laps that was done for.
+    /// Replays those of the next `laps` in which something is listed; the sums stay, so that they do not
+    /// depend on what is listed. A replay is work: the number of laps for which it was done.
     fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) -> i64 {
         let (sums, judge) = (self.record.totals(), self.record.judge.clone());
         self.record.next_strobe = None; // it has no part in what is listed

@@ -1,15 +1,15 @@
-//! How does the force go on, as a power series in time, with the series of the displacement?
+//! Power series in time of the force, from that of the displacement.
 //!
-//! The force is a polynomial of the displacement, so its coefficients are sums of products of those of the displacement.
-//! The newest of these, y\[k\], enters coefficient k of the force by one product only, with the stiffness where the step
-//! begins:
+//! The force is a polynomial of the displacement, so its coefficients are sums of products of those of the
+//! displacement. The newest of these, y\[k\], enters coefficient k of the force by one product only, with the
+//! stiffness where the step begins:
 //!
 //! ```text
 //! f[k] = f'(y[0]) y[k] + terms of y[0..k].
 //! ```
 //!
-//! All other terms are there before it is, so that the processor has summed them by the time; the recurrence waits for two
-//! operations an order instead of two sums.
+//! All other terms are there before it is, so that the processor has summed them by the time; the recurrence
+//! waits for two operations an order instead of two sums.
 
 use super::order::ROOM;
 use crate::dynamics::equation::force::PieceForce;
@@ -20,8 +20,8 @@ use crate::numeric::Number;
 pub(crate) struct ForceSeries<T> {
     /// The square of the displacement, where the force is odd.
     square: [T; ROOM],
-    /// The levels, the outermost first: row j is that of c\[j\] + c\[j+1\] y + c\[j+2\] y^2 + ..., of an odd force that of
-    /// c\[2j+1\] + c\[2j+3\] w + ..., w = y^2.
+    /// The levels, the outermost first: row j is that of c\[j\] + c\[j+1\] y + c\[j+2\] y^2 + ..., of an odd
+    /// force that of c\[2j+1\] + c\[2j+3\] w + ..., w = y^2.
     rows: Vec<[T; ROOM]>,
     /// What a row changes by with the newest coefficient of the displacement.
     slopes: [T; ROOM],
@@ -36,7 +36,8 @@ impl<T: Number> ForceSeries<T> {
         Self { square: zeros, rows: vec![zeros; products], slopes: zeros, slope: T::zero() }
     }
 
-    /// Coefficient `k` of the force and of what is added to it, from y\[0..=k\]; the lower ones have been asked for before.
+    /// Coefficient `k` of the force and of what is added to it, from y\[0..=k\]; the lower ones have been
+    /// asked for before.
     #[inline(always)]
     pub fn coefficient(&mut self, force: &PieceForce<T>, y: &[T; ROOM], k: usize, more: Option<T>) -> T {
         match force.coefficients() {
@@ -56,7 +57,8 @@ impl<T: Number> ForceSeries<T> {
         Cubic { c3, start, change, slope: row[0] + change * start, row }
     }
 
-    /// Coefficient `k`, and what is added to it, of a force all of whose even coefficients are 0, of degree 3 or more.
+    /// Coefficient `k`, and what is added to it, of a force all of whose even coefficients are 0, of degree 3
+    /// or more.
     #[inline(always)]
     pub fn odd(&mut self, c: &[T], y: &[T; ROOM], k: usize, more: Option<T>) -> T {
         let (top, twice) = (c.len() / 2 - 1, y[0] + y[0]);
@@ -110,7 +112,8 @@ impl<T: Number> ForceSeries<T> {
     }
 }
 
-/// An odd cubic, as most scenes have it: as [`ForceSeries::odd`], with what stays from order to order at hand.
+/// An odd cubic, as most scenes have it: as [`ForceSeries::odd`], with what stays from order to order at
+/// hand.
 pub(crate) struct Cubic<'a, T> {
     c3: T,
     start: T,
@@ -151,7 +154,7 @@ pub(crate) fn linear<T: Number>(c0: T, c1: T, y: &[T; ROOM], k: usize, more: Opt
     if k == 0 { plus(own + c0, more) } else { plus(own, more) }
 }
 
-/// The sum, where there is something to add: an addition of nothing takes its time too.
+/// The sum, where there is something to add; otherwise no addition is executed.
 #[inline(always)]
 fn plus<T: Number>(sum: T, more: Option<T>) -> T {
     match more {
@@ -167,8 +170,8 @@ pub(crate) fn convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
     if k == 0 { ends } else { inner_convolve(a, b, k) + (ends + a[k] * b[0]) }
 }
 
-/// Sum of a\[i\] b\[k-i\] over i = 1..k, from the middle outwards: the terms of the highest orders, which have only just
-/// become known, come last. Two running sums, since one addition waits for the last.
+/// Sum of a\[i\] b\[k-i\] over i = 1..k, from the middle outwards: the terms of the highest orders, which
+/// have only just become known, come last. Two running sums, since one addition waits for the last.
 #[inline(always)]
 fn inner_convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
     if k < 2 {

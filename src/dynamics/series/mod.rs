@@ -1,10 +1,10 @@
-//! How does the motion continue from here, as a power series in time?
+//! Taylor series of the motion in time.
 //!
 //! Taylor coefficients of x'' = -g x' - f(x) - a(t) by recurrence, one order at a time and only as many as
-//! are asked for: a flight of a microsecond between two small impacts needs four where a swing across
-//! the barrier needs sixteen. f is a polynomial of the current piece about its origin; an odd one goes by the
-//! square of the displacement, which halves its products. (Moore 1966, "Interval Analysis", ch. 11; Jorba
-//! and Zou 2005, "A software package for the numerical integration of ODEs by means of high-order Taylor
+//! are asked for: a flight of a microsecond between two small impacts needs four where a motion across the
+//! barrier needs sixteen. f is a polynomial of the current piece about its origin; an odd one goes by the
+//! square of the displacement, which halves its products. (Moore 1966, "Interval Analysis", ch. 11; Jorba and
+//! Zou 2005, "A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods".)
 
 mod force;
@@ -120,7 +120,8 @@ impl<T: Number> Series<T> {
     pub fn state(&self, t: T) -> Endpoint<T> {
         let zero = T::zero();
         let (mut y, mut v, mut acceleration, mut bound) = (zero, self.y[1], zero, zero);
-        // Powers, and sums of terms: where Horner's rule waits for a product and a sum at each coefficient, this waits for one.
+        // Powers, and sums of terms: where Horner's rule waits for a product and a sum at each coefficient,
+        // this waits for one.
         let (mut before, mut power) = (T::of(1.0), t);
         each_order::<2>(
             T::QUICK,
@@ -161,7 +162,8 @@ impl<T: Scalar> Series<T> {
         self.extend_to(order, force, damping, drive, cursor);
     }
 
-    /// The longest step whose first neglected term in the velocity stays below `tolerance` times `speed`, at most `cap`.
+    /// The longest step whose first neglected term in the velocity stays below `tolerance` times `speed`, at
+    /// most `cap`.
     #[inline]
     pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
         let [step] =
@@ -175,8 +177,8 @@ impl<T: Scalar> Series<T> {
     }
 }
 
-/// As [`Series::natural_step`], of coefficients up to `order`, for several series at once; from several of the last ones,
-/// since single ones vanish at symmetry points. NaN where one is.
+/// As [`Series::natural_step`], of coefficients up to `order`, for several series at once; from several of
+/// the last ones, since single ones vanish at symmetry points. NaN where one is.
 #[inline(always)]
 pub(crate) fn natural_steps<const W: usize>(
     order: usize,
@@ -207,8 +209,8 @@ pub(crate) fn natural_steps<const W: usize>(
     steps
 }
 
-/// The recurrence of the equation of motion over the orders `known`, the force's coefficients and what is added to them by
-/// `force`.
+/// The recurrence of the equation of motion over the orders `known`, the force's coefficients and what is
+/// added to them by `force`.
 #[inline(always)]
 fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
     known: std::ops::Range<usize>,
@@ -233,8 +235,8 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
     );
 }
 
-/// Does something for each of the orders; where `unrolled`, and the first of them is `USUAL`, with numbers that the compiler
-/// knows: the bookkeeping of a loop may cost as much as what is done in it.
+/// Does something for each of the orders; where `unrolled`, and the first of them is `USUAL`, with numbers
+/// that the compiler knows: the bookkeeping of a loop may cost as much as what is done in it.
 #[inline(always)]
 fn each_order<const USUAL: usize>(
     unrolled: bool,

@@ -1,4 +1,4 @@
-//! Orders of the series, the room for their coefficients, and how the series of a drive goes on.
+//! Orders of the series, room for their coefficients, and the trait by which a drive continues its own.
 
 use crate::numeric::Number;
 
@@ -9,12 +9,12 @@ pub(crate) const ROOM: usize = MAX_ORDER + 2;
 /// Coefficients of the drive that are there from the start.
 pub(crate) const SEEDED: usize = 4;
 
-/// How the series of a drive goes on.
+/// Continuation of the series of a drive.
 pub(crate) trait Tail<T: Number> {
     /// State carried along a series.
     type Cursor: Default;
 
-    /// From here on all coefficients are 0, and are not added: an addition of nothing takes its time too.
+    /// From here on all coefficients are 0; a constant, so that their addition is compiled away.
     const ZERO_FROM: usize = usize::MAX;
 
     /// Fills a\[k\], k >= `SEEDED`, once each and in ascending order; `inverse[n]` is 1/(n(n-1)).

@@ -1,6 +1,6 @@
-//! What does a polynomial in time say of the motion within its step?
+//! Functions of a polynomial in time: value, slope, integrals, deviation from the chord.
 //!
-//! Functions of coefficients alone, so that a step that was kept is read as the one that has just been made.
+//! They take coefficients alone, so that a logged step is read as one that has just been computed.
 
 use super::order::ROOM;
 use crate::numeric::{GaussLegendre, Number, Scalar};
@@ -39,8 +39,8 @@ pub(crate) fn slope<T: Scalar>(y: &[T], t: T) -> T {
     sum
 }
 
-/// A bound of how far the displacement leaves, within a step of length `h`, the chord between its ends: an eighth of the
-/// square of the length times the largest acceleration.
+/// Bound of the deviation of the displacement from the chord between the ends of a step of length `h`: an
+/// eighth of the square of the length times the largest acceleration.
 #[inline(always)]
 pub(crate) fn chord_deviation<T: Number>(y: &[T], h: T) -> T {
     let (mut sum, mut power) = (T::zero(), h);
@@ -51,9 +51,9 @@ pub(crate) fn chord_deviation<T: Number>(y: &[T], h: T) -> T {
     sum * T::of(0.125)
 }
 
-/// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base acceleration (`a`)
-/// times velocity; of the step's own polynomials by Gauss' rule. (Products truncated at their order miss, on a long
-/// step under a fast drive, a thousand times the tolerance.)
+/// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base acceleration
+/// (`a`) times velocity; of the step's own polynomials by Gauss' rule. (Products truncated at their order
+/// miss, on a long step under a fast drive, a thousand times the tolerance.)
 #[inline(always)]
 pub(crate) fn integrals<T: Number, const WORK: bool>(
     y: &[T],

@@ -1,4 +1,8 @@
 //! Choice of the length of a step of free flight.
+//!
+//! The event-free step is written three times: here, with what `run/flight.rs` does with the step, as the
+//! fast path of a motion alone (`run/event_free.rs`), and for a batch (`lanes/columns.rs`). The three do the
+//! same arithmetic and must stay equal to the bit.
 
 use super::settings::{RESIDUAL, ROUNDINGS};
 use super::stepper::{MOST_HALVINGS, Step, Stepper};
@@ -7,7 +11,8 @@ use crate::dynamics::series::{Endpoint, SEEDED};
 use crate::dynamics::state::{BY_JERK, MotionState, Touch};
 use crate::numeric::Scalar;
 
-/// The order up to which the series of a rebound is extended at once: all that the drive's first coefficients are there for.
+/// The order up to which the series of a rebound is extended at once: all that the drive's first coefficients
+/// are there for.
 const FEW: usize = SEEDED + 1;
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
@@ -90,8 +95,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         }
     }
 
-    /// Extends the series, just begun, until two terms in a row are negligible over `flight`, against the rebound's own
-    /// speed; false where the full order is not enough for that.
+    /// Extends the series, just begun, until two terms in a row are negligible over `flight`, against the
+    /// rebound's own speed; false where the full order is not enough for that.
     pub fn expand_for(&mut self, state: &MotionState<T>, flight: T) -> bool {
         let negligible = state.v.abs() * T::of(self.settings.tolerance * 0.1);
         let mode = self.mode(state);

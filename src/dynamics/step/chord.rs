@@ -1,30 +1,31 @@
-//! The chord of a step of free flight: how far the step keeps from the ends of its mode, and where its extremes are.
+//! Chord of a step of free flight: bounds of its distance from the ends of its mode, and of its extremes.
 
 use crate::numeric::Scalar;
 
-/// How much further than a bound asks a step must stay away from a surface that it is clear of: rounding never decides it.
+/// Safety factor on the bounds by which a step is clear of a surface: rounding never decides it.
 pub(crate) const CLEARANCE: f64 = 1.0625;
 
-/// Where a step of free flight goes.
+/// A step of free flight.
 pub(crate) struct Chord<T> {
     /// Displacement at its start and at its end.
     pub start: T,
     pub end: T,
     /// Bound of |x - x(start)|.
     pub bound: T,
-    /// Bound of how far it leaves the chord between its ends, as [`chord_deviation`](crate::dynamics::series::polynomial::chord_deviation) gives it.
-    pub bend: T,
+    /// Bound of how far it leaves the chord between its ends, as
+    /// [`chord_deviation`](crate::dynamics::series::polynomial::chord_deviation) gives it.
+    pub deviation: T,
     /// Ends of the mode.
     pub limits: (T, T),
 }
 
 impl<T: Scalar> Chord<T> {
-    /// Whether the step stays clear of the low and of the high end of the mode, as far as its chord can tell.
+    /// Whether the step is clear of the low and of the high end of the mode, by its chord.
     #[inline(always)]
     pub fn is_clear(&self) -> (bool, bool) {
-        let bend = self.bend * T::of(CLEARANCE);
-        let low = self.start.smaller(self.end) - bend > self.limits.0;
-        let high = self.start.larger(self.end) + bend < self.limits.1;
+        let deviation = self.deviation * T::of(CLEARANCE);
+        let low = self.start.smaller(self.end) - deviation > self.limits.0;
+        let high = self.start.larger(self.end) + deviation < self.limits.1;
         (low, high)
     }
 
@@ -34,8 +35,8 @@ impl<T: Scalar> Chord<T> {
         let start = self.start.larger(self.limits.0).smaller(self.limits.1);
         let (lower, higher) = (start.smaller(self.end), start.larger(self.end));
         let (low, high) = (low.smaller(lower), high.larger(higher));
-        let highest = (self.start + self.bound).smaller(self.limits.1).smaller(higher + self.bend);
-        let lowest = (self.start - self.bound).larger(self.limits.0).larger(lower - self.bend);
+        let highest = (self.start + self.bound).smaller(self.limits.1).smaller(higher + self.deviation);
+        let lowest = (self.start - self.bound).larger(self.limits.0).larger(lower - self.deviation);
         (low, high, (highest > high) | (lowest < low))
     }
 }

@@ -11,14 +11,15 @@ use crate::dynamics::series::MAX_ORDER;
 use crate::dynamics::state::{Contact, HELD, MotionState};
 use crate::numeric::{PolynomialRoots, Scalar, fast_log2};
 
-/// The least speed that the tolerance in contact is relative to, as a share of the scene's. It is relative to the speed that
-/// the energy in the contact makes, up to the scene's own: a mass that trembles on its stop moves at some thousandth of
-/// that, and errors of the scene's size would be all that is seen of it. Far below, they are not seen at all.
+/// The least speed that the tolerance in contact is relative to, as a share of the scene's. It is relative to
+/// the speed that the energy in the contact makes, up to the scene's own: a mass that trembles on its stop
+/// moves at some thousandth of that, and errors of the scene's size would be all that is seen of it. Far
+/// below, they are not seen at all.
 const LEAST_SPEED: f64 = 1e-4;
 
-/// The tolerance of a step in contact relative to that of free flight. A contact takes a dozen steps, which all err to one
-/// side, and an elastic mass makes thousands of contacts: its energy then drifts by thousandths of the tolerance in each.
-/// It costs one step in ten.
+/// The tolerance of a step in contact relative to that of free flight. A contact takes a dozen steps, which
+/// all err to one side, and an elastic mass makes thousands of contacts: its energy then drifts by
+/// thousandths of the tolerance in each. It costs one step in ten.
 const CONTACT_SHARE: f64 = 0.03;
 
 /// What the order of a contact's series is above that of free flight, for that.
@@ -131,7 +132,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             }
         };
         earlier(path.separation(whole), Reached::Surface);
-        earlier(path.turn(whole, state.depth.clip_changed), Reached::ClipChange);
+        earlier(path.clip_change(whole, state.depth.clip_changed), Reached::ClipChange);
         let mode = self.mode(state);
         let n = path.known();
         for at in [End::Low, End::High] {

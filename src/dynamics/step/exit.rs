@@ -10,8 +10,8 @@ use crate::dynamics::state::{BY_SPEED, HELD, MotionState};
 use crate::numeric::{PolynomialRoots, Scalar};
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// The first contact with an end of the mode within the step, as a share of it; of the step's end is known how it
-    /// lies in the piece.
+    /// The first contact with an end of the mode within the step, as a share of it; of the step's end is
+    /// known how it lies in the piece.
     pub fn find_exit(
         &self,
         state: &MotionState<T>,
@@ -30,8 +30,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
                 return None;
             }
             let (y, to) = (&self.series.y[..n], end + mode.origin);
-            let bend = polynomial::chord_deviation(y, h);
-            if (Chord { start: state.x, end: to, bound, bend, limits }).is_clear() == (true, true) {
+            let deviation = polynomial::chord_deviation(y, h);
+            if (Chord { start: state.x, end: to, bound, deviation, limits }).is_clear() == (true, true) {
                 return None;
             }
         }

@@ -1,8 +1,10 @@
-//! Steps: how long one is, what it runs into, and how it is read, in free flight and in contact with a compliant stop.
+//! Steps in free flight and in contact with a compliant stop: their length, their first event, and how they
+//! are read.
 
 mod choose;
 pub(crate) mod chord;
 pub(crate) mod contact;
+mod contact_path;
 mod exit;
 pub(crate) mod path;
 pub(crate) mod penetration;

@@ -1,8 +1,9 @@
-//! How does a recorder read a step, whatever the step is a polynomial of?
+//! Reading of a step, in whichever parameter it is a polynomial.
 //!
-//! A step of free flight is a polynomial in time; one of contact with a compliant stop is a polynomial in another
-//! parameter, of which time is itself a polynomial. What is asked of either is the same, and for a flight the parameter
-//! is the time since the step's start: there these methods are the series' own, and cost nothing.
+//! A step of free flight is a polynomial in time; one of contact with a compliant stop is a polynomial in
+//! another parameter, of which time is itself a polynomial. What is asked of either is the same, and for a
+//! flight the parameter is the time since the step's start: there these methods are the series' own, and cost
+//! nothing.
 
 use crate::dynamics::clock::Instant;
 use crate::dynamics::result::Phase;
@@ -35,8 +36,8 @@ pub(crate) trait Path<T: Scalar> {
     fn time(&self, parameter: T) -> T;
     /// The parameter, up to `length`, of a time since the step's start.
     fn parameter(&self, time: T, length: T) -> T;
-    /// Integrals over time between two parameters: of the squared velocity and, where `WORK`, of base acceleration times
-    /// velocity.
+    /// Integrals over time between two parameters: of the squared velocity and, where `WORK`, of base
+    /// acceleration times velocity.
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T);
     /// Integral over time between two parameters of the displacement from the piece's origin.
     fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;

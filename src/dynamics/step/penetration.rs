@@ -1,29 +1,28 @@
-//! How does the mass move while it presses a compliant stop in?
+//! Series of the motion in contact with a compliant stop.
 //!
-//! Depth d in the stop and inward speed w obey d' = w and w' = A - k d^1.5 (1 + a w), A what everything but the stop
-//! does. d^1.5 has no power series in time at touch-down and at separation, so a series in time loses its order there.
-//! With the root u of the depth, d = u^2, and a parameter s with dt = u ds, the same motion is
+//! Depth d in the stop and inward speed w obey d' = w and w' = A - k d^1.5 (1 + a w), A what everything but
+//! the stop does. d^1.5 has no power series in time at touch-down and at separation, so a series in time
+//! loses its order there. With the root u of the depth, d = u^2, and a parameter s with dt = u ds, the same
+//! motion is
 //!
 //! ```text
 //! du/ds = w/2,    dw/ds = u (A - k u^3 (1 + a w)),    dt/ds = u,
 //! ```
 //!
-//! polynomial throughout. u rises from 0 with the finite slope w/2 and, at the separation, passes through 0 as any smooth
-//! function does: near touch-down s is 2 sqrt(t/w), the root of the time since touch, and the whole contact is as smooth
-//! as free flight, at any order and with no grading of steps. (The change of time is Sundman's of 1912, that of the
-//! coordinate Levi-Civita's of 1920, made for collisions of bodies.) Its one singular place is a touch without speed,
-//! u = w = 0, where s never begins: see `NUDGE` in `compliant`.
+//! polynomial throughout. u rises from 0 with the finite slope w/2 and, at the separation, passes through 0
+//! as any smooth function does: near touch-down s is 2 sqrt(t/w), the root of the time since touch, and the
+//! whole contact is as smooth as free flight, at any order and with no grading of steps. (The change of time
+//! is Sundman's of 1912, that of the coordinate Levi-Civita's of 1920, made for collisions of bodies.) Its
+//! one singular place is a touch without speed, u = w = 0, where s never begins: see `NUDGE` in `compliant`.
 //!
-//! The base's acceleration is known as a series in time and is composed with t(s). A contact lasts a fraction of a
-//! millisecond, so that a few terms of a slow drive are all there is of it; a fast one takes them all.
+//! The base's acceleration is known as a series in time and is composed with t(s). A contact lasts a fraction
+//! of a millisecond, so that a few terms of a slow drive are all there is of it; a fast one takes them all.
 
-use super::path::Path;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::Compliant;
 use crate::dynamics::equation::force::PieceForce;
-use crate::dynamics::result::Phase;
 use crate::dynamics::series::{MAX_ORDER, ROOM, SEEDED, Series, convolve};
-use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar, fast_exp2, fast_log2};
+use crate::numeric::{PolynomialRoots, Scalar, fast_exp2, fast_log2};
 
 /// Everything about one step of contact, in the parameter s, and the workspace.
 #[derive(Debug, Clone)]
@@ -35,28 +34,28 @@ pub(crate) struct Penetration<T> {
     /// Speed into the stop.
     pub speed: [T; ROOM],
     /// Time since the step's start.
-    time: [T; ROOM],
-    /// Force of the stop over stiffness: u^3 (1 + a w); 0 where the stop clipped behind.
-    push: [T; ROOM],
-    depth: [T; ROOM],
-    cube: [T; ROOM],
-    acceleration: [T; ROOM],
+    pub(super) time: [T; ROOM],
+    /// Force of the stop over stiffness: u^3 (1 + a w); 0 where the contact is clipped.
+    pub(super) push: [T; ROOM],
+    pub(super) depth: [T; ROOM],
+    pub(super) cube: [T; ROOM],
+    pub(super) acceleration: [T; ROOM],
     /// The base's acceleration.
-    base: [T; ROOM],
+    pub(super) base: [T; ROOM],
     /// Its nested form in powers of the time, from the second level on.
-    nested: [[T; ROOM]; ROOM],
+    pub(super) nested: [[T; ROOM]; ROOM],
     /// Terms of the base's acceleration over time that are composed.
-    levels: usize,
+    pub(super) levels: usize,
     /// Terms of it that are known.
-    known_drive: usize,
-    order: usize,
-    stop: Compliant<T>,
+    pub(super) known_drive: usize,
+    pub(super) order: usize,
+    pub(super) stop: Compliant<T>,
     /// -1 for the left stop, 1 for the right one.
-    sign: T,
+    pub(super) sign: T,
     /// Displacement of the untouched stop from the piece's origin.
-    surface: T,
-    /// The stop does not push: it would have to pull.
-    clipped: bool,
+    pub(super) surface: T,
+    /// The contact is clipped: the stop would have to pull.
+    pub(super) clipped: bool,
 }
 
 /// Where a step of contact begins.
@@ -117,8 +116,8 @@ impl<T: Scalar> Penetration<T> {
         }
     }
 
-    /// Expands the motion from `start` to `order` in s, with `levels` terms of the base's acceleration over time (at
-    /// least one, and no more than are known).
+    /// Expands the motion from `start` to `order` in s, with `levels` terms of the base's acceleration over
+    /// time (at least one, and no more than are known).
     pub fn expand(
         &mut self,
         start: &Start<T>,
@@ -158,7 +157,8 @@ impl<T: Scalar> Penetration<T> {
         self.inner.known = order + 1;
     }
 
-    /// Coefficient `k` of the base's acceleration over s: a nested form in the time, the innermost level first.
+    /// Coefficient `k` of the base's acceleration over s: a nested form in the time, the innermost level
+    /// first.
     fn compose(&mut self, k: usize) {
         let a = &self.inner.a;
         let constant = |level: usize| if k == 0 { a[level] } else { T::zero() };
@@ -178,8 +178,8 @@ impl<T: Scalar> Penetration<T> {
         self.base[k] = self.nested[0][k];
     }
 
-    /// The longest step in s whose first neglected term in the speed stays below `tolerance` times the scene's speed;
-    /// from several of the last coefficients, as in free flight.
+    /// The longest step in s whose first neglected term in the speed stays below `tolerance` times the
+    /// scene's speed; from several of the last coefficients, as in free flight.
     pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
         let first = self.order.saturating_sub(3).max(1);
         let mut radius = f64::INFINITY;
@@ -210,7 +210,7 @@ impl<T: Scalar> Penetration<T> {
         made
     }
 
-    fn at(&self, c: &[T; ROOM], s: T) -> T {
+    pub(super) fn at(&self, c: &[T; ROOM], s: T) -> T {
         c[..=self.order].iter().rev().fold(T::zero(), |sum, c| sum * s + *c)
     }
 
@@ -225,7 +225,7 @@ impl<T: Scalar> Penetration<T> {
     }
 
     /// The coefficients of `c`, each times its power of `h`.
-    fn powers(&self, c: &[T; ROOM], h: T) -> [T; ROOM] {
+    pub(super) fn powers(&self, c: &[T; ROOM], h: T) -> [T; ROOM] {
         let mut scaled = [T::zero(); ROOM];
         let mut power = T::of(1.0);
         for (slot, c) in scaled.iter_mut().zip(&c[..=self.order]) {
@@ -244,9 +244,9 @@ impl<T: Scalar> Penetration<T> {
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { Some(T::zero()) }
     }
 
-    /// The share of a step of `h` at which the stop begins or ceases to trail, where the loss would make it pull:
-    /// 1 + a w changes its sign. `passed`: it is 0 by definition at the step's start.
-    pub fn turn(&self, h: T, passed: bool) -> Option<T> {
+    /// The share of a step of `h` at which the contact becomes clipped or ceases to be: 1 + a w changes its
+    /// sign. `passed`: it is 0 by definition at the step's start.
+    pub fn clip_change(&self, h: T, passed: bool) -> Option<T> {
         if !(self.stop.loss > T::zero()) {
             return None;
         }
@@ -260,7 +260,8 @@ impl<T: Scalar> Penetration<T> {
         }
         g[0] += if self.clipped { T::of(-1.0) } else { T::of(1.0) };
         let from = usize::from(passed);
-        // On the wrong side it is there by rounding: it clip_changed where it only touched, and goes on so.
+        // On the wrong side it is there by rounding: the change was a mere touch, and the contact goes on as
+        // it was.
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { None }
     }
 
@@ -273,132 +274,11 @@ impl<T: Scalar> Penetration<T> {
         }
         let base = self.inner.a[..self.levels].iter().rev().fold(T::zero(), |sum, c| sum * time + *c);
         let (f, _, rounding) = force.value(self.surface + self.sign * (u * u));
-        let one = T::of(1.0);
-        let pushed = if self.clipped {
-            T::zero()
-        } else {
-            self.stop.stiffness * (u * u * u) * (one + self.stop.loss * w)
-        };
+        let pushed = if self.clipped { T::zero() } else { self.stop.force(u, w) };
         let acceleration = -(damping * w + self.sign * (f + base) + pushed);
         let terms = (damping * w).abs() + f.abs() + base.abs() + pushed.abs();
         let size = slope.abs() + u.abs() * terms;
         Residual { error: slope - u * acceleration, size: size + u.abs() * rounding / T::of(T::EPSILON) }
-    }
-
-    /// Energy over mass that the stop keeps over (from, to): by its loss, or, where it clipped, what it had stored.
-    pub fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        if self.clipped {
-            return self.stored(self.root_at(from)) - self.stored(self.root_at(to));
-        }
-        let length = to - from;
-        let mut sum = T::zero();
-        for (node, weight) in rule.nodes().iter().zip(rule.weights()) {
-            let s = from + length * *node;
-            let (u, w) = (self.root_at(s), self.speed_at(s));
-            let square = u * u;
-            sum += square * square * (w * w) * *weight;
-        }
-        self.stop.stiffness * self.stop.loss * (sum * length)
-    }
-
-    /// Elastic energy over mass at a root of the depth.
-    fn stored(&self, u: T) -> T {
-        self.stop.stored(u)
-    }
-
-    /// The largest force over mass within a step of `h`, up to its share `until`, where it may exceed `known`.
-    pub fn peak(&self, h: T, until: T, known: T) -> T {
-        let scaled = self.powers(&self.push, h);
-        let n = self.order + 1;
-        let bound = scaled[..n].iter().fold(T::zero(), |sum, c| sum + c.abs());
-        if !(self.stop.stiffness * bound > known) {
-            return known;
-        }
-        let value = |s: T| scaled[..n].iter().rev().fold(T::zero(), |sum, c| sum * s + *c);
-        let mut peak = value(T::zero()).larger(value(until));
-        let mut slope = [T::zero(); ROOM];
-        for k in 1..n {
-            slope[k - 1] = scaled[k] * T::of(k as f64);
-        }
-        // The force of a touch-down rises like the cube of the parameter; its first slope that is not 0 decides.
-        let first = slope[..n - 1].iter().position(|c| *c != T::zero());
-        if let Some(first) = first {
-            let slope = &mut slope[first..n - 1];
-            if slope[0] < T::zero() {
-                slope.iter_mut().for_each(|c| *c = -*c);
-            }
-            PolynomialRoots::new(slope).each_sign_change(|s| {
-                if s < until {
-                    peak = peak.larger(value(s));
-                }
-                s < until
-            });
-        }
-        known.larger(self.stop.stiffness * peak)
-    }
-}
-
-impl<T: Scalar> Path<T> for Penetration<T> {
-    const IN_CONTACT: bool = true;
-
-    fn phase(&self) -> Phase {
-        if self.sign < T::zero() { Phase::LeftStop } else { Phase::RightStop }
-    }
-    fn known(&self) -> usize {
-        self.order + 1
-    }
-    fn start(&self) -> T {
-        self.inner.y[0]
-    }
-    fn scaled(&self, h: T) -> [T; ROOM] {
-        self.powers(&self.inner.y, h)
-    }
-    fn position(&self, parameter: T) -> T {
-        let u = self.root_at(parameter);
-        self.surface + self.sign * (u * u)
-    }
-    fn velocity(&self, parameter: T) -> T {
-        self.sign * self.speed_at(parameter)
-    }
-    fn time(&self, parameter: T) -> T {
-        self.at(&self.time, parameter)
-    }
-    /// Time grows along a step of contact, but ceases to at its ends, where it can be inverted to half the digits; the
-    /// mass moves as little there.
-    fn parameter(&self, time: T, length: T) -> T {
-        if !(time > T::zero()) {
-            return T::zero();
-        }
-        let mut g = self.powers(&self.time, length);
-        for c in &mut g[..=self.order] {
-            *c = -*c;
-        }
-        g[0] = time;
-        PolynomialRoots::new(&g[..=self.order]).first().map_or(length, |share| share * length)
-    }
-    fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
-        let length = to - from;
-        let (mut squared, mut power) = (T::zero(), T::zero());
-        for (node, weight) in rule.nodes().iter().zip(rule.weights()) {
-            let s = from + length * *node;
-            let (u, w) = (self.root_at(s), self.speed_at(s));
-            let travelled = u * w * *weight;
-            squared += travelled * w;
-            if WORK {
-                let base = self.base[..self.order].iter().rev().fold(T::zero(), |sum, c| sum * s + *c);
-                power += travelled * (self.sign * base);
-            }
-        }
-        (squared * length, power * length)
-    }
-    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        let length = to - from;
-        let parts = rule.nodes().iter().zip(rule.weights());
-        let moment = parts.fold(T::zero(), |sum, (node, weight)| {
-            let s = from + length * *node;
-            sum + self.position(s) * self.root_at(s) * *weight
-        });
-        moment * length
     }
 }
 

@@ -1,9 +1,10 @@
-//! How long does a rebound fly that is pressed back onto its stop?
+//! Time of flight of a rebound that is pressed back onto its stop.
 //!
-//! Before a mass comes to rest it bounces a dozen times, each time a fraction as fast; most impacts of a run are such.
-//! Their flights are all but parabolas, so they need no search: with the gap as the variable, which is 0 at the start by
-//! definition, the flight ends where a polynomial with one root is 0, and a method of third order from the parabola's own
-//! end finds that to the last digit in two or three steps, however short the flight.
+//! Before a mass comes to rest it bounces a dozen times, each time a fraction as fast; most impacts of a run
+//! are such. Their flights are all but parabolas, so they need no search: with the gap as the variable, which
+//! is 0 at the start by definition, the flight ends where a polynomial with one root is 0, and a method of
+//! third order from the parabola's own end finds that to the last digit in two or three steps, however short
+//! the flight.
 
 use super::stepper::Stepper;
 use crate::dynamics::drive::Drive;
@@ -16,8 +17,8 @@ use crate::numeric::Scalar;
 const MOST_STEPS: usize = 12;
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// Whether the next step is one of the full order, on which nothing need be known of a surface that the mass stands on
-    /// but that it leaves it by its speed.
+    /// Whether the next step is one of the full order, from no surface or from one that it leaves by its
+    /// speed.
     pub fn flies_freely(&mut self, state: &MotionState<T>) -> bool {
         match state.touch {
             None => true,
@@ -30,8 +31,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         }
     }
 
-    /// Whether the mass has just been thrown off a stop that it is pressed on, and off which: with the outward acceleration
-    /// with which it is pressed there and its first two derivatives. Expects the drive to be seeded.
+    /// The stop from which the mass has just rebounded, with the contact acceleration there and its first two
+    /// derivatives; none where it has not, or is not pressed back. Expects the drive to be seeded.
     pub fn pressed_rebound(&self, state: &MotionState<T>) -> Option<(End, [T; 3])> {
         let Some(Touch { end, order: BY_SPEED }) = state.touch else { return None };
         if !matches!(self.mode(state).end(end).1, EndKind::Stop | EndKind::Compliant) {
@@ -41,19 +42,25 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         (rates[0] > T::zero()).then_some((end, rates))
     }
 
-    /// A time in which a rebound that is pressed back is back, where neither the drive nor the mechanism changes the press
-    /// much meanwhile, and off a compliant stop in any case; none where it is a flight like any other.
-    pub fn short_flight(&self, state: &MotionState<T>, end: End, [press, jerk, _]: [T; 3]) -> Option<T> {
+    /// Bound of the time of flight of a rebound that is pressed back, where drive and mechanism change the
+    /// contact acceleration little meanwhile, and off a compliant stop in any case; none where it is a flight
+    /// like any other.
+    pub fn short_flight(
+        &self,
+        state: &MotionState<T>,
+        end: End,
+        [acceleration, jerk, _]: [T; 3],
+    ) -> Option<T> {
         let (speed, damping) = (state.v.abs(), self.equation.damping);
         let stiffness = self.equation.stop(end).map_or(T::zero(), |stop| stop.stiffness.abs());
-        let flight = T::of(3.0) * speed / press;
-        let change = (jerk.abs() + stiffness * speed + damping * press) * flight;
-        (self.equation.compliant.is_some() || change < press * T::of(1.5)).then_some(flight)
+        let flight = T::of(3.0) * speed / acceleration;
+        let change = (jerk.abs() + stiffness * speed + damping * acceleration) * flight;
+        (self.equation.compliant.is_some() || change < acceleration * T::of(1.5)).then_some(flight)
     }
 
-    /// The flight from the stop that the mass has just been thrown off back to it: its end, its length, and where it
-    /// leads; none where it may be longer than `flight`, or is too far from a parabola for its end to be known without
-    /// a search. Expects the series to be begun.
+    /// The flight of a rebound back to its stop: its end, its length, and where it leads; none where it may
+    /// be longer than `flight`, or is too far from a parabola for its end to be known without a search.
+    /// Expects the series to be begun.
     pub fn rebound(&mut self, state: &MotionState<T>, flight: T, left: T) -> Option<(End, T, Endpoint<T>)> {
         let Some(Touch { end, order: BY_SPEED }) = state.touch else { return None };
         let (level, kind) = self.mode(state).end(end);
@@ -101,14 +108,14 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
                 value = value * t - sign * *c;
             }
             let newton = value / slope;
-            let bent = newton * bend / slope;
-            let change = newton + newton * bent;
+            let bend_share = newton * bend / slope;
+            let change = newton + newton * bend_share;
             t -= change;
             if !(t > zero && t <= flight) {
                 return None;
             }
             let close = T::of(T::ROUGH);
-            if change.abs() <= t * close && bent.abs() <= close {
+            if change.abs() <= t * close && bend_share.abs() <= close {
                 return Some(t); // what is left is the third power of that
             }
         }

@@ -1,15 +1,16 @@
-//! How does the length of a step follow from the tolerance?
+//! Settings of the stepper, from the tolerance.
 
 use crate::dynamics::model::Model;
 use crate::dynamics::series::MAX_ORDER;
 use crate::numeric::{Scalar, fast_log2};
 
-/// The tolerance of a step relative to that of the scene: errors of some hundred steps add up, and even the energy
-/// of an undamped run of some hundred periods then stays within the tolerance. A fifth of it costs a tenth more.
+/// The tolerance of a step relative to that of the scene: errors of some hundred steps add up, and even the
+/// energy of an undamped run of some hundred periods then stays within the tolerance. A fifth of it costs a
+/// tenth more.
 const LOCAL_SHARE: f64 = 0.02;
 
-/// How many times the neglected term that the step was chosen for the residual at its end may be. It is rarely above
-/// 3 where the coefficients tell the truth, and above 1e3 soon where they do not.
+/// How many times the neglected term that the step was chosen for the residual at its end may be. It is
+/// rarely above 3 where the coefficients tell the truth, and above 1e3 soon where they do not.
 pub(crate) const RESIDUAL: f64 = 20.0;
 
 /// Roundings of the terms that add up in a residual.

@@ -1,4 +1,4 @@
-//! The stepper: equation, drive and clock, and the series of the step that is being made.
+//! Stepper: equation, drive and clock, and the series of the present step.
 
 use super::penetration::Penetration;
 use super::settings::Settings;
@@ -10,10 +10,10 @@ use crate::dynamics::series::{Endpoint, Series};
 use crate::dynamics::state::MotionState;
 use crate::numeric::Scalar;
 
-/// A step halved so often is no step.
+/// The most halvings of a step before it is given up.
 pub(super) const MOST_HALVINGS: u32 = 200;
 
-/// What makes steps from states: all that they need beside the state itself, and nothing of what is recorded.
+/// What a step needs beside the state, and nothing of what is recorded.
 pub(crate) struct Stepper<'a, T: Scalar, D: Drive<T>> {
     pub equation: &'a Equation<T>,
     pub drive: &'a D,
@@ -116,13 +116,13 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     /// The same, where the drive has been seeded.
     pub fn seeded_contact_acceleration(&self, end: End) -> [T; 3] {
         let (a, sign) = (&self.series.a, end.sign::<T>());
-        let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.press);
+        let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.acceleration);
         [stop - sign * a[0], -(sign * a[1]), -(sign * a[2] * T::of(2.0))]
     }
 
     /// What rounding may make of it.
     pub fn contact_acceleration_rounding(&self, end: End) -> T {
-        let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.press_rounding);
+        let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.acceleration_rounding);
         stop + self.series.a[0].abs() * T::of(4.0 * T::EPSILON)
     }
 }

@@ -1,18 +1,19 @@
-//! The work of a run, and when it is spent: budgets bound what is computed, not what is simulated.
+//! Work of a run and its budgets, which bound what is computed, not what is simulated.
 //!
-//! Work is counted in units of about ten nanoseconds of one core. A step of free flight costs more with the order of its
-//! series, the degree of the force and each part of the drive; a step of contact with a compliant stop, a search for a
-//! release and a lap that is told again for the sake of a list cost what they were measured to. What a completed cycle
-//! adds by multiplication costs nothing, so that a run which comes back is done however long it is. Samples, events and
-//! ledger are not counted: what is watched does not decide how a run ends, unless laps have to be told again for it.
+//! Work is counted in units of about ten nanoseconds of one core. A step of free flight costs more with the
+//! order of its series, the degree of the force and each part of the drive; a step of contact with a
+//! compliant stop, a search for a release and the replay of a lap cost what they were measured to. What a
+//! completed cycle adds by multiplication costs nothing, so that a run which comes back is done however long
+//! it is. Samples, events and ledger are not counted: what is recorded does not decide how a run ends, unless
+//! laps have to be replayed for it.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::dynamics::drive::Drive;
 use crate::numeric::Scalar;
 
-/// Units that one run may take: about ten seconds of one core, and at least 2e7 steps of a cubic force under one sine at
-/// any tolerance.
+/// Units that one run may take: about ten seconds of one core, and at least 2e7 steps of a cubic force under
+/// one sine at any tolerance.
 pub(crate) const WORK_BUDGET: u64 = 1_000_000_000;
 
 /// Impacts that one run may make one by one, those that laps add by multiplication not among them.
@@ -27,7 +28,7 @@ const SAMPLE: u64 = 10;
 /// An arrival at a surface, whose instant is a root of the step's polynomial.
 pub(crate) const ARRIVAL: u64 = 50;
 
-/// An entry of a kept cycle that is told again.
+/// An entry of a log that is replayed.
 pub(crate) const TOLD: u64 = 10;
 
 /// What the pieces of a run's work cost, in units.
@@ -44,7 +45,8 @@ pub(crate) struct Costs {
 }
 
 impl Costs {
-    /// Of series of this order, forces that take up to `products` products of series beyond the first, and a drive.
+    /// Of series of this order, forces that take up to `products` products of series beyond the first, and a
+    /// drive.
     pub fn new<T: Scalar, D: Drive<T>>(order: usize, products: usize, drive: &D) -> Self {
         let (order, products) = (order as u64, products as u64);
         let own = drive.cost(order as usize);
@@ -112,7 +114,7 @@ impl<'a> Work<'a> {
         (self.next_look.saturating_sub(self.done) / cost.max(1)).max(1)
     }
 
-    /// Whether the run is told to stop; looks at the flag now and then.
+    /// Whether the run is cancelled; checks the flag now and then.
     #[inline]
     pub fn is_told_to_stop(&mut self) -> bool {
         if self.done < self.next_look {
@@ -122,7 +124,7 @@ impl<'a> Work<'a> {
         self.is_cancelled()
     }
 
-    /// Whether the run is told to stop; looks at the flag.
+    /// Whether the run is cancelled; checks the flag.
     pub fn is_cancelled(&self) -> bool {
         self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed))
     }

@@ -1,0 +1,97 @@
+//! Mode of the motion: the interval in which the mass moves under one polynomial, and what is at its ends.
+
+use super::force::PieceForce;
+use crate::dynamics::result::Side;
+use crate::numeric::Scalar;
+
+/// What stands at an end of a mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum EndKind {
+    /// A rigid stop.
+    Stop,
+    /// The surface of a compliant stop, free flight on one side and contact on the other.
+    Compliant,
+    /// A break: the neighbouring piece begins.
+    Break,
+    /// Nothing is known beyond.
+    Unknown,
+}
+
+/// One end of a mode: low (left) or high (right).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    Low,
+    High,
+}
+
+impl End {
+    /// -1 for low, +1 for high.
+    #[inline]
+    pub fn sign<T: Scalar>(self) -> T {
+        match self {
+            Self::Low => T::of(-1.0),
+            Self::High => T::of(1.0),
+        }
+    }
+
+    /// The side that it is on.
+    pub fn side(self) -> Side {
+        match self {
+            Self::Low => Side::Left,
+            Self::High => Side::Right,
+        }
+    }
+
+    pub fn other(self) -> Self {
+        match self {
+            Self::Low => Self::High,
+            Self::High => Self::Low,
+        }
+    }
+}
+
+/// The interval in which one polynomial rules.
+#[derive(Debug, Clone)]
+pub(crate) struct Mode<T> {
+    /// The piece of the force curve that it lies in.
+    pub piece: usize,
+    pub force: PieceForce<T>,
+    pub origin: T,
+    pub low: T,
+    pub high: T,
+    pub low_kind: EndKind,
+    pub high_kind: EndKind,
+}
+
+impl<T: Scalar> Mode<T> {
+    #[inline]
+    pub fn end(&self, end: End) -> (T, EndKind) {
+        match end {
+            End::Low => (self.low, self.low_kind),
+            End::High => (self.high, self.high_kind),
+        }
+    }
+}
+
+/// The modes with the surface of a compliant stop at `x` between two of them; a curve that ends there or
+/// before has no stop.
+pub(super) fn cut<T: Scalar>(modes: Vec<Mode<T>>, x: T) -> Vec<Mode<T>> {
+    let mut parts = Vec::with_capacity(modes.len() + 1);
+    let last = modes.len() - 1;
+    for (index, mut mode) in modes.into_iter().enumerate() {
+        if mode.low < x && x < mode.high {
+            let beyond = Mode { low: x, low_kind: EndKind::Compliant, ..mode.clone() };
+            (mode.high, mode.high_kind) = (x, EndKind::Compliant);
+            parts.extend([mode, beyond]);
+            continue;
+        }
+        if mode.low == x && index > 0 {
+            mode.low_kind = EndKind::Compliant;
+        }
+        if mode.high == x && index < last {
+            mode.high_kind = EndKind::Compliant;
+        }
+        parts.push(mode);
+    }
+    parts
+}

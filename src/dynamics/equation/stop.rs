@@ -1,0 +1,56 @@
+//! Laws of the stops.
+//!
+//! A rigid stop returns the mass with its restitution times the speed (Newton). A compliant one pushes with
+//! k d^1.5 (1 + a d'), d the depth: contact by Hertz, loss by Hunt and Crossley (1975). The contact is clipped where that
+//! would pull.
+
+use crate::numeric::Scalar;
+
+/// What a stop does to the mass that touches it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stop<T> {
+    pub restitution: T,
+    /// Outward acceleration by the mechanism alone at the stop: positive presses.
+    pub acceleration: T,
+    /// Its rounding error.
+    pub acceleration_rounding: T,
+    /// Slope of force over mass at the stop.
+    pub stiffness: T,
+}
+
+impl<T: Scalar> Stop<T> {
+    /// The speed after an impact at this speed.
+    pub fn rebound(&self, speed: T) -> T {
+        self.restitution * speed
+    }
+}
+
+/// A compliant stop: stiffness d^1.5 (1 + loss d') over mass, kernel units.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Compliant<T> {
+    pub stiffness: T,
+    pub loss: T,
+}
+
+impl<T: Scalar> Compliant<T> {
+    /// Force over mass at the root `u` of the depth and the inward speed `w`, where the contact is not clipped.
+    pub fn force(&self, u: T, w: T) -> T {
+        self.stiffness * (u * u * u) * (T::of(1.0) + self.loss * w)
+    }
+
+    /// Whether the contact is clipped at the inward speed `w`: the stop would have to pull.
+    pub fn is_clipped(&self, w: T) -> bool {
+        T::of(1.0) + self.loss * w < T::zero()
+    }
+
+    /// The inward speed below which it is.
+    pub fn clipping_speed(&self) -> T {
+        T::of(-1.0) / self.loss
+    }
+
+    /// Elastic energy over mass at a root of the depth.
+    pub fn stored(&self, root: T) -> T {
+        let square = root * root;
+        self.stiffness * (square * square * root) * T::of(2.0) / T::of(5.0)
+    }
+}
