@@ -21,7 +21,7 @@ use clap::Parser;
 use clap::error::ErrorKind;
 
 pub use failure::Failure;
-pub use options::{Command, Options};
+pub use options::{Options, command_names};
 
 /// Reads the arguments; an `Err` is the exit status after help or an error has been printed.
 pub fn parse() -> Result<Options, ExitCode> {
@@ -55,7 +55,7 @@ pub fn run(
     window: impl FnOnce(Option<&str>) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let Options { headless, common, scene, command } = options;
-    let commands = "presets, check, curve, simulate, sweep, threshold or accuracy";
+    let commands = command_names();
     match (command, headless, scene) {
         (Some(_), _, Some(scene)) => {
             Err(Failure::argument(format!("`{scene}` stands before the command: put the scene after it")))
@@ -69,15 +69,7 @@ pub fn run(
             command.common().put_before(common).map_err(|option| {
                 Failure::argument(format!("{option} is given before and after the command: give it once"))
             })?;
-            match command {
-                Command::Presets(options) => presets::run(&options),
-                Command::Check(options) => check::run(&options),
-                Command::Curve(options) => curve::run(&options),
-                Command::Simulate(options) => simulate::run(&options),
-                Command::Sweep(options) => sweep::run(&options),
-                Command::Threshold(options) => threshold::run(&options),
-                Command::Accuracy(options) => accuracy::run(&options),
-            }
+            command.run()
         }
         (None, true, None) => Err(Failure::argument(format!(
             "--headless needs a command: {commands}, such as interwell --headless simulate paper; see interwell --help"
