@@ -21,7 +21,8 @@ pub struct Arguments {
     #[arg(value_name = "SCENE", conflicts_with_all = ["case", "list", "picture"])]
     pub scene: Option<String>,
 
-    /// With a scene: what fixed steps make of it, each in s or as a fraction such as 1/60; stops clamp and bounce
+    /// With a scene: what fixed steps make of it, each in s or as a fraction such as 1/60; stops clamp and
+    /// bounce
     #[arg(long, value_name = "S1,S2,..", allow_hyphen_values = true, requires = "scene")]
     pub step_s: Option<String>,
 
@@ -42,7 +43,8 @@ pub struct Arguments {
     #[command(flatten)]
     pub plot: PlotOptions,
 
-    /// What every command takes; --out has everything as CSV, and where that is `-` the table goes to standard error.
+    /// What every command takes; --out has everything as CSV, and where that is `-` the table goes to
+    /// standard error.
     #[command(flatten)]
     pub common: Common,
 }

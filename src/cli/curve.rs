@@ -41,20 +41,21 @@ pub struct Arguments {
     #[arg(long, value_name = "X1,X2,..", allow_hyphen_values = true)]
     pub at_mm: Option<String>,
 
-    /// Of flexures: more columns, axial_n (compression of the buckling flexures together), bump_m (height of their
-    /// bump) and max_stress_pa (largest bending stress), each row solved afresh; warns where the stress exceeds
-    /// mechanism.yield_gpa
+    /// Of flexures: more columns, axial_n (compression of the buckling flexures together), bump_m (height of
+    /// their bump) and max_stress_pa (largest bending stress), each row solved afresh; warns where the stress
+    /// exceeds mechanism.yield_gpa
     #[arg(long)]
     pub full: bool,
 
-    /// Of flexures: write centre lines as CSV x_m,flexure,s_m,px_m,py_m. In the frame, with a shuttle of no width:
-    /// a parallel flexure is clamped at (0, 0) and ends at (its length less the shortening, x); a buckling one is
-    /// clamped at (both lengths less the preload, 0) and ends at the same place
+    /// Of flexures: write centre lines as CSV x_m,flexure,s_m,px_m,py_m. In the frame, with a shuttle of no
+    /// width: a parallel flexure is clamped at (0, 0) and ends at (its length less the shortening, x); a
+    /// buckling one is clamped at (both lengths less the preload, 0) and ends at the same place
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub shapes: Option<PathBuf>,
 
-    /// Of a compliant stop: write what one impact on it does over the impact speed as CSV, speed_m_per_s, restitution,
-    /// rigid_restitution, contact_time_s, depth_m, peak_force_n, peak_pressure_pa, in closed form
+    /// Of a compliant stop: write what one impact on it does over the impact speed as CSV, speed_m_per_s,
+    /// restitution, rigid_restitution, contact_time_s, depth_m, peak_force_n, peak_pressure_pa, in closed
+    /// form
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub contact: Option<PathBuf>,
 
@@ -177,8 +178,8 @@ fn contact_table(
     match contact(&model, rigid) {
         Some(table) => Ok((table, model)),
         None => Err(Failure::argument(format!(
-            "{option}: the stops of {} are not compliant; give it some, such as --set 'stops=Hertz(travel_limit_mm: 1.5, \
-             radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)'",
+            "{option}: the stops of {} are not compliant; give it some, such as --set \
+             'stops=Hertz(travel_limit_mm: 1.5, radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)'",
             document.name
         ))),
     }
@@ -192,7 +193,8 @@ fn restitution(text: &str) -> Result<f64, Failure> {
     })
 }
 
-/// The flexures at these positions in m, unless Ctrl-C comes first; `scene` and `option` are what an error names.
+/// The flexures at these positions in m, unless Ctrl-C comes first; `scene` and `option` are what an error
+/// names.
 fn solved(
     mechanism: &Mechanism,
     positions: &[f64],

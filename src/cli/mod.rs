@@ -33,7 +33,10 @@ pub fn parse() -> Result<Options, ExitCode> {
         ErrorKind::InvalidUtf8 => {
             let wrong = std::env::args_os().find(|own| own.to_str().is_none()).unwrap_or_default();
             let wrong = wrong.to_string_lossy();
-            say(&format!("error: `{wrong}` is not valid UTF-8: rename the file, or go to its folder and name it from there"));
+            say(&format!(
+                "error: `{wrong}` is not valid UTF-8: rename the file, or go to its folder and name it from \
+                 there"
+            ));
             ExitCode::from(2)
         }
         _ => {
@@ -72,14 +75,16 @@ pub fn run(
             command.run()
         }
         (None, true, None) => Err(Failure::argument(format!(
-            "--headless needs a command: {commands}, such as interwell --headless simulate paper; see interwell --help"
+            "--headless needs a command: {commands}, such as interwell --headless simulate paper; see \
+             interwell --help"
         ))),
         (None, true, Some(word)) => Err(Failure::argument(format!(
             "--headless needs a command before `{word}`: {commands}; see interwell --help"
         ))),
         (None, false, scene) => match common.given(false) {
             Some(option) => Err(Failure::argument(format!(
-                "{option} belongs to a command: {commands}, such as interwell --headless simulate; the window takes a scene alone"
+                "{option} belongs to a command: {commands}, such as interwell --headless simulate; the \
+                 window takes a scene alone"
             ))),
             None => window(scene.as_deref()),
         },

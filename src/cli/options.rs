@@ -21,13 +21,15 @@ Examples:
   interwell --headless accuracy nominal-cubic --method rk4 --step-s 1/60,1/600
 
 A scene is a .ron file or the name of a built-in one; `presets --write DIR` copies those out.
-A scene is also the manifest that `sweep --out map.csv` writes beside its rows (map.csv.json), or - for standard input.
-Exit status: 0 done; 1 the run or the writing failed, a case of `accuracy` falls short, or a run of `simulate --strict`
-ended early; 2 the arguments or the scene are wrong.";
+A scene is also the manifest that `sweep --out map.csv` writes beside its rows (map.csv.json), or - for
+standard input.
+Exit status: 0 done; 1 the run or the writing failed, a case of `accuracy` falls short, or a run of
+`simulate --strict` ended early; 2 the arguments or the scene are wrong.";
 
 /// Bistable mechanisms with hard travel limits: see and compute how stops start interwell motion.
 #[derive(Debug, Parser)]
-#[command(name = "interwell", version, override_usage = USAGE, after_help = EXAMPLES, disable_help_subcommand = true)]
+#[command(name = "interwell", version, override_usage = USAGE, after_help = EXAMPLES)]
+#[command(disable_help_subcommand = true)]
 pub struct Options {
     /// Work without a window; every command needs it, before or after its name
     #[arg(long, global = true)]
@@ -54,7 +56,9 @@ macro_rules! commands {
         pub enum Command {
             $(
                 $(#[doc = $help])+
-                #[command(override_usage = concat!("interwell --headless ", stringify!($word), $scene, " [OPTIONS]"))]
+                #[command(override_usage = concat!("interwell \
+                    --headless ", stringify!($word), $scene, " \
+                    [OPTIONS]"))]
                 $variant(super::$word::Arguments),
             )*
         }
@@ -128,7 +132,8 @@ pub struct Common {
     pub tolerance: Option<String>,
 
     /// Threads to use [default: one per core]
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", allow_hyphen_values = true,
+          value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
 
     /// Say nothing on standard error but errors
@@ -142,8 +147,8 @@ impl Common {
         self.out.as_deref().unwrap_or(Path::new("-"))
     }
 
-    /// Puts what stood before the command in front of what stands after it; an error names an option that may be given
-    /// once and was given in both places.
+    /// Puts what stood before the command in front of what stands after it; an error names an option that may
+    /// be given once and was given in both places.
     ///
     /// clap's own global arguments would forget a `--set` before the command where another one follows it.
     pub fn put_before(&mut self, before: Self) -> Result<(), &'static str> {
@@ -164,8 +169,8 @@ impl Common {
         one(&mut self.jobs, before.jobs, "--jobs")
     }
 
-    /// The first of these that was given, for where it has no meaning: all of them, or those alone that change a scene or
-    /// how it is run.
+    /// The first of these that was given, for where it has no meaning: all of them, or those alone that
+    /// change a scene or how it is run.
     pub fn given(&self, of_a_scene: bool) -> Option<&'static str> {
         let given = [
             (!self.set.is_empty(), "--set"),
@@ -182,7 +187,8 @@ impl Common {
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("picture").multiple(true))]
 pub struct PlotOptions {
-    /// Draw a picture; the name ends in .png or .svg. A run is drawn from samples of its own, over the times that --at spans
+    /// Draw a picture; the name ends in .png or .svg. A run is drawn from samples of its own, over the times
+    /// that --at spans
     #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub plot: Option<PathBuf>,
 
@@ -190,8 +196,8 @@ pub struct PlotOptions {
     #[arg(long, requires = "picture")]
     pub dark: bool,
 
-    /// With a picture: its size in pixels, 200 to 4000 each way, such as 2400x1500; it keeps its proportions of 8 to 5 (an
-    /// 85 mm column at 300 dpi is 1004 pixels wide) [default: 1600x1000]
+    /// With a picture: its size in pixels, 200 to 4000 each way, such as 2400x1500; it keeps its proportions
+    /// of 8 to 5 (an 85 mm column at 300 dpi is 1004 pixels wide) [default: 1600x1000]
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, requires = "picture")]
     pub plot_size: Option<String>,
 
@@ -213,7 +219,8 @@ pub struct RangeOptions {
     )]
     pub plot_x: Option<String>,
 
-    /// With --plot: range of the first axis upward in its unit, such as -2:2 for the displacement of a run in mm
+    /// With --plot: range of the first axis upward in its unit, such as -2:2 for the displacement of a run in
+    /// mm
     #[arg(long, value_name = "A:B", allow_hyphen_values = true, requires = "plot")]
     pub plot_y: Option<String>,
 }

@@ -77,7 +77,8 @@ fn steps(text: &str) -> Result<Vec<f64>, Failure> {
         let (least, most) = STEPS;
         value.filter(|step| (least..=most).contains(step)).ok_or_else(|| {
             Failure::argument(format!(
-                "--step-s {text}: `{part}` is no step; give seconds from {least:e} to {most}, such as 0.001 or 1/60"
+                "--step-s {text}: `{part}` is no step; give seconds from {least:e} to {most}, such as 0.001 \
+                 or 1/60"
             ))
         })
     };

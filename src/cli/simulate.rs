@@ -30,8 +30,8 @@ pub struct Arguments {
     #[arg(long, value_name = "T1,T2,..", allow_hyphen_values = true)]
     pub at: Option<String>,
 
-    /// Go on, window after window, until the motion repeats, or up to this time in s. Samples and averages are then of the
-    /// longer run; its window is the last one. Needs a drive that repeats
+    /// Go on, window after window, until the motion repeats, or up to this time in s. Samples and averages
+    /// are then of the longer run; its window is the last one. Needs a drive that repeats
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
@@ -143,7 +143,8 @@ fn remark(outcome: Outcome) -> Option<String> {
         Outcome::NotFinite { .. } => "a number was no longer finite".to_owned(),
         Outcome::Inaccurate { residual } => {
             return Some(format!(
-                "the energy does not balance ({}): {residual:.1e} of what was moved is missing; use a smaller tolerance",
+                "the energy does not balance ({}): {residual:.1e} of what was moved is missing; use a \
+                 smaller tolerance",
                 outcome.name()
             ));
         }

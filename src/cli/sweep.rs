@@ -33,13 +33,13 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// Columns after those of the swept fields: names of the summary, or all [default: rms_velocity_m_per_s, regime,
-    /// crossings, impacts, max_abs_x_m, period, outcome]
+    /// Columns after those of the swept fields: names of the summary, or all [default: rms_velocity_m_per_s,
+    /// regime, crossings, impacts, max_abs_x_m, period, outcome]
     #[arg(long, value_name = "A,B,..|all", allow_hyphen_values = true, value_delimiter = ',')]
     pub columns: Vec<String>,
 
-    /// Let each run go on, window after window, until its motion repeats, or up to this time in s. Needs a drive that
-    /// repeats
+    /// Let each run go on, window after window, until its motion repeats, or up to this time in s. Needs a
+    /// drive that repeats
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
@@ -184,8 +184,8 @@ fn columns(asked: &[String], grid: &Grid) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// The mechanism of the sweep's first cell. Where it was not solved: none, if the mechanism is swept, since that is an
-/// outcome of the cell; an error, if it is that of every cell.
+/// The mechanism of the sweep's first cell. Where it was not solved: none, if the mechanism is swept, since
+/// that is an outcome of the cell; an error, if it is that of every cell.
 fn first_mechanism(document: &Document, sweep: &Sweep) -> Result<Option<Arc<Mechanism>>, Failure> {
     match sweep.first_mechanism() {
         Ok(mechanism) => Ok(Some(mechanism)),

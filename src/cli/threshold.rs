@@ -1,4 +1,5 @@
-//! `threshold`: the least value of a field from which on a motion does something, a row for each cell of a grid.
+//! `threshold`: the least value of a field from which on a motion does something, a row for each cell of a
+//! grid.
 
 use clap::Args;
 use interwell::scene::{Axis, Document};
@@ -26,9 +27,10 @@ pub struct Arguments {
     )]
     pub field: String,
 
-    /// What begins there: release (the mass leaves the stop it rests on), crossing (the settled motion crosses at all) or
-    /// interwell (its crossings repeat)
-    #[arg(long, value_name = "ONSET", default_value = "crossing", value_parser = ["release", "crossing", "interwell"])]
+    /// What begins there: release (the mass leaves the stop it rests on), crossing (the settled motion
+    /// crosses at all) or interwell (its crossings repeat)
+    #[arg(long, value_name = "ONSET", default_value = "crossing",
+          value_parser = ["release", "crossing", "interwell"])]
     pub of: String,
 
     /// How closely the threshold is located, in the field's unit [default: a 1000th of the step]
