@@ -42,8 +42,8 @@ fn window(scene: Option<&str>, refused: &Cell<Option<ExitCode>>) -> Result<(), c
 
 #[cfg(not(feature = "app"))]
 fn window(_: Option<&str>, _: &Cell<Option<ExitCode>>) -> Result<(), cli::Failure> {
-    Err(cli::Failure::argument(
-        "this build has no window: use interwell --headless with presets, check, curve, simulate, sweep, threshold or accuracy; \
-         see interwell --help",
-    ))
+    Err(cli::Failure::argument(format!(
+        "this build has no window: use interwell --headless with {}; see interwell --help",
+        cli::command_names()
+    )))
 }

@@ -2,19 +2,55 @@
 
 use std::io::IsTerminal;
 
+use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use interwell::output::{Sink, accuracy_figure, aligned};
 use interwell::study::Task;
 use interwell::study::accuracy::{HARD_CASES, PROBLEMS, Report, Selection, Stopped, accuracy};
 
 use super::failure::Failure;
-use super::options::AccuracyOptions;
+use super::options::{Common, PlotOptions};
 use super::picture::Picture;
 use super::support::{Watch, finish, open, write_table, write_text};
 use super::{interrupt, say, scene_accuracy};
 
+/// What it takes.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file or built-in scene whose run is looked at; without one the program's own problems and cases
+    #[arg(value_name = "SCENE", conflicts_with_all = ["case", "list", "picture"])]
+    pub scene: Option<String>,
+
+    /// With a scene: what fixed steps make of it, each in s or as a fraction such as 1/60; stops clamp and
+    /// bounce
+    #[arg(long, value_name = "S1,S2,..", allow_hyphen_values = true, requires = "scene")]
+    pub step_s: Option<String>,
+
+    /// With --step-s: the method, euler (semi-implicit), verlet or rk4 (repeatable) [default: all]
+    #[arg(long, value_name = "NAME", requires = "step_s",
+          value_parser = ["euler", "verlet", "rk4"])]
+    pub method: Vec<String>,
+
+    /// Run this case alone (repeatable): p1, p2 or flexures for speed against error, or a hard case
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
+    pub case: Vec<String>,
+
+    /// List the cases: what each runs, how its answer is known, why so many digits are allowed
+    #[arg(long)]
+    pub list: bool,
+
+    /// The picture: error over time, of the problems p1, p2 and flexures.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// What every command takes; --out has everything as CSV, and where that is `-` the table goes to
+    /// standard error.
+    #[command(flatten)]
+    pub common: Common,
+}
+
 /// Runs what was selected and shows it; an error where a case falls short, after everything was written.
-pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
+pub fn run(options: &Arguments) -> Result<(), Failure> {
     if let Some(scene) = &options.scene {
         return scene_accuracy::run(scene, options);
     }

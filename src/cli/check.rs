@@ -2,15 +2,28 @@
 
 use std::path::PathBuf;
 
+use clap::Args;
 use interwell::study::inspect;
 
 use super::failure::Failure;
-use super::options::{CheckOptions, Common};
+use super::options::Common;
 use super::say;
 use super::support::{finish, load, mechanism, open, write_text};
 
+/// What it takes.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene files or built-in scenes [default: paper]
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<String>,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
 /// Reports every scene; the ones that are wrong on standard error, after which the command has failed.
-pub fn run(options: &CheckOptions) -> Result<(), Failure> {
+pub fn run(options: &Arguments) -> Result<(), Failure> {
     let paper = ["paper".to_owned()];
     let scenes = if options.scenes.is_empty() { &paper[..] } else { &options.scenes[..] };
     let names: Vec<PathBuf> = scenes.iter().map(PathBuf::from).collect();

@@ -1,7 +1,10 @@
 //! `curve`: force, potential and stiffness of the mechanism, and what its flexures do.
 
+use std::path::PathBuf;
+
 use std::sync::Arc;
 
+use clap::Args;
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::mechanics::flexure::State;
@@ -13,10 +16,73 @@ use interwell::study::{
 };
 
 use super::failure::Failure;
-use super::options::CurveOptions;
+use super::options::{Common, PlotOptions, RangeOptions};
 use super::picture::{Picture, caption, ranges};
 use super::support::{finish, inputs, load_with_mechanism, numbers, open, write_table, write_text};
 use super::{interrupt, say};
+
+/// What it takes.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// From A to B in mm [default: a little beyond equilibria and stops, where the curve reaches as far]
+    #[arg(long, value_name = "A:B", allow_hyphen_values = true, conflicts_with = "at_mm")]
+    pub range_mm: Option<String>,
+
+    /// Number of positions over the range [default: 401, for --shapes 21]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "at_mm",
+          value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
+    pub points: Option<u32>,
+
+    /// At these positions in mm, in this order
+    #[arg(long, value_name = "X1,X2,..", allow_hyphen_values = true)]
+    pub at_mm: Option<String>,
+
+    /// Of flexures: more columns, axial_n (compression of the buckling flexures together), bump_m (height of
+    /// their bump) and max_stress_pa (largest bending stress), each row solved afresh; warns where the stress
+    /// exceeds mechanism.yield_gpa
+    #[arg(long)]
+    pub full: bool,
+
+    /// Of flexures: write centre lines as CSV x_m,flexure,s_m,px_m,py_m. In the frame, with a shuttle of no
+    /// width: a parallel flexure is clamped at (0, 0) and ends at (its length less the shortening, x); a
+    /// buckling one is clamped at (both lengths less the preload, 0) and ends at the same place
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub shapes: Option<PathBuf>,
+
+    /// Of a compliant stop: write what one impact on it does over the impact speed as CSV, speed_m_per_s,
+    /// restitution, rigid_restitution, contact_time_s, depth_m, peak_force_n, peak_pressure_pa, in closed
+    /// form
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub contact: Option<PathBuf>,
+
+    /// Draw restitution over impact speed, beside a rigid stop's constant; the name ends in .png or .svg
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
+    pub contact_plot: Option<PathBuf>,
+
+    /// With --contact and --contact-plot: the restitution of the rigid stop, 0 to 1
+    #[arg(long, value_name = "E", allow_hyphen_values = true, default_value = "0.36")]
+    pub rigid: String,
+
+    /// Write equilibria, barrier, force extrema and kinks as JSON
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub landscape: Option<PathBuf>,
+
+    /// The picture.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// Its axes.
+    #[command(flatten)]
+    pub ranges: RangeOptions,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
 
 /// Positions at which the flexures are drawn: each is some hundred rows.
 const SHAPES: u32 = 21;
@@ -25,7 +91,7 @@ const SHAPES: u32 = 21;
 const PICTURE_POINTS: usize = 3001;
 
 /// Writes the curve as CSV and, where asked for, the landscape as JSON and the shapes of the flexures as CSV.
-pub fn run(options: &CurveOptions) -> Result<(), Failure> {
+pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
@@ -112,8 +178,8 @@ fn contact_table(
     match contact(&model, rigid) {
         Some(table) => Ok((table, model)),
         None => Err(Failure::argument(format!(
-            "{option}: the stops of {} are not compliant; give it some, such as --set 'stops=Hertz(travel_limit_mm: 1.5, \
-             radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)'",
+            "{option}: the stops of {} are not compliant; give it some, such as --set \
+             'stops=Hertz(travel_limit_mm: 1.5, radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)'",
             document.name
         ))),
     }
@@ -127,7 +193,8 @@ fn restitution(text: &str) -> Result<f64, Failure> {
     })
 }
 
-/// The flexures at these positions in m, unless Ctrl-C comes first; `scene` and `option` are what an error names.
+/// The flexures at these positions in m, unless Ctrl-C comes first; `scene` and `option` are what an error
+/// names.
 fn solved(
     mechanism: &Mechanism,
     positions: &[f64],

@@ -21,7 +21,7 @@ use clap::Parser;
 use clap::error::ErrorKind;
 
 pub use failure::Failure;
-pub use options::{Command, Options};
+pub use options::{Options, command_names};
 
 /// Reads the arguments; an `Err` is the exit status after help or an error has been printed.
 pub fn parse() -> Result<Options, ExitCode> {
@@ -33,7 +33,10 @@ pub fn parse() -> Result<Options, ExitCode> {
         ErrorKind::InvalidUtf8 => {
             let wrong = std::env::args_os().find(|own| own.to_str().is_none()).unwrap_or_default();
             let wrong = wrong.to_string_lossy();
-            say(&format!("error: `{wrong}` is not valid UTF-8: rename the file, or go to its folder and name it from there"));
+            say(&format!(
+                "error: `{wrong}` is not valid UTF-8: rename the file, or go to its folder and name it from \
+                 there"
+            ));
             ExitCode::from(2)
         }
         _ => {
@@ -55,7 +58,7 @@ pub fn run(
     window: impl FnOnce(Option<&str>) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let Options { headless, common, scene, command } = options;
-    let commands = "presets, check, curve, simulate, sweep, threshold or accuracy";
+    let commands = command_names();
     match (command, headless, scene) {
         (Some(_), _, Some(scene)) => {
             Err(Failure::argument(format!("`{scene}` stands before the command: put the scene after it")))
@@ -69,25 +72,19 @@ pub fn run(
             command.common().put_before(common).map_err(|option| {
                 Failure::argument(format!("{option} is given before and after the command: give it once"))
             })?;
-            match command {
-                Command::Presets(options) => presets::run(&options),
-                Command::Check(options) => check::run(&options),
-                Command::Curve(options) => curve::run(&options),
-                Command::Simulate(options) => simulate::run(&options),
-                Command::Sweep(options) => sweep::run(&options),
-                Command::Threshold(options) => threshold::run(&options),
-                Command::Accuracy(options) => accuracy::run(&options),
-            }
+            command.run()
         }
         (None, true, None) => Err(Failure::argument(format!(
-            "--headless needs a command: {commands}, such as interwell --headless simulate paper; see interwell --help"
+            "--headless needs a command: {commands}, such as interwell --headless simulate paper; see \
+             interwell --help"
         ))),
         (None, true, Some(word)) => Err(Failure::argument(format!(
             "--headless needs a command before `{word}`: {commands}; see interwell --help"
         ))),
         (None, false, scene) => match common.given(false) {
             Some(option) => Err(Failure::argument(format!(
-                "{option} belongs to a command: {commands}, such as interwell --headless simulate; the window takes a scene alone"
+                "{option} belongs to a command: {commands}, such as interwell --headless simulate; the \
+                 window takes a scene alone"
             ))),
             None => window(scene.as_deref()),
         },

@@ -1,17 +1,34 @@
 //! `presets`: which scenes are built in, and where can one have them as files?
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::Args;
 use interwell::output::Sink;
 use interwell::scene::{PRESETS, export};
 use interwell::system::files;
 
 use super::failure::Failure;
-use super::options::PresetsOptions;
+use super::options::Common;
 use super::support::{finish, open, write_text};
 
+/// What it takes.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Copy the scenes and their tables into this folder
+    #[arg(long, value_name = "DIR")]
+    pub write: Option<PathBuf>,
+
+    /// With --write: replace files that are there and differ
+    #[arg(long, requires = "write")]
+    pub force: bool,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
 /// Lists the built-in scenes, a line each, or writes them into a folder and lists the files.
-pub fn run(options: &PresetsOptions) -> Result<(), Failure> {
+pub fn run(options: &Arguments) -> Result<(), Failure> {
     if let Some(option) = options.common.given(true) {
         return Err(Failure::argument(format!(
             "{option} changes a run, and presets runs nothing: leave it out"

@@ -5,14 +5,14 @@ use interwell::output::{Sink, aligned};
 use interwell::study::accuracy::methods::Scheme;
 use interwell::study::accuracy::scene::{Unfit, scene_table, step_name, step_size, tolerances, trust};
 
+use super::accuracy::Arguments;
 use super::accuracy::show;
 use super::failure::Failure;
 use super::interrupt;
-use super::options::AccuracyOptions;
 use super::support::{finish, inputs, load_with_mechanism, open, write_table};
 
 /// Looks at the run of the scene called `spec`.
-pub fn run(spec: &str, options: &AccuracyOptions) -> Result<(), Failure> {
+pub fn run(spec: &str, options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
     let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
     let (document, mechanism) = load_with_mechanism(spec, common)?;
@@ -77,7 +77,8 @@ fn steps(text: &str) -> Result<Vec<f64>, Failure> {
         let (least, most) = STEPS;
         value.filter(|step| (least..=most).contains(step)).ok_or_else(|| {
             Failure::argument(format!(
-                "--step-s {text}: `{part}` is no step; give seconds from {least:e} to {most}, such as 0.001 or 1/60"
+                "--step-s {text}: `{part}` is no step; give seconds from {least:e} to {most}, such as 0.001 \
+                 or 1/60"
             ))
         })
     };

@@ -1,19 +1,67 @@
 //! `simulate`: one run.
 
+use std::path::PathBuf;
+
+use clap::Args;
 use interwell::dynamics::{Model, Outcome};
 use interwell::output::{run_figure, summary};
 use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_trace, yield_warning};
 
 use super::failure::Failure;
-use super::options::SimulateOptions;
+use super::options::{Common, PlotOptions, RangeOptions};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
     Watch, finish, inputs, load_with_mechanism, numbers, open, until_settled, write_table, write_text,
 };
 use super::{interrupt, say};
 
+/// What it takes.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// Time between samples in s [default: a 60th of the forcing period, else a thousandth of the duration]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, conflicts_with = "at")]
+    pub dt: Option<String>,
+
+    /// Sample at these times in s, in this order
+    #[arg(long, value_name = "T1,T2,..", allow_hyphen_values = true)]
+    pub at: Option<String>,
+
+    /// Go on, window after window, until the motion repeats, or up to this time in s. Samples and averages
+    /// are then of the longer run; its window is the last one. Needs a drive that repeats
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    pub until_settled: Option<String>,
+
+    /// Write impacts, rests, releases and crossings as CSV
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub events: Option<PathBuf>,
+
+    /// Fail with exit status 1 where the run ends before its duration; its files are written all the same
+    #[arg(long)]
+    pub strict: bool,
+
+    /// Write statistics, outcome and energy ledger as JSON
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub summary: Option<PathBuf>,
+
+    /// The picture.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// Its axes.
+    #[command(flatten)]
+    pub ranges: RangeOptions,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
 /// Runs the scene and writes samples, events and summary.
-pub fn run(options: &SimulateOptions) -> Result<(), Failure> {
+pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
     let axes = ranges(&options.ranges, "--plot-time")?;
@@ -95,7 +143,8 @@ fn remark(outcome: Outcome) -> Option<String> {
         Outcome::NotFinite { .. } => "a number was no longer finite".to_owned(),
         Outcome::Inaccurate { residual } => {
             return Some(format!(
-                "the energy does not balance ({}): {residual:.1e} of what was moved is missing; use a smaller tolerance",
+                "the energy does not balance ({}): {residual:.1e} of what was moved is missing; use a \
+                 smaller tolerance",
                 outcome.name()
             ));
         }

@@ -51,8 +51,9 @@ const LONGEST_WAIT: f64 = 1e9;
 /// Rows that are turned into text at a time.
 const ROWS: usize = 1 << 15;
 
-/// The scene called `spec` with `--set` and `--tolerance` applied and checked, and its warnings. For a sweep `over`
-/// holds its arguments: then the first cell is checked, since the scene's own value of a swept field is never run.
+/// The scene called `spec` with `--set` and `--tolerance` applied and checked, and its warnings. For a sweep
+/// `over` holds its arguments: then the first cell is checked, since the scene's own value of a swept field
+/// is never run.
 pub fn load(
     spec: &str,
     common: &Common,
@@ -92,8 +93,8 @@ pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
     built.map(Arc::new).map_err(|error| unbuilt(document, error))
 }
 
-/// What is said where the mechanism of `document` cannot be built: a wrong scene is the writer's to mend, flexures that
-/// are right and are not solved are a run that failed.
+/// What is said where the mechanism of `document` cannot be built: a wrong scene is the writer's to mend,
+/// flexures that are right and are not solved are a run that failed.
 pub fn unbuilt(document: &Document, error: BuildError) -> Failure {
     match error {
         BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
@@ -139,13 +140,13 @@ pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> 
     if !model.can_settle() {
         return match model.forcing_period {
             Some(period) if model.repeats() => wrong(format!(
-                "{scene}: its settled window of {} s holds less than two forcing periods of {period} s, too few to tell \
-                 whether the motion repeats; lengthen run.duration_s",
+                "{scene}: its settled window of {} s holds less than two forcing periods of {period} s, too \
+                 few to tell whether the motion repeats; lengthen run.duration_s",
                 model.duration - model.settle()
             )),
             _ => wrong(format!(
-                "{scene}: its excitation does not repeat, so the motion has no period to wait for; take a Sine, or a Sum of \
-                 sines whose frequencies have a common period"
+                "{scene}: its excitation does not repeat, so the motion has no period to wait for; take a \
+                 Sine, or a Sum of sines whose frequencies have a common period"
             )),
         };
     }
@@ -165,8 +166,8 @@ pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> 
 pub const MANIFEST: &str = "the manifest of --out";
 
 /// Opens the outputs, each given with its option, before any work is done for them. None may be one of the
-/// `inputs` (a scene's file, or a table or record that it names) or any other scene, the manifest replaces no file that
-/// is none, and no two are the same.
+/// `inputs` (a scene's file, or a table or record that it names) or any other scene, the manifest replaces no
+/// file that is none, and no two are the same.
 pub fn open<const N: usize>(
     inputs: &[PathBuf],
     outputs: [Option<(&str, &Path)>; N],

@@ -4,6 +4,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use clap::Args;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Overlay, SweepPicture, can_show, header, is_regular, manifest, rows, sweep_figure};
@@ -16,10 +17,48 @@ use interwell::study::{
 use interwell::system::threads::{Pool, processors};
 
 use super::failure::{Failure, wrong_cell};
-use super::options::{Common, SweepOptions as Arguments};
+use super::options::{Common, PlotOptions, RangeOptions};
 use super::picture::{Picture, caption, ranges};
 use super::support::{MANIFEST, Watch, finish, inputs, load, open, unbuilt, until_settled, warn, write_text};
 use super::{interrupt, say};
+
+/// What it takes.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// Sweep a field; replaces the scene's own sweep (repeatable, the first is the slowest)
+    #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
+    pub over: Vec<String>,
+
+    /// Columns after those of the swept fields: names of the summary, or all [default: rms_velocity_m_per_s,
+    /// regime, crossings, impacts, max_abs_x_m, period, outcome]
+    #[arg(long, value_name = "A,B,..|all", allow_hyphen_values = true, value_delimiter = ',')]
+    pub columns: Vec<String>,
+
+    /// Let each run go on, window after window, until its motion repeats, or up to this time in s. Needs a
+    /// drive that repeats
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    pub until_settled: Option<String>,
+
+    /// With --plot: the column that is shown, any one with numbers, or regime
+    #[arg(long, value_name = "COLUMN", requires = "plot", default_value = "rms_velocity_m_per_s")]
+    pub quantity: String,
+
+    /// The picture.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// Its axes.
+    #[command(flatten)]
+    pub ranges: RangeOptions,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
 
 /// Runs the grid and writes a row a cell.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
@@ -145,8 +184,8 @@ fn columns(asked: &[String], grid: &Grid) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// The mechanism of the sweep's first cell. Where it was not solved: none, if the mechanism is swept, since that is an
-/// outcome of the cell; an error, if it is that of every cell.
+/// The mechanism of the sweep's first cell. Where it was not solved: none, if the mechanism is swept, since
+/// that is an outcome of the cell; an error, if it is that of every cell.
 fn first_mechanism(document: &Document, sweep: &Sweep) -> Result<Option<Arc<Mechanism>>, Failure> {
     match sweep.first_mechanism() {
         Ok(mechanism) => Ok(Some(mechanism)),

@@ -1,19 +1,56 @@
-//! `threshold`: the least value of a field from which on a motion does something, a row for each cell of a grid.
+//! `threshold`: the least value of a field from which on a motion does something, a row for each cell of a
+//! grid.
 
+use clap::Args;
 use interwell::scene::{Axis, Document};
 use interwell::study::{Grid, Onset, Scan, Task, threshold_table};
 
 use super::failure::Failure;
 use super::interrupt;
-use super::options::ThresholdOptions;
+use super::options::Common;
 use super::support::{finish, inputs, load_with_mechanism, open, write_table};
 use super::sweep::{located, pool};
+
+/// What it takes.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file or built-in scene; each run begins at rest
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// The field and its range [default of the step: a 200th of the range]
+    #[arg(
+        long,
+        value_name = "FIELD=FROM:TO[:STEP]",
+        default_value = "excitation.amplitude_g=0:2",
+        allow_hyphen_values = true
+    )]
+    pub field: String,
+
+    /// What begins there: release (the mass leaves the stop it rests on), crossing (the settled motion
+    /// crosses at all) or interwell (its crossings repeat)
+    #[arg(long, value_name = "ONSET", default_value = "crossing",
+          value_parser = ["release", "crossing", "interwell"])]
+    pub of: String,
+
+    /// How closely the threshold is located, in the field's unit [default: a 1000th of the step]
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    pub resolution: Option<String>,
+
+    /// One row for each value of another field (repeatable, the first is the slowest)
+    #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
+    pub over: Vec<String>,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
 
 /// Steps of a scan whose step was left out.
 const STEPS: f64 = 200.0;
 
 /// Searches and writes the table.
-pub fn run(options: &ThresholdOptions) -> Result<(), Failure> {
+pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
     let (document, _) = load_with_mechanism(&options.scene, common)?;
     let scan = scan(options, &document)?;
@@ -39,7 +76,7 @@ pub fn run(options: &ThresholdOptions) -> Result<(), Failure> {
 }
 
 /// What is searched over.
-fn scan(options: &ThresholdOptions, document: &Document) -> Result<Scan, Failure> {
+fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     let argument = options.field.trim();
     let wrong = |problem: String| Failure::argument(format!("--field {argument}: {problem}"));
     let parts: Vec<&str> = argument.split(':').collect();

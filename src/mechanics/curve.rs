@@ -39,8 +39,9 @@ impl Piece {
         self.potential_at_origin + self.potential_from_origin(y)
     }
 
-    /// Potential at `b` less that at `a`, in J: as the divided difference times the way, so that a mass that hardly moves
-    /// far from the origin has its change to as many digits as the force has there, and one that stays has none.
+    /// Potential at `b` less that at `a`, in J: as the divided difference times the way, so that a mass that
+    /// hardly moves far from the origin has its change to as many digits as the force has there, and one that
+    /// stays has none.
     pub fn potential_change(&self, a: f64, b: f64) -> f64 {
         let (from, to) = (a - self.origin, b - self.origin);
         let (mut value, mut slope) = (0.0, 0.0);

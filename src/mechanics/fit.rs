@@ -14,10 +14,10 @@
 //! break ends a step early and starts another. The chain is therefore made for several limits of the degree
 //! and the cheapest by [`running_cost`] is kept.
 //!
-//! **No wiggles.** A least-squares polynomial over m roughly even intervals is tame up to a degree of about 2 sqrt(m)
-//! (Rakhmanov 2007, "Bounds for polynomials with a unit discrete norm"). Rather than trust this alone, every
-//! piece is compared half-way between its samples with the local interpolant through six neighbours; it may be off
-//! by a few times the tolerance and by what six neighbours say that four do not.
+//! **No wiggles.** A least-squares polynomial over m roughly even intervals is tame up to a degree of about 2
+//! sqrt(m) (Rakhmanov 2007, "Bounds for polynomials with a unit discrete norm"). Rather than trust this
+//! alone, every piece is compared half-way between its samples with the local interpolant through six
+//! neighbours; it may be off by a few times the tolerance and by what six neighbours say that four do not.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,12 +31,12 @@ use crate::numeric::fit::lowest_degree;
 /// step costs more than the restart that a longer piece saves.
 const DEGREES: [usize; 5] = [5, 7, 9, 11, 13];
 
-/// Steps that a swing through the whole curve is taken to need when no break is in the way; a break adds about
-/// one. An estimate, not measured.
+/// Steps that a swing through the whole curve is taken to need when no break is in the way; a break adds
+/// about one. An estimate, not measured.
 const STEPS_OF_A_SWING: f64 = 20.0;
 
-/// What a step costs beside the force, in series products of the same order: the drive's sine, the step size, the
-/// looking for events. An estimate as well.
+/// What a step costs beside the force, in series products of the same order: the drive's sine, the step size,
+/// the looking for events. An estimate as well.
 const OTHER_PRODUCTS: f64 = 3.0;
 
 /// Share of the tolerance that the two halves of odd data may differ by; the rest is left to the fit.
@@ -51,9 +51,9 @@ const MANY_PIECES: usize = 24;
 
 /// Fits a curve to a table.
 ///
-/// Returns the curve with its [`FitReport`]; every sample is met within `tolerance` times
-/// [`force_scale`], or to rounding where that is larger. Breaks lie on samples; the domain is the first to the last
-/// sample. Data that are odd within half the tolerance give a curve that is odd bit for bit.
+/// Returns the curve with its [`FitReport`]; every sample is met within `tolerance` times [`force_scale`], or
+/// to rounding where that is larger. Breaks lie on samples; the domain is the first to the last sample. Data
+/// that are odd within half the tolerance give a curve that is odd bit for bit.
 ///
 /// Preconditions: a table as [`Table::parse`] guarantees it, `tolerance` above 0.
 ///
@@ -83,15 +83,15 @@ pub fn fit_unless(table: &Table, tolerance: f64, cancel: Option<&AtomicBool>) ->
         .map(|(_, pieces, ends)| samples.assemble(pieces, &ends))
         .filter(|curve| curve.pieces().iter().all(|p| p.potential_at_origin.is_finite()))
         .ok_or_else(|| {
-            "has numbers so large or small, or positions so close together, that no curve through them can be \
-             computed in double precision"
+            "has numbers so large or small, or positions so close together, that no curve through them can \
+             be computed in double precision"
                 .to_owned()
         })?;
     let mut warnings = table.warnings();
     if curve.pieces().len() > MANY_PIECES {
         warnings.push(format!(
-            "following the table to {tolerance:e} of {scale:.3e} N takes {} pieces, which slows every run: if its \
-             roughness is noise, raise the tolerance",
+            "following the table to {tolerance:e} of {scale:.3e} N takes {} pieces, which slows every run: \
+             if its roughness is noise, raise the tolerance",
             curve.pieces().len()
         ));
     }
@@ -102,10 +102,10 @@ pub fn fit_unless(table: &Table, tolerance: f64, cancel: Option<&AtomicBool>) ->
 
 /// The force in N that the tolerance is relative to.
 ///
-/// The largest |F| between the outermost stable equilibria of the samples (where the force changes from
-/// below to above 0), which a wall outside the wells does not touch. Where there are not two of them, or the force between
-/// them does not stand out ten-fold from the roughness of the data (noise about 0 makes "wells" of its own): the
-/// largest |F| of all.
+/// The largest |F| between the outermost stable equilibria of the samples (where the force changes from below
+/// to above 0), which a wall outside the wells does not touch. Where there are not two of them, or the force
+/// between them does not stand out ten-fold from the roughness of the data (noise about 0 makes "wells" of
+/// its own): the largest |F| of all.
 pub fn force_scale(table: &Table) -> f64 {
     let force = &table.force;
     let rising = |i: &usize| force[*i] < 0.0 && force[*i + 1] >= 0.0;
@@ -164,7 +164,8 @@ struct Samples<'a> {
     corner: Vec<bool>,
     /// Slope at each sample in N/m, as its neighbours up to the next corner have it.
     slope: Vec<f64>,
-    /// Force half-way from each sample to the next by local interpolation, and how far the curve may be from it.
+    /// Force half-way from each sample to the next by local interpolation, and how far the curve may be from
+    /// it.
     between: Vec<(f64, f64)>,
     odd: bool,
 }
@@ -240,10 +241,10 @@ impl Samples<'_> {
 
     /// The piece after the last of `links`, with the same slope at the break if at all possible.
     ///
-    /// The end of a least-squares piece has the least certain slope of all. Where keeping it stops the next piece from
-    /// reaching half as far as it could, both are asked to meet at a better one: the free piece's, the
-    /// neighbouring samples', their mean. Where none suits both sides the slope is kept, whatever that costs in
-    /// pieces: data that are merely coarse or rough have no corners.
+    /// The end of a least-squares piece has the least certain slope of all. Where keeping it stops the next
+    /// piece from reaching half as far as it could, both are asked to meet at a better one: the free piece's,
+    /// the neighbouring samples', their mean. Where none suits both sides the slope is kept, whatever that
+    /// costs in pieces: data that are merely coarse or rough have no corners.
     fn continued(&self, links: &mut [Link], from: usize, limit: usize, degree: usize) -> Option<Link> {
         let before = links.last_mut()?;
         let slope = before.piece.stiffness(self.x[from]);
@@ -276,8 +277,8 @@ impl Samples<'_> {
 
     /// The longest piece from sample `from` that ends at or before sample `limit`.
     ///
-    /// Long pieces may succeed where short ones fail (they may have a higher degree), so the search comes from
-    /// above, in steps of a seventh, and then refines between the last failure and the success.
+    /// Long pieces may succeed where short ones fail (they may have a higher degree), so the search comes
+    /// from above, in steps of a seventh, and then refines between the last failure and the success.
     fn reach(&self, from: usize, limit: usize, left: Left, degree: usize) -> Option<Link> {
         let shortest = from + 1;
         let (mut end, mut failed) = (limit, limit + 1);
@@ -336,9 +337,9 @@ impl Samples<'_> {
         lowest_degree(&points, &weights, &values, terms, |q| {
             let local = combine(&base, &shape, q, odd);
             let piece = self.in_metres(&local, origin, half, &span, left);
-            // The picked samples first: most trials end there. A single interval is accepted whatever the curve does
-            // between its ends, so that there is a chain; but over an interval a million times longer than the one
-            // before it, a slope that is kept drowns the ends themselves in rounding.
+            // The picked samples first: most trials end there. A single interval is accepted whatever the
+            // curve does between its ends, so that there is a chain; but over an interval a million times
+            // longer than the one before it, a slope that is kept drowns the ends themselves in rounding.
             let good = inner.clone().step_by(stride).all(|i| meets(&piece, i))
                 && [span.start, span.end].iter().all(|i| meets(&piece, *i))
                 && (stride == 1 || inner.clone().all(|i| meets(&piece, i)))

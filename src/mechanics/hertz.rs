@@ -1,9 +1,9 @@
 //! The impact of a mass on a compliant stop, and nothing else.
 //!
-//! A point contact by Hertz with the loss of Hunt and Crossley (1975, "Coefficient of restitution interpreted as
-//! damping in vibroimpact", eq. 9): the stop pushes back with k d^1.5 (1 + a d'), d the depth by which the mass has
-//! pressed it in, and never pulls. Closed forms of one contact without other forces; with them the contact is
-//! integrated, by [`dynamics`](crate::dynamics).
+//! A point contact by Hertz with the loss of Hunt and Crossley (1975, "Coefficient of restitution interpreted
+//! as damping in vibroimpact", eq. 9): the stop pushes back with k d^1.5 (1 + a d'), d the depth by which the
+//! mass has pressed it in, and never pulls. Closed forms of one contact without other forces; with them the
+//! contact is integrated, by [`dynamics`](crate::dynamics).
 //!
 //! Over the contact the speed is a function of the depth. With z = a d', the kinetic side of
 //! m d'' = -k d^1.5 (1 + z) integrates to gamma(z) = z - ln(1 + z), and
@@ -12,8 +12,9 @@
 //! gamma(a v) - gamma(z) = a^2 (2 k / (5 m)) d^2.5
 //! ```
 //!
-//! With gamma(z) = gamma(a v) cos^2(angle), z has the sign of the cosine and is analytic in it, so that the angle
-//! from 0 (touch) over pi/2 (deepest) to pi (separation) parametrises the whole contact without a singular speed.
+//! With gamma(z) = gamma(a v) cos^2(angle), z has the sign of the cosine and is analytic in it, so that the
+//! angle from 0 (touch) over pi/2 (deepest) to pi (separation) parametrises the whole contact without a
+//! singular speed.
 
 use std::f64::consts::PI;
 
@@ -26,16 +27,17 @@ const POISSON: f64 = 0.34;
 /// Yield strength in Pa where a scene gives none: that of the common wrought alloy 6061-T6.
 const YIELD: f64 = 0.276e9;
 
-/// A point contact yields first, below its surface, where the pressure at its centre reaches this multiple of the
-/// yield strength in tension (Johnson 1985, "Contact Mechanics", section 6.1, for a Poisson's ratio of 0.3).
+/// A point contact yields first, below its surface, where the pressure at its centre reaches this multiple of
+/// the yield strength in tension (Johnson 1985, "Contact Mechanics", section 6.1, for a Poisson's ratio of
+/// 0.3).
 const PRESSURE_OVER_YIELD: f64 = 1.6;
 
-/// Half the points of the rule for the contact time. Its integrand is analytic in the fifth root of the angle, and
-/// this many take it to rounding.
+/// Half the points of the rule for the contact time. Its integrand is analytic in the fifth root of the
+/// angle, and this many take it to rounding.
 const TIME_POINTS: usize = 40;
 
-/// Halvings of the search for the largest force: the force is flat there, so that half the digits of its place are all
-/// of its value.
+/// Halvings of the search for the largest force: the force is flat there, so that half the digits of its
+/// place are all of its value.
 const PEAK_HALVINGS: usize = 60;
 
 /// A compliant stop. SI.
@@ -52,7 +54,8 @@ pub struct Hertz {
 /// Two equal cylinders, crossed at a right angle, of one material. SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactMaterial {
-    /// Radius in m; crossed at a right angle, two such cylinders touch like a ball of this radius and a plane.
+    /// Radius in m; crossed at a right angle, two such cylinders touch like a ball of this radius and a
+    /// plane.
     pub radius: f64,
     /// Contact modulus in Pa: 1/E* = 2 (1 - nu^2)/E.
     pub modulus: f64,
@@ -61,8 +64,8 @@ pub struct ContactMaterial {
 }
 
 impl Hertz {
-    /// The compliant stop that a scene describes; none where its stops are rigid or it has none. Precondition: the scene
-    /// has passed its check.
+    /// The compliant stop that a scene describes; none where its stops are rigid or it has none.
+    /// Precondition: the scene has passed its check.
     pub fn of(stops: &Stops) -> Option<Self> {
         let Stops::Hertz {
             stiffness_n_per_m1_5, loss_s_per_m, radius_mm, young_gpa, poisson, yield_gpa, ..
@@ -84,15 +87,15 @@ impl Hertz {
 
     /// Rebound speed over impact speed at `speed` in m/s, 0 or above; without other forces.
     ///
-    /// The root of ln((1 + a v)/(1 - a v e)) = a v (1 + e); it depends on a v alone, is 1 - (2/3) a v for slow impacts and
-    /// falls to 1/(a v) for fast ones. To some roundings.
+    /// The root of ln((1 + a v)/(1 - a v e)) = a v (1 + e); it depends on a v alone, is 1 - (2/3) a v for
+    /// slow impacts and falls to 1/(a v) for fast ones. To some roundings.
     pub fn restitution(&self, speed: f64) -> f64 {
         let struck = self.loss * speed;
         if struck > 0.0 { -rebound(gamma(struck)) / struck } else { 1.0 }
     }
 
-    /// Loss times impact speed at which [`restitution`](Self::restitution) is this, which depends on that product alone; 0 at
-    /// a restitution of 1, and none at 0 and outside 0 to 1.
+    /// Loss times impact speed at which [`restitution`](Self::restitution) is this, which depends on that
+    /// product alone; 0 at a restitution of 1, and none at 0 and outside 0 to 1.
     ///
     /// By halving of its logarithm, to some roundings: the restitution falls with it.
     pub fn struck_for(restitution: f64) -> Option<f64> {
@@ -113,10 +116,11 @@ impl Hertz {
         (2.5 * mass * self.energy_speed(speed).powi(2) / (2.0 * self.stiffness)).powf(0.4)
     }
 
-    /// How long in s the impact of `mass` in kg at `speed` in m/s lasts; without other forces. Infinite at speed 0.
+    /// How long in s the impact of `mass` in kg at `speed` in m/s lasts; without other forces. Infinite at
+    /// speed 0.
     ///
-    /// Without loss (4/5) B(2/5, 1/2) d/v = 2.943 d/v, d the largest depth; with loss by Gauss' rule over the angle, to
-    /// some 1e-13.
+    /// Without loss (4/5) B(2/5, 1/2) d/v = 2.943 d/v, d the largest depth; with loss by Gauss' rule over the
+    /// angle, to some 1e-13.
     pub fn contact_time(&self, mass: f64, speed: f64) -> f64 {
         let scale = self.energy_speed(speed);
         let whole = self.loss * scale; // sqrt(2 gamma(a v))
@@ -170,7 +174,8 @@ impl Hertz {
         0.4 * self.stiffness * depth * depth * depth.sqrt()
     }
 
-    /// The speed whose kinetic energy goes into the elastic depth: sqrt(2 gamma(a v))/a, which is v without loss.
+    /// The speed whose kinetic energy goes into the elastic depth: sqrt(2 gamma(a v))/a, which is v without
+    /// loss.
     fn energy_speed(&self, speed: f64) -> f64 {
         let struck = self.loss * speed;
         if struck > 0.0 { (2.0 * gamma(struck)).sqrt() / self.loss } else { speed }
@@ -221,8 +226,8 @@ fn speed_over_angle(q: f64) -> f64 {
     inverse(q) / q
 }
 
-/// The z of the sign of `q` with gamma(z) = q^2/2: with z = e^y - 1 this is e^y - 1 - y = q^2/2, convex in y, and
-/// Newton's method comes down to it from beyond.
+/// The z of the sign of `q` with gamma(z) = q^2/2: with z = e^y - 1 this is e^y - 1 - y = q^2/2, convex in y,
+/// and Newton's method comes down to it from beyond.
 fn inverse(q: f64) -> f64 {
     let value = 0.5 * q * q;
     let mut y = if q > 0.0 { q.min((1.0 + 2.0 * value).ln() + 1.0) } else { -(value - q) };

@@ -2,8 +2,8 @@
 //!
 //! Everything follows from the real roots of each piece's force and of its derivative
 //! ([`real_roots`](crate::numeric::real_roots)). What a root is (stable or not, an extremum or a mere
-//! touching) is told by the sign half-way to its neighbours, not by a derivative at it: this also holds at a break,
-//! where there are two derivatives, and at a double root, where there is none to go by.
+//! touching) is told by the sign half-way to its neighbours, not by a derivative at it: this also holds at a
+//! break, where there are two derivatives, and at a double root, where there is none to go by.
 
 use super::curve::{ForceCurve, Piece};
 use crate::numeric::real_roots::{derivative, real_roots, rounding, value_and_magnitude};
@@ -12,13 +12,13 @@ use crate::numeric::real_roots::{derivative, real_roots, rounding, value_and_mag
 /// meet smoothly do so to some 1e-12.
 const KINK: f64 = 1e-6;
 
-/// Roots nearer to a break than this part of the piece are the break, where the force vanishes there to rounding
-/// or an extremum is looked for: two pieces that meet place such a root up to rounding, one inside and one outside its
-/// interval, or both.
+/// Roots nearer to a break than this part of the piece are the break, where the force vanishes there to
+/// rounding or an extremum is looked for: two pieces that meet place such a root up to rounding, one inside
+/// and one outside its interval, or both.
 const AT_BREAK: f64 = 1e-10;
 
-/// A kink is beside a well up to this part of the well's distance from the barrier (from x = 0 where there is none): a
-/// pluck that is small against the well then swings over both sides of it.
+/// A kink is beside a well up to this part of the well's distance from the barrier (from x = 0 where there is
+/// none): a pluck that is small against the well then swings over both sides of it.
 const BESIDE: f64 = 0.01;
 
 /// A place where the restoring force vanishes.
@@ -74,7 +74,8 @@ pub struct Kink {
 pub struct KinkAtWell {
     /// Position of the kink in m.
     pub x: f64,
-    /// Stiffness in N/m on the side towards the barrier, above 0; of a kink in the middle of a single well the smaller.
+    /// Stiffness in N/m on the side towards the barrier, above 0; of a kink in the middle of a single well
+    /// the smaller.
     pub inner: f64,
     /// Stiffness in N/m on the other side, above 0.
     pub outer: f64,
@@ -117,7 +118,8 @@ impl Landscape {
         self.equilibria.iter().rev().find(|e| e.stable)
     }
 
-    /// Where a passage counts as a crossing, in m: the top of the barrier, or the equilibrium of the only well.
+    /// Where a passage counts as a crossing, in m: the top of the barrier, or the equilibrium of the only
+    /// well.
     pub fn crossing_position(&self) -> Option<f64> {
         match &self.barrier {
             Some(barrier) => Some(barrier.x),
@@ -125,8 +127,8 @@ impl Landscape {
         }
     }
 
-    /// The stiffness in N/m that a damping ratio refers to: the [`inner_stiffness`](Self::inner_stiffness) of the
-    /// right-most stable equilibrium.
+    /// The stiffness in N/m that a damping ratio refers to: the [`inner_stiffness`](Self::inner_stiffness) of
+    /// the right-most stable equilibrium.
     ///
     /// None where no equilibrium is stable or this stiffness is not above 0.
     pub fn damping_stiffness(&self) -> Option<f64> {
@@ -134,13 +136,13 @@ impl Landscape {
         (stiffness > 0.0).then_some(stiffness)
     }
 
-    /// The stiffness in N/m of a stable equilibrium on its inner side (towards the barrier, or towards x = 0 where there
-    /// is none).
+    /// The stiffness in N/m of a stable equilibrium on its inner side (towards the barrier, or towards x = 0
+    /// where there is none).
     ///
-    /// Where the equilibrium lies at or beyond a kink, seen from there, it is the slope just inside
-    /// that kink, so that it does not jump while the equilibrium moves across: of several kinks the nearest one with a
-    /// slope above 0 (one on the way down from the barrier says nothing about the well). At a kink without an inner
-    /// side (a single well with its corner at x = 0) it is the smaller of the two.
+    /// Where the equilibrium lies at or beyond a kink, seen from there, it is the slope just inside that
+    /// kink, so that it does not jump while the equilibrium moves across: of several kinks the nearest one
+    /// with a slope above 0 (one on the way down from the barrier says nothing about the well). At a kink
+    /// without an inner side (a single well with its corner at x = 0) it is the smaller of the two.
     pub fn inner_stiffness(&self, well: &Equilibrium) -> f64 {
         let middle = self.middle();
         match self.kink_inside(well) {
@@ -152,8 +154,8 @@ impl Landscape {
         }
     }
 
-    /// The kink whose inner slope [`damping_stiffness`](Self::damping_stiffness) is; none where that is the slope at
-    /// the equilibrium itself.
+    /// The kink whose inner slope [`damping_stiffness`](Self::damping_stiffness) is; none where that is the
+    /// slope at the equilibrium itself.
     pub fn damping_kink(&self) -> Option<&Kink> {
         self.kink_inside(self.right_stable()?)
     }
@@ -168,9 +170,9 @@ impl Landscape {
         nearest(self.kinks.iter().filter(beyond), well.x)
     }
 
-    /// The kink beside the right-most stable equilibrium, on either side of it, where there is one within 1 % of its
-    /// distance from the barrier, and the force rises on both sides of that kink: there *the* stiffness of the well
-    /// is a matter of definition.
+    /// The kink beside the right-most stable equilibrium, on either side of it, where there is one within 1 %
+    /// of its distance from the barrier, and the force rises on both sides of that kink: there *the*
+    /// stiffness of the well is a matter of definition.
     pub fn kink_at_right_well(&self) -> Option<KinkAtWell> {
         let well = self.right_stable()?;
         let middle = self.middle();
@@ -193,7 +195,8 @@ impl Landscape {
         self.barrier.map_or(0.0, |barrier| barrier.x)
     }
 
-    /// Takes rounding out of the symmetry of an odd curve: the left half becomes the mirror image of the right.
+    /// Takes rounding out of the symmetry of an odd curve: the left half becomes the mirror image of the
+    /// right.
     fn mirror(&mut self) {
         fold(
             &mut self.equilibria,

@@ -1,4 +1,5 @@
-//! What do a few neighbouring samples say: is there a corner, which slope, what lies between, how rough is it?
+//! What do a few neighbouring samples say: is there a corner, which slope, what lies between, how rough is
+//! it?
 
 use std::ops::Range;
 
@@ -9,8 +10,8 @@ use super::table::Table;
 /// within a quarter of an interval from a sample is still recognised at 4.
 const CORNER_OVER_UNCERTAINTY: f64 = 4.0;
 
-/// How far, in tolerances, a piece may be from the local interpolant half-way between two samples. That interpolant
-/// passes on the errors of its samples some 1.5-fold, the piece has one tolerance of its own.
+/// How far, in tolerances, a piece may be from the local interpolant half-way between two samples. That
+/// interpolant passes on the errors of its samples some 1.5-fold, the piece has one tolerance of its own.
 const BETWEEN_SAMPLES: f64 = 3.0;
 
 /// Typical distance in N of a sample from the cubic through its four neighbours: the median over the table.
@@ -35,10 +36,11 @@ pub(super) fn roughness(table: &Table) -> f64 {
 
 /// At which samples does the slope jump?
 ///
-/// One-sided slopes from the parabola through a sample and its two neighbours on that side; their uncertainty is
-/// what the parabola changes against the chord. A corner stands out from it ([`CORNER_OVER_UNCERTAINTY`]) and is
-/// large enough to matter: over half the nearest interval it makes more force than twice what is `allowed`.
-/// A corner between two samples is not placed here; the chain then breaks on both sides of it by itself.
+/// One-sided slopes from the parabola through a sample and its two neighbours on that side; their uncertainty
+/// is what the parabola changes against the chord. A corner stands out from it ([`CORNER_OVER_UNCERTAINTY`])
+/// and is large enough to matter: over half the nearest interval it makes more force than twice what is
+/// `allowed`. A corner between two samples is not placed here; the chain then breaks on both sides of it by
+/// itself.
 pub(super) fn corners(x: &[f64], force: &[f64], allowed: f64) -> Vec<bool> {
     let chord = |i: usize, j: usize| (force[j] - force[i]) / (x[j] - x[i]);
     let one_sided = |at: usize, near: usize, far: usize| {
@@ -58,8 +60,8 @@ pub(super) fn corners(x: &[f64], force: &[f64], allowed: f64) -> Vec<bool> {
     corner
 }
 
-/// Samples `first..=last` and up to `each` more on either side, not beyond a corner (a single sample that is a
-/// corner itself looks to both sides).
+/// Samples `first..=last` and up to `each` more on either side, not beyond a corner (a single sample that is
+/// a corner itself looks to both sides).
 fn neighbours(first: usize, last: usize, each: usize, corner: &[bool]) -> Range<usize> {
     let (mut low, mut high) = (first, last);
     for _ in 0..each {
@@ -88,8 +90,8 @@ pub(super) fn slopes(x: &[f64], force: &[f64], corner: &[bool]) -> Vec<f64> {
     (0..x.len()).map(slope_at).collect()
 }
 
-/// The force half-way between each sample and the next, and how far a curve may be from it: the tolerance a few
-/// times, and the difference between the interpolants through six and through four neighbours.
+/// The force half-way between each sample and the next, and how far a curve may be from it: the tolerance a
+/// few times, and the difference between the interpolants through six and through four neighbours.
 pub(super) fn between(x: &[f64], force: &[f64], corner: &[bool], allowed: f64) -> Vec<(f64, f64)> {
     let interpolant = |near: Range<usize>, at: f64| {
         let mut sum = 0.0;

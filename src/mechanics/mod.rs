@@ -57,15 +57,15 @@ pub const FLEXURE_TOLERANCE: f64 = 1e-8;
 impl Mechanism {
     /// Builds the curve that a scene describes; the scene has passed its range check.
     ///
-    /// Polynomials enter exactly, as one piece; a table is read from `files` and fitted; flexures are solved, which
-    /// takes the longest by far. The fault of a table names `mechanism.path`; that of a polynomial with too many terms
-    /// `mechanism.coefficients_si`.
+    /// Polynomials enter exactly, as one piece; a table is read from `files` and fitted; flexures are solved,
+    /// which takes the longest by far. The fault of a table names `mechanism.path`; that of a polynomial with
+    /// too many terms `mechanism.coefficients_si`.
     pub fn build(described: &scene::Mechanism, files: &Files) -> Result<Self, BuildError> {
         Self::build_with(described, files, FLEXURE_TOLERANCE)
     }
 
-    /// As [`build`](Self::build), with flexures solved to `flexure_tolerance` (1e-6 to 1e-9; see [`Flexures::solve`]):
-    /// a geometry that a hand is still changing is solved sooner than one that stays.
+    /// As [`build`](Self::build), with flexures solved to `flexure_tolerance` (1e-6 to 1e-9; see
+    /// [`Flexures::solve`]): a geometry that a hand is still changing is solved sooner than one that stays.
     pub fn build_with(
         described: &scene::Mechanism,
         files: &Files,
@@ -74,8 +74,8 @@ impl Mechanism {
         Self::built(described, files, flexure_tolerance, None)
     }
 
-    /// As [`build`](Self::build), unless `cancel` is set meanwhile: then soon none. Of flexures each state is some
-    /// milliseconds or less, and of a table each piece; the rest of building takes no time.
+    /// As [`build`](Self::build), unless `cancel` is set meanwhile: then soon none. Of flexures each state is
+    /// some milliseconds or less, and of a table each piece; the rest of building takes no time.
     pub fn build_unless(
         described: &scene::Mechanism,
         files: &Files,
@@ -143,7 +143,8 @@ impl Mechanism {
         }
     }
 
-    /// Reads and fits the text of a table: CSV with the columns `x_m,force_n`. See [`Table::parse`] and [`fit()`].
+    /// Reads and fits the text of a table: CSV with the columns `x_m,force_n`. See [`Table::parse`] and
+    /// [`fit()`].
     ///
     /// Fails with a sentence that continues "the table ...".
     pub fn from_table(text: &str, tolerance: f64) -> Result<Self, String> {

@@ -42,7 +42,8 @@ pub enum TableError {
     },
     /// Positions that go up and down.
     #[error(
-        "line {line}: {X} = {x:e} turns back after {before:e}; positions must run in one direction (sort the rows; of a hysteresis loop keep one branch)"
+        "line {line}: {X} = {x:e} turns back after {before:e}; positions must run in one direction (sort the \
+         rows; of a hysteresis loop keep one branch)"
     )]
     TurnsBack {
         /// Line of the first row against the direction.

@@ -1,8 +1,9 @@
 //! How do several trajectories go through the same arithmetic at once?
 //!
-//! A bundle of numbers, each with its own value and all with the same operations. The loops are over a fixed width and
-//! without a branch, so that the compiler makes them instructions on whole registers, as wide as the processor's where
-//! the caller is compiled for it. Each lane gets the bits that it would get alone: nothing is fused or reordered.
+//! A bundle of numbers, each with its own value and all with the same operations. The loops are over a fixed
+//! width and without a branch, so that the compiler makes them instructions on whole registers, as wide as
+//! the processor's where the caller is compiled for it. Each lane gets the bits that it would get alone:
+//! nothing is fused or reordered.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 

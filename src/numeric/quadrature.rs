@@ -9,8 +9,8 @@ pub const MOST_POINTS: usize = 20;
 
 /// Gauss-Legendre points and weights on \[0, 1].
 ///
-/// Exact for polynomials up to degree 2 points - 1; for a series whose terms fall by a factor r the error falls like
-/// (r/4)^(2 points).
+/// Exact for polynomials up to degree 2 points - 1; for a series whose terms fall by a factor r the error
+/// falls like (r/4)^(2 points).
 #[derive(Debug, Clone)]
 pub struct GaussLegendre<T> {
     points: usize,
@@ -70,8 +70,8 @@ impl<T: Scalar> Rules<T> {
     }
 }
 
-/// The `count` roots from number `first` of the Legendre polynomial of degree `points`, descending from 1 to -1, and its
-/// slope at each. At most [`MOST_POINTS`] at a time.
+/// The `count` roots from number `first` of the Legendre polynomial of degree `points`, descending from 1 to
+/// -1, and its slope at each. At most [`MOST_POINTS`] at a time.
 fn roots<T: Scalar>(points: usize, first: usize, count: usize) -> ([T; MOST_POINTS], [T; MOST_POINTS]) {
     let one = T::of(1.0);
     let mut x = [one; MOST_POINTS];
@@ -98,8 +98,8 @@ fn roots<T: Scalar>(points: usize, first: usize, count: usize) -> ([T; MOST_POIN
     (x, slope)
 }
 
-/// The half of a rule with 2 `half` points on \[-1, 1] that lies at x > 0: its points, descending, and weights,
-/// whose sum is 1. It integrates an even function from 0 to 1, exactly up to degree 4 `half` - 1.
+/// The half of a rule with 2 `half` points on \[-1, 1] that lies at x > 0: its points, descending, and
+/// weights, whose sum is 1. It integrates an even function from 0 to 1, exactly up to degree 4 `half` - 1.
 pub fn even_half(half: usize) -> Vec<(f64, f64)> {
     let mut rule = Vec::with_capacity(half);
     for first in (0..half).step_by(MOST_POINTS) {

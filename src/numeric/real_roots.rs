@@ -43,8 +43,8 @@ pub fn derivative(coefficients: &[f64]) -> Vec<f64> {
 ///
 /// Preconditions: finite coefficients, `left <= right`.
 ///
-/// Guarantee: every root whose neighbourhood is resolved by double precision, to a few units in the
-/// last place of its conditioning; a multiple root, or a cluster that rounding cannot tell from one, once. Empty
+/// Guarantee: every root whose neighbourhood is resolved by double precision, to a few units in the last
+/// place of its conditioning; a multiple root, or a cluster that rounding cannot tell from one, once. Empty
 /// for the zero polynomial, which vanishes everywhere.
 pub fn real_roots(coefficients: &[f64], left: f64, right: f64) -> Vec<f64> {
     let Some(last) = coefficients.iter().rposition(|c| *c != 0.0) else { return Vec::new() };
@@ -186,7 +186,8 @@ fn bracketed(coefficients: &[f64], slope: &[f64], mut low: f64, mut high: f64, s
         }
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
-            // The better of the two; of equals the one nearer to 0, so that a mirrored polynomial has mirrored roots.
+            // The better of the two; of equals the one nearer to 0, so that a mirrored polynomial has
+            // mirrored roots.
             let miss = |x: f64| (value_and_magnitude(coefficients, x).0.abs(), x.abs());
             return if miss(low) <= miss(high) { low } else { high };
         }

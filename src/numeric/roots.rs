@@ -97,8 +97,8 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         count
     }
 
-    /// Calls `visit` with the ends of an interval around each sign change, in ascending order, until it returns
-    /// false.
+    /// Calls `visit` with the ends of an interval around each sign change, in ascending order, until it
+    /// returns false.
     #[inline]
     fn each_bracket(&self, mut visit: impl FnMut(T, T) -> bool) {
         let zero = T::zero();
@@ -106,8 +106,8 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         if g.len() < 2 {
             return;
         }
-        // Nested bounds: for s in [0, 1] the tail g[k] + s (g[k+1] + s ..) lies between g[k] plus the smaller of
-        // 0 and the bound of the next tail, and g[k] plus the larger; likewise for the slope.
+        // Nested bounds: for s in [0, 1] the tail g[k] + s (g[k+1] + s ..) lies between g[k] plus the smaller
+        // of 0 and the bound of the next tail, and g[k] plus the larger; likewise for the slope.
         let (mut least, mut most) = (zero, zero);
         let (mut least_slope, mut most_slope) = (zero, zero);
         for (k, c) in g.iter().enumerate().skip(1).rev() {
@@ -176,8 +176,8 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         self.isolate(&left, low, w, depth + 1, visit) && self.isolate(&right, low + w, w, depth + 1, visit)
     }
 
-    /// Value, first and half the second derivative at `s`. Even and odd powers apart: one long chain of products would
-    /// wait for itself.
+    /// Value, first and half the second derivative at `s`. Even and odd powers apart: one long chain of
+    /// products would wait for itself.
     #[inline]
     fn expansion(&self, s: T) -> (T, T, T) {
         let zero = T::zero();
@@ -247,7 +247,8 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         s
     }
 
-    /// Where the parabola that shares value and slope at 0 and the value at 1 changes sign, where the bracket is all of it.
+    /// Where the parabola that shares value and slope at 0 and the value at 1 changes sign, where the bracket
+    /// is all of it.
     fn guess(&self, low: T, high: T) -> Option<T> {
         if low != T::zero() || high != T::of(1.0) || self.g.len() < 2 {
             return None;

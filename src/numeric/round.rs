@@ -11,8 +11,8 @@ pub fn decade(value: f64) -> i32 {
     value.log10().floor() as i32
 }
 
-/// The least of `digits`, which ascend from 1 to below 10, times a power of ten that is not below `value`, which is
-/// above 0.
+/// The least of `digits`, which ascend from 1 to below 10, times a power of ten that is not below `value`,
+/// which is above 0.
 pub fn round_up(value: f64, digits: &[f64]) -> f64 {
     let power = decade(value);
     let found = digits.iter().map(|digit| nearest(*digit, power));

@@ -142,11 +142,12 @@ impl Scalar for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    /// As `sin_cos_by_octant`, every choice a selection, so that several can be made at once, and as little as can be that
-    /// waits for something else: a step of the motion begins with it.
+    /// As `sin_cos_by_octant`, every choice a selection, so that several can be made at once, and as little
+    /// as can be that waits for something else: a step of the motion begins with it.
     #[inline(always)]
     fn sin_cos_turns(u: Self) -> (Self, Self) {
-        const NO_FRACTION: f64 = 6_755_399_441_055_744.0; // 1.5 2^52: of its sum with a number below 2^50 the last bits are the whole
+        // 1.5 2^52: of its sum with a number below 2^50 the last bits are the whole
+        const NO_FRACTION: f64 = 6_755_399_441_055_744.0;
         let shifted = u * 4.0 + NO_FRACTION;
         let quarter = shifted.to_bits();
         let r = u - (shifted - NO_FRACTION) * 0.25; // exact

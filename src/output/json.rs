@@ -9,8 +9,9 @@ use crate::mechanics::{Landscape, Mechanism};
 use crate::scene::Scene;
 use crate::study::{Read, SUMMARY_FIELDS, SummaryField, small_amplitude_frequency};
 
-/// The summary of a run of `scene`, as text. Compliant stops add two keys, their peak force and pressure. A run that ended early has two keys more, `ended_at_s`
-/// and, where a budget ran out, `ended_after`, the impacts or steps made.
+/// The summary of a run of `scene`, as text. Compliant stops add two keys, their peak force and pressure. A
+/// run that ended early has two keys more, `ended_at_s` and, where a budget ran out, `ended_after`, the
+/// impacts or steps made.
 pub fn summary(summary: &Summary, scene: &Scene, origin: &Origin) -> String {
     let mut object = Value::Object(SUMMARY_FIELDS.iter().filter_map(|field| entry(field, summary)).collect());
     let mut add = |key: &str, value: Value| {
@@ -31,8 +32,9 @@ pub fn summary(summary: &Summary, scene: &Scene, origin: &Origin) -> String {
     pretty(&object)
 }
 
-/// A field with its value. What only some runs have is left out of the others: the contact with a compliant stop, an early
-/// end, what happened first under a drive that changes, and the terms of the ledger, which stand together elsewhere.
+/// A field with its value. What only some runs have is left out of the others: the contact with a compliant
+/// stop, an early end, what happened first under a drive that changes, and the terms of the ledger, which
+/// stand together elsewhere.
 fn entry(field: &SummaryField, summary: &Summary) -> Option<(String, Value)> {
     let value = match field.read {
         Read::Number(of) => json!(of(summary)),

@@ -23,9 +23,10 @@ pub struct Origin {
     pub jobs: usize,
 }
 
-/// The manifest of a sweep as text: itself, or a scene file with `scene_ron` as its text beside the `files`, is swept to
-/// the same rows again. `scene_ron` has every argument applied, the swept fields at their unswept values, and the grid
-/// that ran as its `sweep`; `files` are the texts of the tables and records that the scene reads, by their paths in it.
+/// The manifest of a sweep as text: itself, or a scene file with `scene_ron` as its text beside the `files`,
+/// is swept to the same rows again. `scene_ron` has every argument applied, the swept fields at their unswept
+/// values, and the grid that ran as its `sweep`; `files` are the texts of the tables and records that the
+/// scene reads, by their paths in it.
 ///
 /// `document` has its files held; `data` is the name of the file with the rows.
 pub fn manifest(document: &Document, grid: &Grid, tally: &Tally, origin: &Origin, data: &str) -> String {

@@ -19,8 +19,8 @@ fn brief(value: f64) -> String {
     }
 }
 
-/// The table as lines of text: a heading of the columns' names as a person writes them, then a line for each row.
-/// Words stand to the left, numbers to the right; nothing is cut off.
+/// The table as lines of text: a heading of the columns' names as a person writes them, then a line for each
+/// row. Words stand to the left, numbers to the right; nothing is cut off.
 pub fn aligned(table: &Table) -> String {
     let cells: Vec<(bool, Vec<String>)> = table
         .columns()

@@ -6,8 +6,9 @@ use super::data::Scene;
 use super::fields::{FieldPath, numeric_fields};
 use super::text;
 
-/// `FIELD=VALUE` for each field in which `to` differs from `from`, as `--set` takes them: numbers one by one where both
-/// scenes have the same fields, else whole parts. Title, notes, own sweep and hints for the window do not count.
+/// `FIELD=VALUE` for each field in which `to` differs from `from`, as `--set` takes them: numbers one by one
+/// where both scenes have the same fields, else whole parts. Title, notes, own sweep and hints for the window
+/// do not count.
 pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
     let mut all = Vec::new();
     let mut part = |name: &str, equal: bool, whole: String| {

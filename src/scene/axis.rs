@@ -89,7 +89,8 @@ impl Axis {
         own(values, Some([axis.from, axis.to, axis.step])).within(spec).map_err(|problem| (part, problem))
     }
 
-    /// The axis as a scene's own `sweep` has it: [`from_scene`](Self::from_scene) gives the same values again, to the bit.
+    /// The axis as a scene's own `sweep` has it: [`from_scene`](Self::from_scene) gives the same values
+    /// again, to the bit.
     pub fn to_scene(&self, scene: &Scene) -> SweepAxis {
         let even = self.steps.map(|[from, to, step]| SweepAxis {
             field: self.field.clone(),

@@ -12,8 +12,8 @@ use super::ranges::{HIGH_HZ, LOW_HZ, MAX_COEFFICIENTS, number_text};
 use super::shape;
 use super::stops::Stops;
 
-/// The most sines that an excitation may have, the lines of noises included: four noises of the most lines. Each takes
-/// part in every step of a run.
+/// The most sines that an excitation may have, the lines of noises included: four noises of the most lines.
+/// Each takes part in every step of a run.
 const MOST_SINES: u64 = 16_384;
 
 /// What a check found.
@@ -70,7 +70,8 @@ fn mechanism(mechanism: &Mechanism, checked: &mut Checked) {
             let count = coefficients_si.len();
             if !(1..=MAX_COEFFICIENTS).contains(&count) {
                 let problem = format!(
-                    "must have 1 to {MAX_COEFFICIENTS} coefficients; [0] is a free mass, a `Table` follows any curve"
+                    "must have 1 to {MAX_COEFFICIENTS} coefficients; [0] is a free mass, a `Table` follows \
+                     any curve"
                 );
                 checked.fault("mechanism.coefficients_si", format!("a list of {count}"), problem);
             }
@@ -92,7 +93,8 @@ fn stops(field: &str, stops: &Stops, checked: &mut Checked) {
         checked.fault(
             field,
             "Uneven(..)",
-            "give restitution_left or restitution_right, 0 to 1; one that is left out takes the other's value",
+            "give restitution_left or restitution_right, 0 to 1; one that is left out takes the other's \
+             value",
         );
     } else if restitution_left.is_some() && restitution_right.is_some() {
         for (side, at) in [("left", left_mm), ("right", right_mm)] {
@@ -238,8 +240,8 @@ fn hints(scene: &Scene, checked: &mut Checked) {
     let warn = |term: &Excitation, warnings: &mut Vec<String>| match *term {
         Excitation::Sine { frequency_hz, .. } if window * frequency_hz < 1.0 - 1e-9 => {
             warnings.push(format!(
-                "run: the settled window of {} s is shorter than a forcing period of {} s, so that RMS and regime \
-                 say little; run longer or settle earlier",
+                "run: the settled window of {} s is shorter than a forcing period of {} s, so that RMS and \
+                 regime say little; run longer or settle earlier",
                 number_text(window),
                 number_text(1.0 / frequency_hz)
             ));

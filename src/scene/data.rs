@@ -57,12 +57,12 @@ pub struct Scene {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Mechanism {
-    /// Flexures: thin strips, clamped at both ends, between the frame and a shuttle that carries the proof mass.
-    /// The parallel ones guide the shuttle; the buckling ones lie in line with them and are compressed by the
-    /// preload until they buckle, which makes the two wells.
+    /// Flexures: thin strips, clamped at both ends, between the frame and a shuttle that carries the proof
+    /// mass. The parallel ones guide the shuttle; the buckling ones lie in line with them and are compressed
+    /// by the preload until they buckle, which makes the two wells.
     Flexures {
-        /// Shortening in mm that parallel and buckling flexures share where the shuttle is at x = 0, 0 to 1e15 and at
-        /// most half of the shorter flexure. 0 makes one well.
+        /// Shortening in mm that parallel and buckling flexures share where the shuttle is at x = 0, 0 to
+        /// 1e15 and at most half of the shorter flexure. 0 makes one well.
         preload_mm: f64,
         /// Thickness of every flexure in mm, 1e-15 to 1e15, at most a tenth of the shorter flexure.
         thickness_mm: f64,
@@ -75,15 +75,16 @@ pub enum Mechanism {
         /// Poisson's ratio, 0 to 0.49.
         #[serde(default = "default_poisson")]
         poisson: f64,
-        /// Whether E/(1 - poisson^2) takes the place of E in stretching and bending, as for strips much wider than
-        /// thick; the shear modulus stays.
+        /// Whether E/(1 - poisson^2) takes the place of E in stretching and bending, as for strips much wider
+        /// than thick; the shear modulus stays.
         #[serde(default)]
         plane_strain: bool,
-        /// Stress-free bow of the buckling flexures at their middle in mm, 0 to 1e15 and at most a twentieth of
-        /// their length.
+        /// Stress-free bow of the buckling flexures at their middle in mm, 0 to 1e15 and at most a twentieth
+        /// of their length.
         #[serde(default)]
         initial_bow_mm: f64,
-        /// Bending stress in GPa above which `curve --full` warns, 1e-60 to 1e60; it has no part in the force.
+        /// Bending stress in GPa above which `curve --full` warns, 1e-60 to 1e60; it has no part in the
+        /// force.
         #[serde(default = "default_yield")]
         yield_gpa: f64,
     },
@@ -192,8 +193,8 @@ pub enum Excitation {
         /// Amplitude in g, any sign: -1e30 to 1e30.
         amplitude_g: f64,
     },
-    /// Band-limited noise: a sum of sines at random frequencies, one in each of `lines` equal parts of the band,
-    /// with random phases.
+    /// Band-limited noise: a sum of sines at random frequencies, one in each of `lines` equal parts of the
+    /// band, with random phases.
     Noise {
         /// Root mean square in g, 0 to 1e30.
         rms_g: f64,
@@ -265,7 +266,8 @@ pub struct SweepAxis {
     pub to: f64,
     /// Step, 1e-200 to 1e200.
     pub step: f64,
-    /// The values one by one, each -1e200 to 1e200; where there are any, the three numbers above have no meaning.
+    /// The values one by one, each -1e200 to 1e200; where there are any, the three numbers above have no
+    /// meaning.
     pub values: Vec<f64>,
 }
 
@@ -305,7 +307,8 @@ impl TryFrom<WrittenAxis> for SweepAxis {
             }
             (None, None, None) if !values.is_empty() => Ok(Self { field, values, ..Self::default() }),
             _ => Err(
-                "an axis of a sweep has `from`, `to` and `step`, or `values` with at least one number in their place",
+                "an axis of a sweep has `from`, `to` and `step`, or `values` with at least one number in \
+                 their place",
             ),
         }
     }

@@ -19,8 +19,8 @@ use crate::system::files;
 /// How many faults an error names; the rest it counts. A list may hold a million NaN.
 const MOST_FAULTS: usize = 50;
 
-/// The most values that the axes of a sweep may have together. Three axes that pass it, of which none alone is too long,
-/// make more cells than any sweep may have; they are refused before they are all written out.
+/// The most values that the axes of a sweep may have together. Three axes that pass it, of which none alone
+/// is too long, make more cells than any sweep may have; they are refused before they are all written out.
 const MOST_VALUES: usize = 2 * LARGEST_AXIS;
 
 /// How messages call a scene that came through a pipe.
@@ -56,8 +56,8 @@ pub struct Document {
 }
 
 impl Document {
-    /// What a command is given as its scene: what [`load`](Self::load) takes, the manifest of a sweep, or `-` for the text
-    /// of a scene on standard input.
+    /// What a command is given as its scene: what [`load`](Self::load) takes, the manifest of a sweep, or `-`
+    /// for the text of a scene on standard input.
     pub fn of_argument(spec: &str) -> Result<Self, SceneError> {
         if let Some(document) = Self::preset(spec) {
             return document;
@@ -161,8 +161,8 @@ impl Document {
         last.filter_map(|(_, (_, argument))| argument.strip_prefix("--set "))
     }
 
-    /// Leaves out a settle time of the scene's text that lies beyond a duration which an argument set: it is then half of
-    /// that duration. What is to be said of it.
+    /// Leaves out a settle time of the scene's text that lies beyond a duration which an argument set: it is
+    /// then half of that duration. What is to be said of it.
     pub fn settle_within(&mut self) -> Option<String> {
         let run = &mut self.scene.run;
         let (settle, duration) = (run.settle_s?, run.duration_s);
@@ -186,8 +186,8 @@ impl Document {
         self.paths().into_iter().filter_map(|path| self.files.place(path)).collect()
     }
 
-    /// Reads the files that the scene names, so that they are at hand whatever becomes of them; none but those are held.
-    /// One that cannot be read is left to whoever needs it, and has a better place to say so.
+    /// Reads the files that the scene names, so that they are at hand whatever becomes of them; none but
+    /// those are held. One that cannot be read is left to whoever needs it, and has a better place to say so.
     pub fn hold_files(&mut self) {
         let read = |path: &str| Some((path.to_owned(), self.files.read(path).ok()?));
         self.files.held = self.paths().into_iter().filter_map(read).collect();
@@ -228,7 +228,8 @@ impl Document {
                 Ok(())
             } else {
                 Err(format!(
-                    "{values} values, with the axes before it, are more than a sweep may have ({MOST_VALUES}); give larger steps"
+                    "{values} values, with the axes before it, are more than a sweep may have \
+                     ({MOST_VALUES}); give larger steps"
                 ))
             }
         };
@@ -304,8 +305,8 @@ fn read_scene(spec: &str, largest: usize) -> Result<String, SceneError> {
     })
 }
 
-/// The error of a text that is no scene. A name that nothing knows is taken out, so that others, and values out of their
-/// ranges, are said with it.
+/// The error of a text that is no scene. A name that nothing knows is taken out, so that others, and values
+/// out of their ranges, are said with it.
 fn refused(name: &str, text: &str, mut refusal: text::Refusal, files: Files) -> SceneError {
     /// How many names are taken out.
     const MOST_UNKNOWN: usize = 20;
@@ -383,7 +384,8 @@ fn parse_number(text: &str) -> Option<f64> {
     text.parse().ok().or_else(|| text::options().from_str(text).ok())
 }
 
-/// Whether there is a scene at `path`: a file whose name ends in `.ron`, mistaken or not, or whose text is one.
+/// Whether there is a scene at `path`: a file whose name ends in `.ron`, mistaken or not, or whose text is
+/// one.
 pub fn is_scene_file(path: &Path) -> bool {
     let named = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
     files::is_file(path)

@@ -57,7 +57,7 @@ pub enum SceneError {
         problem: String,
     },
     /// The text is not a scene.
-    #[error("{name}:{}:{}: {problem}{}", place.line, place.column, more.iter().map(|line| format!("\n{line}")).collect::<String>())]
+    #[error("{name}:{}:{}: {problem}{}", place.line, place.column, further(more))]
     Structure {
         /// The file.
         name: String,
@@ -65,7 +65,8 @@ pub enum SceneError {
         place: Place,
         /// Why, with the names that are known there.
         problem: String,
-        /// What else is wrong, a line each, where it is a name that nothing knows and the rest can be read without it.
+        /// What else is wrong, a line each, where it is a name that nothing knows and the rest can be read
+        /// without it.
         more: Vec<String>,
     },
     /// Values that cannot be used, all of them.
@@ -91,6 +92,11 @@ pub struct ArgumentError {
     pub argument: String,
     /// What is wrong with it and what would be right.
     pub problem: String,
+}
+
+/// Further lines below a first one.
+fn further(lines: &[String]) -> String {
+    lines.iter().map(|line| format!("\n{line}")).collect()
 }
 
 struct Lines<'a> {

@@ -27,7 +27,8 @@ pub enum FileError {
     /// No file there.
     #[error(
         "no such file: {path}{}",
-        if *.embedded { "; a scene file takes its tables from its own folder: `presets --write` puts this one there" } else { "" }
+        if *.embedded { "; a scene file takes its tables from its own folder: `presets --write` puts this \
+                         one there" } else { "" }
     )]
     Missing {
         /// The path that was tried.

@@ -18,8 +18,8 @@ pub struct Place {
 
 /// The fields of a text with their places, in the order of the text.
 ///
-/// Each knows the one around it and its own part of the path alone: whole paths would make of a hostile text of a few
-/// megabytes, long names around a million fields, more than fits into memory.
+/// Each knows the one around it and its own part of the path alone: whole paths would make of a hostile text
+/// of a few megabytes, long names around a million fields, more than fits into memory.
 #[derive(Debug, Clone, Default)]
 pub struct Places(Vec<Named>);
 

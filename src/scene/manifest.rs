@@ -1,4 +1,5 @@
-//! The manifest of a sweep as input: the scene that ran, with its grid as `sweep`, and the files that it read.
+//! The manifest of a sweep as input: the scene that ran, with its grid as `sweep`, and the files that it
+//! read.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -35,8 +36,8 @@ pub fn is_manifest(path: &Path) -> bool {
     read_text(path, LARGEST).is_ok_and(|text| parse(&text).is_ok())
 }
 
-/// The scene of a manifest's text, which messages call `name`. The files that it names come from the manifest, others from
-/// where `files` says.
+/// The scene of a manifest's text, which messages call `name`. The files that it names come from the
+/// manifest, others from where `files` says.
 pub(super) fn read(name: &str, text: &str, files: Files) -> Result<Document, SceneError> {
     let manifest = parse(text).map_err(|problem| {
         let problem = clip(&problem);

@@ -79,7 +79,8 @@ macro_rules! specs {
 
 specs! {
     MASS = "mass_g", 1e-15, 1e15, "give the proof mass in grams, such as 15.2";
-    PRELOAD = "preload_mm", 0.0, LENGTH.1, "give the shortening of the flexures in mm, such as 2.7; 0 makes one well";
+    PRELOAD = "preload_mm", 0.0, LENGTH.1, "give the shortening of the flexures in mm, such as 2.7; 0 makes \
+                                            one well";
     THICKNESS = "thickness_mm", LENGTH.0, LENGTH.1, "give the thickness of the flexures in mm, such as 0.1";
     YOUNG = "young_gpa", MODULUS.0, MODULUS.1, "give Young's modulus in GPa, such as 190 for spring steel";
     COUNT = whole "count", 1.0, 64.0, "give the number of flexures side by side";
@@ -88,11 +89,15 @@ specs! {
     POISSON = "poisson", 0.0, 0.49, "metals have some 0.3";
     BOW = "initial_bow_mm", 0.0, LENGTH.1, "give the bow in mm, such as 0.05; 0 is a straight flexure";
     YIELD = "yield_gpa", MODULUS.0, MODULUS.1, "give the bending stress that is allowed in GPa, such as 2";
-    LINEAR = "linear_n_per_m", COEFFICIENT.0, COEFFICIENT.1, "give a finite stiffness in N/m; negative makes two wells";
-    CUBIC = "cubic_n_per_m3", COEFFICIENT.0, COEFFICIENT.1, "give a finite stiffness in N/m^3; positive makes two wells";
-    EQUILIBRIUM = "equilibrium_mm", LENGTH.0, LENGTH.1, "give the distance of the wells from the middle in mm, such as 7";
+    LINEAR = "linear_n_per_m", COEFFICIENT.0, COEFFICIENT.1, "give a finite stiffness in N/m; negative makes \
+        two wells";
+    CUBIC = "cubic_n_per_m3", COEFFICIENT.0, COEFFICIENT.1, "give a finite stiffness in N/m^3; positive \
+        makes two wells";
+    EQUILIBRIUM = "equilibrium_mm", LENGTH.0, LENGTH.1, "give the distance of the wells from the middle in \
+        mm, such as 7";
     BARRIER = "barrier_mj", 1e-60, 1e60, "give the height of the barrier in mJ, such as 0.5";
-    COEFFICIENTS = "coefficients_si", COEFFICIENT.0, COEFFICIENT.1, "give finite coefficients in N/m^i; zeros are fine";
+    COEFFICIENTS = "coefficients_si", COEFFICIENT.0, COEFFICIENT.1, "give finite coefficients in N/m^i; \
+        zeros are fine";
     TABLE_TOLERANCE = "tolerance", 1e-10, 1e-1, "1e-4 of the force maximum suits measured data";
     XI = "xi", 0.0, 1e6, "give a ratio, such as 0.023 for 2.3 %; `None` or 0 is no damping";
     C = "c_n_s_per_m", 0.0, 1e30, "give a damping coefficient in N s/m; `None` or 0 is no damping";
@@ -100,16 +105,21 @@ specs! {
         "stops need room between them: give their distance from x = 0 in mm, or `stops: None` for none";
     RESTITUTION = "restitution", 0.0, 1.0, "0 keeps no speed at an impact, 1 keeps all of it";
     LEFT = "left_mm", LENGTH.0, LENGTH.1,
-        "give the distance of the left stop from x = 0 as a positive number in mm, or leave it out for an open side";
+        "give the distance of the left stop from x = 0 as a positive number in mm, or leave it out for an \
+         open side";
     RIGHT = "right_mm", LENGTH.0, LENGTH.1,
-        "give the distance of the right stop from x = 0 as a positive number in mm, or leave it out for an open side";
+        "give the distance of the right stop from x = 0 as a positive number in mm, or leave it out for an \
+         open side";
     RESTITUTION_LEFT = "restitution_left", 0.0, 1.0, "0 keeps no speed at an impact, 1 keeps all of it";
     RESTITUTION_RIGHT = "restitution_right", 0.0, 1.0, "0 keeps no speed at an impact, 1 keeps all of it";
     CONTACT_STIFFNESS = "stiffness_n_per_m1_5", MODULUS.0, MODULUS.1,
-        "give the stiffness of the contact in N/m^1.5, such as 3.7e9, or leave it out and give radius_mm and young_gpa";
-    LOSS = "loss_s_per_m", 0.0, 1e30, "give the loss of the contact in s/m, such as 10.4; 0 is an elastic contact; check says which gives a restitution";
+        "give the stiffness of the contact in N/m^1.5, such as 3.7e9, or leave it out and give radius_mm and \
+         young_gpa";
+    LOSS = "loss_s_per_m", 0.0, 1e30, "give the loss of the contact in s/m, such as 10.4; 0 is an elastic \
+                                       contact; check says which gives a restitution";
     RADIUS = "radius_mm", LENGTH.0, LENGTH.1, "give the radius of the crossed cylinders in mm, such as 5";
-    CONTACT_YOUNG = "young_gpa", MODULUS.0, MODULUS.1, "give Young's modulus in GPa, such as 69 for aluminium";
+    CONTACT_YOUNG = "young_gpa", MODULUS.0, MODULUS.1, "give Young's modulus in GPa, such as 69 for \
+        aluminium";
     CONTACT_YIELD = "yield_gpa", MODULUS.0, MODULUS.1, "give the yield strength in GPa, such as 0.276";
     ACCEL = "accel_g", ACCELERATION.0, ACCELERATION.1, "give an acceleration in g, of either sign";
     FREQUENCY = "frequency_hz", 1e-15, 1e15,
@@ -124,12 +134,14 @@ specs! {
     RMS = "rms_g", 0.0, ACCELERATION.1, "give a root mean square in g, such as 0.5";
     LOW_HZ = "low_hz", 0.0, 1e15, "give the lower end of the band in Hz, such as 1";
     HIGH_HZ = "high_hz", 1e-15, 1e15, "give the upper end of the band in Hz, such as 10";
-    SEED = whole "seed", 0.0, 9_007_199_254_740_992.0, "give a whole number; another one gives another noise of the same kind";
+    SEED = whole "seed", 0.0, 9_007_199_254_740_992.0, "give a whole number; another one gives another noise \
+        of the same kind";
     LINES = whole "lines", 1.0, 4096.0, "256 sines look like noise for some minutes";
     X = "x_mm", -1e15, 1e15, "give a displacement in mm";
     V = "v_m_per_s", -1e30, 1e30, "give a velocity in m/s";
     DURATION = "duration_s", 1e-15, 1e9, "give how long to run in s, such as 10";
-    SETTLE = "settle_s", 0.0, 1e9, "give when the settled window begins in s, or leave it out for half the duration";
+    SETTLE = "settle_s", 0.0, 1e9, "give when the settled window begins in s, or leave it out for half the \
+                                    duration";
     TOLERANCE = "tolerance", 1e-14, 1e-3, "1e-9 suits most runs and 1e-6 most maps";
     FROM = "from", COEFFICIENT.0, COEFFICIENT.1, "give the first value of the axis";
     TO = "to", COEFFICIENT.0, COEFFICIENT.1, "give the last value of the axis";

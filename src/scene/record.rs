@@ -86,7 +86,8 @@ impl Record {
         let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
         if longest > GAP * usual {
             warnings.push(format!(
-                "has a gap of {longest} s after {at} s, where its usual step is {usual} s; it is bridged by a straight line"
+                "has a gap of {longest} s after {at} s, where its usual step is {usual} s; it is bridged by \
+                 a straight line"
             ));
         }
         warnings

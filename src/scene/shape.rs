@@ -16,15 +16,15 @@ const LENGTH_OVER_SURE_PRELOAD: f64 = 4.0;
 /// The shorter flexure over the largest thickness: a thicker strip is no beam.
 const LENGTH_OVER_THICKNESS: f64 = 10.0;
 
-/// The buckling flexure over its largest stress-free bow: a larger one is an arch, whose length along the curve is no
-/// longer that between its clamps.
+/// The buckling flexure over its largest stress-free bow: a larger one is an arch, whose length along the
+/// curve is no longer that between its clamps.
 const LENGTH_OVER_BOW: f64 = 20.0;
 
 /// A limit counts as reached and not as passed within the rounding of what a person wrote in decimals.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
-/// The relations between the sizes of flexures, each a fault of the field that is most likely meant. Sizes outside
-/// their own range are not blamed twice.
+/// The relations between the sizes of flexures, each a fault of the field that is most likely meant. Sizes
+/// outside their own range are not blamed twice.
 pub(super) fn check(mechanism: &Mechanism, checked: &mut Checked) {
     let Mechanism::Flexures { preload_mm, thickness_mm, parallel, buckling, initial_bow_mm, .. } = mechanism
     else {
@@ -38,7 +38,8 @@ pub(super) fn check(mechanism: &Mechanism, checked: &mut Checked) {
     let limit = buckling.length_mm / LENGTH_OVER_BOW;
     if *initial_bow_mm > limit * ROUNDING && !bad(checked, "initial_bow_mm") {
         let problem = format!(
-            "must be 0 to {}, a twentieth of mechanism.buckling.length_mm = {}; a stronger bow is an arch and not a flexure",
+            "must be 0 to {}, a twentieth of mechanism.buckling.length_mm = {}; a stronger bow is an arch \
+             and not a flexure",
             number_text(limit),
             number_text(buckling.length_mm)
         );
@@ -51,7 +52,8 @@ pub(super) fn check(mechanism: &Mechanism, checked: &mut Checked) {
     let limit = shorter / LENGTH_OVER_PRELOAD;
     if *preload_mm > limit * ROUNDING && !bad(checked, "preload_mm") {
         let problem = format!(
-            "must be 0 to {} mm, half of the shorter flexure ({field} = {}); lower it or lengthen the flexure",
+            "must be 0 to {} mm, half of the shorter flexure ({field} = {}); lower it or lengthen the \
+             flexure",
             number_text(limit),
             number_text(shorter)
         );
@@ -75,8 +77,8 @@ pub(super) fn hints(mechanism: &Mechanism, warnings: &mut Vec<String>) {
     let sure = shorter / LENGTH_OVER_SURE_PRELOAD;
     if *preload_mm > sure * ROUNDING {
         warnings.push(format!(
-            "mechanism.preload_mm = {}: beyond {} mm, a quarter of the shorter flexure ({field} = {}), the flexures \
-             may not be solved",
+            "mechanism.preload_mm = {}: beyond {} mm, a quarter of the shorter flexure ({field} = {}), the \
+             flexures may not be solved",
             number_text(*preload_mm),
             number_text(sure),
             number_text(shorter)
@@ -85,8 +87,8 @@ pub(super) fn hints(mechanism: &Mechanism, warnings: &mut Vec<String>) {
     for (name, group) in [("parallel", parallel), ("buckling", buckling)] {
         if group.width_mm < *thickness_mm {
             warnings.push(format!(
-                "mechanism.{name}.width_mm = {}: less than the thickness of {} mm; such a flexure bends sideways \
-                 first, which the model does not follow",
+                "mechanism.{name}.width_mm = {}: less than the thickness of {} mm; such a flexure bends \
+                 sideways first, which the model does not follow",
                 number_text(group.width_mm),
                 number_text(*thickness_mm)
             ));

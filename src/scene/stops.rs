@@ -31,16 +31,17 @@ pub enum Stops {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         restitution_right: Option<f64>,
     },
-    /// Equal compliant stops on both sides: point contacts by Hertz, with the loss of Hunt and Crossley. Pressed in by
-    /// d, one pushes back with k d^1.5 (1 + a d'), and it never pulls. k is given, or follows from the two equal
-    /// cylinders of one material, crossed at a right angle, that each stop is made of.
+    /// Equal compliant stops on both sides: point contacts by Hertz, with the loss of Hunt and Crossley.
+    /// Pressed in by d, one pushes back with k d^1.5 (1 + a d'), and it never pulls. k is given, or follows
+    /// from the two equal cylinders of one material, crossed at a right angle, that each stop is made of.
     Hertz {
         /// Distance of each stop from x = 0 in mm, 1e-15 to 1e15.
         travel_limit_mm: f64,
         /// Stiffness k in N/m^1.5, 1e-60 to 1e60; left out where the cylinders are given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         stiffness_n_per_m1_5: Option<f64>,
-        /// Loss a in s/m, 0 to 1e30. The restitution depends on loss times impact speed alone: 2.427 gives 0.36.
+        /// Loss a in s/m, 0 to 1e30. The restitution depends on loss times impact speed alone: 2.427 gives
+        /// 0.36.
         loss_s_per_m: f64,
         /// Radius of the cylinders in mm, 1e-15 to 1e15.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -51,8 +52,8 @@ pub enum Stops {
         /// Poisson's ratio of the cylinders, 0 to 0.49; left out, 0.34.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         poisson: Option<f64>,
-        /// Yield strength of the cylinders in GPa, 1e-60 to 1e60; left out, 0.276 (aluminium 6061-T6). It has no part
-        /// in the motion; a run warns where the contact's pressure passes 1.6 times it.
+        /// Yield strength of the cylinders in GPa, 1e-60 to 1e60; left out, 0.276 (aluminium 6061-T6). It has
+        /// no part in the motion; a run warns where the contact's pressure passes 1.6 times it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         yield_gpa: Option<f64>,
     },

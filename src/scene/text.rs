@@ -30,8 +30,8 @@ pub(super) struct Refusal {
 }
 
 impl Refusal {
-    /// The text without the unknown field that it was refused for, every other thing where it was: what else is wrong
-    /// can be said too.
+    /// The text without the unknown field that it was refused for, every other thing where it was: what else
+    /// is wrong can be said too.
     pub(super) fn without_unknown(&self, text: &str) -> Option<String> {
         /// A text so long is not looked through again and again.
         const LONGEST: usize = 1 << 17;
@@ -54,8 +54,8 @@ pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
         return Err(Refusal { place: start, problem, unknown: None });
     }
     if is_json(text) {
-        let problem = "this is JSON; a scene begins with `(`. The manifest of a sweep is taken by the commands check, curve, \
-                       simulate, sweep and accuracy"
+        let problem = "this is JSON; a scene begins with `(`. The manifest of a sweep is taken by the \
+                       commands check, curve, simulate, sweep and accuracy"
             .to_owned();
         return Err(Refusal { place: start, problem, unknown: None });
     }

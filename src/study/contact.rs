@@ -14,12 +14,14 @@ use crate::system::threads;
 /// Positions of the speed on a table: more than a picture needs.
 const SPEEDS: usize = 401;
 
-/// One impact on the model's compliant stop and nothing else, over the speed in even steps from 0 to the first of 1, 2 or
-/// 5 times a power of ten that is twice the scene's own speed; none where the stops are not compliant.
+/// One impact on the model's compliant stop and nothing else, over the speed in even steps from 0 to the
+/// first of 1, 2 or 5 times a power of ten that is twice the scene's own speed; none where the stops are not
+/// compliant.
 ///
-/// Columns `speed_m_per_s,restitution,rigid_restitution,contact_time_s,depth_m,peak_force_n,peak_pressure_pa`; the
-/// restitution of a rigid stop is the constant `rigid`, and where there is no time (at speed 0) or the material is not
-/// known the value is missing. All are closed forms: see [`Hertz`].
+/// Columns
+/// `speed_m_per_s,restitution,rigid_restitution,contact_time_s,depth_m,peak_force_n,peak_pressure_pa`; the
+/// restitution of a rigid stop is the constant `rigid`, and where there is no time (at speed 0) or the
+/// material is not known the value is missing. All are closed forms: see [`Hertz`].
 pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
     let stop = model.compliant?;
     let top = round_up(2.0 * model.scales.speed, &ONE_TWO_FIVE);
@@ -57,8 +59,8 @@ pub fn yield_warning(model: &Model, summary: &Summary) -> Option<String> {
     let pressure = summary.peak_contact_pressure.filter(|own| *own > material.yield_pressure())?;
     let gpa = |pascal: f64| short(pascal / 1e9);
     Some(format!(
-        "the contact with a stop reaches {} GPa ({} N) and yields from {} GPa on, 1.6 times its yield strength of {} GPa \
-         (stops.yield_gpa); the model does not follow yielding",
+        "the contact with a stop reaches {} GPa ({} N) and yields from {} GPa on, 1.6 times its yield \
+         strength of {} GPa (stops.yield_gpa); the model does not follow yielding",
         gpa(pressure),
         short(summary.peak_contact_force.unwrap_or(f64::NAN)),
         gpa(material.yield_pressure()),
@@ -77,8 +79,9 @@ pub struct Strikes {
     pub settled: bool,
 }
 
-/// The first impacts of flights in one run of `model`: those after a crossing, a release or an impact on the other stop. The
-/// rebounds that follow them, down to chatter, do not count. None where nothing is struck or the run is cancelled.
+/// The first impacts of flights in one run of `model`: those after a crossing, a release or an impact on the
+/// other stop. The rebounds that follow them, down to chatter, do not count. None where nothing is struck or
+/// the run is cancelled.
 pub fn strikes(model: &Model, cancel: &AtomicBool) -> Option<Strikes> {
     let run = model.run(&Request { events: true, cancel: Some(cancel), ..Request::default() });
     if matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
@@ -112,9 +115,9 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Restitutions for which `check` says what loss a compliant stop needs.
 const WANTED: [f64; 4] = [0.8, 0.5, 0.36, 0.2];
 
-/// What the speed at which the stops of `model` are struck means for compliant stops, in one sentence: their restitution at
-/// that speed and the loss for others; of rigid stops, which `stops` describes, the loss with their restitution. None
-/// where nothing is struck, or where the run takes longer than a second.
+/// What the speed at which the stops of `model` are struck means for compliant stops, in one sentence: their
+/// restitution at that speed and the loss for others; of rigid stops, which `stops` describes, the loss with
+/// their restitution. None where nothing is struck, or where the run takes longer than a second.
 pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
     if *stops == Stops::None {
         return None;

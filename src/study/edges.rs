@@ -52,8 +52,8 @@ impl Edges {
     }
 }
 
-/// The line of [`first_crossing`](super::first_crossing) over a map of `x` and `y`: along the edges of its cells,
-/// towards smaller amplitudes, in one part for each stretch without a gap.
+/// The line of [`first_crossing`](super::first_crossing) over a map of `x` and `y`: along the edges of its
+/// cells, towards smaller amplitudes, in one part for each stretch without a gap.
 pub fn first_crossing_edge(
     table: &Table,
     (x, y): (&str, &str),

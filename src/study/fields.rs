@@ -3,7 +3,8 @@
 use super::table::Values;
 use crate::dynamics::{First, Firsts, STANDARD_GRAVITY, Summary};
 
-/// What a field of a summary is, and how it is read. A number, count or flag of none and an empty word are missing.
+/// What a field of a summary is, and how it is read. A number, count or flag of none and an empty word are
+/// missing.
 #[derive(Debug, Clone, Copy)]
 pub enum Read {
     /// A real number.
@@ -35,8 +36,8 @@ const fn of_ledger(name: &'static str, read: Read) -> SummaryField {
     SummaryField { name, read, needs_ledger: true }
 }
 
-/// All of them, in the order in which a summary has them. Counts of the settled window are missing where the run ended
-/// before it: 0 would say that nothing happened in it.
+/// All of them, in the order in which a summary has them. Counts of the settled window are missing where the
+/// run ended before it: 0 would say that nothing happened in it.
 pub const SUMMARY_FIELDS: [SummaryField; 45] = [
     plain("final_x_m", Read::Number(|s| Some(s.final_x))),
     plain("final_v_m_per_s", Read::Number(|s| Some(s.final_v))),

@@ -14,7 +14,8 @@ use crate::numeric::short;
 pub enum StatesError {
     /// The mechanism is not made of flexures.
     #[error(
-        "this mechanism has no flexures, only a force; shapes, axial force and stress need `mechanism: Flexures(..)`"
+        "this mechanism has no flexures, only a force; shapes, axial force and stress need `mechanism: \
+         Flexures(..)`"
     )]
     NoFlexures,
     /// A position beyond the curve.
@@ -49,8 +50,9 @@ pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<V
     positions.iter().map(state).collect()
 }
 
-/// The table of [`curve`] at the positions of `states` with the columns `axial_n,bump_m,max_stress_pa`: the compression
-/// of all buckling flexures together, the height of their bump, and the largest bending stress of any flexure.
+/// The table of [`curve`] at the positions of `states` with the columns `axial_n,bump_m,max_stress_pa`: the
+/// compression of all buckling flexures together, the height of their bump, and the largest bending stress of
+/// any flexure.
 pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Result<Table, OutsideCurve> {
     let column = |of: fn(&State) -> f64| Values::Numbers(states.iter().map(of).collect());
     let table = curve(mechanism, states.iter().map(|state| state.x).collect())?;
@@ -60,13 +62,13 @@ pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Result<Table, Outs
         .with("max_stress_pa", column(|state| state.max_stress)))
 }
 
-/// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point after point; `flexure` is `parallel` or
-/// `buckling`, one of each standing for its group.
+/// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point after point; `flexure` is
+/// `parallel` or `buckling`, one of each standing for its group.
 ///
-/// px and py are coordinates of the frame, drawn with a shuttle of no width: the parallel flexures are clamped at (0, 0)
-/// and reach the shuttle at (L_p - u, x), u being their shortening; the buckling ones are clamped at
-/// (L_p + L_b - preload, 0) and reach the same point of the shuttle. So px runs along the flexures and py with x. s is
-/// the length along a flexure from its clamp in the frame.
+/// px and py are coordinates of the frame, drawn with a shuttle of no width: the parallel flexures are
+/// clamped at (0, 0) and reach the shuttle at (L_p - u, x), u being their shortening; the buckling ones are
+/// clamped at (L_p + L_b - preload, 0) and reach the same point of the shuttle. So px runs along the flexures
+/// and py with x. s is the length along a flexure from its clamp in the frame.
 pub fn shapes(states: &[State]) -> Table {
     let mut words = Vec::new();
     let mut numbers = [const { Vec::new() }; 4];
@@ -90,8 +92,8 @@ pub fn shapes(states: &[State]) -> Table {
         .with("py_m", py)
 }
 
-/// One sentence where the bending stress of some of the `states` exceeds what the scene allows; it names from which |x|
-/// on, the largest stress and the limit.
+/// One sentence where the bending stress of some of the `states` exceeds what the scene allows; it names from
+/// which |x| on, the largest stress and the limit.
 pub fn stress_warning(flexures: &Flexures, states: &[State]) -> Option<String> {
     let limit = flexures.geometry().yield_stress;
     let farthest = states.iter().fold(0.0_f64, |most, state| most.max(state.x.abs()));
@@ -102,8 +104,8 @@ pub fn stress_warning(flexures: &Flexures, states: &[State]) -> Option<String> {
     let (gpa, mm) = (|pascal: f64| short(pascal / 1e9), |metres: f64| short(metres * 1e3));
     let end = if to < farthest { format!("to {} mm", mm(to)) } else { "on".to_owned() };
     Some(format!(
-        "from |x| = {} mm {end} the bending stress exceeds mechanism.yield_gpa = {}: {} GPa at x = {} mm; the model \
-         does not follow yielding",
+        "from |x| = {} mm {end} the bending stress exceeds mechanism.yield_gpa = {}: {} GPa at x = {} mm; \
+         the model does not follow yielding",
         mm(from),
         gpa(limit),
         gpa(worst.max_stress),
@@ -146,9 +148,9 @@ mod tests {
 
     #[test]
     fn a_warning_says_from_where_on() {
-        let text = "(title: \"t\", mass_g: 15.2, mechanism: Flexures(preload_mm: 2.7, thickness_mm: 0.1, young_gpa: 190, \
-            yield_gpa: 1.5, parallel: (count: 2, length_mm: 26, width_mm: 20), \
-            buckling: (count: 1, length_mm: 27.7, width_mm: 6.8)), run: (duration_s: 1))";
+        let text = "(title: \"t\", mass_g: 15.2, mechanism: Flexures(preload_mm: 2.7, thickness_mm: 0.1, \
+                    young_gpa: 190, yield_gpa: 1.5, parallel: (count: 2, length_mm: 26, width_mm: 20), \
+                    buckling: (count: 1, length_mm: 27.7, width_mm: 6.8)), run: (duration_s: 1))";
         let scene = Document::from_text("t", text, Files::default()).unwrap().scene;
         let mechanism = Mechanism::build(&scene.mechanism, &Files::default()).unwrap();
         let flexures = mechanism.flexures.unwrap();

@@ -1,5 +1,5 @@
-//! A scene in words: what it models and leaves out, how good its force curve is, where it rests, how fast its stops are
-//! struck.
+//! A scene in words: what it models and leaves out, how good its force curve is, where it rests, how fast its
+//! stops are struck.
 
 use std::sync::Arc;
 
@@ -53,9 +53,9 @@ fn flexures(geometry: &Geometry) -> [String; 2] {
             mm(geometry.preload)
         ),
         format!(
-            "beam theory: planar, geometrically exact (Reissner), with stretching and shear, clamped at both ends to \
-             frame and to a shuttle that does not turn; E = {} GPa, Poisson's ratio {}, {modulus}; left out: the \
-             lateral strain of wide strips in bending, yielding, the mass of the flexures",
+            "beam theory: planar, geometrically exact (Reissner), with stretching and shear, clamped at both \
+             ends to frame and to a shuttle that does not turn; E = {} GPa, Poisson's ratio {}, {modulus}; \
+             left out: the lateral strain of wide strips in bending, yielding, the mass of the flexures",
             short(geometry.young / 1e9),
             short(geometry.poisson)
         ),
@@ -80,7 +80,8 @@ fn accuracy(mechanism: &Mechanism, accuracy: &Accuracy) -> String {
         false => "",
     };
     format!(
-        "force curve: {}, from {} solutions with {} modes a flexure{limit}; against fresh solutions off by at most {}",
+        "force curve: {}, from {} solutions with {} modes a flexure{limit}; against fresh solutions off by \
+         at most {}",
         pieces_and_reach(mechanism),
         accuracy.solves,
         accuracy.modes,
@@ -117,8 +118,8 @@ fn force_curve(mechanism: &Mechanism) -> String {
     }
 }
 
-/// k and c of a damping ratio: those that are used and, where the well lies beside a kink, those that other readings of
-/// the same ratio give.
+/// k and c of a damping ratio: those that are used and, where the well lies beside a kink, those that other
+/// readings of the same ratio give.
 fn damping(scene: &Scene, model: &Model) -> Vec<String> {
     let Damping::Ratio(xi) = scene.damping else { return Vec::new() };
     let landscape = &model.mechanism.landscape;
@@ -153,8 +154,8 @@ fn damping(scene: &Scene, model: &Model) -> Vec<String> {
         )
     });
     lines.push(format!(
-        "the same ratio with the slope just outside the kink, {} N/m, would be c = {} N s/m{}; a `Coefficient` leaves no \
-         choice",
+        "the same ratio with the slope just outside the kink, {} N/m, would be c = {} N s/m{}; a \
+         `Coefficient` leaves no choice",
         short(kink.outer),
         short(coefficient(kink.outer)),
         mixed.unwrap_or_default()

@@ -1,13 +1,15 @@
-//! How did the mass get from one sample to the next? The equation of motion, integrated between two that are known.
+//! How did the mass get from one sample to the next? The equation of motion, integrated between two that are
+//! known.
 //!
-//! For pictures: samples that are dense enough for a swing are too few where taut flexures turn the mass round in a
-//! hundredth of it. The classical Runge-Kutta method goes from one sample towards the next, the base's acceleration
-//! taken as linear between them, and what it misses the next one by is spread over the way.
+//! For pictures: samples that are dense enough for a swing are too few where taut flexures turn the mass
+//! round in a hundredth of it. The classical Runge-Kutta method goes from one sample towards the next, the
+//! base's acceleration taken as linear between them, and what it misses the next one by is spread over the
+//! way.
 
 use crate::dynamics::{Model, Phase, Sample};
 
-/// Displacements in m and velocities in m/s at `count` - 1 times, even between two samples of a flight, neither of them
-/// included. None between samples at the same time or at rest.
+/// Displacements in m and velocities in m/s at `count` - 1 times, even between two samples of a flight,
+/// neither of them included. None between samples at the same time or at rest.
 pub fn between(model: &Model, from: &Sample, to: &Sample, count: usize) -> Vec<(f64, f64)> {
     let whole = to.t - from.t;
     if !(whole > 0.0) || from.phase != Phase::Free || count < 2 {

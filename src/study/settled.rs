@@ -4,12 +4,13 @@ use std::sync::atomic::AtomicBool;
 
 use crate::dynamics::{Model, Outcome, Phase, Request, Sample, Side, Summary};
 
-/// Forcing periods beyond the scene's own run for which a motion is followed until it repeats: five times what the
-/// longest transients of the prototype take.
+/// Forcing periods beyond the scene's own run for which a motion is followed until it repeats: five times
+/// what the longest transients of the prototype take.
 const PATIENCE: f64 = 1000.0;
 
-/// Runs `model` for its settled motion, on beyond its duration until the motion repeats or some 1000 forcing periods have
-/// passed without that; under an amplitude ramp to the ramp's end, but no longer. None where it was cancelled.
+/// Runs `model` for its settled motion, on beyond its duration until the motion repeats or some 1000 forcing
+/// periods have passed without that; under an amplitude ramp to the ramp's end, but no longer. None where it
+/// was cancelled.
 pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Summary> {
     let until_settled = model.forcing_period.map(|period| model.duration + PATIENCE * period);
     let ramp = until_settled.and_then(|until| model.ramp_end().map(|end| end.min(until)));

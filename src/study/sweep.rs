@@ -25,7 +25,8 @@ pub const STANDARD: [&str; 7] =
 /// What a sweep does beyond running each cell for its duration.
 #[derive(Debug, Clone, Default)]
 pub struct SweepOptions {
-    /// More columns than the [standard](STANDARD) ones. One that needs the energy ledger has the cells run one by one.
+    /// More columns than the [standard](STANDARD) ones. One that needs the energy ledger has the cells run
+    /// one by one.
     pub columns: Vec<&'static SummaryField>,
     /// Each run goes on until its motion repeats, or up to this time in s.
     pub until_settled: Option<f64>,
@@ -98,7 +99,8 @@ pub struct Tally {
     pub not_converged: u64,
     /// Cells in which the contact with a compliant stop was pressed beyond what its material bears.
     pub yielding: u64,
-    /// Mechanisms built: one for each combination of the swept fields of the mechanism, however many cells share it.
+    /// Mechanisms built: one for each combination of the swept fields of the mechanism, however many cells
+    /// share it.
     pub mechanisms: u64,
     /// Cells by outcome.
     pub outcomes: BTreeMap<&'static str, u64>,
@@ -118,23 +120,24 @@ impl Tally {
     }
 }
 
-/// Cells a thread gets of the first chunk, and the most of any. A chunk waits for its last cell: while chunks are over in
-/// less than [`SHORT`], the next is twice as large, so that the wait is a small part of it; where cells take long, rows
-/// come often.
+/// Cells a thread gets of the first chunk, and the most of any. A chunk waits for its last cell: while chunks
+/// are over in less than [`SHORT`], the next is twice as large, so that the wait is a small part of it; where
+/// cells take long, rows come often.
 const CELLS_PER_THREAD: u64 = 512;
 const MOST_CELLS_PER_THREAD: u64 = 1 << 14;
 
 /// A short time for a chunk in s.
 const SHORT: f64 = 0.3;
 
-/// Cells that a thread runs together: several times the lanes of any processor, so that few of them fly alone at the end.
+/// Cells that a thread runs together: several times the lanes of any processor, so that few of them fly alone
+/// at the end.
 const BATCH: usize = 128;
 
 /// The same where each cell is waited for.
 const SHOWN: usize = 16;
 
-/// Mechanisms kept for the whole sweep, up to some 50 kB each (flexures with their states); beyond that each cell
-/// builds its own.
+/// Mechanisms kept for the whole sweep, up to some 50 kB each (flexures with their states); beyond that each
+/// cell builds its own.
 const KEPT_MECHANISMS: u64 = 4096;
 
 impl Sweep {
@@ -165,8 +168,8 @@ impl Sweep {
         self.table(0, &[])
     }
 
-    /// The mechanism of the first cell, or why it has none. Where no axis changes the mechanism, it is that of
-    /// every cell.
+    /// The mechanism of the first cell, or why it has none. Where no axis changes the mechanism, it is that
+    /// of every cell.
     pub fn first_mechanism(&self) -> Result<Arc<Mechanism>, BuildError> {
         let mut scene = self.base.clone();
         self.grid.apply(0, &mut scene);
@@ -180,8 +183,8 @@ impl Sweep {
         self.model(0, &mut self.base.clone(), task)
     }
 
-    /// Builds every cell without running it; the first one that is wrong, with all its faults. A mechanism that is
-    /// not solved is no fault but an outcome. A cancelled check finds nothing.
+    /// Builds every cell without running it; the first one that is wrong, with all its faults. A mechanism
+    /// that is not solved is no fault but an outcome. A cancelled check finds nothing.
     pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         let faults = |scene: &mut Scene, index: u64| {
             if task.is_cancelled() {
@@ -231,8 +234,8 @@ impl Sweep {
         Ok(tally)
     }
 
-    /// Runs these cells on `pool`, begun in their order, and hands each over from its thread as soon as it is there.
-    /// Whether all of them were run, which a cancelled task's are not.
+    /// Runs these cells on `pool`, begun in their order, and hands each over from its thread as soon as it is
+    /// there. Whether all of them were run, which a cancelled task's are not.
     pub fn run_cells(
         &self,
         pool: &Pool,
@@ -291,7 +294,8 @@ impl Sweep {
         rows
     }
 
-    /// The model of a cell, or its faults; none where its mechanism was not solved, or the task was cancelled meanwhile.
+    /// The model of a cell, or its faults; none where its mechanism was not solved, or the task was cancelled
+    /// meanwhile.
     fn model(&self, index: u64, scene: &mut Scene, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
         self.grid.apply(index, scene);
         match self.mechanism(index, scene, task.cancel)? {

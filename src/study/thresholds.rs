@@ -1,9 +1,10 @@
-//! Thresholds: the least value of a field from which on a motion, from rest, is released, crosses or is interwell.
+//! Thresholds: the least value of a field from which on a motion, from rest, is released, crosses or is
+//! interwell.
 //!
-//! The values that do are no interval: without stops, and near a resonance, they come in windows. So nothing is bisected
-//! before every step of a scan from below has been run; then the first step that changes the answer is, and the changes
-//! above it are counted. Each run goes on until its motion repeats, so that a crossing on the way to a motion that does
-//! not cross is no answer.
+//! The values that do are no interval: without stops, and near a resonance, they come in windows. So nothing
+//! is bisected before every step of a scan from below has been run; then the first step that changes the
+//! answer is, and the changes above it are counted. Each run goes on until its motion repeats, so that a
+//! crossing on the way to a motion that does not cross is no answer.
 
 use std::sync::Arc;
 
@@ -50,7 +51,8 @@ impl Onset {
     }
 }
 
-/// What a threshold is searched for over: the values of a scan, ascending, and how closely the first one is located.
+/// What a threshold is searched for over: the values of a scan, ascending, and how closely the first one is
+/// located.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scan {
     /// Dotted path of the field.
@@ -68,13 +70,13 @@ pub struct Found {
     pub value: Option<f64>,
     /// How often the answer changes above it, within the scan.
     pub windows: u64,
-    /// From this value of the scan on nothing changes any more: that of the last change upward; none where the scan ends
-    /// with the answer no.
+    /// From this value of the scan on nothing changes any more: that of the last change upward; none where
+    /// the scan ends with the answer no.
     pub without_gap: Option<f64>,
 }
 
-/// Forcing periods for which a run of a scan is followed until its motion repeats: some more than after which irregular
-/// motion is called settled.
+/// Forcing periods for which a run of a scan is followed until its motion repeats: some more than after which
+/// irregular motion is called settled.
 const PATIENCE: f64 = 250.0;
 
 /// The time in s up to which a run is followed until its motion repeats.
@@ -85,11 +87,11 @@ fn longest(model: &Model) -> f64 {
 /// Runs that are asked for together.
 const TOGETHER: usize = 32;
 
-/// Runs the scan of `scene`, each run from rest. `mechanism` is the scene's own, built from `files`. None where the search
-/// was cancelled.
+/// Runs the scan of `scene`, each run from rest. `mechanism` is the scene's own, built from `files`. None
+/// where the search was cancelled.
 ///
-/// A value that makes no valid model does not do it. A release under one sine that moves a mass from the stop it is
-/// pressed on, over the amplitude, is known in closed form.
+/// A value that makes no valid model does not do it. A release under one sine that moves a mass from the stop
+/// it is pressed on, over the amplitude, is known in closed form.
 pub fn threshold(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -141,8 +143,9 @@ pub fn threshold(
     Some(found)
 }
 
-/// The thresholds of every cell of `grid` over `scene`, in order: the swept fields, then `of,value,windows`. A value that is
-/// not found is missing, as is that of a cell whose mechanism is not solved. None where the search was cancelled.
+/// The thresholds of every cell of `grid` over `scene`, in order: the swept fields, then `of,value,windows`.
+/// A value that is not found is missing, as is that of a cell whose mechanism is not solved. None where the
+/// search was cancelled.
 pub fn threshold_table(
     (scene, files): (&Scene, &Files),
     grid: Option<&Grid>,
@@ -227,8 +230,8 @@ impl Search<'_> {
         model
     }
 
-    /// The least multiple of the resolution, as far as bisection tells, that does it, between a value that does not and one
-    /// that does.
+    /// The least multiple of the resolution, as far as bisection tells, that does it, between a value that
+    /// does not and one that does.
     fn locate(&mut self, before: Option<f64>, value: f64, resolution: f64) -> Option<f64> {
         let (Some(mut low), mut high) = (before, value) else { return Some(value) };
         loop {
@@ -264,12 +267,14 @@ fn third_digit(value: f64) -> f64 {
 /// The field of the amplitude of a sine.
 const AMPLITUDE: &str = "excitation.amplitude_g";
 
-/// How much shaking it takes, in g, each from rest at the scene's frequency, whatever the scene's own amplitude is.
+/// How much shaking it takes, in g, each from rest at the scene's frequency, whatever the scene's own
+/// amplitude is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
     /// The least amplitude that frees the mass from the stop it rests on, in closed form.
     pub frees_at: Option<f64>,
-    /// The least amplitude whose settled motion crosses; none where none does up to [`searched_to`](Self::searched_to).
+    /// The least amplitude whose settled motion crosses; none where none does up to
+    /// [`searched_to`](Self::searched_to).
     pub crosses_from: Option<f64>,
     /// From this amplitude on every one that was tried crosses; none where the greatest does not.
     pub without_gap: Option<f64>,
@@ -277,8 +282,8 @@ pub struct Thresholds {
     pub searched_to: f64,
 }
 
-/// Steps of the scan up to the push that holds the mass against the mechanism's largest force, as many more of the same
-/// length above it, and by how much each further one is longer than the last.
+/// Steps of the scan up to the push that holds the mass against the mechanism's largest force, as many more
+/// of the same length above it, and by how much each further one is longer than the last.
 const FINE_STEPS: u32 = 50;
 const GROWTH: f64 = 1.02;
 
@@ -289,7 +294,8 @@ const MOST_PUSHES: f64 = 30.0;
 const GAP_STEPS: u32 = 50;
 const GAP_STEP: f64 = 0.01;
 
-/// Searches the amplitudes of a sine. None where the drive is no sine, nothing is to be crossed, or the search was cancelled.
+/// Searches the amplitudes of a sine. None where the drive is no sine, nothing is to be crossed, or the
+/// search was cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
     let Excitation::Sine { .. } = scene.excitation else { return None };
     let push = holding_push(scene, mechanism)?;
@@ -329,8 +335,8 @@ pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Opt
     Some(found)
 }
 
-/// The amplitude in g whose push equals the largest force against which the mechanism must be moved from where the mass
-/// rests to the barrier.
+/// The amplitude in g whose push equals the largest force against which the mechanism must be moved from
+/// where the mass rests to the barrier.
 fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let Landscape { barrier, extrema, .. } = &mechanism.landscape;
     let barrier = barrier.as_ref()?;
@@ -348,7 +354,8 @@ fn right_stop(scene: &Scene) -> Option<f64> {
     scene.stops.limits_mm()[1].map(|mm| mm / 1e3)
 }
 
-/// The amplitude in g at which the base's push reaches the force that presses the mass on the stop that it rests on.
+/// The amplitude in g at which the base's push reaches the force that presses the mass on the stop that it
+/// rests on.
 fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let Excitation::Sine { .. } = scene.excitation else { return None };
     let right = right_stop(scene)?;
@@ -356,15 +363,17 @@ fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let press = -mechanism.curve.force(right);
     (right < well && press > 0.0).then(|| press / (scene.mass_g / 1e3) / STANDARD_GRAVITY)
 }
-/// The search for stops makes at least so many steps from the well to the middle, and at most two and a half times as
-/// many.
+/// The search for stops makes at least so many steps from the well to the middle, and at most two and a half
+/// times as many.
 const FEWEST_STOPS: f64 = 50.0;
 
-/// From the wells inward the first travel limit in mm, the same on both sides, whose run from rest is interwell under
-/// the scene's own excitation; inner `None` where there is none, outer `None` where the search was cancelled.
+/// From the wells inward the first travel limit in mm, the same on both sides, whose run from rest is
+/// interwell under the scene's own excitation; inner `None` where there is none, outer `None` where the
+/// search was cancelled.
 ///
-/// The limits that cross are no interval, so nothing is bisected: every step is run, 1, 2 or 5 of a decimal place, a
-/// tenth of a millimetre where the wells are some 7 mm away. `restitution` is that of the stops that are tried.
+/// The limits that cross are no interval, so nothing is bisected: every step is run, 1, 2 or 5 of a decimal
+/// place, a tenth of a millimetre where the wells are some 7 mm away. `restitution` is that of the stops that
+/// are tried.
 pub fn stops_that_cross(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,

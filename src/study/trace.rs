@@ -1,4 +1,5 @@
-//! What a picture shows of one run: its path sampled for the eye, with every jump of the velocity, and the spans at rest.
+//! What a picture shows of one run: its path sampled for the eye, with every jump of the velocity, and the
+//! spans at rest.
 //!
 //! A picture must be right however sparse the samples are that were asked for, so it has its own:
 //! the run is asked for both at once, and each gets its own back.
@@ -20,8 +21,8 @@ pub struct Trace {
     /// Time in s from which on the phase portrait is shown: the settled window, but no more than
     /// some forcing periods of it; or a window that was asked for.
     pub portrait_from: f64,
-    /// Time in s from which on the motion is shown over time: of a long run under a drive that repeats, its last
-    /// forcing periods, since all of it would be a filled band.
+    /// Time in s from which on the motion is shown over time: of a long run under a drive that repeats, its
+    /// last forcing periods, since all of it would be a filled band.
     pub shown_from: f64,
     /// Time in s up to which motion and phase portrait are shown.
     pub shown_to: f64,
@@ -42,7 +43,8 @@ const PER_PERIOD: f64 = 80.0;
 /// Forcing periods in a phase portrait: as many as a period of the response may have.
 const PORTRAIT_PERIODS: f64 = 12.0;
 
-/// A run of more forcing periods than this is a filled band over time; then so many of its last ones are shown.
+/// A run of more forcing periods than this is a filled band over time; then so many of its last ones are
+/// shown.
 const BAND_PERIODS: f64 = 60.0;
 const SHOWN_PERIODS: f64 = 24.0;
 
@@ -52,8 +54,8 @@ const PORTRAIT: f64 = 24_000.0;
 /// The most rows in a phase portrait; more of them, as of a million impacts, only blacken it.
 const MOST_PORTRAIT: usize = 60_000;
 
-/// Runs `model` once and keeps, besides what `keep` says, what a picture needs; a `window` in s, which lies within the run,
-/// is all that is shown.
+/// Runs `model` once and keeps, besides what `keep` says, what a picture needs; a `window` in s, which lies
+/// within the run, is all that is shown.
 pub fn simulate_with_trace(
     model: &Model,
     keep: &Keep,

@@ -1,8 +1,9 @@
 //! What has been seen of a motion that goes on? A live run with a memory.
 //!
 //! The path is sampled for the eye: some eighty times a swing, and at every event, so that rebounds are
-//! corners and rests are flat. The energy ledger is kept at the end of every forcing period while somebody looks at it.
-//! The oldest of it is forgotten. The models by which it went are kept with it ([`models`](super::models)).
+//! corners and rests are flat. The energy ledger is kept at the end of every forcing period while somebody
+//! looks at it. The oldest of it is forgotten. The models by which it went are kept with it
+//! ([`models`](super::models)).
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -61,8 +62,8 @@ impl Watch {
         own
     }
 
-    /// Whether from now on a ledger is kept at the end of every forcing period: each takes the last step once more.
-    /// What has been kept stays, and the present one is there in any case.
+    /// Whether from now on a ledger is kept at the end of every forcing period: each takes the last step once
+    /// more. What has been kept stays, and the present one is there in any case.
     pub fn keep_ledgers(&mut self, keep: bool) {
         self.keeps_ledgers = keep;
     }
@@ -134,7 +135,8 @@ impl Watch {
         self.now = self.live.state();
     }
 
-    /// Remembers the present state, so that a change is a jump at its instant and not a way from the last sample.
+    /// Remembers the present state, so that a change is a jump at its instant and not a way from the last
+    /// sample.
     fn leave(&mut self) {
         if self.samples.back().is_none_or(|last| last.t < self.now.t) {
             self.samples.push_back(self.now);
@@ -161,8 +163,8 @@ impl Watch {
         self.live.ledger()
     }
 
-    /// Where the energy went up to a time in s: at the present, and in the past up to the last period's end. None in a
-    /// past that had no period or in which no ledger was kept.
+    /// Where the energy went up to a time in s: at the present, and in the past up to the last period's end.
+    /// None in a past that had no period or in which no ledger was kept.
     pub fn ledger_at(&self, t: f64) -> Option<(f64, LiveLedger)> {
         if t >= self.now.t {
             return Some((self.now.t, self.ledger()));
@@ -173,8 +175,8 @@ impl Watch {
         (t - mark.0 < period * (1.0 + 1e-9)).then_some(*mark)
     }
 
-    /// Where the energy went in the last whole forcing period that had ended at a time in s. None without a period, and
-    /// while the first one since the period was changed, or since ledgers are kept, still lasts.
+    /// Where the energy went in the last whole forcing period that had ended at a time in s. None without a
+    /// period, and while the first one since the period was changed, or since ledgers are kept, still lasts.
     pub fn last_period(&self, t: f64) -> Option<LiveLedger> {
         let period = self.models.at(t).forcing_period?;
         let after = self.ledgers.partition_point(|mark| mark.0 <= t);
@@ -246,8 +248,8 @@ impl Watch {
         }
     }
 
-    /// The event before or after a time in s, releases and crossings and the first impact after a flight: what one
-    /// would call one thing that happened.
+    /// The event before or after a time in s, releases and crossings and the first impact after a flight:
+    /// what one would call one thing that happened.
     pub fn neighbour(&self, t: f64, later: bool) -> Option<Event> {
         // a chatter is one event, at its first impact
         let lone = |i: &usize| {

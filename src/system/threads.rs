@@ -35,8 +35,8 @@ impl Pool {
         self.0.current_num_threads()
     }
 
-    /// The results of all parts from 0 to `parts`, in order, or an error of one of them, after which no other part
-    /// begins. `state` makes what a thread keeps from part to part.
+    /// The results of all parts from 0 to `parts`, in order, or an error of one of them, after which no other
+    /// part begins. `state` makes what a thread keeps from part to part.
     pub fn map<S, R: Send, E: Send>(
         &self,
         parts: usize,

@@ -1,7 +1,7 @@
 //! In which functions is a flexure's rotation written?
 //!
-//! Integrated Legendre polynomials: each vanishes at both clamps and their slopes are orthonormal, so that the
-//! bending stiffness is a multiple of the identity. A flexure's rotation has an even part about its
+//! Integrated Legendre polynomials: each vanishes at both clamps and their slopes are orthonormal, so that
+//! the bending stiffness is a multiple of the identity. A flexure's rotation has an even part about its
 //! middle (the sway between the shuttle and the frame) and an odd one (the bump); the two never meet in the
 //! linear terms, and every integral is taken over one half.
 
@@ -21,9 +21,9 @@ pub(super) struct Basis {
 }
 
 impl Basis {
-    /// `modes` functions of each parity, with half as many points again on the half: products of two functions are
-    /// integrated exactly with a weight of half their degree, and the weight's own coefficients fall as fast as the
-    /// rotation's.
+    /// `modes` functions of each parity, with half as many points again on the half: products of two
+    /// functions are integrated exactly with a weight of half their degree, and the weight's own coefficients
+    /// fall as fast as the rotation's.
     pub fn new(modes: usize) -> Self {
         let rule = even_half(modes + modes / 2 + 1);
         let (mut even, mut odd) = (Vec::new(), Vec::new());

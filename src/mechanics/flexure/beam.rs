@@ -1,9 +1,9 @@
-//! What holds along one flexure? The geometrically exact beam (Reissner 1972, "On one-dimensional finite-strain
-//! beam theory: the plane problem"), in weak form.
+//! What holds along one flexure? The geometrically exact beam (Reissner 1972, "On one-dimensional
+//! finite-strain beam theory: the plane problem"), in weak form.
 //!
 //! With theta the rotation of the cross-section, (H, Q) the constant force on the cut (axial, lateral; H
-//! positive in tension), N = H cos theta + Q sin theta, V = -H sin theta + Q cos theta, axial strain N/EA and shear
-//! strain V/GA_s:
+//! positive in tension), N = H cos theta + Q sin theta, V = -H sin theta + Q cos theta, axial strain N/EA and
+//! shear strain V/GA_s:
 //!
 //! ```text
 //! EI (theta - theta_0)'' + V + kappa N V = 0,   kappa = 1/EA - 1/GA_s,   theta = 0 at both ends
@@ -14,10 +14,11 @@
 //! All three are derivatives of one potential of theta, H and Q, so that the tables below are symmetric and
 //! shortening and deflection are far more exact than theta itself.
 //!
-//! **The bump.** Split theta = even + odd about the middle. Where the flexure carries a bump, the odd part is written
-//! as sqrt(q) psi with the leading coefficient of psi set to 1 and the odd equations divided by sqrt(q): everything is
-//! then analytic in q, the square of the bump's amplitude, and regular where the bump vanishes. With the
-//! coefficients themselves as unknowns the equations are singular there, and a second, unstable solution waits beside.
+//! **The bump.** Split theta = even + odd about the middle. Where the flexure carries a bump, the odd part is
+//! written as sqrt(q) psi with the leading coefficient of psi set to 1 and the odd equations divided by
+//! sqrt(q): everything is then analytic in q, the square of the bump's amplitude, and regular where the bump
+//! vanishes. With the coefficients themselves as unknowns the equations are singular there, and a second,
+//! unstable solution waits beside.
 
 use super::basis::Basis;
 
@@ -74,8 +75,8 @@ pub(super) struct Terms {
     /// Residual of the moment equation, even and odd part.
     pub even: Vec<f64>,
     pub odd: Vec<f64>,
-    /// Derivatives of the even residual by the even coefficients, of the odd by the odd, and of the odd (rows) by
-    /// the even (columns); row by row.
+    /// Derivatives of the even residual by the even coefficients, of the odd by the odd, and of the odd
+    /// (rows) by the even (columns); row by row.
     pub even_even: Vec<f64>,
     pub odd_odd: Vec<f64>,
     pub odd_even: Vec<f64>,
@@ -93,7 +94,8 @@ pub(super) struct Terms {
     pub energy: f64,
 }
 
-/// cos(sqrt(q) psi), sin(sqrt(q) psi)/sqrt(q) and the derivative of the latter by q: analytic, also for q < 0.
+/// cos(sqrt(q) psi), sin(sqrt(q) psi)/sqrt(q) and the derivative of the latter by q: analytic, also for q <
+/// 0.
 fn odd_functions(q: f64, psi: f64) -> (f64, f64, f64) {
     let square = q * psi * psi;
     if square.abs() <= 1.0 {

@@ -1,10 +1,10 @@
 //! Which stable shapes does the mechanism pass through as x grows from 0?
 //!
-//! A chain of segments in x. Within a segment the same flexures carry a bump and everything is analytic in x; it ends
-//! where a bump vanishes (or, in a soft mechanism, appears): a pitchfork, at which the slope of the force jumps. The
-//! pitchfork is a regular solution of the equations in the square of the bump's amplitude, so it is found like any
-//! other state, to rounding; every state on the way is tested for stability, so that the S-shaped branch that
-//! continues the taut one inwards is never taken.
+//! A chain of segments in x. Within a segment the same flexures carry a bump and everything is analytic in x;
+//! it ends where a bump vanishes (or, in a soft mechanism, appears): a pitchfork, at which the slope of the
+//! force jumps. The pitchfork is a regular solution of the equations in the square of the bump's amplitude,
+//! so it is found like any other state, to rounding; every state on the way is tested for stability, so that
+//! the S-shaped branch that continues the taut one inwards is never taken.
 
 use super::beam::Shape;
 use super::equilibrium::{Point, Prescribed, stays_straight};
@@ -25,8 +25,8 @@ const BEYOND_KINK: f64 = 1.15;
 /// How far it reaches at least, as a part of the shortest flexure.
 const LEAST_REACH: f64 = 0.1;
 
-/// How far beyond its wells a curve reaches at least, as a multiple of their distance: those of thick flexures, whose
-/// taut branch rises slowly, may lie well beyond the kink.
+/// How far beyond its wells a curve reaches at least, as a multiple of their distance: those of thick
+/// flexures, whose taut branch rises slowly, may lie well beyond the kink.
 const BEYOND_WELL: f64 = 1.1;
 
 /// Kinks nearer to each other than this, relatively, are one: equal groups lose their bumps together.
@@ -67,8 +67,8 @@ impl Segment {
         Ok(point)
     }
 
-    /// The state at `x` by way of others, from the nearest that is known: beside a rounded kink an interpolated guess
-    /// leads astray.
+    /// The state at `x` by way of others, from the nearest that is known: beside a rounded kink an
+    /// interpolated guess leads astray.
     fn approach(&self, solver: &mut Solver, x: f64) -> Option<Point> {
         let mut from = self.points.iter().min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()))?.clone();
         let mut step = x - from.x;
@@ -157,8 +157,8 @@ fn start(solver: &mut Solver) -> Result<Point, Lost> {
     if stays == [true, true] {
         return solver.solve(&straight, Prescribed::Displacement(0.0));
     }
-    // The group that buckles under the smaller total load takes the preload; both, where the load of the other
-    // is reached as well.
+    // The group that buckles under the smaller total load takes the preload; both, where the load of the
+    // other is reached as well.
     let first = if solver.buckling_load(0) < solver.buckling_load(1) { 0 } else { 1 };
     let mut lost = Lost::Unstable { x: 0.0 };
     for bumps in [[first == 0, first == 1], [true, true], [first == 1, first == 0]] {
@@ -171,8 +171,8 @@ fn start(solver: &mut Solver) -> Result<Point, Lost> {
     Err(lost)
 }
 
-/// A state at x = 0 with these groups buckled; the preload is raised from a smaller one where the iteration does not
-/// reach it at once.
+/// A state at x = 0 with these groups buckled; the preload is raised from a smaller one where the iteration
+/// does not reach it at once.
 fn buckled(solver: &mut Solver, straight: &Point, bumps: [bool; 2]) -> Result<Point, Lost> {
     let preload = solver.preload;
     let shapes = bumps.map(|b| if b { Shape::Bump } else { Shape::Straight });
@@ -212,7 +212,8 @@ fn buckled(solver: &mut Solver, straight: &Point, bumps: [bool; 2]) -> Result<Po
     Err(lost)
 }
 
-/// The state at x = 0 of bowed flexures, from that of straight ones; the bow grows from nothing where need be.
+/// The state at x = 0 of bowed flexures, from that of straight ones; the bow grows from nothing where need
+/// be.
 fn bowed_start(solver: &mut Solver, plain: &Point) -> Result<Point, Lost> {
     let whole = solver.bow;
     let mut guess = solver.straight().padded(plain.even[0].len());
@@ -260,8 +261,8 @@ fn bowed_start(solver: &mut Solver, plain: &Point) -> Result<Point, Lost> {
     Err(lost)
 }
 
-/// Follows the states from `start` to `end`, or until a bump vanishes or appears. Returns the segment, and the
-/// state that the next one begins with.
+/// Follows the states from `start` to `end`, or until a bump vanishes or appears. Returns the segment, and
+/// the state that the next one begins with.
 fn march(
     solver: &mut Solver,
     start: Point,
@@ -314,8 +315,8 @@ fn march(
     }
 }
 
-/// Which groups do not have the shape any more that `point` gives them: a bump that has vanished goes on with a
-/// negative square, one that has to appear lowers the energy of the straight flexure.
+/// Which groups do not have the shape any more that `point` gives them: a bump that has vanished goes on with
+/// a negative square, one that has to appear lowers the energy of the straight flexure.
 fn changed(solver: &mut Solver, point: &Point) -> [bool; 2] {
     let terms = solver.terms(point);
     std::array::from_fn(|g| match point.shapes[g] {

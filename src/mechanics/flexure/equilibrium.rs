@@ -1,9 +1,10 @@
 //! In which shape do all flexures together balance, and is it stable?
 //!
-//! The shuttle does not rotate and is free axially: both groups share the lateral displacement x, their shortenings
-//! add up to the preload and their axial forces are equal. Unknown are the rotations, the two lateral forces and the
-//! compression P that the groups exchange. Newton's method with the exact derivatives; what makes it
-//! converge where other solvers fail is the form of the bump's equations (see [`beam`](super::beam)).
+//! The shuttle does not rotate and is free axially: both groups share the lateral displacement x, their
+//! shortenings add up to the preload and their axial forces are equal. Unknown are the rotations, the two
+//! lateral forces and the compression P that the groups exchange. Newton's method with the exact derivatives;
+//! what makes it converge where other solvers fail is the form of the bump's equations (see
+//! [`beam`](super::beam)).
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, LU};
 
@@ -16,8 +17,8 @@ const SMALL_STEP: f64 = 1e-9;
 /// After a step as small as this the matrix before it is the matrix at the solution.
 const SAME_MATRIX: f64 = 1e-12;
 
-/// Where two groups are about to buckle at once the steps do not shrink below the rounding of an ill-conditioned
-/// matrix; from the seventh on this is enough.
+/// Where two groups are about to buckle at once the steps do not shrink below the rounding of an
+/// ill-conditioned matrix; from the seventh on this is enough.
 const STALLED_STEP: f64 = 1e-6;
 
 /// More iterations than a convergent run needs; from a fair guess there are three to six.
@@ -82,8 +83,8 @@ impl Point {
         }
     }
 
-    /// The unknowns in a row: for each group the even coefficients and, where there are any, the odd ones (of a
-    /// bump, q stands in place of the leading 1); then the lateral forces and the compression.
+    /// The unknowns in a row: for each group the even coefficients and, where there are any, the odd ones (of
+    /// a bump, q stands in place of the leading 1); then the lateral forces and the compression.
     fn unknowns(&self) -> Vec<f64> {
         let mut all = Vec::new();
         for group in 0..2 {
@@ -116,8 +117,8 @@ impl Point {
         self.compression = all[at + 2];
     }
 
-    /// The same state with other shapes: a bump that appears has vanishing size and the form of the first buckling
-    /// mode, one that goes leaves nothing.
+    /// The same state with other shapes: a bump that appears has vanishing size and the form of the first
+    /// buckling mode, one that goes leaves nothing.
     pub fn reshaped(&self, shapes: [Shape; 2], basis: &Basis) -> Self {
         let mut own = Self { shapes, ..self.clone() };
         for (group, shape) in shapes.into_iter().enumerate() {
@@ -150,7 +151,8 @@ impl Point {
         own
     }
 
-    /// How large the last coefficients of the rotations are beside the largest: what further functions would add.
+    /// How large the last coefficients of the rotations are beside the largest: what further functions would
+    /// add.
     pub fn tail(&self) -> f64 {
         let all = (0..2).flat_map(|g| {
             let size = self.q[g].abs().sqrt();
@@ -167,9 +169,9 @@ impl Point {
         if largest > 0.0 { last / largest } else { 0.0 }
     }
 
-    /// A guess at `x` from solved points of the same shapes: Lagrange's interpolation of the unknowns. Points at
-    /// x >= 0 stand for their mirror images too where `mirrored`: rotation and lateral force of the sway are odd in x,
-    /// everything else is even.
+    /// A guess at `x` from solved points of the same shapes: Lagrange's interpolation of the unknowns. Points
+    /// at x >= 0 stand for their mirror images too where `mirrored`: rotation and lateral force of the sway
+    /// are odd in x, everything else is even.
     pub fn between(points: &[&Self], x: f64, mirrored: bool) -> Self {
         let modes = points.iter().map(|p| p.even[0].len()).max().unwrap_or(0);
         let points: Vec<Self> = points.iter().map(|p| p.padded(modes)).collect();
@@ -288,8 +290,8 @@ impl System {
         std::array::from_fn(|g| self.beams[g].terms(&self.basis, &point.rotation(g, self.beams[g].count)))
     }
 
-    /// Newton's matrix and right-hand side. The rows stand in the order of the unknowns; the last three are the two
-    /// deflections and the sum of the shortenings.
+    /// Newton's matrix and right-hand side. The rows stand in the order of the unknowns; the last three are
+    /// the two deflections and the sum of the shortenings.
     fn assemble(
         &self,
         point: &Point,
@@ -357,8 +359,8 @@ impl System {
         (matrix, right)
     }
 
-    /// Adds force, stiffness and energy. The stiffness is the derivative of the lateral forces along the solutions,
-    /// from the factors of the last iteration.
+    /// Adds force, stiffness and energy. The stiffness is the derivative of the lateral forces along the
+    /// solutions, from the factors of the last iteration.
     fn finish(
         &self,
         mut point: Point,
@@ -391,8 +393,8 @@ impl System {
     /// for all flexures together and for each flexure of a group against its neighbours.
     ///
     /// Method: the forces eliminated from the second variation leave one symmetric matrix of the coefficients
-    /// alone, which has a Cholesky factor where no eigenvalue is negative. At a bump that just vanishes it is singular
-    /// and the answer is left to rounding.
+    /// alone, which has a Cholesky factor where no eigenvalue is negative. At a bump that just vanishes it is
+    /// singular and the answer is left to rounding.
     pub fn is_stable(&self, point: &Point) -> bool {
         let terms = self.terms(point);
         let parts: [Variation; 2] = std::array::from_fn(|g| Variation::of(&terms[g], point.q[g]));

@@ -1,9 +1,9 @@
 //! What force does a buckled flexure mechanism exert?
 //!
-//! `count` parallel flexures hold the shuttle on one side, one or more buckling flexures on the other; all are clamped at both
-//! ends, the shuttle does not rotate and is free axially. A preload pushes the two groups together: the buckling
-//! flexures bulge, and the sway of all of them has two stable sides. The curve ends in a kink where the bulge is used up and
-//! the flexures are taut.
+//! `count` parallel flexures hold the shuttle on one side, one or more buckling flexures on the other; all
+//! are clamped at both ends, the shuttle does not rotate and is free axially. A preload pushes the two groups
+//! together: the buckling flexures bulge, and the sway of all of them has two stable sides. The curve ends in
+//! a kink where the bulge is used up and the flexures are taut.
 //!
 //! Method: geometrically exact beams (Reissner 1972) in a spectral discretisation (`basis`), the equilibrium
 //! equations of all of them at once (`equilibrium`), the stable branch with its kinks (`branch`), and
@@ -31,8 +31,8 @@ use super::curve::{ForceCurve, Piece};
 /// Shear coefficient of a rectangular section.
 const SHEAR_FACTOR: f64 = 5.0 / 6.0;
 
-/// The coefficients that a rotation may leave out, as this many times the root of the tolerance: the force then has a
-/// hundredth of the tolerance from there.
+/// The coefficients that a rotation may leave out, as this many times the root of the tolerance: the force
+/// then has a hundredth of the tolerance from there.
 const TAIL: f64 = 0.3;
 
 /// The same for a state that a person asks for, and for those that a curve is compared with.
@@ -74,8 +74,8 @@ pub struct Geometry {
 
 /// How far the force curve is from fresh solutions at points that it was not made of.
 ///
-/// *Inside* is between the outermost kinks, or between the outermost equilibria where there is no kink; with one well and
-/// no kink there is no inside, and what is said of it is NaN.
+/// *Inside* is between the outermost kinks, or between the outermost equilibria where there is no kink; with
+/// one well and no kink there is no inside, and what is said of it is NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Accuracy {
     /// Error of the force inside, relative to its largest magnitude between the wells.
@@ -93,7 +93,8 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// Whether a state needed more functions than there are: its flexures are so thin that it is not resolved where they bend.
+    /// Whether a state needed more functions than there are: its flexures are so thin that it is not resolved
+    /// where they bend.
     pub fn is_at_limit(&self) -> bool {
         self.modes >= solver::MOST_MODES
     }
@@ -104,8 +105,8 @@ impl Accuracy {
 pub enum FlexureError {
     /// Newton's iteration came to no end.
     #[error(
-        "the equilibrium of the flexures at x = {} mm was not found (residual {residual:.1e}): try a smaller preload or \
-         other proportions",
+        "the equilibrium of the flexures at x = {} mm was not found (residual {residual:.1e}): try a smaller \
+         preload or other proportions",
         crate::numeric::short(x * 1e3)
     )]
     NotConverged {
@@ -116,7 +117,8 @@ pub enum FlexureError {
     },
     /// It takes too long.
     #[error(
-        "the flexures take more work than can be meant, at x = {} mm: try a smaller preload or other proportions",
+        "the flexures take more work than can be meant, at x = {} mm: try a smaller preload or other \
+         proportions",
         crate::numeric::short(x * 1e3)
     )]
     Endless {
@@ -125,7 +127,8 @@ pub enum FlexureError {
     },
     /// No stable equilibrium could be followed.
     #[error(
-        "the flexures have no stable shape of this kind at x = {} mm: try a smaller preload or other proportions",
+        "the flexures have no stable shape of this kind at x = {} mm: try a smaller preload or other \
+         proportions",
         crate::numeric::short(x * 1e3)
     )]
     Unstable {
@@ -139,9 +142,9 @@ pub enum FlexureError {
 pub struct CentreLine {
     /// `parallel` or `buckling`.
     pub flexure: &'static str,
-    /// Arc length s from the clamp on the frame and the position px (axial), py (lateral), each in m. With a shuttle of no
-    /// width the parallel flexures are clamped at (0, 0), the buckling ones at their common stress-free length less the
-    /// preload.
+    /// Arc length s from the clamp on the frame and the position px (axial), py (lateral), each in m. With a
+    /// shuttle of no width the parallel flexures are clamped at (0, 0), the buckling ones at their common
+    /// stress-free length less the preload.
     pub points: Vec<[f64; 3]>,
 }
 
@@ -194,15 +197,16 @@ struct Units {
 impl Flexures {
     /// Solves the mechanism.
     ///
-    /// Returns its force curve, odd bit for bit, with the flexures behind it. The domain reaches 1.15 times the
-    /// last kink, 1.1 times the wells and a tenth of the shortest flexure at least; breaks are the kinks, and joints of pieces that meet
-    /// smoothly.
+    /// Returns its force curve, odd bit for bit, with the flexures behind it. The domain reaches 1.15 times
+    /// the last kink, 1.1 times the wells and a tenth of the shortest flexure at least; breaks are the kinks,
+    /// and joints of pieces that meet smoothly.
     ///
-    /// Preconditions: sizes above 0, a preload from 0 to half of the shorter flexure, a thickness of at most a tenth of it.
+    /// Preconditions: sizes above 0, a preload from 0 to half of the shorter flexure, a thickness of at most
+    /// a tenth of it.
     ///
-    /// Guarantee: force and potential within `tolerance` (1e-6 to 1e-9) and stiffness within 100 times it at the points
-    /// that were looked at, relative to what [`Accuracy`] says. A preload up to a quarter of the shorter flexure
-    /// solves; beyond, the stable branch may end, which is an error.
+    /// Guarantee: force and potential within `tolerance` (1e-6 to 1e-9) and stiffness within 100 times it at
+    /// the points that were looked at, relative to what [`Accuracy`] says. A preload up to a quarter of the
+    /// shorter flexure solves; beyond, the stable branch may end, which is an error.
     ///
     /// `tolerance` trades time for closeness; at 1e-8 it takes milliseconds.
     pub fn solve(geometry: &Geometry, tolerance: f64) -> Result<(ForceCurve, Self), FlexureError> {
@@ -224,7 +228,8 @@ impl Flexures {
             Lost::Endless { x } => FlexureError::Endless { x: x * units.length },
         };
         let mut segments = branch::trace(&mut solver).map_err(lost)?;
-        // Potentials are differences from this state, and wells may be shallow beside the energy of the preload.
+        // Potentials are differences from this state, and wells may be shallow beside the energy of the
+        // preload.
         let coarse = std::mem::replace(&mut solver.tail, FINE_TAIL);
         let rest = solver.solve(&segments[0].points[0], Prescribed::Displacement(0.0)).map_err(lost)?;
         segments[0].points[0] = rest;

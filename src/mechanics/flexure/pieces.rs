@@ -1,9 +1,10 @@
 //! Which few polynomials are the force curve?
 //!
-//! Every solved state gives force and slope, so each piece is Hermite's interpolant at Chebyshev-Lobatto points:
-//! neighbouring pieces share value and slope, and nothing is smoothed across a kink. Inside the kink one odd polynomial is
-//! enough; the taut branch bends so sharply beside the kink that its pieces grow from there like a geometric series.
-//! Each piece is compared with fresh states between its points, and these comparisons are the accuracy that is reported.
+//! Every solved state gives force and slope, so each piece is Hermite's interpolant at Chebyshev-Lobatto
+//! points: neighbouring pieces share value and slope, and nothing is smoothed across a kink. Inside the kink
+//! one odd polynomial is enough; the taut branch bends so sharply beside the kink that its pieces grow from
+//! there like a geometric series. Each piece is compared with fresh states between its points, and these
+//! comparisons are the accuracy that is reported.
 
 use std::f64::consts::PI;
 
@@ -19,12 +20,13 @@ const POINTS: usize = 7;
 /// Points of the odd piece about x = 0 at x > 0; with the slope at 0 its degree is 4 times this and one.
 const ODD_POINTS: usize = 3;
 
-/// Where, from -1 to 1 along a piece, it is compared with fresh states. At cos(phi) the error of the force goes with
-/// sin(6 phi)^2 and that of the slope with sin(12 phi), which vanishes where the first is largest; at 160, 110 and 50
-/// degrees they have three quarters and nine tenths of their largest values.
+/// Where, from -1 to 1 along a piece, it is compared with fresh states. At cos(phi) the error of the force
+/// goes with sin(6 phi)^2 and that of the slope with sin(12 phi), which vanishes where the first is largest;
+/// at 160, 110 and 50 degrees they have three quarters and nine tenths of their largest values.
 const CHECKS: [f64; 3] = [-0.94, -0.342, 0.643];
 
-/// The same for the odd piece, from 0 to 1; the innermost is for wells much shallower than the forces at the kink.
+/// The same for the odd piece, from 0 to 1; the innermost is for wells much shallower than the forces at the
+/// kink.
 const ODD_CHECKS: [f64; 4] = [0.174, 0.342, 0.643, 0.94];
 
 /// The slope may be off by this many times the force's tolerance, relative to the slope at 0.
@@ -36,14 +38,16 @@ const SHARE: f64 = 0.5;
 /// The share that giving up the highest degrees may use.
 const SHARE_OF_DEGREES: f64 = 0.2;
 
-/// The states that a piece is compared with leave out this much less of the rotation than those it is made of.
+/// The states that a piece is compared with leave out this much less of the rotation than those it is made
+/// of.
 const CHECK_TAIL: f64 = 0.1;
 
 /// A piece shorter than this part of its position means that the curve is not smooth there.
 const SHORTEST: f64 = 1e-9;
 
-/// A segment shorter than this part of its position, between the kinks of two groups that are almost alike, is a straight line:
-/// over so little the force bends by less than its rounding, and rounding over so little is a slope.
+/// A segment shorter than this part of its position, between the kinks of two groups that are almost alike,
+/// is a straight line: over so little the force bends by less than its rounding, and rounding over so little
+/// is a slope.
 const STRAIGHT: f64 = 3e-8;
 
 /// A polynomial in x - origin on an interval of x >= 0, in scaled units.
@@ -74,7 +78,8 @@ pub(super) struct Scale {
     pub force: f64,
     /// The slope at x = 0, without its sign.
     pub stiffness: f64,
-    /// How far the inside reaches: to the last kink, where there is none to the outermost equilibrium, 0 for one well.
+    /// How far the inside reaches: to the last kink, where there is none to the outermost equilibrium, 0 for
+    /// one well.
     pub inside: f64,
 }
 
@@ -261,7 +266,8 @@ fn monomials(chebyshev: &[f64], half: f64) -> Vec<f64> {
     sum
 }
 
-/// Gives up the highest degrees of the odd piece that the tolerance does not need; the value at its end stays.
+/// Gives up the highest degrees of the odd piece that the tolerance does not need; the value at its end
+/// stays.
 ///
 /// A run pays for each degree at every step. T_n - T_(n-2) is at most 2 and vanishes at the end.
 fn lower_degree(stretch: &mut Stretch, scale: Scale, tolerance: f64) {

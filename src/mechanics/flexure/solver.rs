@@ -15,9 +15,10 @@ use super::equilibrium::{Point, Prescribed, System};
 const FEWEST_MODES: usize = 8;
 pub(super) const MOST_MODES: usize = 256;
 
-/// The work that a mechanism may take, as the sum over its states of the cubes of their functions: a thousand times that
-/// of the prototype, and an end within some twenty seconds of one core for the others (10 to 45 ns each, measured). It is lengths
-/// that differ a thousandfold that need it, such as one that was written in another unit.
+/// The work that a mechanism may take, as the sum over its states of the cubes of their functions: a thousand
+/// times that of the prototype, and an end within some twenty seconds of one core for the others (10 to 45 ns
+/// each, measured). It is lengths that differ a thousandfold that need it, such as one that was written in
+/// another unit.
 const MOST_WORK: usize = 500_000_000;
 
 /// Leaning is less than this many times the coefficient of the bow.
@@ -38,8 +39,9 @@ pub(super) struct Solver<'a> {
     pub preload: f64,
     /// Coefficient of the first buckling mode in the stress-free rotation of each group.
     pub bow: [f64; 2],
-    /// Coefficients below this part of the largest are left out. Force and energy are stationary in the rotation, so
-    /// their error is a tenth of the square of what is left out (measured in the wells and up the wall).
+    /// Coefficients below this part of the largest are left out. Force and energy are stationary in the
+    /// rotation, so their error is a tenth of the square of what is left out (measured in the wells and up
+    /// the wall).
     pub tail: f64,
     systems: BTreeMap<usize, System>,
     /// Number of states solved for.
@@ -64,8 +66,8 @@ impl<'a> Solver<'a> {
         Self { beams, preload, bow, tail, systems, solves: 0, most_modes: 0, work: 0, cancel }
     }
 
-    /// Gives up the tables, which are made again where they are needed; they are larger than all states together. Work
-    /// begins anew.
+    /// Gives up the tables, which are made again where they are needed; they are larger than all states
+    /// together. Work begins anew.
     pub fn forget(self) -> Solver<'static> {
         Solver { systems: BTreeMap::new(), work: 0, cancel: None, ..self }
     }
@@ -167,9 +169,9 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Where each bowed flexure bulges beside the side of its bow. On the way from x = 0 it does so where the bulge matters; up
-/// the wall it may lean to the other side by no more than its bow. Two other states bulge to the other side: a stable
-/// one outright, an unstable one.
+/// Where each bowed flexure bulges beside the side of its bow. On the way from x = 0 it does so where the
+/// bulge matters; up the wall it may lean to the other side by no more than its bow. Two other states bulge
+/// to the other side: a stable one outright, an unstable one.
 fn side(point: &Point, bow: &[f64; 2]) -> Side {
     let mut side = Side::Own;
     for g in (0..2).filter(|g| point.shapes[*g] == Shape::Bowed) {

@@ -15,7 +15,8 @@ pub struct Axis {
     pub label: String,
 }
 
-/// The ranges of a picture's axes, where they were asked for: of the one to the right and of the (first) one upward.
+/// The ranges of a picture's axes, where they were asked for: of the one to the right and of the (first) one
+/// upward.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ranges {
     /// To the right.
@@ -77,8 +78,8 @@ impl Axis {
         range.map_or(self, |(low, high)| Self::between(low, high, count, label))
     }
 
-    /// An axis of decimal logarithms that covers `values` (which are the numbers themselves, above 0) in whole decades,
-    /// with some `count` ticks at powers of ten.
+    /// An axis of decimal logarithms that covers `values` (which are the numbers themselves, above 0) in
+    /// whole decades, with some `count` ticks at powers of ten.
     pub fn decades(values: impl IntoIterator<Item = f64>, count: usize, label: &str) -> Self {
         let logs = values.into_iter().filter(|value| value.is_finite() && *value > 0.0).map(f64::log10);
         let (low, high) =

@@ -125,8 +125,8 @@ fn subtitle(landscape: &Landscape) -> String {
     parts.join(", ")
 }
 
-/// What the picture does not show, where the force leaves it: how large it becomes, and where. `scale` is that of the
-/// axis `up`.
+/// What the picture does not show, where the force leaves it: how large it becomes, and where. `scale` is
+/// that of the axis `up`.
 fn wall(x: &[f64], force: &[f64], up: &Axis, scale: f64) -> Option<String> {
     let beyond = |force: f64| force * scale < up.low || force * scale > up.high;
     let outside = x.iter().zip(force).filter(|(_, force)| force.is_finite() && beyond(**force));

@@ -115,8 +115,8 @@ pub struct Figure {
     pub shapes: Vec<Shape>,
     /// What of the canvas is painted.
     pub shown: Area,
-    /// Width and height in pixels; left out, one for each unit of the canvas. What is shown keeps its proportions and
-    /// stands in their middle.
+    /// Width and height in pixels; left out, one for each unit of the canvas. What is shown keeps its
+    /// proportions and stands in their middle.
     pub size: Option<(u32, u32)>,
 }
 

@@ -161,7 +161,8 @@ impl Frame {
         figure.line(&kept, width, ink, self.area);
     }
 
-    /// A line through data in any order: points nearer to the last kept one than a part of a pixel are left out.
+    /// A line through data in any order: points nearer to the last kept one than a part of a pixel are left
+    /// out.
     pub fn path(&self, figure: &mut Figure, data: impl Iterator<Item = Point>, width: f64, ink: Ink) {
         const NEAR: f64 = 0.35;
         let mut kept: Vec<Point> = Vec::new();

@@ -175,8 +175,8 @@ pub struct Caption {
 }
 
 impl Caption {
-    /// The caption of a picture of a document, made by this `version`: its title, where it came from and what arguments
-    /// changed.
+    /// The caption of a picture of a document, made by this `version`: its title, where it came from and what
+    /// arguments changed.
     pub fn new(document: &Document, version: &str) -> Self {
         let (scene, name) = (&document.scene, &document.name);
         let mut footer =

@@ -1,7 +1,7 @@
 //! Pictures: a table in, a PNG or an SVG out.
 //!
-//! A plot writes a [`Figure`], a list of plain shapes; [`Format::bytes`] paints it. Light or dark, the data and
-//! their places are the same, and the same data give the same bytes.
+//! A plot writes a [`Figure`], a list of plain shapes; [`Format::bytes`] paints it. Light or dark, the data
+//! and their places are the same, and the same data give the same bytes.
 
 mod accuracy;
 mod axis;

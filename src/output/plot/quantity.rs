@@ -23,7 +23,8 @@ pub(super) struct Quantity {
     pub velocity: bool,
 }
 
-/// The columns of `table` that can be shown, which are those of numbers and counts that are not swept, and the regime.
+/// The columns of `table` that can be shown, which are those of numbers and counts that are not swept, and
+/// the regime.
 pub fn quantities<'a>(table: &'a Table, grid: &'a Grid) -> impl Iterator<Item = &'a str> {
     let shown = |name: &str, values: &Values| !matches!(values, Values::Words(_)) || name == REGIME;
     let columns = table.columns().iter().filter(move |own| shown(&own.name, &own.values));
@@ -61,8 +62,8 @@ impl Quantity {
         Self { values, label, regimes: name == REGIME, velocity: name == RMS }
     }
 
-    /// Its axis: from 0, or from below where there are negative values, with `margin` of the range as room; the names of
-    /// the regimes where it has those.
+    /// Its axis: from 0, or from below where there are negative values, with `margin` of the range as room;
+    /// the names of the regimes where it has those.
     pub fn axis(&self, margin: f64, count: usize) -> Axis {
         if self.regimes {
             let ticks =

@@ -19,8 +19,8 @@ const GUTTER: f64 = 102.0;
 const PORTRAIT: Area = Area { left: 1150.0, top: 175.0, right: 1565.0, bottom: 600.0 };
 const PANELS: [(f64, f64); 3] = [(175.0, 425.0), (447.0, 657.0), (679.0, 869.0)];
 
-/// The picture of a run from its trace and its summary. The trace says which times it shows; `ranges` may give the axis of
-/// the displacement, in mm.
+/// The picture of a run from its trace and its summary. The trace says which times it shows; `ranges` may
+/// give the axis of the displacement, in mm.
 pub fn run_figure(
     trace: &Trace,
     summary: &Summary,

@@ -1,8 +1,8 @@
 //! Colours, widths and sizes of the pictures: all of them, and nothing else.
 //!
-//! Colours are those of Okabe and Ito (2008, "Color Universal Design"), one meaning each; what differs by colour also
-//! differs by shape, hatching or dashes. Sizes are in units of a canvas of 1600 by 1000, chosen so that
-//! the smallest text can still be read at half of it.
+//! Colours are those of Okabe and Ito (2008, "Color Universal Design"), one meaning each; what differs by
+//! colour also differs by shape, hatching or dashes. Sizes are in units of a canvas of 1600 by 1000, chosen
+//! so that the smallest text can still be read at half of it.
 
 /// A colour: red, green, blue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,7 +139,8 @@ impl Theme {
         self.wall.over(self.paper, 0.6)
     }
 
-    /// The colour of `share` from 0 to 1 for lines on the paper: a part of the map's scale that stands out from it.
+    /// The colour of `share` from 0 to 1 for lines on the paper: a part of the map's scale that stands out
+    /// from it.
     pub fn step(&self, share: f64) -> Ink {
         if self.ink.0 > self.paper.0 { viridis(0.3 + 0.7 * share) } else { viridis(0.85 * share) }
     }

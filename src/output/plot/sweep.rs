@@ -42,7 +42,8 @@ pub(super) const LEFT: f64 = 160.0;
 pub(super) const TOP: f64 = 185.0;
 pub(super) const BOTTOM: f64 = 868.0;
 
-/// Whether the column `quantity` of a sweep of this grid can be shown; `table` is that of its rows, which may be missing.
+/// Whether the column `quantity` of a sweep of this grid can be shown; `table` is that of its rows, which may
+/// be missing.
 pub fn can_show(grid: &Grid, quantity: &str, table: &Table) -> Result<(), NoPicture> {
     if !quantities(table, grid).any(|own| own == quantity) {
         let known = quantities(table, grid).collect::<Vec<_>>().join(", ");
@@ -76,7 +77,8 @@ pub struct SweepPicture<'a> {
 const FEW: usize = 6;
 const MANY: usize = 3;
 
-/// The picture of a sweep: over one field a line, over two a map, or a line for each value of a field that has few.
+/// The picture of a sweep: over one field a line, over two a map, or a line for each value of a field that
+/// has few.
 pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) -> Result<Figure, NoPicture> {
     let SweepPicture { rows, grid, scene, .. } = *picture;
     can_show(grid, picture.quantity, rows)?;
@@ -234,7 +236,8 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     frame.axes(figure, theme);
 }
 
-/// The most values without a quantity that have a line each; of more each has a tick at the lower edge, so long.
+/// The most values without a quantity that have a line each; of more each has a tick at the lower edge, so
+/// long.
 const MOST_LINES: usize = 20;
 const TICK: f64 = 18.0;
 

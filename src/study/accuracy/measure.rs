@@ -1,9 +1,10 @@
 //! How many digits can an answer have, and how many has it?
 //!
-//! The digits allowed follow from the problem, not from the result: an error bound is the sum, over the steps of a run,
-//! of what one step may do wrong ([`STEP_ERROR`]) times how much the answer reacts to it. The second factor is the
-//! problem's conditioning; each case derives it from the closed form or, where there is none, takes it from the
-//! reference: the answer's change under small relative changes of the data ([`Bench::sensitivity`]).
+//! The digits allowed follow from the problem, not from the result: an error bound is the sum, over the steps
+//! of a run, of what one step may do wrong ([`STEP_ERROR`]) times how much the answer reacts to it. The
+//! second factor is the problem's conditioning; each case derives it from the closed form or, where there is
+//! none, takes it from the reference: the answer's change under small relative changes of the data
+//! ([`Bench::sensitivity`]).
 
 use std::sync::atomic::Ordering;
 
@@ -13,21 +14,21 @@ use crate::dynamics::{Model, Outcome, Request, Run};
 use crate::scene::{Damping, Excitation, Start, Stops};
 use crate::study::Task;
 
-/// What one step may do to the state, relative to the scene's length and speed: four spacings of the doubles at 1.
-/// At the tolerance 1e-14 one is the series cut off (a fiftieth of the tolerance, 2e-16), one the rounding of the
-/// sums of displacement and velocity, two those of the force and its coefficients, which are data rounded once to the
-/// units of a run.
+/// What one step may do to the state, relative to the scene's length and speed: four spacings of the doubles
+/// at 1. At the tolerance 1e-14 one is the series cut off (a fiftieth of the tolerance, 2e-16), one the
+/// rounding of the sums of displacement and velocity, two those of the force and its coefficients, which are
+/// data rounded once to the units of a run.
 pub const STEP_ERROR: f64 = 4.0 * f64::EPSILON;
 
 /// Tolerance of runs in double-double arithmetic.
 pub const REFERENCE_TOLERANCE: f64 = 1e-27;
 
-/// Relative change of a datum from which a sensitivity is taken: small enough to be linear, large enough that the doubles
-/// in which a run reports tell the difference to seven digits.
+/// Relative change of a datum from which a sensitivity is taken: small enough to be linear, large enough that
+/// the doubles in which a run reports tell the difference to seven digits.
 pub(super) const CHANGE: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// The same for chaos, which has lost the greater change after twenty periods: four spacings of the doubles, so that the
-/// datum is changed by that to an eighth.
+/// The same for chaos, which has lost the greater change after twenty periods: four spacings of the doubles,
+/// so that the datum is changed by that to an eighth.
 pub(super) const SMALL_CHANGE: f64 = 1.0 / (1_u64 << 50) as f64;
 
 /// What was found of one quantity.
@@ -103,15 +104,16 @@ impl Variant {
         }
     }
 
-    /// A number's error and what is allowed; never less than two spacings of the doubles, in which the number is given.
+    /// A number's error and what is allowed; never less than two spacings of the doubles, in which the number
+    /// is given.
     pub(super) fn number(mut self, quantity: &'static str, error: f64, allowed: f64) -> Self {
         let allowed = allowed.max(2.0 * f64::EPSILON);
         self.checks.push((quantity, Check::Error { error, allowed }));
         self
     }
 
-    /// The worst, by the share of what is allowed, of pairs of error and allowed error; a failed fact where there are
-    /// none.
+    /// The worst, by the share of what is allowed, of pairs of error and allowed error; a failed fact where
+    /// there are none.
     pub(super) fn worst(self, quantity: &'static str, pairs: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let floor = 2.0 * f64::EPSILON;
         let shares = pairs.into_iter().map(|(error, allowed)| (error, allowed.max(floor)));
@@ -128,7 +130,8 @@ impl Variant {
         self
     }
 
-    /// The check with the smallest margin: one that fails, else the number nearest to what is allowed, else a fact.
+    /// The check with the smallest margin: one that fails, else the number nearest to what is allowed, else a
+    /// fact.
     pub fn tightest(&self) -> Option<(&'static str, Check)> {
         let share = |check: &Check| match *check {
             Check::Fact(false) => f64::INFINITY,
@@ -180,12 +183,14 @@ impl<'a> Bench<'a> {
         if cancelled || self.task.cancel.load(Ordering::Relaxed) { Err(Stopped::Cancelled) } else { Ok(run) }
     }
 
-    /// How much numbers of a run react to its data: for each number the sum, over the data, of |change of the number| per
-    /// relative change of the datum, by runs in double-double arithmetic with the datum changed by [`CHANGE`].
+    /// How much numbers of a run react to its data: for each number the sum, over the data, of |change of the
+    /// number| per relative change of the datum, by runs in double-double arithmetic with the datum changed
+    /// by [`CHANGE`].
     ///
-    /// The data are mass, start velocity, amplitude, damping and restitution, as far as the scene has them: a change of the
-    /// mass is one of every acceleration all along the run, one of the restitution of every rebound, so that errors made
-    /// on the way are covered and not only those of the start. `numbers` answers in a fixed order and number.
+    /// The data are mass, start velocity, amplitude, damping and restitution, as far as the scene has them: a
+    /// change of the mass is one of every acceleration all along the run, one of the restitution of every
+    /// rebound, so that errors made on the way are covered and not only those of the start. `numbers` answers
+    /// in a fixed order and number.
     pub fn sensitivity(
         &self,
         setup: &Setup,
@@ -214,9 +219,9 @@ impl<'a> Bench<'a> {
         Ok(sums)
     }
 
-    /// Errors that a run of this scene may have in numbers with these sensitivities: a [`STEP_ERROR`] of all data in
-    /// every step, of which there are `steps` in the run; a change of a datum acts once a time scale, so that shorter
-    /// steps count for more.
+    /// Errors that a run of this scene may have in numbers with these sensitivities: a [`STEP_ERROR`] of all
+    /// data in every step, of which there are `steps` in the run; a change of a datum acts once a time scale,
+    /// so that shorter steps count for more.
     pub fn allowed(model: &Model, steps: u64, sensitivities: &[f64]) -> Vec<f64> {
         let per_scale = steps as f64 * model.scales.time / model.duration;
         let error = STEP_ERROR * per_scale.max(1.0);

@@ -1,10 +1,10 @@
 //! How accurate are the runs, and what does accuracy cost?
 //!
-//! Of any scene: the error of its run, up to when its path is to be trusted, and what a fixed step would make of it
-//! ([`scene`]). Of the program, in two halves: [`PROBLEMS`]: work against precision on three problems, beside what people use instead
-//! ([`methods`]), error measured against the program's own integrator in double-double arithmetic. [`HARD_CASES`]:
-//! problems that break integrators of impacts, each with its answer ([`exact`] where there is a closed form) and the digits
-//! that its conditioning allows.
+//! Of any scene: the error of its run, up to when its path is to be trusted, and what a fixed step would make
+//! of it ([`scene`]). Of the program, in two halves: [`PROBLEMS`]: work against precision on three problems,
+//! beside what people use instead ([`methods`]), error measured against the program's own integrator in
+//! double-double arithmetic. [`HARD_CASES`]: problems that break integrators of impacts, each with its answer
+//! ([`exact`] where there is a closed form) and the digits that its conditioning allows.
 
 mod cases;
 pub mod exact;

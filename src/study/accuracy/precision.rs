@@ -27,7 +27,8 @@ pub(super) const PARTS: usize = 3 + Scheme::ALL.len();
 enum Error {
     /// Of the final displacement, over this length in m.
     FinalDisplacement(f64),
-    /// The worst of the times of the impacts above 1 cm/s, in forcing periods, and the relative error of the RMS velocity.
+    /// The worst of the times of the impacts above 1 cm/s, in forcing periods, and the relative error of the
+    /// RMS velocity.
     ImpactsAndRms,
 }
 
@@ -47,8 +48,9 @@ pub struct Problem {
     measure: Error,
 }
 
-const IMPACTS_AND_RMS: &str = "the worse of the times of the impacts above 1 cm/s, in forcing periods, each that of the nearest \
-                               impact of the run on the same stop, and the relative error of the RMS velocity";
+const IMPACTS_AND_RMS: &str = "the worse of the times of the impacts above 1 cm/s, in forcing periods, each \
+                               that of the nearest impact of the run on the same stop, and the relative \
+                               error of the RMS velocity";
 
 /// The three problems.
 pub const PROBLEMS: &[Problem] = &[
@@ -64,7 +66,8 @@ pub const PROBLEMS: &[Problem] = &[
     Problem {
         name: "p2",
         heading: "cubic well, stops (p2)",
-        problem: "nominal cubic well, stops at 4 mm, e = 0.36, 1.5 g at 3 Hz from rest, 10 s: 780 impacts, 60 rests",
+        problem: "nominal cubic well, stops at 4 mm, e = 0.36, 1.5 g at 3 Hz from rest, 10 s: 780 impacts, \
+                  60 rests",
         error: IMPACTS_AND_RMS,
         preset: "nominal-cubic",
         changes: &[],
@@ -73,7 +76,8 @@ pub const PROBLEMS: &[Problem] = &[
     Problem {
         name: "flexures",
         heading: "flexures, stops",
-        problem: "the prototype's flexures (preset paper), stops at 1.5 mm, e = 0.36, 1 g at 3 Hz from rest, 10 s",
+        problem: "the prototype's flexures (preset paper), stops at 1.5 mm, e = 0.36, 1 g at 3 Hz from rest, \
+                  10 s",
         error: IMPACTS_AND_RMS,
         preset: "paper",
         changes: &[],
@@ -122,7 +126,8 @@ impl Problem {
         Setup::preset(self.preset, self.changes)?.model()
     }
 
-    /// Tolerances 1e-3 to 1e-14 for the own method and Dormand-Prince, steps of 1/60 s down to 5 us for the others.
+    /// Tolerances 1e-3 to 1e-14 for the own method and Dormand-Prince, steps of 1/60 s down to 5 us for the
+    /// others.
     pub(super) fn measure(&self, task: &Task) -> Result<Vec<Point>, Stopped> {
         let model = self.model()?;
         let cancelled = || if task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(()) };
@@ -209,7 +214,8 @@ impl Problem {
     }
 }
 
-/// Time in s from an impact to the nearest of `impacts`, ascending in time, on the same stop; infinite without any.
+/// Time in s from an impact to the nearest of `impacts`, ascending in time, on the same stop; infinite
+/// without any.
 fn nearest(impacts: &[Event], impact: &Event) -> f64 {
     let after = impacts.partition_point(|own| own.t < impact.t);
     let same = |own: &&Event| own.side == impact.side;

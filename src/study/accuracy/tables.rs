@@ -12,8 +12,8 @@ const LEVELS: [(&str, f64); 4] =
 impl Report {
     /// Everything in one table, a row for each point and for each quantity of each variant of a case.
     ///
-    /// `part` is `work_precision` or `hard_case`; `error` and `allowed` are relative to what the problem or case
-    /// names; cells that a row has no use for are empty.
+    /// `part` is `work_precision` or `hard_case`; `error` and `allowed` are relative to what the problem or
+    /// case names; cells that a row has no use for are empty.
     pub fn table(&self) -> Table {
         let rows: Vec<Row> =
             self.points.iter().map(Row::of_point).chain(self.rows(|own| own.checks.clone())).collect();
@@ -49,8 +49,8 @@ impl Report {
             .with("cpu_s", numbers(&rows, |row| row.cpu))
     }
 
-    /// What each method pays at least for an error of 1e-3, 1e-6, 1e-9 and 1e-12, and the least error that it reached:
-    /// a row for each problem and method.
+    /// What each method pays at least for an error of 1e-3, 1e-6, 1e-9 and 1e-12, and the least error that it
+    /// reached: a row for each problem and method.
     pub fn cost_table(&self) -> Table {
         let mut groups: Vec<Group> = Vec::new();
         for point in &self.points {

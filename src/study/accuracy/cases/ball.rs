@@ -11,10 +11,11 @@ use crate::study::accuracy::scenes::{Setup, left_stop, polynomial};
 pub(super) const BOUNCING_BALL: HardCase = HardCase {
     name: "bouncing-ball",
     problem: "1 kg dropped from 1 m under 9.81 N on a stop with e = 0, 0.36, 0.9, 0.99, 0.999.",
-    answer: "First hit t1 = sqrt(2/g), the i-th at t1 (1 + 2 (e + .. + e^(i-1))) with the speed e^(i-1) sqrt(2 g), \
-             rest at t1 (1 + e)/(1 - e), the chatter's sum.",
-    conditioning: "Each rebound and each flight adds d: the i-th speed has i d. A flight's error is that of its speed, \
-                   so the sum of flights has sum i e^i/sum e^i d, at most d min(i, 1/(1 - e)), and one d of its own.",
+    answer: "First hit t1 = sqrt(2/g), the i-th at t1 (1 + 2 (e + .. + e^(i-1))) with the speed e^(i-1) \
+             sqrt(2 g), rest at t1 (1 + e)/(1 - e), the chatter's sum.",
+    conditioning: "Each rebound and each flight adds d: the i-th speed has i d. A flight's error is that of \
+                   its speed, so the sum of flights has sum i e^i/sum e^i d, at most d min(i, 1/(1 - e)), \
+                   and one d of its own.",
     find: bouncing_ball,
 };
 
@@ -67,12 +68,13 @@ fn bouncing_ball(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const BUDGET: HardCase = HardCase {
     name: "elastic-press",
-    problem: "e = 1, pressed on a stop with damping: 1 kg, 1 N, c = 1 N s/m, thrown up with 1e-5 m/s. The impacts die only \
-              as exp(-g t/3), g = c/m, and never end: the run ends by its budget of impacts.",
-    answer: "With z = g v/a a flight takes z to t - z, (1 + z)(1 - exp(-t)) = t, so 1/z grows by 2/3 + 4 z^2/135 \
-             + O(z^3) in each: after N impacts v = v0/(1 + (2/3) N z0).",
-    conditioning: "The neglected terms are at most N 4 z0^2/135 of a sum of 2 N/3 or more: 2 z0^2/45 relatively. Each flight adds \
-                   d to the speed, N d.",
+    problem: "e = 1, pressed on a stop with damping: 1 kg, 1 N, c = 1 N s/m, thrown up with 1e-5 m/s. The \
+              impacts die only as exp(-g t/3), g = c/m, and never end: the run ends by its budget of \
+              impacts.",
+    answer: "With z = g v/a a flight takes z to t - z, (1 + z)(1 - exp(-t)) = t, so 1/z grows by 2/3 + 4 \
+             z^2/135 + O(z^3) in each: after N impacts v = v0/(1 + (2/3) N z0).",
+    conditioning: "The neglected terms are at most N 4 z0^2/135 of a sum of 2 N/3 or more: 2 z0^2/45 \
+                   relatively. Each flight adds d to the speed, N d.",
     find: budget,
 };
 

@@ -12,11 +12,12 @@ use crate::study::accuracy::scenes::{Setup, polynomial, right_stop, sine};
 
 pub(super) const COMPLETE: HardCase = HardCase {
     name: "chatter-curved",
-    problem: "Thrown off the stop at 4 mm of the nominal cubic well with 0.1 m/s, damped (ratio 0.05) and shaken: the \
-              force changes along each flight; e = 0.36, 0.9, 0.99.",
-    answer: "The time of rest by the program in double-double arithmetic, which resolves some thousands of impacts more before \
-             it sums.",
-    conditioning: "Sensitivity of the time of rest to mass, speed, amplitude, damping and restitution, by the reference.",
+    problem: "Thrown off the stop at 4 mm of the nominal cubic well with 0.1 m/s, damped (ratio 0.05) and \
+              shaken: the force changes along each flight; e = 0.36, 0.9, 0.99.",
+    answer: "The time of rest by the program in double-double arithmetic, which resolves some thousands of \
+             impacts more before it sums.",
+    conditioning: "Sensitivity of the time of rest to mass, speed, amplitude, damping and restitution, by \
+                   the reference.",
     find: complete,
 };
 
@@ -41,10 +42,12 @@ fn complete(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const INCOMPLETE: HardCase = HardCase {
     name: "chatter-incomplete",
-    problem: "Pressed with 1 m/s^2 on a stop with e = 0.9 and shaken with 1.2 m/s^2 at 1 Hz, thrown off with 0.02 m/s: the \
-              press changes sign before the impacts accumulate, and the mass leaves in mid-chatter.",
+    problem: "Pressed with 1 m/s^2 on a stop with e = 0.9 and shaken with 1.2 m/s^2 at 1 Hz, thrown off with \
+              0.02 m/s: the press changes sign before the impacts accumulate, and the mass leaves in \
+              mid-chatter.",
     answer: "All impacts within the first second by the program in double-double arithmetic.",
-    conditioning: "Sensitivity of each impact's time to mass, speed, amplitude and restitution, by the reference.",
+    conditioning: "Sensitivity of each impact's time to mass, speed, amplitude and restitution, by the \
+                   reference.",
     find: incomplete,
 };
 
@@ -75,12 +78,13 @@ fn incomplete(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const ENDS_WITH_THE_PRESS: HardCase = HardCase {
     name: "chatter-at-release",
-    problem: "The same with e = 0.5, thrown off so that the chatter ends as the press changes sign: of two neighbouring \
-              doubles of the speed one comes to rest before, the other does not.",
-    answer: "Both leave the stop at the sign change t*, as a mass at rest there would: displacement in closed form, 0.3 s \
-             later.",
-    conditioning: "What is left at t* of the chatter is a speed of at most the difference of the two, v0 eps, and what i \
-                   rebounds add: (i + 2) d V, with V of the scene. In tau = 0.3 s it carries the mass V tau as far.",
+    problem: "The same with e = 0.5, thrown off so that the chatter ends as the press changes sign: of two \
+              neighbouring doubles of the speed one comes to rest before, the other does not.",
+    answer: "Both leave the stop at the sign change t*, as a mass at rest there would: displacement in \
+             closed form, 0.3 s later.",
+    conditioning: "What is left at t* of the chatter is a speed of at most the difference of the two, v0 \
+                   eps, and what i rebounds add: (i + 2) d V, with V of the scene. In tau = 0.3 s it carries \
+                   the mass V tau as far.",
     find: ends_with_the_press,
 };
 

@@ -12,12 +12,14 @@ use crate::study::accuracy::scenes::{Setup, polynomial, right_stop, rigid, sine,
 
 pub(super) const KINK: HardCase = HardCase {
     name: "kink",
-    problem: "A kink of the force crossed 1e4 times, undamped: the prototype's flexures, on an orbit over both wells and 0.8 mm \
-              beyond the kink on either side; and a corner of two straight lines (1 and 25 N/m).",
-    answer: "Energy is conserved, with the curve's own potential. On the corner the period is closed: half turns of two \
-             oscillators; the state after 5000 periods is that of the start.",
-    conditioning: "A step changes the energy by at most d (Fmax L + vmax V) =: q, n steps by n q. With s steps a period the state \
-                   after k periods is late by at most dT/dE s q k (k + 1)/2 + k s d L/V, and off by that times its speed.",
+    problem: "A kink of the force crossed 1e4 times, undamped: the prototype's flexures, on an orbit over \
+              both wells and 0.8 mm beyond the kink on either side; and a corner of two straight lines (1 \
+              and 25 N/m).",
+    answer: "Energy is conserved, with the curve's own potential. On the corner the period is closed: half \
+             turns of two oscillators; the state after 5000 periods is that of the start.",
+    conditioning: "A step changes the energy by at most d (Fmax L + vmax V) =: q, n steps by n q. With s \
+                   steps a period the state after k periods is late by at most dT/dE s q k (k + 1)/2 + k s d \
+                   L/V, and off by that times its speed.",
     find: kink,
 };
 
@@ -100,10 +102,10 @@ fn flexures(bench: &Bench) -> Result<Variant, Stopped> {
 
 pub(super) const STOP_ON_A_BREAK: HardCase = HardCase {
     name: "stop-on-break",
-    problem: "A stop exactly on the corner of a curve (1 N/m inside, 1e6 N/m outside), e = 0.5: thrown at it from the break itself, \
-              and pressed on it by a sine.",
-    answer: "The inner piece holds: after the impact x = r cos(t + p), r^2 = b^2 + (v/2)^2; pressed, it is let go where the sine \
-             has fallen to the inner force, cos(w t) = b.",
+    problem: "A stop exactly on the corner of a curve (1 N/m inside, 1e6 N/m outside), e = 0.5: thrown at it \
+              from the break itself, and pressed on it by a sine.",
+    answer: "The inner piece holds: after the impact x = r cos(t + p), r^2 = b^2 + (v/2)^2; pressed, it is \
+             let go where the sine has fallen to the inner force, cos(w t) = b.",
     conditioning: "n d in the state; a release at angle p to d/tan(p) over p.",
     find: stop_on_a_break,
 };
@@ -135,10 +137,10 @@ fn stop_on_a_break(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const STOP_AT_THE_EQUILIBRIUM: HardCase = HardCase {
     name: "stop-at-equilibrium",
-    problem: "Stops exactly at the wells of the unit double well: no force there. At rest on one, under a sine that begins to pull, one \
-              that begins to press, and none.",
-    answer: "Pulled: it leaves at once and never rests there first. Pressed: released as the sine changes sign, at 0.5 s. None: it \
-             stays.",
+    problem: "Stops exactly at the wells of the unit double well: no force there. At rest on one, under a \
+              sine that begins to pull, one that begins to press, and none.",
+    answer: "Pulled: it leaves at once and never rests there first. Pressed: released as the sine changes \
+             sign, at 0.5 s. None: it stays.",
     conditioning: "The sign change of a sine of slope w A is known to d/(2 pi) of a period.",
     find: stop_at_the_equilibrium,
 };
@@ -165,8 +167,8 @@ fn stop_at_the_equilibrium(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const STOP_AT_THE_FORCE_MAXIMUM: HardCase = HardCase {
     name: "stop-at-force-maximum",
-    problem: "Stops at the force maximum of the nominal cubic well, 7/sqrt 3 mm, 1.6 g at 3 Hz, e = 0.36, 2 s: the slope of the press \
-              vanishes there, and its curvature shapes the small flights.",
+    problem: "Stops at the force maximum of the nominal cubic well, 7/sqrt 3 mm, 1.6 g at 3 Hz, e = 0.36, 2 \
+              s: the slope of the press vanishes there, and its curvature shapes the small flights.",
     answer: "All impacts above 1 cm/s by the program in double-double arithmetic.",
     conditioning: "Sensitivity of each impact's time to all data, by the reference.",
     find: stop_at_the_force_maximum,
@@ -208,9 +210,10 @@ fn stop_at_the_force_maximum(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const BOTH_STOPS_ON_ONE_SIDE: HardCase = HardCase {
     name: "stops-on-one-side",
-    problem: "F = (x - 2)^3 - (x - 2), wells at 1 and 3 m, stops at -0.3 and 0.5 m: both left of everything. Thrown from 0.5 m with \
-              -1 m/s, e = 0.8, damped.",
-    answer: "The impacts above 1 cm/s by the program in double-double arithmetic; it ends at rest on the right stop.",
+    problem: "F = (x - 2)^3 - (x - 2), wells at 1 and 3 m, stops at -0.3 and 0.5 m: both left of everything. \
+              Thrown from 0.5 m with -1 m/s, e = 0.8, damped.",
+    answer: "The impacts above 1 cm/s by the program in double-double arithmetic; it ends at rest on the \
+             right stop.",
     conditioning: "Sensitivity of each impact's time to all data, by the reference.",
     find: both_stops_on_one_side,
 };

@@ -12,8 +12,8 @@ use crate::study::accuracy::measure::{Bench, STEP_ERROR, Variant, off};
 use crate::study::accuracy::scenes::{Setup, polynomial, sine};
 
 /// Of all cases here: no eigenvalue of a damped oscillator grows, so errors only add.
-const LINEAR: &str = "A linear oscillator carries an error on without growth: n steps add n d; the phase of the drive at a \
-                      time t is a product of two doubles, 2 pi f t eps.";
+const LINEAR: &str = "A linear oscillator carries an error on without growth: n steps add n d; the phase of \
+                      the drive at a time t is a product of two doubles, 2 pi f t eps.";
 
 const MASS: f64 = 0.02;
 const STIFFNESS: f64 = 50.0;
@@ -86,7 +86,8 @@ pub(super) const RIPPLE: HardCase = HardCase {
 
 pub(super) const RAMP: HardCase = HardCase {
     name: "long-ramp",
-    problem: "An amplitude that grows from 0 to 2 g over 300 s at 3 Hz, and holds for 10 s more, on an oscillator of 7.96 Hz.",
+    problem: "An amplitude that grows from 0 to 2 g over 300 s at 3 Hz, and holds for 10 s more, on an \
+              oscillator of 7.96 Hz.",
     answer: "Closed form of the ramp and of what follows, joined at its end.",
     conditioning: LINEAR,
     find: ramp,
@@ -121,8 +122,8 @@ fn ramp(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const FAST: HardCase = HardCase {
     name: "fast-drive",
-    problem: "x'' + x = -A sin(w t), w = 1e4 and A = 1e4 m/s^2, from rest at 0: a drive at 1e4 times the natural frequency, 16 000 \
-              cycles.",
+    problem: "x'' + x = -A sin(w t), w = 1e4 and A = 1e4 m/s^2, from rest at 0: a drive at 1e4 times the \
+              natural frequency, 16 000 cycles.",
     answer: "Closed form.",
     conditioning: LINEAR,
     find: |bench| {
@@ -145,7 +146,8 @@ pub(super) const NOISE: HardCase = HardCase {
 
 pub(super) const SHOCK: HardCase = HardCase {
     name: "shock",
-    problem: "A triangular pulse of 50 g over 2 ms and nothing else, recorded, on an oscillator of 7.96 Hz, 1 s.",
+    problem: "A triangular pulse of 50 g over 2 ms and nothing else, recorded, on an oscillator of 7.96 Hz, \
+              1 s.",
     answer: "Closed form of a linear acceleration, joined from line to line.",
     conditioning: LINEAR,
     find: |bench| {
@@ -157,12 +159,13 @@ pub(super) const SHOCK: HardCase = HardCase {
 
 pub(super) const RECORD: HardCase = HardCase {
     name: "record",
-    problem: "A recorded acceleration of 1000 samples, 5 ms apart, which jump by up to 1 g from one to the next, on an oscillator of \
-              7.96 Hz, 5 s.",
+    problem: "A recorded acceleration of 1000 samples, 5 ms apart, which jump by up to 1 g from one to the \
+              next, on an oscillator of 7.96 Hz, 5 s.",
     answer: "Closed form of a linear acceleration, joined from line to line.",
     conditioning: LINEAR,
     find: |bench| {
-        // the fractional parts of multiples of the golden ratio: as uneven as random numbers, the same everywhere
+        // the fractional parts of multiples of the golden ratio: as uneven as random numbers, the same
+        // everywhere
         let jump = |i: u32| (f64::from(i) * 0.618_033_988_749_894_9).fract() - 0.5;
         let times = (0..1000_u32).map(|i| f64::from(i) * 0.005).collect();
         let accelerations = (0..1000_u32).map(|i| STANDARD_GRAVITY * jump(i)).collect();

@@ -12,9 +12,9 @@ pub(super) const ELASTIC_BOX: HardCase = HardCase {
     name: "elastic-box",
     problem: "A free mass between perfect stops at +-10 mm with 0.05 m/s: 1e6 impacts.",
     answer: "The i-th impact, from 0, at (2 i + 1) D/v; the speed never changes.",
-    conditioning: "All flights are one division D/v, so all have the same relative error, at most d; the clock is as \
-                   fine late as early and adds half a spacing of its own: d + eps. The speed is never computed anew: it \
-                   must be equal bit for bit.",
+    conditioning: "All flights are one division D/v, so all have the same relative error, at most d; the \
+                   clock is as fine late as early and adds half a spacing of its own: d + eps. The speed is \
+                   never computed anew: it must be equal bit for bit.",
     find: elastic_box,
 };
 
@@ -39,12 +39,14 @@ fn elastic_box(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const CHAOS: HardCase = HardCase {
     name: "chaos",
-    problem: "The forced double well in chaos (preset duffing-chaos): 5 to 30 periods in digits, 1000 in averages.",
-    answer: "The state by the program in double-double arithmetic. Exactly, for any length: the base's work is what damping \
-             takes plus what is stored. RMS velocity from two starts, 900 periods each.",
-    conditioning: "The state's sensitivity to its data, by the reference: it grows as exp(lambda t). For averages none is \
-                   needed: a bounded motion's balance closes to n d of the energy moved, and two estimates of a mean \
-                   agree to 4 standard errors, taken from 30 batches of 30 periods each.",
+    problem: "The forced double well in chaos (preset duffing-chaos): 5 to 30 periods in digits, 1000 in \
+              averages.",
+    answer: "The state by the program in double-double arithmetic. Exactly, for any length: the base's work \
+             is what damping takes plus what is stored. RMS velocity from two starts, 900 periods each.",
+    conditioning: "The state's sensitivity to its data, by the reference: it grows as exp(lambda t). For \
+                   averages none is needed: a bounded motion's balance closes to n d of the energy moved, \
+                   and two estimates of a mean agree to 4 standard errors, taken from 30 batches of 30 \
+                   periods each.",
     find: chaos,
 };
 

@@ -12,11 +12,12 @@ use crate::study::accuracy::scenes::{Setup, constant, polynomial, right_stop, si
 
 pub(super) const THRESHOLD: HardCase = HardCase {
     name: "release-threshold",
-    problem: "Pressed on a stop at 4 mm of the nominal cubic well, shaken at 3 Hz with the release amplitude |F(D)|/m times \
-              1 +- 1e-6 and 1 +- 1e-10.",
-    answer: "Above: released at asin(s)/(2 pi f), s the ratio of |F(D)|/m to the amplitude, from the very doubles of the \
-             scene. Below: never.",
-    conditioning: "An error of d in press or amplitude moves the angle by d tan(angle), relatively d tan(angle)/angle.",
+    problem: "Pressed on a stop at 4 mm of the nominal cubic well, shaken at 3 Hz with the release amplitude \
+              |F(D)|/m times 1 +- 1e-6 and 1 +- 1e-10.",
+    answer: "Above: released at asin(s)/(2 pi f), s the ratio of |F(D)|/m to the amplitude, from the very \
+             doubles of the scene. Below: never.",
+    conditioning: "An error of d in press or amplitude moves the angle by d tan(angle), relatively d \
+                   tan(angle)/angle.",
     find: threshold,
 };
 
@@ -54,8 +55,8 @@ fn threshold(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const ZERO_SLOPE: HardCase = HardCase {
     name: "release-zero-slope",
-    problem: "Pressed with exactly 1 m/s^2 and shaken with exactly 1 m/s^2: the press touches 0 in each crest without \
-              changing sign; by a sine and by a constant with a sine.",
+    problem: "Pressed with exactly 1 m/s^2 and shaken with exactly 1 m/s^2: the press touches 0 in each \
+              crest without changing sign; by a sine and by a constant with a sine.",
     answer: "It stays at rest for all 20 periods: a touch is no release.",
     conditioning: "A fact: press and crest are the same double.",
     find: zero_slope,
@@ -82,10 +83,12 @@ fn zero_slope(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const BIAS: HardCase = HardCase {
     name: "bias-at-threshold",
-    problem: "On a stop with a constant base acceleration of exactly |F(D)|/m: nothing presses and nothing pulls; and with the \
-              next double on either side, for 1 s.",
-    answer: "It stays where it is; pressed by a spacing of the doubles u it rests; pulled by u it goes -u t^2/2.",
-    conditioning: "Facts, and a displacement of 1e-16 m, which D = 1 m rounds to a spacing of the doubles: 2 eps.",
+    problem: "On a stop with a constant base acceleration of exactly |F(D)|/m: nothing presses and nothing \
+              pulls; and with the next double on either side, for 1 s.",
+    answer: "It stays where it is; pressed by a spacing of the doubles u it rests; pulled by u it goes -u \
+             t^2/2.",
+    conditioning: "Facts, and a displacement of 1e-16 m, which D = 1 m rounds to a spacing of the doubles: 2 \
+                   eps.",
     find: bias,
 };
 
@@ -114,12 +117,12 @@ fn bias(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const PLASTIC: HardCase = HardCase {
     name: "plastic-sine",
-    problem: "Pressed with 1 m/s^2 on a plastic stop (e = 0) and shaken with 1.8 m/s^2 at 1 Hz for 10 periods: released, \
-              flies, lands, rests, is released again.",
-    answer: "Release at asin(1/1.8)/(2 pi) and whole periods later; the flight in closed form and its landing by bisection, \
-             in double-double arithmetic.",
-    conditioning: "A release is known to d tan(angle); in flight each of s steps adds d L, and the landing at speed u is off \
-                   by that over u. Nothing is carried over a rest.",
+    problem: "Pressed with 1 m/s^2 on a plastic stop (e = 0) and shaken with 1.8 m/s^2 at 1 Hz for 10 \
+              periods: released, flies, lands, rests, is released again.",
+    answer: "Release at asin(1/1.8)/(2 pi) and whole periods later; the flight in closed form and its \
+             landing by bisection, in double-double arithmetic.",
+    conditioning: "A release is known to d tan(angle); in flight each of s steps adds d L, and the landing \
+                   at speed u is off by that over u. Nothing is carried over a rest.",
     find: plastic,
 };
 

@@ -9,11 +9,12 @@ use crate::study::accuracy::scenes::{Setup, rigid};
 
 pub(super) const UNITS: HardCase = HardCase {
     name: "units",
-    problem: "A chattering second of the nominal cubic well (stops at 4 mm, e = 0.36, 1.5 g at 3 Hz) with mass, stiffness, \
-              length and time in units of 1e-9 to 1e9.",
-    answer: "The same dimensionless answer: times of the impacts, in periods, as of the scene in SI units by the program in \
-             double-double arithmetic.",
-    conditioning: "Sensitivity of each impact's time to all data, by the reference; a scaled datum is rounded once more.",
+    problem: "A chattering second of the nominal cubic well (stops at 4 mm, e = 0.36, 1.5 g at 3 Hz) with \
+              mass, stiffness, length and time in units of 1e-9 to 1e9.",
+    answer: "The same dimensionless answer: times of the impacts, in periods, as of the scene in SI units by \
+             the program in double-double arithmetic.",
+    conditioning: "Sensitivity of each impact's time to all data, by the reference; a scaled datum is \
+                   rounded once more.",
     find: units,
 };
 

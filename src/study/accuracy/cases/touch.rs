@@ -13,20 +13,21 @@ use crate::study::accuracy::scenes::{Setup, polynomial, right_stop, rigid, sine}
 
 pub(super) const GRAZING: HardCase = HardCase {
     name: "grazing",
-    problem: "x = sin t (1 kg, 1 N/m, from 0 with 1 m/s) and an elastic stop exactly at its crest, 1e-12 m beyond it, 1e-12 m \
-              before it.",
-    answer: "Beyond: no impact, x(3) = sin 3. Before, by h: impact at asin(1 - h) with u = sqrt(2 h - h^2), then the phase goes on \
-             mirrored. Exactly: at most one impact, of a speed that rounding gives.",
-    conditioning: "n d in the state. At the stop an error of n d in the energy is one of n d/u in the speed: relatively n d/u^2, \
-                   which for 1e-12 m leaves three digits; its effect on what follows is 2 n d/u. A graze exactly at the \
-                   stop has u = sqrt(2 n d) at most, and turns the phase by up to twice that.",
+    problem: "x = sin t (1 kg, 1 N/m, from 0 with 1 m/s) and an elastic stop exactly at its crest, 1e-12 m \
+              beyond it, 1e-12 m before it.",
+    answer: "Beyond: no impact, x(3) = sin 3. Before, by h: impact at asin(1 - h) with u = sqrt(2 h - h^2), \
+             then the phase goes on mirrored. Exactly: at most one impact, of a speed that rounding gives.",
+    conditioning: "n d in the state. At the stop an error of n d in the energy is one of n d/u in the speed: \
+                   relatively n d/u^2, which for 1e-12 m leaves three digits; its effect on what follows is \
+                   2 n d/u. A graze exactly at the stop has u = sqrt(2 n d) at most, and turns the phase by \
+                   up to twice that.",
     find: grazing,
 };
 
 pub(super) const EXCURSION: HardCase = HardCase {
     name: "excursion",
-    problem: "The same with the stop 1e-10 m before the crest: out and back takes 28 us, a hundred-thousandth of a step, and \
-              both ends of the step lie inside.",
+    problem: "The same with the stop 1e-10 m before the crest: out and back takes 28 us, a \
+              hundred-thousandth of a step, and both ends of the step lie inside.",
     answer: "One impact at asin(1 - h) with u = sqrt(2 h - h^2).",
     conditioning: "As for grazing: n d/u^2 in the speed, n d/u in the time.",
     find: excursion,
@@ -83,8 +84,8 @@ fn crest(bench: &Bench, name: &'static str, stop: f64) -> Result<Variant, Stoppe
 
 pub(super) const GAP: HardCase = HardCase {
     name: "narrow-gap",
-    problem: "A free mass with 1 m/s between elastic stops 2 um apart: 5000 impacts in 10 ms, on opposite stops, many within \
-              what would be one step.",
+    problem: "A free mass with 1 m/s between elastic stops 2 um apart: 5000 impacts in 10 ms, on opposite \
+              stops, many within what would be one step.",
     answer: "The i-th impact, from 0, at (2 i + 1) D/v, right and left in turn.",
     conditioning: "As for the elastic box: d + eps.",
     find: gap,
@@ -110,12 +111,14 @@ fn gap(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 pub(super) const COINCIDENT: HardCase = HardCase {
     name: "impact-at-release",
-    problem: "Pressed with 1 m/s^2 against a plastic stop and shaken with 1.2 m/s^2 at 1 Hz, thrown so that it lands at the very \
-              instant t* at which the press changes sign; and with the speeds 8 spacings of the doubles on either side.",
-    answer: "Landed before, it rests for an instant and is released; after, it leaves at once: either way it starts from rest at t*, \
-             then in closed form, 0.3 s.",
-    conditioning: "The landing is off t* by 8 eps of the flight and n d L over its speed, e. A rest or a flight in that time changes the \
-                   start by a e^2, a the press's change: nothing; n d is left.",
+    problem: "Pressed with 1 m/s^2 against a plastic stop and shaken with 1.2 m/s^2 at 1 Hz, thrown so that \
+              it lands at the very instant t* at which the press changes sign; and with the speeds 8 \
+              spacings of the doubles on either side.",
+    answer: "Landed before, it rests for an instant and is released; after, it leaves at once: either way it \
+             starts from rest at t*, then in closed form, 0.3 s.",
+    conditioning: "The landing is off t* by 8 eps of the flight and n d L over its speed, e. A rest or a \
+                   flight in that time changes the start by a e^2, a the press's change: nothing; n d is \
+                   left.",
     find: coincident,
 };
 

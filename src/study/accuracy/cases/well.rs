@@ -11,13 +11,13 @@ use crate::study::accuracy::scenes::{Setup, unit_well};
 
 pub(super) const SEPARATRIX: HardCase = HardCase {
     name: "separatrix",
-    problem: "Unit double well (1 kg, F = x^3 - x), undamped, released at rest at sqrt 2 less and plus 1e-3 to 1e-12 m, \
-              for 100 periods: each turn dwells at the barrier top, the longer the nearer.",
+    problem: "Unit double well (1 kg, F = x^3 - x), undamped, released at rest at sqrt 2 less and plus 1e-3 \
+              to 1e-12 m, for 100 periods: each turn dwells at the barrier top, the longer the nearer.",
     answer: "The period by elliptic integrals; energy is conserved.",
-    conditioning: "A step changes the energy by at most d (Fmax L + vmax V) =: q, so after n steps the energy is off by \
-                   n q. Beside the separatrix dT/dE grows as 1/E: with s steps a period the k-th return is late by \
-                   at most dT/dE s q k (k + 1)/2 + k s d L/V. Where that leaves less than a digit of a period, only the \
-                   energy is asked for.",
+    conditioning: "A step changes the energy by at most d (Fmax L + vmax V) =: q, so after n steps the \
+                   energy is off by n q. Beside the separatrix dT/dE grows as 1/E: with s steps a period the \
+                   k-th return is late by at most dT/dE s q k (k + 1)/2 + k s d L/V. Where that leaves less \
+                   than a digit of a period, only the energy is asked for.",
     find: separatrix,
 };
 
@@ -58,7 +58,8 @@ fn beside(bench: &Bench, name: &'static str, distance: f64) -> Result<Variant, S
         let each = steps / PERIODS;
         let allowed = orbit.period_slope() * each * energy_step * k * (k + 1.0) / 2.0
             + k * each * STEP_ERROR * scales.time;
-        // it is at rest there, so that its velocity tells how late it is; a phase that is lost has none to tell
+        // it is at rest there, so that its velocity tells how late it is; a phase that is lost has none to
+        // tell
         let late = (sample.v / orbit.force()).abs();
         if allowed < 0.1 * period {
             let far = off(sample.x, orbit.x0, 1.0) > 0.1;

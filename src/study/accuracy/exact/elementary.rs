@@ -5,7 +5,8 @@ use crate::numeric::{DoubleDouble, Scalar};
 
 /// e^x, to some 29 digits, for |x| below 700.
 ///
-/// Reduced by ln 2 and halved eight times, then Taylor's series and eight squarings, which cost some two digits.
+/// Reduced by ln 2 and halved eight times, then Taylor's series and eight squarings, which cost some two
+/// digits.
 pub fn exp(x: DoubleDouble) -> DoubleDouble {
     let ln_2 = dd(std::f64::consts::LN_2) + dd(2.319_046_813_846_299_6e-17);
     let halvings = (x / ln_2 + dd(0.5)).floor().to_f64();
@@ -33,8 +34,8 @@ pub(super) fn turns(turns: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     DoubleDouble::sin_cos_turns(turns - turns.floor())
 }
 
-/// The angle in turns, 0 to 1/4, whose sine is `sine`, 0 to 1. Newton's method from the double: near a quarter turn
-/// the angle has half the digits of the sine.
+/// The angle in turns, 0 to 1/4, whose sine is `sine`, 0 to 1. Newton's method from the double: near a
+/// quarter turn the angle has half the digits of the sine.
 pub fn sine_turns(sine: DoubleDouble) -> DoubleDouble {
     let one = dd(1.0);
     let cosine = ((one - sine) * (one + sine)).sqrt();

@@ -16,7 +16,8 @@ pub struct Oscillator {
 /// A base acceleration with a closed form. SI; time is that of the run.
 #[derive(Debug, Clone, Copy)]
 pub enum Forcing {
-    /// (amplitude + growth t) sin(2 pi (frequency t + phase)); growth in m/s^3, frequency in Hz, phase in turns.
+    /// (amplitude + growth t) sin(2 pi (frequency t + phase)); growth in m/s^3, frequency in Hz, phase in
+    /// turns.
     Tone {
         /// Amplitude at time 0 in m/s^2.
         amplitude: f64,
@@ -73,8 +74,8 @@ impl Oscillator {
 
     /// The solution under one forcing that has no free part, at time `t` of the run.
     ///
-    /// Under (a + r t) sin(w t + phase) it is the imaginary part of (P + Q t) exp(i (w t + phase)), with Q L = -r,
-    /// P L + Q L' = -a, L = k - w^2 + i g w, L' = g + 2 i w.
+    /// Under (a + r t) sin(w t + phase) it is the imaginary part of (P + Q t) exp(i (w t + phase)), with Q L
+    /// = -r, P L + Q L' = -a, L = k - w^2 + i g w, L' = g + 2 i w.
     pub fn driven(&self, forcing: &Forcing, t: DoubleDouble) -> State {
         match *forcing {
             Forcing::Line { value, slope } => {

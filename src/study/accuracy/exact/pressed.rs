@@ -1,5 +1,5 @@
-//! A mass that a constant force presses on a stop while a sine shakes it: flights, releases and landings in closed
-//! form.
+//! A mass that a constant force presses on a stop while a sine shakes it: flights, releases and landings in
+//! closed form.
 
 use super::dd;
 use super::elementary::{sine_turns, turns};
@@ -39,8 +39,8 @@ impl Pressed {
         (gap, rate)
     }
 
-    /// When a flight from rest on the stop at `from` lands again: the first root of the gap, bracketed on a grid of
-    /// 1/4096 of the period and bisected to all digits; none within four periods.
+    /// When a flight from rest on the stop at `from` lands again: the first root of the gap, bracketed on a
+    /// grid of 1/4096 of the period and bisected to all digits; none within four periods.
     pub fn landing(&self, from: DoubleDouble) -> Option<DoubleDouble> {
         let start = (DoubleDouble::zero(), DoubleDouble::zero());
         let step = dd(1.0) / dd(4096.0 * self.frequency);

@@ -1,9 +1,10 @@
 //! An adaptive Runge-Kutta method with located events, as general solvers offer it.
 //!
-//! Dormand and Prince 1980, "A family of embedded Runge-Kutta formulae", order 5(4), with the continuous extension
-//! of order 4 of Hairer, Norsett and Wanner 1993 (Solving ordinary differential equations I, II.6) and their step
-//! control. Contact is looked for as general solvers do, by the sign of the gap at the end of a step, and its root on the
-//! continuous extension is bisected to rounding: an excursion inside a step is not seen.
+//! Dormand and Prince 1980, "A family of embedded Runge-Kutta formulae", order 5(4), with the continuous
+//! extension of order 4 of Hairer, Norsett and Wanner 1993 (Solving ordinary differential equations I, II.6)
+//! and their step control. Contact is looked for as general solvers do, by the sign of the gap at the end of
+//! a step, and its root on the continuous extension is bisected to rounding: an excursion inside a step is
+//! not seen.
 
 use super::problem::Problem;
 use super::tally::{State, Tally};
@@ -12,8 +13,8 @@ use crate::dynamics::{Model, Phase, Side};
 use crate::numeric::bisect;
 use crate::system::clock::ThreadClock;
 
-/// A pressed rebound slower than this share of the scene's speed is a rest: what a user of such a solver writes, who
-/// has no sum of a chatter.
+/// A pressed rebound slower than this share of the scene's speed is a rest: what a user of such a solver
+/// writes, who has no sum of a chatter.
 const REST_SPEED: f64 = 1e-6;
 
 /// Attempts of one run, refused ones too.
@@ -95,7 +96,8 @@ impl Step {
         [0, 1].map(|i| a[i] + s * (b[i] + r * (c[i] + s * (d[i] + r * e[i]))))
     }
 
-    /// The integral of v^2 over the first `share` of the step: Gauss's rule of four points on the continuous extension.
+    /// The integral of v^2 over the first `share` of the step: Gauss's rule of four points on the continuous
+    /// extension.
     fn squares(&self, share: f64) -> f64 {
         const POINTS: [(f64, f64); 2] = [
             (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
@@ -106,8 +108,8 @@ impl Step {
         0.5 * share * self.h * sum
     }
 
-    /// The share at which the gap to a stop closes, where it is closed at the end. `open` where the step began on that
-    /// very stop: the gap opens first.
+    /// The share at which the gap to a stop closes, where it is closed at the end. `open` where the step
+    /// began on that very stop: the gap opens first.
     fn contact(&self, stop: f64, sign: f64, begins_on: bool) -> Option<f64> {
         let gap = |s: f64| sign * (stop - self.at(s)[0]);
         if sign * (stop - self.end[0]) >= 0.0 {
@@ -130,9 +132,10 @@ impl Step {
 
 /// Runs `model` with the local error `tolerance` allowed relative to the scene's length and speed.
 ///
-/// Samples lie on straight lines between steps, as those of [`fixed_step`](super::fixed_step). A pressed rebound
-/// slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths of the forcing period (or of
-/// the duration) and bisection. Ends early where the force curve ends, and after 2e7 attempts.
+/// Samples lie on straight lines between steps, as those of [`fixed_step`](super::fixed_step). A pressed
+/// rebound slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths of the
+/// forcing period (or of the duration) and bisection. Ends early where the force curve ends, and after 2e7
+/// attempts.
 pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
     let watch = ThreadClock::start();
     let problem = Problem::new(model);

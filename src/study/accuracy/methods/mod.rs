@@ -1,8 +1,9 @@
 //! What do people use instead? Four common methods, on any scene, for comparison with the program's own.
 //!
-//! Built for that alone: no run of the program takes them. Fixed steps *clamp and bounce*, as in games and small
-//! teaching applets: a step that ends beyond a stop is put onto it and its velocity reversed. Contact is then seen up
-//! to a step late, so that the times of impacts are first order in the step whatever the scheme.
+//! Built for that alone: no run of the program takes them. Fixed steps *clamp and bounce*, as in games and
+//! small teaching applets: a step that ends beyond a stop is put onto it and its velocity reversed. Contact
+//! is then seen up to a step late, so that the times of impacts are first order in the step whatever the
+//! scheme.
 
 mod dormand_prince;
 mod fixed;
@@ -66,8 +67,9 @@ pub struct Statistics {
     pub final_x: f64,
     /// Velocity at the end in m/s.
     pub final_v: f64,
-    /// RMS velocity from the begin of the settled window to the end in m/s, by trapezoids over fixed steps and by Gauss's
-    /// rule over the continuous extension of adaptive ones; none where the run ended before it.
+    /// RMS velocity from the begin of the settled window to the end in m/s, by trapezoids over fixed steps
+    /// and by Gauss's rule over the continuous extension of adaptive ones; none where the run ended before
+    /// it.
     pub rms_velocity: Option<f64>,
     /// Largest |x| in that window in m.
     pub max_abs_x: f64,
@@ -81,8 +83,8 @@ pub struct Statistics {
     pub evaluations: u64,
     /// CPU time in s.
     pub cpu_s: f64,
-    /// Time in s at which the run ended early (it left the force curve, a number was not finite, it was told to stop);
-    /// none where it did not.
+    /// Time in s at which the run ended early (it left the force curve, a number was not finite, it was told
+    /// to stop); none where it did not.
     pub ended_at: Option<f64>,
 }
 

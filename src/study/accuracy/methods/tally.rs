@@ -37,7 +37,8 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Takes in a step from `a` to `b`; `phase` is what the mass did in it, `squares` the integral of v^2 over it.
+    /// Takes in a step from `a` to `b`; `phase` is what the mass did in it, `squares` the integral of v^2
+    /// over it.
     pub fn step(&mut self, problem: &Problem, a: State, b: State, phase: Phase, squares: f64) {
         let h = b.t - a.t;
         while let Some(t) = self.keep.sample_times.get(self.next).copied().filter(|t| *t < b.t) {

@@ -5,12 +5,12 @@ use crate::dynamics::{Event, EventKind, Model};
 /// Impacts slower than this share of the scene's speed are no arrivals: what a chatter or a hop makes.
 const SLOWEST: f64 = 0.01;
 
-/// An impact on the same stop as the one before is an arrival where it is so much faster than that one's rebound: the drive
-/// or the mechanism has pushed, and it is not the fall back of a chatter.
+/// An impact on the same stop as the one before is an arrival where it is so much faster than that one's
+/// rebound: the drive or the mechanism has pushed, and it is not the fall back of a chatter.
 const FASTER: f64 = 1.2;
 
-/// An impact of the other run is the same arrival where it is at least so fast in comparison: hops of a mass that should
-/// rest are slower.
+/// An impact of the other run is the same arrival where it is at least so fast in comparison: hops of a mass
+/// that should rest are slower.
 const LEAST_SPEED: f64 = 0.5;
 
 /// How late arrivals are, in s; early ones are below 0.
@@ -37,12 +37,12 @@ impl Lateness {
     }
 }
 
-/// How late the arrivals among the impacts of `exact` are in the run whose impacts are `own`, both in order of time; none
-/// without an arrival that is in both.
+/// How late the arrivals among the impacts of `exact` are in the run whose impacts are `own`, both in order
+/// of time; none without an arrival that is in both.
 ///
-/// An arrival is the first impact after a flight across or after a push, not the rebounds that follow it. It is looked for
-/// among the impacts of the other run on the same stop, within half the time to its neighbours. Where one is not
-/// found the other run has taken another course, and what follows is not compared.
+/// An arrival is the first impact after a flight across or after a push, not the rebounds that follow it. It
+/// is looked for among the impacts of the other run on the same stop, within half the time to its neighbours.
+/// Where one is not found the other run has taken another course, and what follows is not compared.
 pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<Lateness> {
     let arrivals = arrivals(exact, SLOWEST * model.scales.speed);
     let mut late: Vec<f64> = Vec::new();
@@ -61,8 +61,8 @@ pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<
     Some(Lateness { median, earliest, latest, matched: late.len(), early, of: arrivals.len() })
 }
 
-/// How many impacts of a run fall into the times in which the mass of the other one rests on a stop: hops of a mass that is
-/// pressed there. `exact` are all events of that one, in order of time.
+/// How many impacts of a run fall into the times in which the mass of the other one rests on a stop: hops of
+/// a mass that is pressed there. `exact` are all events of that one, in order of time.
 pub(super) fn hops(own: &[Event], exact: &[Event]) -> u64 {
     let turns = || exact.iter().filter(|event| matches!(event.kind, EventKind::Rest | EventKind::Release));
     // what begins with a release has rested from the start

@@ -3,13 +3,13 @@
 use super::TRUSTED_SHARE;
 use crate::dynamics::{Model, Sample};
 
-/// Samples in a period of the drive or in one of small oscillations, whichever is shorter, and in a whole run at least and
-/// at most.
+/// Samples in a period of the drive or in one of small oscillations, whichever is shorter, and in a whole run
+/// at least and at most.
 const PER_PERIOD: f64 = 40.0;
 const SAMPLES: (f64, f64) = (2_000.0, 40_000.0);
 
-/// A motion that travels less than this share of the scene's length counts as if it travelled so far: what is left of a
-/// motion that dies away is not to be judged by its rounding.
+/// A motion that travels less than this share of the scene's length counts as if it travelled so far: what is
+/// left of a motion that dies away is not to be judged by its rounding.
 const LEAST_TRAVEL: f64 = 1e-3;
 
 /// Share of the compared time at whose end two runs that parted are looked at again.

@@ -19,8 +19,8 @@ const DRAWN_PERIODS: f64 = 3.0;
 /// Points of a drawn path: a longer path has as many, even ones in place of the steps.
 const MOST_POINTS: usize = 4_000;
 
-/// The most steps of a run, a few seconds of one core; and the number of sines in the drive that takes as long again as all
-/// else, as they are evaluated one by one.
+/// The most steps of a run, a few seconds of one core; and the number of sines in the drive that takes as
+/// long again as all else, as they are evaluated one by one.
 const MOST_STEPS: f64 = 2e7;
 const SINES: f64 = 16.0;
 
@@ -35,8 +35,8 @@ pub enum Unfit {
     Cancelled,
 }
 
-/// A run in fixed steps with clamp and bounce beside the true one, from the scene's start. Pairs are the true run and the
-/// other one.
+/// A run in fixed steps with clamp and bounce beside the true one, from the scene's start. Pairs are the true
+/// run and the other one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepSize {
     /// The scheme.
@@ -63,7 +63,8 @@ pub struct StepSize {
     pub rms_velocity: (Option<f64>, Option<f64>),
     /// Largest difference of the displacement in m.
     pub error: f64,
-    /// Up to when in s it follows the true path within a hundredth of the travel; none where that is all of the time.
+    /// Up to when in s it follows the true path within a hundredth of the travel; none where that is all of
+    /// the time.
     pub trusted: Option<f64>,
     /// Steps.
     pub steps: (u64, u64),
@@ -87,8 +88,9 @@ impl StepSize {
 
 /// Runs `model` by `scheme` in even steps of `step` in s, and truly.
 ///
-/// The true run is the program's own at the scene's tolerance or [`TRUE_TOLERANCE`], whichever is tighter; in chaos it is
-/// one of many true ones, and beyond the time `trusted` the numbers tell two of them apart and no more.
+/// The true run is the program's own at the scene's tolerance or [`TRUE_TOLERANCE`], whichever is tighter; in
+/// chaos it is one of many true ones, and beyond the time `trusted` the numbers tell two of them apart and no
+/// more.
 pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) -> Result<StepSize, Unfit> {
     if model.compliant.is_some() {
         return Err(Unfit::Compliant);
@@ -145,8 +147,8 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     })
 }
 
-/// The model with its run cut to what so small a step reaches in reasonable time, and its settled window to the second half
-/// of that where it would begin later.
+/// The model with its run cut to what so small a step reaches in reasonable time, and its settled window to
+/// the second half of that where it would begin later.
 fn within_reach(model: &Model, step: f64) -> Model {
     let mut model = model.clone();
     let reach = step * MOST_STEPS / (1.0 + model.excitation.tones.len() as f64 / SINES);

@@ -6,9 +6,10 @@ use crate::study::{Table, Values};
 
 /// Runs at tolerances and in fixed steps, a row each, in this order. SI; a cell without a value is empty.
 ///
-/// `error_m` is the largest error of the displacement, `trusted_s` up to when the path is off by less than a hundredth of
-/// the travel (empty where that is all of the time compared), `compared_s` that time. `late_s` is the median of how late
-/// arrivals at a stop are, `latest_s` the one furthest off, over `arrivals` of them in a row.
+/// `error_m` is the largest error of the displacement, `trusted_s` up to when the path is off by less than a
+/// hundredth of the travel (empty where that is all of the time compared), `compared_s` that time. `late_s`
+/// is the median of how late arrivals at a stop are, `latest_s` the one furthest off, over `arrivals` of them
+/// in a row.
 pub fn scene_table(tolerances: &Tolerances, stepped: &[StepSize]) -> Table {
     let rows: Vec<Row> = tolerances
         .runs

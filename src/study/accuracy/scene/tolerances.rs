@@ -45,11 +45,11 @@ pub struct Tolerances {
     pub travel: f64,
 }
 
-/// Runs `model` at [`TOLERANCES`] and at its own, and compares each with a run whose tolerance is a hundredth of the
-/// tightest of them (in double-double arithmetic where that is below 1e-14).
+/// Runs `model` at [`TOLERANCES`] and at its own, and compares each with a run whose tolerance is a hundredth
+/// of the tightest of them (in double-double arithmetic where that is below 1e-14).
 ///
-/// The error is the largest of the displacement; that of a chaotic motion is as large as its travel, and then the time up to
-/// which the path is trusted is what counts. None where it was cancelled.
+/// The error is the largest of the displacement; that of a chaotic motion is as large as its travel, and then
+/// the time up to which the path is trusted is what counts. None where it was cancelled.
 pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
     let times = times(model);
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };

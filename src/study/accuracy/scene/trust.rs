@@ -12,8 +12,8 @@ const TIGHTER: f64 = 1e-2;
 /// The tightest tolerance of a run in doubles: what asks for more is computed in double-double arithmetic.
 const TIGHTEST: f64 = 1e-14;
 
-/// Where errors add up, a hundredth of the tolerance is good for ten times the time and more; where a difference grows
-/// exponentially, for a few decades' time more. Between the two.
+/// Where errors add up, a hundredth of the tolerance is good for ten times the time and more; where a
+/// difference grows exponentially, for a few decades' time more. Between the two.
 const TIMES: f64 = 5.0;
 
 /// A difference is first looked at where it is so many times what one step may be wrong by.
@@ -24,16 +24,16 @@ const ABOVE_START: f64 = 10.0;
 pub enum Course {
     /// They stay together.
     Kept,
-    /// They part at this time in s, after exponential growth, and a motion without rhythm stays apart: chaos. Whatever
-    /// the tolerance, each decimal digit more is good for only `decade` seconds more.
+    /// They part at this time in s, after exponential growth, and a motion without rhythm stays apart: chaos.
+    /// Whatever the tolerance, each decimal digit more is good for only `decade` seconds more.
     Chaotic {
         /// Time in s.
         until: f64,
         /// Time in s in which the difference grew tenfold.
         decade: f64,
     },
-    /// They part at this time in s after exponential growth, though the motion settles: which of two ways it goes hangs
-    /// on next to nothing.
+    /// They part at this time in s after exponential growth, though the motion settles: which of two ways it
+    /// goes hangs on next to nothing.
     Sensitive {
         /// Time in s.
         until: f64,
@@ -86,9 +86,10 @@ pub struct Trust {
 
 /// Runs `model` twice, at its own tolerance and at a hundredth of it, and compares the displacements.
 ///
-/// The path is trusted until the two differ by [`TRUSTED_SHARE`](super::TRUSTED_SHARE) of the travel. Where they part, a third
-/// run with a hundredth of that tolerance says whether it would help: not so where differences grow exponentially, and the
-/// second run is good for little longer. A chaotic motion is also shaken, without a period and still apart at the end.
+/// The path is trusted until the two differ by [`TRUSTED_SHARE`](super::TRUSTED_SHARE) of the travel. Where
+/// they part, a third run with a hundredth of that tolerance says whether it would help: not so where
+/// differences grow exponentially, and the second run is good for little longer. A chaotic motion is also
+/// shaken, without a period and still apart at the end.
 ///
 /// An estimate and no bound: an error that both runs share is not seen. A run with a tolerance below
 /// 1e-14 is made in double-double arithmetic, a hundred times as slow. None where it was cancelled.
@@ -117,14 +118,16 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
     })
 }
 
-/// The model with a run of another length in s: what follows the run that a scene asks for is as near or far from the truth.
+/// The model with a run of another length in s: what follows the run that a scene asks for is as near or far
+/// from the truth.
 pub fn lasting(model: &Model, duration: f64) -> Model {
     let mut model = model.clone();
     model.duration = duration;
     model
 }
 
-/// A run of `model` that is more accurate than one at `tolerance`, and its own tolerance. None where it was cancelled.
+/// A run of `model` that is more accurate than one at `tolerance`, and its own tolerance. None where it was
+/// cancelled.
 pub(super) fn better(model: &Model, tolerance: f64, request: &Request) -> Option<(f64, Run)> {
     let finer = TIGHTER * tolerance;
     let run = if finer < TIGHTEST {
@@ -140,8 +143,8 @@ pub(super) fn finished(run: Run) -> Option<Run> {
     (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
 }
 
-/// What becomes of two runs that part at the first of `times` in s, where with both tolerances tightened they would part at
-/// the second, if at all.
+/// What becomes of two runs that part at the first of `times` in s, where with both tolerances tightened they
+/// would part at the second, if at all.
 fn parted(model: &Model, beside: &Beside, better: &Run, times: (f64, Option<f64>)) -> Course {
     let until = times.0;
     let Some(next) = times.1.filter(|next| *next < TIMES * until) else { return Course::Coarse { until } };

@@ -53,8 +53,8 @@ fn stretch(seconds: f64) -> String {
     text.replace(".0 s", " s")
 }
 
-/// A length in m as an error is written: one digit, in mm. Below what a double of the size of `travel` in m can tell, that
-/// is said.
+/// A length in m as an error is written: one digit, in mm. Below what a double of the size of `travel` in m
+/// can tell, that is said.
 pub fn small_length(m: f64, travel: f64) -> String {
     let least = 2.0 * f64::EPSILON * travel;
     if m < least || m == 0.0 {
@@ -72,8 +72,9 @@ pub fn length_mm(m: f64) -> String {
 }
 
 impl Trust {
-    /// The error, or up to when the path is to be trusted, in a few words. Times are counted from `from` in s before the
-    /// start of the compared runs. None where a run ended early: then its end is what is to be said.
+    /// The error, or up to when the path is to be trusted, in a few words. Times are counted from `from` in s
+    /// before the start of the compared runs. None where a run ended early: then its end is what is to be
+    /// said.
     pub fn short(&self, from: f64) -> Option<String> {
         if self.outcome != Outcome::Done {
             return None;
@@ -101,25 +102,26 @@ impl Trust {
         };
         let leaves = |until: f64| {
             format!(
-                "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path is another one from {} \
-                 on (off by {share} % of the travel)",
+                "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path is \
+                 another one from {} on (off by {share} % of the travel)",
                 moment(from + until)
             )
         };
         match self.course {
             Course::Kept if self.error == 0.0 => {
                 format!(
-                    "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path is the same over {after}."
+                    "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path is \
+                     the same over {after}."
                 )
             }
             Course::Kept => format!(
-                "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path changes by no more than \
-                 {} mm over {after}.",
+                "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path changes \
+                 by no more than {} mm over {after}.",
                 length_mm(self.error)
             ),
             Course::Chaotic { until, decade } => format!(
-                "{}: the difference grows tenfold every {}. A tighter tolerance buys little time; averages such as the RMS \
-                 velocity stay.",
+                "{}: the difference grows tenfold every {}. A tighter tolerance buys little time; averages \
+                 such as the RMS velocity stay.",
                 leaves(until),
                 duration(decade)
             ),
@@ -189,8 +191,8 @@ impl StepSize {
         }
         if own > exact && self.hops > 0 {
             all.push(format!(
-                "{} of them are hops of a mass that truly rests: pressed on a stop it bounces every step or two, so that \
-                 shorter steps count more.",
+                "{} of them are hops of a mass that truly rests: pressed on a stop it bounces every step or \
+                 two, so that shorter steps count more.",
                 self.hops
             ));
         }
@@ -244,8 +246,8 @@ mod tests {
         let mixed = Lateness { earliest: -0.02, matched: 3, early: 1, ..late };
         assert_eq!(
             mixed.words(),
-            "Of the first 3 impacts after a flight 2 arrive late, by up to 17 ms, and 1 early, by up to 20 ms; then it takes \
-             another course."
+            "Of the first 3 impacts after a flight 2 arrive late, by up to 17 ms, and 1 early, by up to 20 \
+             ms; then it takes another course."
         );
         let early = Lateness { median: -0.01, earliest: -0.02, latest: -0.01, early: 60, ..late };
         assert_eq!(early.words(), "Impacts arrive 10 ms early (worst 20 ms).");
