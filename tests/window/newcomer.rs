@@ -3,9 +3,9 @@
 use eframe::egui::{self, Key, Modifiers, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::fields::info;
-use interwell::app::menu::Command;
-use interwell::app::settings::Settings;
+use interwell::app::words::fields::info;
+use interwell::app::window::menu::Command;
+use interwell::app::ui::settings::Settings;
 use interwell::app::window::Window;
 use interwell::scene::{FieldPath, PRESETS, Stops};
 
@@ -129,7 +129,8 @@ fn the_lesson_says_what_the_scene_does() {
         let landscape = &harness.state().session.model().mechanism.landscape;
         let well = landscape.right_stable().unwrap().x;
         let hardest = landscape.extrema.iter().find(|own| own.x > 1e-4 && own.x < well).unwrap();
-        let words = format!("most of all at ±{:.1} mm, and from there to the well less again", hardest.x * 1e3);
+        let words =
+            format!("most of all at ±{:.1} mm, and from there to the well less again", hardest.x * 1e3);
         harness.get_by_label_contains(&words);
         let session = &harness.state().session;
         let weak = harness.query_by_label_contains("Here this push does not carry it over.").is_some();
@@ -239,7 +240,12 @@ fn notes_speak_of_what_the_window_has() {
         assert!(!notes.contains("excitation.") && !notes.contains("run.t"), "{}: {notes}", preset.name);
         let sweeps = notes.matches("sweep").count();
         let told = ["The sweep of the command line", "The sweep, or the map of the window,"];
-        assert_eq!(sweeps, told.map(|words| notes.matches(words).count()).iter().sum::<usize>(), "{}", preset.name);
+        assert_eq!(
+            sweeps,
+            told.map(|words| notes.matches(words).count()).iter().sum::<usize>(),
+            "{}",
+            preset.name
+        );
     }
 }
 

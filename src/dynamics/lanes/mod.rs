@@ -26,8 +26,8 @@ use crate::dynamics::series::{SEEDED, Series};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::path::StepView;
 use crate::dynamics::step::stepper::Step;
-use crate::system::clock::ThreadClock;
 use crate::numeric::{GaussLegendre, Lanes, Scalar};
+use crate::system::clock::ThreadClock;
 use columns::{Columns, LaneMotion, Trial};
 
 /// Lanes where registers hold eight numbers: two registers a column, so that one addition need not wait for
