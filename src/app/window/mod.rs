@@ -23,7 +23,6 @@ use crate::scene::{Layout, PRESETS};
 
 use layouts::{Arrangement, Room, Tiling};
 use leave::Next;
-use menu::Command;
 
 /// Where the scenes opened last are kept between two starts of the program.
 pub const RECENT: &str = "recent";
@@ -40,19 +39,22 @@ const HINT_ROW: f32 = 32.0;
 /// Where a person's own arrangement is kept.
 pub const OWN_KEY: &str = "arrangement";
 
+mod command;
 mod commands;
 mod files;
+mod keys;
 pub mod layouts;
 pub mod leave;
-pub mod menu;
+mod menu;
 mod place;
 mod release;
-mod shortcuts;
 mod told;
 mod typed;
 mod writing;
 
+pub use command::Command;
 use files::Chosen;
+pub use files::Wanted;
 use place::Place;
 use release::Later;
 use told::Told;
@@ -290,7 +292,7 @@ impl Window {
         }
         self.questions_ui(ui, &ctx);
         if self.shortcuts {
-            self.shortcuts = shortcuts::shortcuts_ui(ui);
+            self.shortcuts = keys::list_ui(ui);
         }
         self.message_ui(ui);
         self.told_ui(ui);

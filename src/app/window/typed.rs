@@ -57,7 +57,7 @@ impl Typed {
     pub fn ui(&mut self, ui: &Ui) -> Option<Ended> {
         let answer = dialog(ui.ctx(), "path").show(ui.ctx(), |ui| {
             ui.set_width(dialog_width(ui, 520.0));
-            ui.heading(self.wanted.question());
+            ui.heading(self.wanted.words().0);
             ui.label("This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one).");
             ui.add_space(4.0);
             let name = ui.label("path of the file");
