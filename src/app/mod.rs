@@ -1,7 +1,8 @@
 //! The window: everything that is seen of a scene, and the controls that change it.
 //!
-//! Nothing is computed here. [`session`] holds what is open (a scene with undo, its live motion, the answers of background
-//! tasks) and works without a window; the rest draws it. A view is a function of a [`views::ViewContext`].
+//! Nothing is computed here. [`session`] holds what is open (a scene with undo, its live motion, the answers
+//! of background tasks) and works without a window; the rest draws it. A view is a function of a
+//! [`views::ViewContext`].
 //!
 //! Each folder uses only those above it; a test holds this.
 //!

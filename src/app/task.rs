@@ -71,8 +71,8 @@ pub struct Stream<T> {
 }
 
 impl<T: Send + 'static> Stream<T> {
-    /// Starts `job`, which looks at the flag that it is given and hands its parts over one by one; none where the
-    /// system has no thread to give.
+    /// Starts `job`, which looks at the flag that it is given and hands its parts over one by one; none where
+    /// the system has no thread to give.
     pub fn start(
         wake: &Wake,
         job: impl FnOnce(&AtomicBool, &(dyn Fn(T) + Sync)) + Send + 'static,

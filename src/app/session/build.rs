@@ -36,8 +36,8 @@ pub(super) fn solved(document: &Document, tolerance: f64) -> Result<Arc<Mechanis
     Ok(mechanism)
 }
 
-/// The first thing that is wrong, with the names that stand on the screen and without the place in a file, which a hand on a
-/// slider does not look at.
+/// The first thing that is wrong, with the names that stand on the screen and without the place in a file,
+/// which a hand on a slider does not look at.
 pub(super) fn why(error: &CannotRun, scene: &Scene) -> String {
     match error {
         CannotRun::Wrong(SceneError::Faults { faults, .. }) => faults.first().map_or_else(

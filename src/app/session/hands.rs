@@ -12,8 +12,8 @@ impl Session {
         FieldPath::new(path).get(&self.with_stops_for(path))
     }
 
-    /// Changes the number at a path as part of a gesture; a number of the stops switches them on. Whether the scene
-    /// changed, or why it stays as it was.
+    /// Changes the number at a path as part of a gesture; a number of the stops switches them on. Whether the
+    /// scene changed, or why it stays as it was.
     pub fn set_number(&mut self, path: &str, value: f64) -> Result<bool, String> {
         let mut wanted = self.with_stops_for(path);
         if !FieldPath::new(path).set(&mut wanted, value) {
@@ -51,7 +51,8 @@ impl Session {
         scene
     }
 
-    /// A key is pressed on a field at the time `now` in s: presses on one field within a second are one gesture.
+    /// A key is pressed on a field at the time `now` in s: presses on one field within a second are one
+    /// gesture.
     pub fn press(&mut self, field: &'static str, now: f64) {
         if self.presses.is_none_or(|(own, last)| own != field || now - last > PRESSES) {
             self.end_gesture();
@@ -66,7 +67,8 @@ impl Session {
         }
     }
 
-    /// Ends presses that no other one has followed for a second. How long in s others are waited for from `now` on.
+    /// Ends presses that no other one has followed for a second. How long in s others are waited for from
+    /// `now` on.
     pub fn follow_presses(&mut self, now: f64) -> Option<f64> {
         let (_, last) = self.presses?;
         let left = last + PRESSES - now;

@@ -30,8 +30,8 @@ use map::Mapping;
 use player::{Player, fitting_speed};
 use sliders::suiting_limit;
 
-/// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and what it is
-/// off by is not seen. At the end of the gesture they are solved as every study solves them.
+/// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and
+/// what it is off by is not seen. At the end of the gesture they are solved as every study solves them.
 const HANDLED_TOLERANCE: f64 = 1e-6;
 
 /// The share of speed that stops keep where a scene does not say which stops come.
@@ -186,8 +186,8 @@ impl Session {
         changed
     }
 
-    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run; if not, everything stays
-    /// as it is and [`refused`](Self::refused) says why. Whether it changed.
+    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run; if not,
+    /// everything stays as it is and [`refused`](Self::refused) says why. Whether it changed.
     pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut scene::Mechanism)) -> bool {
         let mut document = self.editor.runnable();
         change(&mut document.scene.mechanism);
@@ -390,7 +390,8 @@ impl Session {
         self.changed_at
     }
 
-    /// How far the motion has come, after a change, towards what the sentence tells of: seconds gone, and of how many.
+    /// How far the motion has come, after a change, towards what the sentence tells of: seconds gone, and of
+    /// how many.
     pub fn settling(&self) -> Option<(f64, f64)> {
         let told = self.told().filter(|_| self.model.is_shaken() && self.changed_at > 0.0)?;
         let (gone, of) = (told.now - told.origin, told.seen_from() - told.origin);

@@ -1,8 +1,9 @@
 //! Flexures as they are bent, drawn from the solved mechanism held at the mass's own place.
 //!
-//! The solver is asked once a frame (it takes less than a tenth of a millisecond), so that nothing is read between two
-//! shapes and the bulge ends where it ends. Along the flexures the drawing has a scale of its own; sideways it has the
-//! view's, and the ratio of the two is written. The mass is a body between the two groups, its size no part of the scale.
+//! The solver is asked once a frame (it takes less than a tenth of a millisecond), so that nothing is read
+//! between two shapes and the bulge ends where it ends. Along the flexures the drawing has a scale of its
+//! own; sideways it has the view's, and the ratio of the two is written. The mass is a body between the two
+//! groups, its size no part of the scale.
 
 use eframe::egui::{self, Align2, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 

@@ -1,9 +1,10 @@
 //! The mechanism as a drawing, over the well and on its x axis, seen from the base.
 //!
-//! Where the force comes from flexures they are drawn as they are bent ([`flexures`](super::flexures)); another force is a
-//! spring in a schematic, and one that is the same everywhere has none. The base stands
-//! still in it, and the push that the mass feels instead is an arrow; the base's own motion is far larger than the travel
-//! and has an inset at its own scale. An impact is a ring whose size is the energy that it takes.
+//! Where the force comes from flexures they are drawn as they are bent ([`flexures`](super::flexures));
+//! another force is a spring in a schematic, and one that is the same everywhere has none. The base stands
+//! still in it, and the push that the mass feels instead is an arrow; the base's own motion is far larger
+//! than the travel and has an inset at its own scale. An impact is a ring whose size is the energy that it
+//! takes.
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -136,7 +137,8 @@ fn explain(ui: &Ui, place: Rect, word: &str) {
     explained(ui.interact(place, id, Sense::hover()), word);
 }
 
-/// The flexures as they are bent, where there are such: the middle of the body, and what is said of the drawing.
+/// The flexures as they are bent, where there are such: the middle of the body, and what is said of the
+/// drawing.
 fn bent_ui(
     ui: &Ui,
     painter: &egui::Painter,
@@ -237,8 +239,8 @@ fn coil(from: Pos2, to: Pos2) -> Vec<Pos2> {
     [from, from + along * 0.15].into_iter().chain(turns).chain([from + along * 0.85, to]).collect()
 }
 
-/// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g). It lies at the mass's height on the
-/// inner side of the body, where neither flexures nor stops are.
+/// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g). It lies at the mass's
+/// height on the inner side of the body, where neither flexures nor stops are.
 fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, base_accel: f64, rect: Rect) {
     if !context.session.shown().is_shaken() {
         return;
@@ -260,7 +262,8 @@ fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, ba
     }
 }
 
-/// The row over the drawing, where nothing moves: when, what is seen, how hard it is pushed, and how the base moves.
+/// The row over the drawing, where nothing moves: when, what is seen, how hard it is pushed, and how the base
+/// moves.
 fn words_ui(
     ui: &Ui,
     painter: &egui::Painter,

@@ -1,8 +1,8 @@
 //! Something over time: it scrolls, rests are shaded, impacts are ticks.
 //!
-//! Displacement, velocity, base acceleration and power are one view with four quantities. All traces show the same
-//! stretch of time and the same cursor, so that they can be read below each other. Their vertical ranges come from the
-//! scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
+//! Displacement, velocity, base acceleration and power are one view with four quantities. All traces show the
+//! same stretch of time and the same cursor, so that they can be read below each other. Their vertical ranges
+//! come from the scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
 
 use eframe::egui::{self, Align2, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{
@@ -19,8 +19,8 @@ use super::legend::{LEGEND, Sign, legend};
 use super::ranges::room_for_push;
 use super::span::ticks;
 
-/// Forcing periods that are shown; without a period multiples of the motion's pace. No more swings of the mechanism than
-/// are told apart.
+/// Forcing periods that are shown; without a period multiples of the motion's pace. No more swings of the
+/// mechanism than are told apart.
 const PERIODS: f64 = 6.0;
 const SWINGS: f64 = 8.0;
 const MOST_SWINGS: f64 = 200.0;
@@ -284,8 +284,8 @@ fn zoom(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, own: 
     }
 }
 
-/// The wheel over the numbers of the vertical axis, or with Shift anywhere, chooses the part of it that is shown, about the
-/// pointer; a double click leaves it to the scene.
+/// The wheel over the numbers of the vertical axis, or with Shift anywhere, chooses the part of it that is
+/// shown, about the pointer; a double click leaves it to the scene.
 fn zoom_up(
     ui: &Ui,
     transform: &PlotTransform,
@@ -316,8 +316,8 @@ fn zoom_up(
     *own = (new.1 - new.0 < ends.1 - ends.0).then_some(new);
 }
 
-/// The path as lines. A line that turns on the spot is drawn with a tip that reaches beyond it: between stops each flight is
-/// a line of its own, so that none is seen to go through.
+/// The path as lines. A line that turns on the spot is drawn with a tip that reaches beyond it: between stops
+/// each flight is a line of its own, so that none is seen to go through.
 fn paths(samples: &[Sample], flights: bool, point: impl Fn(&Sample) -> PlotPoint) -> Vec<Vec<PlotPoint>> {
     let turns = |pair: &&[Sample]| pair[0].t == pair[1].t;
     if !flights || samples.windows(2).filter(turns).count() > MOST_FLIGHTS {

@@ -1,4 +1,5 @@
-//! How do scenes come into the window, and how do they leave it? Files, drops, the clipboard, and the questions on the way.
+//! How do scenes come into the window, and how do they leave it? Files, drops, the clipboard, and the
+//! questions on the way.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

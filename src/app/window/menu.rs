@@ -51,7 +51,8 @@ pub fn menu_ui(
         ui.add_space(16.0);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let hover =
-                "Scene and views as opened or last saved, from time 0 (Home). The scene comes back with undo.";
+                "Scene and views as opened or last saved, from time 0 (Home). The scene comes back with \
+                 undo.";
             if ui.button("Back to start").on_hover_text(hover).clicked() {
                 asked.push(Command::BackToStart);
             }

@@ -1,8 +1,8 @@
 //! Where was the pointer when a button was let go?
 //!
-//! All that happens between two frames comes to the next frame at once, and a slider takes the last place of the pointer
-//! for the place where it was let go. Where a frame takes long, a hand that goes on after letting go would drag the
-//! slider along: what comes after a release waits for the frame after.
+//! All that happens between two frames comes to the next frame at once, and a slider takes the last place of
+//! the pointer for the place where it was let go. Where a frame takes long, a hand that goes on after letting
+//! go would drag the slider along: what comes after a release waits for the frame after.
 
 use eframe::egui::{Event, RawInput};
 

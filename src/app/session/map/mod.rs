@@ -1,7 +1,8 @@
 //! The map of the scene: every run of a grid over two of its fields, from rest, coarse first.
 //!
-//! It is the sweep of the command line, run on threads of its own and looked at while it comes. It is asked for by the
-//! view that shows it, frame by frame: a map that is not looked at stops where it is, and goes on when it is.
+//! It is the sweep of the command line, run on threads of its own and looked at while it comes. It is asked
+//! for by the view that shows it, frame by frame: a map that is not looked at stops where it is, and goes on
+//! when it is.
 
 mod axes;
 mod cells;
@@ -39,7 +40,8 @@ pub struct Question {
 pub struct Mapping {
     /// The axes that were chosen; none for the scene's own.
     chosen: Option<[SweepAxis; 2]>,
-    /// The scene's own, as they were when the map was first looked at: they do not follow the scene over its map.
+    /// The scene's own, as they were when the map was first looked at: they do not follow the scene over its
+    /// map.
     held: Option<[SweepAxis; 2]>,
     /// What was chosen before a part of the map was enlarged.
     whole: Option<Option<[SweepAxis; 2]>>,

@@ -37,7 +37,8 @@ impl Session {
         self.model().mechanism.landscape.right_stable().map(|well| well.x * 1e3)
     }
 
-    /// Asks for the map of the scene as it stands, in the frame at `time`. Whether it waits for the hand to be still.
+    /// Asks for the map of the scene as it stands, in the frame at `time`. Whether it waits for the hand to
+    /// be still.
     pub fn want_map(&mut self, time: f64) -> bool {
         let Some(axes) = self.map_axes() else {
             self.map.problem = Some("This scene has no two fields to make a map over.".to_owned());
@@ -68,7 +69,8 @@ impl Session {
         waits
     }
 
-    /// Where the scene stands on the axes of a map; none on an axis whose field it lacks, as a travel limit without stops.
+    /// Where the scene stands on the axes of a map; none on an axis whose field it lacks, as a travel limit
+    /// without stops.
     pub fn place_on_map(&self, question: &Question) -> [Option<f64>; 2] {
         question.axes.each_ref().map(|axis| FieldPath::new(&axis.field).get(self.scene()))
     }

@@ -1,4 +1,5 @@
-//! Hands on the map: a click takes the scene there, the cross-hair is dragged, a box enlarges, a double click is back.
+//! Hands on the map: a click takes the scene there, the cross-hair is dragged, a box enlarges, a double click
+//! is back.
 
 use eframe::egui::{self, CursorIcon, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2};
 
