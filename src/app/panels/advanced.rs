@@ -1,5 +1,4 @@
-//! What is changed seldom: the kind of shaking and its numbers, stops that differ, how long and how closely a
-//! run goes.
+//! Controls that are changed seldom: kind of shaking, uneven stops, run length and tolerance.
 //!
 //! What cannot be is not offered, or is greyed with the reason.
 

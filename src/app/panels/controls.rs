@@ -1,4 +1,4 @@
-//! The hands on the scene: shaking, stops, and under More what is changed less often.
+//! Controls of the scene: shaking, stops and, under More, what is changed less often.
 
 use eframe::egui::{self, RichText, Ui};
 

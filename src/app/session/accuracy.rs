@@ -1,4 +1,4 @@
-//! How accurate is what is on the screen? What was asked about it in the background, and what has come.
+//! Accuracy of the motion on the screen, worked out in the background.
 //!
 //! The error of the motion is worked out whenever the scene stands still, from where the motion was when it
 //! was changed last. What the view Accuracy shows is of the scene from its start, and is computed while that

@@ -1,5 +1,4 @@
-//! What is asked of the background about an open scene: what it settles to, what it would take, how accurate
-//! it is.
+//! Background questions about the open scene: settled motion, thresholds, accuracy.
 
 use std::sync::Arc;
 use std::time::Duration;

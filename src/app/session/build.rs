@@ -1,4 +1,4 @@
-//! Can a scene be run, and if not, why?
+//! Conversion of a scene into a model, and the reasons why it fails.
 
 use std::sync::Arc;
 

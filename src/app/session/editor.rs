@@ -1,4 +1,4 @@
-//! What is being edited, where it is kept, and the way back.
+//! The edited scene with its file and its undo stack.
 //!
 //! Undo is a stack of scenes: a scene is plain, comparable data of a few hundred bytes, and one gesture (a
 //! drag, a click, a number typed) is one step.
@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::output::write_file;
 use crate::scene::{Document, Files, Scene, SceneError, Source, Start, Stops, numeric_fields, write};
 
-use super::bring::{bring, follow};
+use super::companions::{bring, follow};
 
 /// The most steps back that are kept.
 const MOST_STEPS: usize = 500;

@@ -1,13 +1,13 @@
-//! What is open in the window: a scene, its model, its motion, and what is known of it.
+//! The open scene with its model, its motion and what is known of it.
 //!
 //! Everything here works without a window; the views look at it and change it through its methods.
 
 pub mod accuracy;
 mod ask;
-mod bring;
 mod build;
+mod companions;
+mod edit;
 pub mod editor;
-mod hands;
 pub mod map;
 pub mod player;
 mod sliders;

@@ -1,4 +1,4 @@
-//! Which colour and which width means what?
+//! Colours, line widths and text sizes, with what each stands for.
 //!
 //! The hues are Okabe and Ito's (2008, "Color Universal Design"), one meaning each, and never a hue alone:
 //! every regime has a shape as well. Light, dark and projector differ in grounds, widths and zoom, not in

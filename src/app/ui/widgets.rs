@@ -1,4 +1,4 @@
-//! Small things that several panels draw: hover texts, icons, the shapes of regimes.
+//! Small widgets: dialogs, hover texts, icons, the shapes of regimes.
 
 use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
 

@@ -1,4 +1,4 @@
-//! A picture over the displacement: where things stand in it, and its axes.
+//! Charts over the displacement: coordinates, axes, readout.
 //!
 //! The x axis is the one that all views share, over the whole width, so that pictures above each other line
 //! up; what belongs to the vertical axis is written into the picture.

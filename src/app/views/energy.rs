@@ -1,4 +1,4 @@
-//! Energy: where it came from, where it went, and what is there against the barrier.
+//! View of the energy: sources, sinks, and what is left beside the barrier.
 //!
 //! Every number is the live run's own ledger, or the difference of two of them. What comes in is counted up
 //! and drawn to the right, what is taken is counted down and drawn to the left, so that a column adds up to

@@ -1,4 +1,4 @@
-//! The force curve: what holds the mass at x, against what pushes it.
+//! View of the force curve, with the force of the shaking.
 //!
 //! The curve is dV/dx, the force that would hold the mass there. The base pushes it with -m a_b, a level line
 //! that moves up and down. Where the line is above the curve the mass is driven to the right, where it is

@@ -1,4 +1,4 @@
-//! Where does a text stand in a picture, so that it can be read and hides nothing?
+//! Placement of texts in pictures.
 
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rangef, Rect, Ui, vec2};
 

@@ -1,4 +1,4 @@
-//! The mechanism as a drawing, over the well and on its x axis, seen from the base.
+//! View of the mechanism as a drawing, seen from the base, on the x axis of the well.
 //!
 //! Where the force comes from flexures they are drawn as they are bent ([`flexures`](super::flexures));
 //! another force is a spring in a schematic, and one that is the same everywhere has none. The base stands
@@ -14,7 +14,7 @@ use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 use crate::mechanics::ForceCurve;
 
-use super::flexures::{CLAMP, Place, Scale, bulge_words, clamp, state_at};
+use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
 use super::labels::{ago, haloed};
 use super::stops::{WALL, stops_beside_ui};
 use super::well::mass_ui;
@@ -64,7 +64,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
     let (top, bottom) = (rect.top() + 28.0, rect.bottom() - 12.0);
     // as wide as the ball on the well, so that it touches the stops when it should
     let half = vec2(BALL, ((bottom - top) * 0.13).clamp(14.0, 30.0));
-    let place = Place { top, bottom, half };
+    let place = DrawingArea { top, bottom, half };
     let (middle, words) = match bent_ui(ui, &painter, context, rect, place, state.x) {
         Some(drawn) => drawn,
         None => {
@@ -144,14 +144,14 @@ fn bent_ui(
     painter: &egui::Painter,
     context: &mut ViewContext<'_>,
     rect: Rect,
-    place: Place,
+    place: DrawingArea,
     x: f64,
 ) -> Option<(f32, String)> {
     let bent = state_at(context, x)?;
     let style = context.style;
     let mechanism = &context.session.shown().mechanism;
     let geometry = mechanism.flexures.as_ref()?.geometry();
-    let scale = Scale::of(geometry, place);
+    let scale = DrawingScale::of(geometry, place);
     let reach = mechanism.landscape.right_stable().map_or(0.0, |well| well.x.abs());
     if context.filled
         && let Some(own) = scale.true_span(reach, rect)

@@ -1,4 +1,4 @@
-//! The views: what of a motion is seen, each in a file of its own.
+//! The views, each in a file of its own.
 //!
 //! A new view is an entry of [`View`], a file with a function `..._ui(ui, &mut ViewContext)`, and a place in
 //! a layout of the window. Views share the x axis of [`Span`], so that mechanism and well stand above each
@@ -27,9 +27,9 @@ use crate::app::session::Session;
 use crate::app::ui::style::Style;
 use crate::mechanics::flexure::State;
 
-pub use map::Quantity as MapQuantity;
+pub use map::MapQuantity;
 pub use span::Span;
-pub use trace::{Quantity, Timeline};
+pub use trace::{Timeline, TraceQuantity};
 
 /// What can be seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -238,8 +238,8 @@ pub struct Memory {
     pub points_only: bool,
     /// What the map shows.
     pub map_quantity: MapQuantity,
-    /// What a hand is about to do to the map.
-    map_hand: map::Hand,
+    /// State of the pointer on the map.
+    map_pointer: map::PointerState,
     /// What the view Accuracy shows where there is no room for all of it.
     accuracy_page: accuracy::Page,
 }
@@ -284,14 +284,14 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
     match view {
         View::Mechanism => mechanism::mechanism_ui(ui, context),
         View::Well => well::well_ui(ui, context),
-        View::Displacement => trace::trace_ui(ui, Quantity::Displacement, context),
+        View::Displacement => trace::trace_ui(ui, TraceQuantity::Displacement, context),
         View::BeforeNow => before_now::before_now_ui(ui, context),
         View::PhasePortrait => phase::phase_ui(ui, context),
         View::ForceCurve => force::force_ui(ui, context),
         View::Energy => energy::energy_ui(ui, context),
-        View::Velocity => trace::trace_ui(ui, Quantity::Velocity, context),
-        View::BaseAcceleration => trace::trace_ui(ui, Quantity::BaseAcceleration, context),
-        View::Power => trace::trace_ui(ui, Quantity::Power, context),
+        View::Velocity => trace::trace_ui(ui, TraceQuantity::Velocity, context),
+        View::BaseAcceleration => trace::trace_ui(ui, TraceQuantity::BaseAcceleration, context),
+        View::Power => trace::trace_ui(ui, TraceQuantity::Power, context),
         View::Map => map::map_ui(ui, context),
         View::Accuracy => accuracy::accuracy_ui(ui, context),
     }

@@ -1,4 +1,4 @@
-//! The phase portrait: velocity over displacement, where a motion is a path and a state is a point.
+//! Phase portrait: velocity over displacement.
 //!
 //! The separatrix is the curve of the energy that just suffices to stand on top of the barrier: without
 //! shaking and without loss a state inside one of its loops never leaves that well. Shaking and impacts carry

@@ -1,4 +1,4 @@
-//! How far do the axes of velocity and power reach?
+//! Ranges of the axes of velocity, power and base acceleration.
 //!
 //! An axis that follows the motion tells nothing of its size. These reach to what the scene lets expect, go a
 //! coarse step further where the motion needs it, and are chosen anew only once a change has settled.

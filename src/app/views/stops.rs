@@ -1,4 +1,4 @@
-//! Stops as walls that can be dragged, wherever a view has the shared x axis.
+//! Stops as walls that can be dragged, in every view with the shared x axis.
 
 use eframe::egui::{self, CursorIcon, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 

@@ -1,4 +1,4 @@
-//! The well: the mass rides on the potential, and the base tips it.
+//! View of the potential well, with the mass on it.
 //!
 //! In the frame of the base the mass feels the force of the mechanism and the push -m a_b, whose potential is
 //! m a_b x: it moves as a ball does on the sum of both. The sum is drawn thick; the mechanism's own curve is

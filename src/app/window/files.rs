@@ -1,5 +1,4 @@
-//! How do scenes come into the window, and how do they leave it? Files, drops, the clipboard, and the
-//! questions on the way.
+//! Opening of scenes and choice of files: dialogs, drops, the clipboard, the questions on the way.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -7,6 +6,8 @@ use std::sync::mpsc::channel;
 
 use eframe::egui::{self, Ui};
 
+use crate::app::clock::Instant;
+use crate::app::disk;
 use crate::app::session::CannotRun;
 use crate::app::session::editor::Editor;
 use crate::app::ui::style::STATUS;
@@ -14,7 +15,7 @@ use crate::app::ui::style::STATUS;
 use super::Window;
 use super::command::Command;
 use super::leave::{self, Answer, Next};
-use super::typed::{Ended, Typed};
+use super::path_dialog::{Ended, PathDialog};
 
 /// How many of the scenes opened last are kept.
 const MOST_RECENT: usize = 8;
@@ -110,7 +111,7 @@ impl Window {
     /// Puts the scene's file first among the recent ones.
     pub fn remember_file(&mut self) {
         let Some(path) = self.session.editor.path() else { return };
-        let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned()).to_string_lossy().into_owned();
+        let whole = disk::whole(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
         self.recent.retain(|own| *own != whole);
         self.recent.insert(0, whole);
         self.recent.truncate(MOST_RECENT);
@@ -146,7 +147,7 @@ impl Window {
             self.dialog.clear();
             match chosen {
                 Chosen::File(wanted, path) => self.take_file(ctx, wanted, path),
-                Chosen::NoDialog(wanted, path) => self.typed = Some(Typed::new(wanted, &path)),
+                Chosen::NoDialog(wanted, path) => self.typed = Some(PathDialog::new(wanted, &path)),
             }
         } else if !self.dialog.is_running() && self.over_comments.is_none() && self.typed.is_none() {
             // a dialog without a choice: nothing follows
@@ -270,7 +271,7 @@ impl Window {
 
     /// Asks for the path of a scene to open, as where the desktop has no dialog.
     pub fn type_path(&mut self) {
-        self.typed = Some(Typed::new(Wanted::Open, Path::new("")));
+        self.typed = Some(PathDialog::new(Wanted::Open, Path::new("")));
     }
 
     /// Asks for a file, without the window waiting for the answer.
@@ -284,15 +285,15 @@ impl Window {
         let stem = stem.map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.as_ref().and_then(|path| path.parent()).map(Path::to_path_buf);
         // what a path would begin with where there is no dialog
-        let begin = folder.clone().or_else(|| std::env::current_dir().ok()).unwrap_or_default();
+        let begin = folder.clone().unwrap_or_else(disk::working_folder);
         let begin =
             if wanted == Wanted::Open { begin.join("") } else { begin.join(format!("{stem}.{ending}")) };
         self.dialog.ask(&self.wake, move |_| {
             let mut dialog = rfd::FileDialog::new().add_filter(kind, &[ending]);
-            if let Some(folder) = folder.filter(|folder| folder.is_dir()) {
+            if let Some(folder) = folder.filter(|folder| disk::is_folder(folder)) {
                 dialog = dialog.set_directory(folder);
             }
-            let since = std::time::Instant::now();
+            let since = Instant::now();
             let chosen = if wanted == Wanted::Open {
                 dialog.pick_file()
             } else {

@@ -1,5 +1,4 @@
-//! Which views stand where? Trees of tiles for each layout, and for windows that are as small as a
-//! projector's.
+//! Layouts: the tiles of each arrangement of the views.
 
 use eframe::egui::{self, Ui, Vec2, WidgetText};
 use egui_tiles::{

@@ -1,4 +1,4 @@
-//! What is asked before a scene that is not saved gives way to another, or to nothing.
+//! Questions before a scene that is not saved gives way to another.
 
 use eframe::egui::Ui;
 

@@ -40,25 +40,25 @@ const HINT_ROW: f32 = 32.0;
 pub const OWN_KEY: &str = "arrangement";
 
 mod command;
-mod commands;
+mod deferred;
 mod files;
 mod keys;
 pub mod layouts;
 pub mod leave;
 mod menu;
-mod place;
-mod release;
-mod told;
-mod typed;
+mod messages;
+mod path_dialog;
+mod perform;
+mod size;
 mod writing;
 
 pub use command::Command;
+use deferred::DeferredInput;
 use files::Chosen;
 pub use files::Wanted;
-use place::Place;
-use release::Later;
-use told::Told;
-use typed::Typed;
+use messages::Notice;
+use path_dialog::PathDialog;
+use size::WindowSize;
 
 /// Everything that the window shows.
 pub struct Window {
@@ -77,7 +77,7 @@ pub struct Window {
     /// A message that waits to be read: an error of a file, the notes of the scene, or what this program is.
     message: Option<(String, String)>,
     /// A short message that goes by itself.
-    told: Option<Told>,
+    told: Option<Notice>,
     /// Scene files that were opened or saved, the latest first.
     pub recent: Vec<String>,
     /// What waits for an answer about unsaved changes.
@@ -98,16 +98,16 @@ pub struct Window {
     /// A whole run that is computed and written.
     run: Latest<writing::Written>,
     /// The size of the window on the screen.
-    place: Place,
+    place: WindowSize,
     /// The title that the window has.
     titled: String,
     dialog: Latest<Chosen>,
     /// Whether files are asked for.
     dialogs: bool,
     /// A path that is typed where there is no dialog.
-    typed: Option<Typed>,
+    typed: Option<PathDialog>,
     /// Input that waits for the next frame.
-    later: Later,
+    deferred: DeferredInput,
     hint: hint::Hint,
     /// The line of the first minute has been there.
     hint_row: bool,
@@ -158,12 +158,12 @@ impl Window {
             announcer: Announcer::default(),
             written: channel(),
             run: Latest::default(),
-            place: Place::default(),
+            place: WindowSize::default(),
             titled: String::new(),
             dialog: Latest::default(),
             dialogs: true,
             typed: None,
-            later: Later::default(),
+            deferred: DeferredInput::default(),
             hint_row: false,
             wake,
             applied: None,
@@ -349,7 +349,7 @@ impl Window {
 
     /// Has the window be of a size that was kept: none at the first start.
     pub fn restore_size(&mut self, size: Option<[f32; 2]>) {
-        self.place = Place::restored(size);
+        self.place = WindowSize::restored(size);
     }
 
     /// The size in points at the zoom 1 that is to be kept.
@@ -393,7 +393,7 @@ impl eframe::App for Window {
     }
 
     fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
-        if self.later.hold_back(input) {
+        if self.deferred.hold_back(input) {
             ctx.request_repaint();
         }
     }

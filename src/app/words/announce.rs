@@ -1,4 +1,4 @@
-//! When is a screen reader told what the mass does?
+//! Announcements of the motion for screen readers.
 //!
 //! The sentence itself can always be read. It is spoken when the kind of motion changes, and otherwise once
 //! it has stood still for a while: a slider under way would make it talk without end.

@@ -1,4 +1,4 @@
-//! Which two fields does a map go over, and from where to where?
+//! Choice of the two axes of a map and of their ranges.
 
 use crate::app::words::numbers::{below, decimal, round_up};
 use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};

@@ -1,4 +1,4 @@
-//! The cells of a map, as far as they are known, and its lines.
+//! Cells of a map, as far as they are known, and its lines.
 
 use std::sync::Arc;
 use std::time::Duration;

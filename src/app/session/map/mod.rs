@@ -1,4 +1,4 @@
-//! The map of the scene: every run of a grid over two of its fields, from rest, coarse first.
+//! Map of the scene: a run for every cell of a grid over two fields, from rest, coarse first.
 //!
 //! It is the sweep of the command line, run on threads of its own and looked at while it comes. It is asked
 //! for by the view that shows it, frame by frame: a map that is not looked at stops where it is, and goes on
@@ -6,14 +6,13 @@
 
 mod axes;
 mod cells;
-mod place;
+mod of_session;
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use rayon::ThreadPoolBuilder;
-
-use crate::app::task::{Stream, Wake};
+use crate::app::clock::Instant;
+use crate::app::task::{Stream, Wake, pool};
 use crate::scene::{Scene, SweepAxis};
 use crate::study::{self, Cell};
 
@@ -228,12 +227,9 @@ impl Mapping {
         let (sweep, levels) = (Arc::clone(&map.sweep), Arc::clone(&map.levels));
         let known: Vec<bool> = map.cells.iter().map(Option::is_some).collect();
         let generation = self.generation;
-        // one core stays for the window
-        let threads =
-            std::thread::available_parallelism().map_or(1, |cores| cores.get().saturating_sub(1).max(1));
         self.begun = Some(Instant::now());
         self.task = Stream::start(wake, move |cancel, each| {
-            let Ok(pool) = ThreadPoolBuilder::new().num_threads(threads).build() else { return };
+            let Some(pool) = pool() else { return };
             let task = study::Task { tick: &|| (), cancel };
             let mut begin = 0;
             for end in levels.ends {

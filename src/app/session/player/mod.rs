@@ -1,4 +1,4 @@
-//! What time is it in the window, and how fast does it go?
+//! The player: time, speed and remembered past of the live motion.
 //!
 //! The motion is live: playing advances it, and a change acts from its present state. Its past is remembered
 //! and can be looked at; playing from there goes through it once more and then on.

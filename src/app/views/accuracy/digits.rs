@@ -1,5 +1,4 @@
-//! What each digit costs: a table of the scene's run at several tolerances, and error over time where there
-//! is room.
+//! Table of runs at several tolerances, and error over time where there is room.
 
 use eframe::egui::{Align2, Grid, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
 

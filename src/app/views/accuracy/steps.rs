@@ -1,5 +1,4 @@
-//! What the step size does: the run in fixed steps as a ghost over the true one, and what is wrong with it in
-//! numbers.
+//! The run in fixed steps over the true one, and its errors in numbers.
 
 use eframe::egui::{self, ComboBox, Rect, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Points};

@@ -1,4 +1,4 @@
-//! The sentence of a mass that is shaken.
+//! Sentence about a shaken mass.
 
 use crate::app::words::fields::stop_distances;
 use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, Summary};

@@ -1,4 +1,4 @@
-//! What menus, keys and buttons ask for, done.
+//! Execution of the commands.
 
 use std::path::PathBuf;
 

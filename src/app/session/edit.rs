@@ -1,4 +1,4 @@
-//! Numbers of the scene as hands change them: by drags, presses of keys, or typed.
+//! Changes of single numbers of the scene, by drags, key presses or typing.
 
 use crate::app::words::fields::{in_words, name_and_unit};
 use crate::dynamics::STANDARD_GRAVITY;
