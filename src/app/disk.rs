@@ -1,4 +1,5 @@
-//! The file system as the window uses it, apart from scenes and results, which their own layers read and write.
+//! The file system as the window uses it, apart from scenes and results, which their own layers read and
+//! write.
 
 use std::path::{Path, PathBuf};
 

@@ -76,9 +76,7 @@ pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), Ap
         let wake = Arc::new(move || ctx.request_repaint());
         let mut window = Window::start(spec.as_deref(), settings, wake)?;
         if let Some(storage) = creation.storage {
-            window.recent = eframe::get_value(storage, window::RECENT).unwrap_or_default();
-            window.restore_size(eframe::get_value(storage, window::SIZE));
-            window.set_own_arrangement(eframe::get_value(storage, window::OWN_KEY));
+            window.restore(storage);
         }
         window.remember_file();
         Ok(Box::new(window))

@@ -12,8 +12,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::app::clock::Instant;
 
-/// Threads for a computation that uses all cores but one, which stays for the window; none where the system has no
-/// threads to give.
+/// Threads for a computation that uses all cores but one, which stays for the window; none where the system
+/// has no threads to give.
 pub fn pool() -> Option<ThreadPool> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     ThreadPoolBuilder::new().num_threads(cores.saturating_sub(1).max(1)).build().ok()

@@ -98,9 +98,9 @@ fn speed_ui(ui: &mut Ui, session: &mut Session) -> bool {
     changed
 }
 
-/// One event for every stretch of time that has some, at least `least` seconds long: a crossing before a release, a
-/// release before an impact, and of several the first. The stretches are powers of two of a second and begin at
-/// multiples of themselves, so that the ticks stay while time goes on.
+/// One event for every stretch of time that has some, at least `least` seconds long: a crossing before a
+/// release, a release before an impact, and of several the first. The stretches are powers of two of a second
+/// and begin at multiples of themselves, so that the ticks stay while time goes on.
 fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Event> {
     let stretch = least.max(f64::MIN_POSITIVE).log2().ceil().exp2();
     let rank = |event: &Event| match event.kind {

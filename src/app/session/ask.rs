@@ -4,10 +4,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::words::status;
-use crate::scene::{Excitation, Stops};
+use crate::scene::Excitation;
 use crate::study;
 
 use super::Session;
+use super::stops::restitution;
 
 impl Session {
     pub(super) fn ask_settled(&mut self) {
@@ -127,14 +128,5 @@ impl Session {
         }
         self.follow_accuracy();
         self.accuracy.wait(most);
-    }
-}
-
-/// The coefficient of restitution of stops that have one.
-fn restitution(stops: &Stops) -> Option<f64> {
-    match stops {
-        Stops::None | Stops::Hertz { .. } => None,
-        Stops::Rigid { restitution, .. } => Some(*restitution),
-        Stops::Uneven { restitution_left, restitution_right, .. } => restitution_right.or(*restitution_left),
     }
 }

@@ -1,12 +1,118 @@
-//! Changes of single numbers of the scene, by drags, key presses or typing.
+//! Changes of the scene: gestures, undo, and single numbers by drags, key presses or typing.
+
+use std::sync::Arc;
 
 use crate::app::words::fields::{in_words, name_and_unit};
-use crate::dynamics::STANDARD_GRAVITY;
-use crate::scene::{Excitation, FieldPath, Scene, Stops, check};
+use crate::dynamics::{Model, STANDARD_GRAVITY};
+use crate::mechanics::FLEXURE_TOLERANCE;
+use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
 
-use super::{PRESSES, Session};
+use super::Session;
+use super::build::{solved, why};
+use super::editor::Editor;
+
+/// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and
+/// what it is off by is not seen. At the end of the gesture they are solved as every study solves them.
+const HANDLED_TOLERANCE: f64 = 1e-6;
+
+/// Time in s within which another press of an arrow key belongs to the same gesture.
+const PRESSES: f64 = 1.0;
 
 impl Session {
+    /// Changes the scene as part of a gesture; see [`Editor::edit`].
+    pub fn edit(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
+        let now = (!self.editor.in_gesture()).then(|| self.now_card());
+        let changed = self.editor.edit(change);
+        if let (true, Some(now)) = (changed, now) {
+            self.before = Some(now);
+        }
+        changed
+    }
+
+    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run; if not,
+    /// everything stays as it is and [`refused`](Self::refused) says why. Whether it changed.
+    pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut Mechanism)) -> bool {
+        let mut document = self.editor.runnable();
+        change(&mut document.scene.mechanism);
+        if document.scene.mechanism == self.scene().mechanism {
+            return false;
+        }
+        let wanted = document.scene.mechanism.clone();
+        match solved(&document, HANDLED_TOLERANCE) {
+            Ok(mechanism) => {
+                (self.mechanism, self.mechanism_of, self.hurried) = (mechanism, wanted.clone(), true);
+                self.refused = None;
+                self.edit(|scene| scene.mechanism = wanted)
+            }
+            Err(error) => {
+                self.refused = Some(why(&error, &document.scene));
+                false
+            }
+        }
+    }
+
+    /// Why the last change that a hand wanted of the mechanism was not made.
+    pub fn refused(&self) -> Option<&str> {
+        self.refused.as_deref()
+    }
+
+    /// Ends the gesture.
+    pub fn end_gesture(&mut self) {
+        self.presses = None;
+        if self.editor.in_gesture() {
+            self.apply();
+            self.editor.end_gesture();
+            self.solve_in_earnest();
+            self.ask_thresholds();
+        }
+    }
+
+    /// Solves a mechanism anew that was solved in a hurry; where that fails, the hurried one stays.
+    fn solve_in_earnest(&mut self) {
+        if !std::mem::take(&mut self.hurried) {
+            return;
+        }
+        let Ok(mechanism) = solved(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
+        self.mechanism = mechanism;
+        if let Ok(model) = Model::build(self.scene(), Arc::clone(&self.mechanism)) {
+            self.model = Arc::new(model);
+            self.player.change(&self.model);
+            self.continued = true;
+            self.ask_settled();
+        }
+    }
+
+    /// Changes the scene by one gesture of its own.
+    pub fn edit_once(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
+        self.end_gesture();
+        let changed = self.edit(change);
+        self.end_gesture();
+        changed
+    }
+
+    /// A step back. Whether there was one.
+    pub fn undo(&mut self) -> bool {
+        self.travel(Editor::undo)
+    }
+
+    /// A step forward again. Whether there was one.
+    pub fn redo(&mut self) -> bool {
+        self.travel(Editor::redo)
+    }
+
+    pub(super) fn travel(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
+        self.end_gesture();
+        self.refused = None;
+        let now = self.now_card();
+        let moved = step(&mut self.editor);
+        if moved {
+            self.before = Some(now);
+            self.apply();
+            self.ask_thresholds();
+        }
+        moved
+    }
+
     /// The number at a path; that of the stops is, while they are off, of those that come.
     pub fn number(&self, path: &str) -> Option<f64> {
         FieldPath::new(path).get(&self.with_stops_for(path))

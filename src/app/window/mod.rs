@@ -24,24 +24,17 @@ use crate::scene::{Layout, PRESETS};
 use layouts::{Arrangement, Room, Tiling};
 use leave::Next;
 
-/// Where the scenes opened last are kept between two starts of the program.
-pub const RECENT: &str = "recent";
-
 /// Height in points of the controls as a row, and width of the column that opens beside the views.
 const ROW: f32 = 28.0;
 const MORE: f32 = 276.0;
 
-/// Where the window's size in points is kept, at the zoom 1.
-pub const SIZE: &str = "size";
 /// Height in points of the line of the first minute.
 const HINT_ROW: f32 = 32.0;
-
-/// Where a person's own arrangement is kept.
-pub const OWN_KEY: &str = "arrangement";
 
 mod command;
 mod deferred;
 mod files;
+mod kept;
 mod keys;
 pub mod layouts;
 pub mod leave;
@@ -337,26 +330,6 @@ impl Window {
         }
     }
 
-    /// A person's own arrangement of the views, where there is one.
-    pub fn own_arrangement(&self) -> Option<&Tree<View>> {
-        self.own.as_ref()
-    }
-
-    /// Takes over an arrangement that was kept.
-    pub fn set_own_arrangement(&mut self, own: Option<Tree<View>>) {
-        self.own = own;
-    }
-
-    /// Has the window be of a size that was kept: none at the first start.
-    pub fn restore_size(&mut self, size: Option<[f32; 2]>) {
-        self.place = WindowSize::restored(size);
-    }
-
-    /// The size in points at the zoom 1 that is to be kept.
-    pub fn size(&self) -> Option<[f32; 2]> {
-        self.place.size()
-    }
-
     /// What the traces share.
     pub fn timeline(&self) -> &views::Timeline {
         &self.memory.timeline
@@ -399,14 +372,7 @@ impl eframe::App for Window {
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(storage, eframe::APP_KEY, &self.settings);
-        eframe::set_value(storage, RECENT, &self.recent);
-        if let Some(size) = self.size() {
-            eframe::set_value(storage, SIZE, &size);
-        }
-        if let Some(own) = &self.own {
-            eframe::set_value(storage, OWN_KEY, own);
-        }
+        self.keep(storage);
     }
 
     fn persist_egui_memory(&self) -> bool {
