@@ -10,7 +10,7 @@ use std::time::Duration;
 use eframe::egui::{Context, Pos2, RawInput, Rect, vec2};
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
-use interwell::app::window::menu::Command;
+use interwell::app::window::Command;
 use interwell::app::window::{Window, prepare};
 use interwell::scene::{Excitation, Layout, Mechanism, SweepAxis};
 

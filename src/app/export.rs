@@ -41,7 +41,8 @@ pub fn events_csv(player: &Player) -> String {
     header(&table) + &rows(&table, 0..table.rows())
 }
 
-/// Force, potential and stiffness of the mechanism in the columns and at the positions of the command line's `curve`.
+/// Force, potential and stiffness of the mechanism in the columns and at the positions of the command line's
+/// `curve`.
 pub fn curve_csv(session: &Session) -> Result<String, OutsideCurve> {
     let mechanism = &session.model().mechanism;
     let table = curve(mechanism, default_positions(session.scene(), mechanism, CURVE_POINTS as usize))?;
@@ -91,8 +92,8 @@ pub fn command_line(session: &Session) -> Option<(String, Runs)> {
     Some((line, runs))
 }
 
-/// The command that makes the map without a window; none without a map, and for a scene that neither has a file nor
-/// is built in.
+/// The command that makes the map without a window; none without a map, and for a scene that neither has a
+/// file nor is built in.
 pub fn map_command_line(session: &Session) -> Option<String> {
     let (question, editor) = (&session.map.map()?.question, &session.editor);
     let mut line = format!("interwell --headless sweep {}", quoted(&editor.origin()?));

@@ -1,13 +1,15 @@
 //! The window: everything that is seen of a scene, and the controls that change it.
 //!
-//! Nothing is computed here. [`session`] holds what is open (a scene with undo, its live motion, the answers of background
-//! tasks) and works without a window; the rest draws it. A view is a function of a [`views::ViewContext`].
+//! Nothing is computed here. [`session`] holds what is open (a scene with undo, its live motion, the answers
+//! of background tasks) and works without a window; the rest draws it. A view is a function of a
+//! [`views::ViewContext`].
 //!
 //! Each folder uses only those above it; a test holds this.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`task`] | background tasks as values |
+//! | `clock`, `disk` | the clock and the file system |
+//! | [`task`] | threads: background jobs as values |
 //! | [`words`] | names and units of fields, number formats, explanations, the sentence about the motion |
 //! | [`session`] | the open scene with undo and files, the player, the map, the accuracy, without a window |
 //! | [`export`] | files and command lines that leave the window |
@@ -16,6 +18,8 @@
 //! | [`views`] | the plots and drawings, a file each |
 //! | [`window`] | layouts, menus, keys, files, dialogs: the `eframe::App` |
 
+mod clock;
+mod disk;
 pub mod export;
 pub mod panels;
 pub mod session;
@@ -72,9 +76,7 @@ pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), Ap
         let wake = Arc::new(move || ctx.request_repaint());
         let mut window = Window::start(spec.as_deref(), settings, wake)?;
         if let Some(storage) = creation.storage {
-            window.recent = eframe::get_value(storage, window::RECENT).unwrap_or_default();
-            window.restore_size(eframe::get_value(storage, window::SIZE));
-            window.set_own_arrangement(eframe::get_value(storage, window::OWN_KEY));
+            window.restore(storage);
         }
         window.remember_file();
         Ok(Box::new(window))

@@ -1,24 +1,41 @@
-//! How does the window have something computed without waiting for it?
+//! Background computations: the only place of the window that starts threads.
 //!
-//! A task is a value: dropped, it is cancelled. [`Latest`] asks again and again for the same kind of
+//! A job is a value: dropped, it is cancelled. [`Latest`] asks again and again for the same kind of
 //! answer and shows the newest; an answer to an older question is thrown away.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use crate::app::clock::Instant;
+use crate::system::threads::{Pool, processors};
+
+/// Threads for a computation that uses all cores but one, which stays for the window; none where the system
+/// has no threads to give.
+pub fn pool() -> Option<Pool> {
+    Pool::new(processors().saturating_sub(1).max(1)).ok()
+}
+
+/// Lets `take` take in what comes until it says that nothing more will, at most so long.
+pub fn wait_while(most: Duration, mut take: impl FnMut() -> bool) {
+    let until = Instant::now() + most;
+    while take() && Instant::now() < until {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
 
 /// Wakes the window when an answer is there.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// A computation on a thread of its own.
 #[derive(Debug)]
-pub struct Task<T> {
+pub struct Job<T> {
     answer: Receiver<T>,
     cancel: Arc<AtomicBool>,
 }
 
-impl<T: Send + 'static> Task<T> {
+impl<T: Send + 'static> Job<T> {
     /// Starts `job`, which looks at the flag that it is given; none where the system has no thread to give.
     pub fn start(wake: &Wake, job: impl FnOnce(&AtomicBool) -> T + Send + 'static) -> Option<Self> {
         let (sender, answer) = channel();
@@ -27,7 +44,7 @@ impl<T: Send + 'static> Task<T> {
         let thread = std::thread::Builder::new().name("study".into());
         let run = move || {
             let answer = job(&flag);
-            // nobody listens where the task was dropped
+            // nobody listens where the job was dropped
             if sender.send(answer).is_ok() {
                 wake();
             }
@@ -54,7 +71,7 @@ impl<T: Send + 'static> Task<T> {
     }
 }
 
-impl<T> Drop for Task<T> {
+impl<T> Drop for Job<T> {
     fn drop(&mut self) {
         self.cancel.store(true, Ordering::Relaxed);
     }
@@ -71,8 +88,8 @@ pub struct Stream<T> {
 }
 
 impl<T: Send + 'static> Stream<T> {
-    /// Starts `job`, which looks at the flag that it is given and hands its parts over one by one; none where the
-    /// system has no thread to give.
+    /// Starts `job`, which looks at the flag that it is given and hands its parts over one by one; none where
+    /// the system has no thread to give.
     pub fn start(
         wake: &Wake,
         job: impl FnOnce(&AtomicBool, &(dyn Fn(T) + Sync)) + Send + 'static,
@@ -124,7 +141,7 @@ impl<T> Drop for Stream<T> {
 #[derive(Debug)]
 pub struct Latest<T> {
     generation: u64,
-    task: Option<Task<Option<T>>>,
+    job: Option<Job<Option<T>>>,
     /// When the question under way was asked.
     since: Option<Instant>,
     /// The answer and the generation of its question.
@@ -133,7 +150,7 @@ pub struct Latest<T> {
 
 impl<T> Default for Latest<T> {
     fn default() -> Self {
-        Self { generation: 0, task: None, since: None, answer: None }
+        Self { generation: 0, job: None, since: None, answer: None }
     }
 }
 
@@ -141,30 +158,30 @@ impl<T: Send + 'static> Latest<T> {
     /// Asks anew; a question under way is dropped.
     pub fn ask(&mut self, wake: &Wake, job: impl FnOnce(&AtomicBool) -> Option<T> + Send + 'static) {
         self.generation += 1;
-        self.task = Task::start(wake, job);
+        self.job = Job::start(wake, job);
         self.since = Some(Instant::now());
     }
 
     /// Forgets question and answer.
     pub fn clear(&mut self) {
         self.generation += 1;
-        (self.task, self.answer) = (None, None);
+        (self.job, self.answer) = (None, None);
     }
 
     /// Drops the question under way; an answer that is there stays.
     pub fn stop(&mut self) {
-        self.task = None;
+        self.job = None;
     }
 
     /// Takes in an answer that has come. Whether one has.
     pub fn poll(&mut self) -> bool {
-        let Some(came) = self.task.as_ref().and_then(Task::poll) else { return false };
+        let Some(came) = self.job.as_ref().and_then(Job::poll) else { return false };
         self.take(came);
         true
     }
 
     fn take(&mut self, came: Result<Option<T>, ()>) {
-        self.task = None;
+        self.job = None;
         if let Ok(Some(answer)) = came {
             self.answer = Some((self.generation, answer));
         }
@@ -173,8 +190,8 @@ impl<T: Send + 'static> Latest<T> {
     /// Waits for the answer to the present question, at most so long. Whether it is there.
     pub fn wait(&mut self, most: Duration) -> bool {
         let until = Instant::now() + most;
-        if let Some(task) = &self.task
-            && let Some(came) = task.wait(until.saturating_duration_since(Instant::now()))
+        if let Some(job) = &self.job
+            && let Some(came) = job.wait(until.saturating_duration_since(Instant::now()))
         {
             self.take(came);
         }
@@ -198,7 +215,7 @@ impl<T: Send + 'static> Latest<T> {
 
     /// Whether an answer is being worked on.
     pub fn is_running(&self) -> bool {
-        self.task.is_some()
+        self.job.is_some()
     }
 }
 
@@ -215,13 +232,13 @@ mod tests {
     #[test]
     fn dropped_it_is_cancelled() {
         let (sender, seen) = channel();
-        let task = Task::start(&wake(), move |cancel: &AtomicBool| {
+        let job = Job::start(&wake(), move |cancel: &AtomicBool| {
             while !cancel.load(Ordering::Relaxed) {
                 std::thread::sleep(Duration::from_millis(1));
             }
             sender.send(()).ok();
         });
-        drop(task.unwrap());
+        drop(job.unwrap());
         assert!(seen.recv_timeout(LONG).is_ok());
     }
 

@@ -141,7 +141,8 @@ fn without_the_window_nothing_of_it_is_built() {
 }
 
 /// The folders and files of `src/app`, the lowest first: each may name those before it.
-const WINDOW_ORDER: [&str; 8] = ["task", "words", "session", "export", "ui", "panels", "views", "window"];
+const WINDOW_ORDER: [&str; 10] =
+    ["clock", "disk", "task", "words", "session", "export", "ui", "panels", "views", "window"];
 
 /// The folders of `src/app` that a file uses, by `crate::app::`, with lines. A `super` that leads out of the folder is
 /// an empty name: another folder is named in full.

@@ -5,8 +5,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
+use interwell::app::window::Command;
 use interwell::app::window::Window;
-use interwell::app::window::menu::Command;
 use interwell::study::accuracy::methods::Scheme;
 
 use crate::support::{LONG, PROJECTED, WIDE, command, session, window};

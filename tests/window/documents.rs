@@ -4,9 +4,9 @@ use eframe::egui::{self, Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
+use interwell::app::window::Command;
 use interwell::app::window::Window;
 use interwell::app::window::leave::Next;
-use interwell::app::window::menu::Command;
 
 use crate::support::{WIDE, command, window};
 

@@ -181,7 +181,7 @@ fn every_preset_has_a_map_or_says_why_not() {
         let mut harness = window(preset.name, WIDE, Settings::default());
         harness.state_mut().carry_out(
             &eframe::egui::Context::default(),
-            interwell::app::window::menu::Command::Arrange(Layout::Map),
+            interwell::app::window::Command::Arrange(Layout::Map),
         );
         harness.run_steps(4);
         let mapping = &harness.state().session.map;

@@ -2,7 +2,7 @@
 
 use allocation_counter::measure;
 use interwell::app::views::View;
-use interwell::app::window::menu::Command;
+use interwell::app::window::Command;
 
 use crate::screen::Screen;
 use crate::support::session;

@@ -3,10 +3,10 @@
 use eframe::egui::{self, Key, Modifiers, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::words::fields::info;
-use interwell::app::window::menu::Command;
 use interwell::app::ui::settings::Settings;
+use interwell::app::window::Command;
 use interwell::app::window::Window;
+use interwell::app::words::fields::info;
 use interwell::scene::{FieldPath, PRESETS, Stops};
 
 use crate::support::{LONG, command, session, window};

@@ -76,7 +76,7 @@ fn a_stop_of_the_well_stands_at_its_travel_limit() {
     let ctx = harness.ctx.clone();
     harness.state_mut().session.player.set_playing(false);
     for view in View::ALL {
-        let show = interwell::app::window::menu::Command::Show(view, view == View::Well);
+        let show = interwell::app::window::Command::Show(view, view == View::Well);
         harness.state_mut().carry_out(&ctx, show);
     }
     harness.state_mut().session.player.hold(1.5e-3);

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use eframe::egui::{Event, Modifiers, PointerButton, Pos2, accesskit::Role, pos2};
 use interwell::app::views::View;
-use interwell::app::window::menu::Command;
+use interwell::app::window::Command;
 use interwell::dynamics::{Model, STANDARD_GRAVITY};
 use interwell::scene::{Layout, PRESETS, SweepAxis};
 use interwell::study::Watch;

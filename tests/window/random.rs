@@ -11,9 +11,9 @@ use eframe::egui::{
 };
 use interwell::app::session::editor::Editor;
 use interwell::app::session::player::SPEEDS;
-use interwell::app::ui::settings::Settings;
+use interwell::app::ui::settings::Setting;
 use interwell::app::views::View;
-use interwell::app::window::menu::Command;
+use interwell::app::window::{Command, Wanted};
 use interwell::scene::{Layout, PRESETS, Scene, SweepAxis};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
@@ -238,15 +238,11 @@ impl Hand {
     }
 
     fn command(&mut self, screen: &Screen) -> Command {
-        let settings = |bits: usize| Settings {
-            dark: bits & 1 != 0,
-            projector: bits & 2 != 0,
-            reduce_motion: bits & 4 != 0,
-        };
+        let settings = [Setting::Dark, Setting::Projector, Setting::ReduceMotion];
         match self.below(24) {
             0..=3 => Command::OpenPreset(self.pick(PRESETS).name),
             4 => Command::OpenRecent(self.pick(PRESETS).name.to_owned()),
-            5 => Command::Set(settings(self.below(8))),
+            5 => Command::Toggle(self.pick(&settings)),
             6..=9 => Command::Show(self.pick(&View::ALL), self.below(2) == 0),
             10 => Command::Arrange(self.pick(&[Layout::Look, Layout::Study, Layout::Map])),
             11 => self.pick(&[Command::KeepOwn, Command::ArrangeOwn]),
@@ -261,11 +257,11 @@ impl Hand {
             20 => self.pick(&[
                 Command::Notes,
                 Command::NextTab,
-                Command::SaveRun,
+                Command::SaveAs(Wanted::Run),
                 Command::Save,
-                Command::SaveAs,
-                Command::SaveMap,
-                Command::SavePicture,
+                Command::SaveAs(Wanted::Save),
+                Command::SaveAs(Wanted::Map),
+                Command::SaveAs(Wanted::Picture),
             ]),
             21 => self.pick(&[Command::About, Command::Shortcuts, Command::Quit]),
             22 if screen.window.session.player.is_playing() => Command::Step,

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use eframe::egui::{Context, Event, FullOutput, Pos2, RawInput, Rect, Vec2, ViewportId, accesskit::Node};
 use interwell::app::ui::settings::Settings;
-use interwell::app::window::menu::Command;
+use interwell::app::window::Command;
 use interwell::app::window::{Window, prepare};
 
 /// A frame at the usual rate.

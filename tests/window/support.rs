@@ -9,7 +9,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use interwell::app::session::Session;
 use interwell::app::session::editor::Editor;
 use interwell::app::ui::settings::Settings;
-use interwell::app::window::menu::Command;
+use interwell::app::window::Command;
 use interwell::app::window::{Window, prepare};
 
 use crate::shared::changed;

@@ -211,7 +211,7 @@ fn what_takes_long_can_be_stopped_and_a_newer_change_takes_its_place() {
     let text = harness.state().session.sentence().text;
     assert!(text.starts_with("Stopped before it was known"), "{text}");
     harness.state_mut().session.edit_once(|scene| scene.run.duration_s = 1e9);
-    command(&mut harness, interwell::app::window::menu::Command::Undo);
+    command(&mut harness, interwell::app::window::Command::Undo);
     harness.state_mut().session.wait(LONG);
     harness.run_steps(2);
     let text = harness.state().session.sentence().text;

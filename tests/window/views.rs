@@ -5,9 +5,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::{Memory, Span, View, energy};
+use interwell::app::window::Command;
 use interwell::app::window::Window;
 use interwell::app::window::layouts::Room;
-use interwell::app::window::menu::Command;
 use interwell::scene::{Layout, PRESETS, Stops};
 
 use crate::support::{PROJECTED, WIDE, command, session, window};

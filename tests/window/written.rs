@@ -3,8 +3,8 @@
 use eframe::egui::{Event, OutputCommand};
 use egui_kittest::Harness;
 use interwell::app::ui::settings::Settings;
+use interwell::app::window::Command;
 use interwell::app::window::Window;
-use interwell::app::window::menu::Command;
 use interwell::scene::Layout;
 
 use crate::documents::{harness_text, opened, title};

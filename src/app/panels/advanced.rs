@@ -1,4 +1,4 @@
-//! What is changed seldom: the kind of shaking and its numbers, stops that differ, how long and how closely a run goes.
+//! Controls that are changed seldom: kind of shaking, uneven stops, run length and tolerance.
 //!
 //! What cannot be is not offered, or is greyed with the reason.
 
@@ -35,7 +35,8 @@ fn kind(excitation: &Excitation) -> &'static str {
     }
 }
 
-/// Another kind of shaking, as strong and as fast as the present one where that has a meaning, else as `suiting`.
+/// Another kind of shaking, as strong and as fast as the present one where that has a meaning, else as
+/// `suiting`.
 fn of_kind(name: &str, from: &Excitation, suiting: &Excitation) -> Excitation {
     let (own_f, own_g) = match suiting {
         Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),
@@ -161,8 +162,8 @@ fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
             ui.selectable_value(&mut wanted, value, name);
         }
     });
-    let hover = "Error allowed in a step. Smaller: a little slower; a motion without rhythm takes another course, and \
-                 its averages stay.";
+    let hover = "Error allowed in a step. Smaller: a little slower; a motion without rhythm takes another \
+                 course, and its averages stay.";
     combo.response.labelled_by(name.id).on_hover_text(hover);
     changed |= wanted != present && session.edit_once(|scene| scene.run.tolerance = wanted);
     changed

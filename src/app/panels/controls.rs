@@ -1,4 +1,4 @@
-//! The hands on the scene: shaking, stops, and under More what is changed less often.
+//! Controls of the scene: shaking, stops and, under More, what is changed less often.
 
 use eframe::egui::{self, RichText, Ui};
 
@@ -75,8 +75,8 @@ fn heading_ui(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).heading());
 }
 
-/// The control of a number of the scene, or of the stops that come when they are switched on; none where there is no such
-/// number. Whether the scene changed.
+/// The control of a number of the scene, or of the stops that come when they are switched on; none where
+/// there is no such number. Whether the scene changed.
 pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &'static str, width: f32) -> bool {
     let (Some(field), Some(value)) = (fields::info(path), session.number(path)) else { return false };
     let FieldInfo { name, unit, typed, hover, .. } = *field;
@@ -135,7 +135,8 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) -> bool {
     hover_beside(ui.checkbox(&mut on, text), hover).changed() && session.switch_stops(on)
 }
 
-/// The distance of the stops, or of each of them; while they are off, of those that come: moving it switches them on.
+/// The distance of the stops, or of each of them; while they are off, of those that come: moving it switches
+/// them on.
 fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let paths = ["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"];
     paths.into_iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))

@@ -1,4 +1,4 @@
-//! The hands on the flexures: preload, thickness, lengths, widths.
+//! Controls of the flexures: preload, thickness, lengths, widths.
 
 use eframe::egui::{self, Ui};
 

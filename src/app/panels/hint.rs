@@ -1,4 +1,4 @@
-//! The line of the first minute: what to try next, and at its end what it showed and why.
+//! Lesson of the first minute: what to try next, and what it showed.
 
 use eframe::egui::{RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! The notes of the scene in the column of the controls, as far as there is room.
+//! Notes of the scene below the controls, as far as there is room.
 
 use eframe::egui::{Color32, FontSelection, RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! The line under the menu: what the mass does, as large as it fits.
+//! Status line under the menu: what the mass does, with accuracy and settling beside it.
 
 use eframe::egui::{self, RichText, Sense, Ui, Vec2};
 

@@ -1,4 +1,4 @@
-//! Time: play, pause, step, go to events, choose a speed, and scrub through what has been seen.
+//! Transport: play, pause, step, events, speed and the bar of the remembered past.
 
 use std::collections::VecDeque;
 

@@ -1,7 +1,8 @@
-//! How accurate is what is on the screen? What was asked about it in the background, and what has come.
+//! Accuracy of the motion on the screen, worked out in the background.
 //!
-//! The error of the motion is worked out whenever the scene stands still, from where the motion was when it was changed last.
-//! What the view Accuracy shows is of the scene from its start, and is computed while that view is open.
+//! The error of the motion is worked out whenever the scene stands still, from where the motion was when it
+//! was changed last. What the view Accuracy shows is of the scene from its start, and is computed while that
+//! view is open.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -83,7 +84,8 @@ impl Default for Accuracy {
 }
 
 impl Accuracy {
-    /// Another motion: what moves from now on and the live time in s, or none where nothing can be said of it.
+    /// Another motion: what moves from now on and the live time in s, or none where nothing can be said of
+    /// it.
     pub(super) fn begin(&mut self, origin: Option<(Arc<Model>, f64)>) {
         (self.origin, self.asked, self.stopped) = (origin, None, false);
         self.trust.clear();
@@ -139,8 +141,8 @@ impl Accuracy {
         Some((short(trust, *from), long(trust, *from)))
     }
 
-    /// Asks, for a view, what digits and steps cost in `model`; to be asked anew in every frame. Where a hand still changes
-    /// the scene, what is known of an earlier one has to do.
+    /// Asks, for a view, what digits and steps cost in `model`; to be asked anew in every frame. Where a hand
+    /// still changes the scene, what is known of an earlier one has to do.
     pub(super) fn want(&mut self, model: &Arc<Model>, still: bool, wake: &Wake) {
         self.wanted = true;
         if !still {

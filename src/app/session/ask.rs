@@ -1,4 +1,4 @@
-//! What is asked of the background about an open scene: what it settles to, what it would take, how accurate it is.
+//! Background questions about the open scene: settled motion, thresholds, accuracy.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -97,8 +97,8 @@ impl Session {
         !self.editor.in_gesture() && !self.player.is_held() && self.fault.is_none()
     }
 
-    /// How accurate the motion is, in a few words and in full; none while nothing moves by itself, and where nothing is
-    /// known.
+    /// How accurate the motion is, in a few words and in full; none while nothing moves by itself, and where
+    /// nothing is known.
     pub fn trust(&self) -> Option<(String, String)> {
         let own = self.fault.is_none() && !self.player.is_held() && self.player.ended().is_none();
         self.accuracy.words().filter(|_| own)

@@ -1,11 +1,13 @@
-//! Can a scene be run, and if not, why?
+//! Conversion of a scene into a model, and the reasons why it fails.
 
 use std::sync::Arc;
 
 use crate::app::words::fields::{in_words, name_and_unit};
 use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FlexureError, Mechanism};
-use crate::scene::{Document, Fault, Scene, SceneError};
+use crate::scene::{Document, Excitation, Fault, Scene, SceneError};
+
+use super::Session;
 
 /// Why a scene cannot be run.
 #[derive(Debug, thiserror::Error)]
@@ -36,8 +38,8 @@ pub(super) fn solved(document: &Document, tolerance: f64) -> Result<Arc<Mechanis
     Ok(mechanism)
 }
 
-/// The first thing that is wrong, with the names that stand on the screen and without the place in a file, which a hand on a
-/// slider does not look at.
+/// The first thing that is wrong, with the names that stand on the screen and without the place in a file,
+/// which a hand on a slider does not look at.
 pub(super) fn why(error: &CannotRun, scene: &Scene) -> String {
     match error {
         CannotRun::Wrong(SceneError::Faults { faults, .. }) => faults.first().map_or_else(
@@ -51,4 +53,32 @@ pub(super) fn why(error: &CannotRun, scene: &Scene) -> String {
         ),
         _ => error.to_string(),
     }
+}
+
+impl Session {
+    /// The model of the scene as it stands.
+    pub(super) fn build(&mut self) -> Result<Model, CannotRun> {
+        let document = &self.editor.runnable();
+        document.check()?;
+        let scene = &document.scene;
+        if scene.mechanism != self.mechanism_of {
+            let built = Mechanism::build(&scene.mechanism, &document.files)
+                .map_err(|error| unbuilt(document, error))?;
+            self.mechanism = Arc::new(built);
+            self.mechanism_of = scene.mechanism.clone();
+        }
+        Ok(Model::build(scene, Arc::clone(&self.mechanism)).map_err(|faults| document.error_from(faults))?)
+    }
+}
+
+/// Whether all thresholds of one scene are those of the other.
+pub(super) fn differ_in_amplitude_alone(a: &Scene, b: &Scene) -> bool {
+    let mut other = a.clone();
+    match (&mut other.excitation, &b.excitation) {
+        (Excitation::Sine { amplitude_g: own, .. }, Excitation::Sine { amplitude_g, .. }) => {
+            *own = *amplitude_g
+        }
+        _ => return false,
+    }
+    other == *b
 }

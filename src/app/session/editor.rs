@@ -1,14 +1,14 @@
-//! What is being edited, where it is kept, and the way back.
+//! The edited scene with its file and its undo stack.
 //!
-//! Undo is a stack of scenes: a scene is plain, comparable data of a few hundred bytes, and one gesture (a drag, a
-//! click, a number typed) is one step.
+//! Undo is a stack of scenes: a scene is plain, comparable data of a few hundred bytes, and one gesture (a
+//! drag, a click, a number typed) is one step.
 
 use std::path::Path;
 
 use crate::output::write_file;
 use crate::scene::{Document, Files, Scene, SceneError, Source, Start, numeric_fields, write};
 
-use super::bring::{bring, follow};
+use super::companions::{bring, follow};
 
 /// The most steps back that are kept.
 const MOST_STEPS: usize = 500;
@@ -46,7 +46,8 @@ impl Editor {
         Document::from_text(PASTED, text, Files::default()).map(Self::new)
     }
 
-    /// What the command line calls the scene that was opened or last saved; none for one that has no such name.
+    /// What the command line calls the scene that was opened or last saved; none for one that has no such
+    /// name.
     pub fn origin(&self) -> Option<String> {
         match &self.document.source {
             Source::File(path) => Some(path.to_string_lossy().into_owned()),
@@ -55,8 +56,9 @@ impl Editor {
         }
     }
 
-    /// The document as it can be run and written: without axes of its sweep that name a field which the scene does not
-    /// have at the moment, such as the travel limit while the stops are off. The scene keeps them for when it has.
+    /// The document as it can be run and written: without axes of its sweep that name a field which the scene
+    /// does not have at the moment, such as the travel limit while the stops are off. The scene keeps them
+    /// for when it has.
     pub fn runnable(&self) -> Document {
         runnable(&self.document)
     }

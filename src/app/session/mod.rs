@@ -1,47 +1,38 @@
-//! What is open in the window: a scene, its model, its motion, and what is known of it.
+//! The open scene with its model, its motion and what is known of it.
 //!
 //! Everything here works without a window; the views look at it and change it through its methods.
 
 pub mod accuracy;
 mod ask;
-mod bring;
 mod build;
+mod companions;
+mod edit;
 pub mod editor;
-mod hands;
 pub mod map;
 pub mod player;
+mod sentence;
 mod sliders;
+mod stops;
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::task::{Latest, Wake};
-use crate::app::words::status::{self, Sentence, Told};
 use crate::dynamics::{Model, Outcome, Summary};
-use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
+use crate::mechanics::Mechanism;
 use crate::scene::{self, Excitation, Scene, Stops};
 use crate::study::{self, Thresholds};
 
 use accuracy::Accuracy;
 pub use build::CannotRun;
-use build::{solved, unbuilt, why};
+use build::{differ_in_amplitude_alone, unbuilt, why};
 use editor::Editor;
 use map::Mapping;
 use player::{Player, fitting_speed};
-use sliders::suiting_limit;
-
-/// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and what it is
-/// off by is not seen. At the end of the gesture they are solved as every study solves them.
-const HANDLED_TOLERANCE: f64 = 1e-6;
-
-/// The share of speed that stops keep where a scene does not say which stops come.
-const RESTITUTION: f64 = 0.36;
+use stops::first_stops;
 
 /// For how long the background works before it is offered to stop it.
 pub const OFFER_TO_STOP: Duration = Duration::from_secs(2);
-
-/// Time in s within which another press of an arrow key belongs to the same gesture.
-const PRESSES: f64 = 1.0;
 
 /// Share of a period for which a motion has to go on to be worth going on with.
 const MOMENT: f64 = 0.02;
@@ -49,13 +40,13 @@ const MOMENT: f64 = 0.02;
 /// Share of the length scale by which a change has to carry the mass to be worth a word.
 const CARRIED: f64 = 0.02;
 
-/// Scales of a scene that set how far its sliders go: those of the scene as it was opened, so that no slider jumps
-/// while another one is moved.
+/// Scales of a scene that set how far its sliders go: those of the scene as it was opened, so that no slider
+/// jumps while another one is moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OpenedScales {
-    /// Length in m and time in s.
+    /// Length in m.
     pub length: f64,
-    /// See there.
+    /// Time in s.
     pub time: f64,
     /// Distance of the right-hand well from the middle in mm.
     pub well_mm: Option<f64>,
@@ -208,100 +199,6 @@ impl Session {
         self.follow_accuracy();
     }
 
-    /// Changes the scene as part of a gesture; see [`Editor::edit`].
-    pub fn edit(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
-        let now = (!self.editor.in_gesture()).then(|| self.now_card());
-        let changed = self.editor.edit(change);
-        if let (true, Some(now)) = (changed, now) {
-            self.before = Some(now);
-        }
-        changed
-    }
-
-    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run; if not, everything stays
-    /// as it is and [`refused`](Self::refused) says why. Whether it changed.
-    pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut scene::Mechanism)) -> bool {
-        let mut document = self.editor.runnable();
-        change(&mut document.scene.mechanism);
-        if document.scene.mechanism == self.scene().mechanism {
-            return false;
-        }
-        let wanted = document.scene.mechanism.clone();
-        match solved(&document, HANDLED_TOLERANCE) {
-            Ok(mechanism) => {
-                (self.mechanism, self.mechanism_of, self.hurried) = (mechanism, wanted.clone(), true);
-                self.refused = None;
-                self.edit(|scene| scene.mechanism = wanted)
-            }
-            Err(error) => {
-                self.refused = Some(why(&error, &document.scene));
-                false
-            }
-        }
-    }
-
-    /// Why the last change that a hand wanted of the mechanism was not made.
-    pub fn refused(&self) -> Option<&str> {
-        self.refused.as_deref()
-    }
-
-    /// Ends the gesture.
-    pub fn end_gesture(&mut self) {
-        self.presses = None;
-        if self.editor.in_gesture() {
-            self.apply();
-            self.editor.end_gesture();
-            self.solve_in_earnest();
-            self.ask_thresholds();
-        }
-    }
-
-    /// Solves a mechanism anew that was solved in a hurry; where that fails, the hurried one stays.
-    fn solve_in_earnest(&mut self) {
-        if !std::mem::take(&mut self.hurried) {
-            return;
-        }
-        let Ok(mechanism) = solved(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
-        self.mechanism = mechanism;
-        if let Ok(model) = Model::build(self.scene(), Arc::clone(&self.mechanism)) {
-            self.model = Arc::new(model);
-            self.player.change(&self.model);
-            self.continued = true;
-            self.ask_settled();
-        }
-    }
-
-    /// Changes the scene by one gesture of its own.
-    pub fn edit_once(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
-        self.end_gesture();
-        let changed = self.edit(change);
-        self.end_gesture();
-        changed
-    }
-
-    /// A step back. Whether there was one.
-    pub fn undo(&mut self) -> bool {
-        self.travel(Editor::undo)
-    }
-
-    /// A step forward again. Whether there was one.
-    pub fn redo(&mut self) -> bool {
-        self.travel(Editor::redo)
-    }
-
-    fn travel(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
-        self.end_gesture();
-        self.refused = None;
-        let now = self.now_card();
-        let moved = step(&mut self.editor);
-        if moved {
-            self.before = Some(now);
-            self.apply();
-            self.ask_thresholds();
-        }
-        moved
-    }
-
     /// The scene and the time as they were opened, playing.
     pub fn back_to_start(&mut self) {
         self.travel(Editor::back_to_start);
@@ -342,20 +239,6 @@ impl Session {
         self.by_hand
     }
 
-    /// Switches the stops; the ones that were there are remembered.
-    pub fn switch_stops(&mut self, on: bool) -> bool {
-        let stops = if on { self.remembered_stops } else { Stops::None };
-        if !on && self.scene().stops != Stops::None {
-            self.remembered_stops = self.scene().stops;
-        }
-        self.edit_once(|scene| scene.stops = stops)
-    }
-
-    /// The stops that come when they are switched on.
-    pub fn remembered_stops(&self) -> Stops {
-        self.remembered_stops
-    }
-
     /// Lets the mass go on as the scene now says, where that has changed.
     fn apply(&mut self) {
         if *self.editor.scene() == self.built {
@@ -382,8 +265,8 @@ impl Session {
         }
     }
 
-    /// Lets the motion go on from its present state by the model; one that has ended, and could not go on from there,
-    /// begins again.
+    /// Lets the motion go on from its present state by the model; one that has ended, and could not go on from
+    /// there, begins again.
     fn go_on(&mut self) {
         let (ended, before) = (self.player.ended().is_some(), self.player.watch().now().x);
         self.player.change(&self.model);
@@ -419,19 +302,6 @@ impl Session {
     pub fn crosses(&self) -> Option<bool> {
         let summary = self.settled.current()?;
         (self.fault.is_none() && summary.outcome == Outcome::Done).then_some(summary.crossings > 0)
-    }
-
-    fn build(&mut self) -> Result<Model, CannotRun> {
-        let document = &self.editor.runnable();
-        document.check()?;
-        let scene = &document.scene;
-        if scene.mechanism != self.mechanism_of {
-            let built = Mechanism::build(&scene.mechanism, &document.files)
-                .map_err(|error| unbuilt(document, error))?;
-            self.mechanism = Arc::new(built);
-            self.mechanism_of = scene.mechanism.clone();
-        }
-        Ok(Model::build(scene, Arc::clone(&self.mechanism)).map_err(|faults| document.error_from(faults))?)
     }
 
     /// What the motion settles to; of an earlier scene while the answer is still to come.
@@ -470,47 +340,13 @@ impl Session {
         self.changed_at
     }
 
-    /// How far the motion has come, after a change, towards what the sentence tells of: seconds gone, and of how many.
+    /// How far the motion has come, after a change, towards what the sentence tells of: seconds gone, and of
+    /// how many.
     pub fn settling(&self) -> Option<(f64, f64)> {
         let goes = self.model.is_shaken() && self.player.ended().is_none();
         let told = self.told().filter(|_| goes && self.changed_at > 0.0)?;
         let (gone, of) = (told.now - told.origin, told.seen_from() - told.origin);
         (gone < of).then_some((gone, of))
-    }
-
-    /// What the status line says.
-    pub fn sentence(&self) -> Sentence {
-        if let Some(fault) = &self.fault {
-            return Sentence::fault(fault);
-        }
-        let state = self.player.state();
-        if self.player.is_held() {
-            return status::held(&self.model, &state);
-        }
-        if let Some(outcome) = self.player.ended() {
-            return status::ended(&self.model, outcome);
-        }
-        if !self.model.is_shaken() {
-            return status::unshaken(&self.model, &state);
-        }
-        match self.told() {
-            Some(told) => status::driven(&told),
-            None if self.settled.is_running() => Sentence::waiting(),
-            None => stopped(),
-        }
-    }
-
-    /// What the sentence tells of, once it is known.
-    fn told(&self) -> Option<Told<'_>> {
-        let settled = self.settled.current()?;
-        Some(Told {
-            scene: self.scene(),
-            model: &self.model,
-            summary: settled,
-            thresholds: self.thresholds.current(),
-            origin: self.asked_from,
-            now: self.player.watch().time(),
-        })
     }
 
     /// Amplitude of the shaking in g, where it is a sine.
@@ -519,36 +355,5 @@ impl Session {
             Excitation::Sine { amplitude_g, .. } => Some(amplitude_g),
             _ => None,
         }
-    }
-}
-
-/// Whether all thresholds of one scene are those of the other.
-fn differ_in_amplitude_alone(a: &Scene, b: &Scene) -> bool {
-    let mut other = a.clone();
-    match (&mut other.excitation, &b.excitation) {
-        (Excitation::Sine { amplitude_g: own, .. }, Excitation::Sine { amplitude_g, .. }) => {
-            *own = *amplitude_g
-        }
-        _ => return false,
-    }
-    other == *b
-}
-
-/// While it is not known what the motion settles to, because a person has stopped that.
-fn stopped() -> Sentence {
-    let text = "Stopped before it was known what this settles to: a shorter run length is known sooner.";
-    Sentence { kind: status::Kind::Other, text: text.to_owned(), remedy: String::new() }
-}
-
-/// The stops that come when they are switched on, before a hand has moved any.
-fn first_stops(scene: &Scene, model: &Model) -> Stops {
-    let hinted = || scene.app.as_ref().and_then(|hints| hints.stops_when_on);
-    let suiting = || {
-        let well = model.mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
-        Stops::Rigid { travel_limit_mm: suiting_limit(well), restitution: RESTITUTION }
-    };
-    match scene.stops {
-        Stops::None => hinted().unwrap_or_else(suiting),
-        stops => stops,
     }
 }

@@ -8,7 +8,8 @@ use crate::scene::{FieldPath, Mechanism, Stops};
 use super::Session;
 
 impl FieldInfo {
-    /// How far the slider goes in a scene: as in the prototype's, where that suits its scales, else by its own.
+    /// How far the slider goes in a scene: as in the prototype's, where that suits its scales, else by its
+    /// own.
     pub fn reach(&self, session: &Session) -> Reach {
         let (low, high, step) = self.slider;
         let saved = FieldPath::new(self.path).get(session.editor.saved());
@@ -61,14 +62,6 @@ fn preload(session: &Session) -> Option<Reach> {
     Some(Reach { low: 0.0, high: (most / step).round() * step, step })
 }
 
-/// Stops that suit a scene that does not say which: where the prototype has them, in parts of the well's distance.
-pub fn suiting_limit(well_mm: Option<f64>) -> f64 {
-    match well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()) {
-        Some(mm) => format!("{:.1e}", 0.215 * mm).parse().unwrap_or(mm),
-        None => 1.5,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
@@ -106,9 +99,5 @@ mod tests {
                 );
             }
         }
-        assert_eq!(
-            (suiting_limit(Some(6.9)), suiting_limit(Some(1000.0)), suiting_limit(None)),
-            (1.5, 220.0, 1.5)
-        );
     }
 }

@@ -1,6 +1,7 @@
-//! A number of the scene that is dragged, stepped by keys, or typed.
+//! Sliders with a number that can be dragged, stepped by keys, or typed.
 //!
-//! It is written only where a hand has changed it: to pass through it, or to leave it as it was typed, changes no digit.
+//! It is written only where a hand has changed it: to pass through it, or to leave it as it was typed,
+//! changes no digit.
 
 use std::cell::RefCell;
 

@@ -1,4 +1,4 @@
-//! What does a person want of the window, whatever the scene?
+//! Settings of the window, whatever the scene.
 
 /// Kept between two starts of the program.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -10,4 +10,26 @@ pub struct Settings {
     pub projector: bool,
     /// No rings at impacts.
     pub reduce_motion: bool,
+}
+
+/// One of the settings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Setting {
+    /// Dark ground.
+    Dark,
+    /// Light ground, larger, thicker lines.
+    Projector,
+    /// No rings at impacts.
+    ReduceMotion,
+}
+
+impl Settings {
+    /// One of them.
+    pub fn of(&mut self, setting: Setting) -> &mut bool {
+        match setting {
+            Setting::Dark => &mut self.dark,
+            Setting::Projector => &mut self.projector,
+            Setting::ReduceMotion => &mut self.reduce_motion,
+        }
+    }
 }

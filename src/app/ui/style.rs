@@ -1,7 +1,8 @@
-//! Which colour and which width means what?
+//! Colours, line widths and text sizes, with what each stands for.
 //!
-//! The hues are Okabe and Ito's (2008, "Color Universal Design"), one meaning each, and never a hue alone: every regime
-//! has a shape as well. Light, dark and projector differ in grounds, widths and zoom, not in meanings.
+//! The hues are Okabe and Ito's (2008, "Color Universal Design"), one meaning each, and never a hue alone:
+//! every regime has a shape as well. Light, dark and projector differ in grounds, widths and zoom, not in
+//! meanings.
 
 use std::sync::Arc;
 
@@ -28,8 +29,8 @@ pub const STATUS: f32 = 18.0;
 /// The status sentence where room is short.
 pub const STATUS_COMPACT: f32 = 16.0;
 
-/// Radius in points of the proof mass where it rides on a curve; stops are drawn as far outside their limit, so that it
-/// touches them when it should.
+/// Radius in points of the proof mass where it rides on a curve; stops are drawn as far outside their limit,
+/// so that it touches them when it should.
 pub const BALL: f32 = 9.0;
 
 /// How near in points a hand has to be to grab something.

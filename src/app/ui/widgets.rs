@@ -1,4 +1,4 @@
-//! Small things that several panels draw: hover texts, icons, the shapes of regimes.
+//! Small widgets: dialogs, hover texts, icons, the shapes of regimes.
 
 use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
 
@@ -17,8 +17,9 @@ pub fn dialog_width(ui: &Ui, most: f32) -> f32 {
     (ui.ctx().content_rect().width() - 60.0).clamp(60.0, most)
 }
 
-/// A hover text that stands beside what it explains, where the window has a column of controls: below it would cover the
-/// next one. It stays away from what a hand has just changed, until the pointer comes back to it.
+/// A hover text that stands beside what it explains, where the window has a column of controls: below it
+/// would cover the next one. It stays away from what a hand has just changed, until the pointer comes back to
+/// it.
 pub fn hover_beside(response: Response, text: &str) -> Response {
     let hushed = egui::Id::unique("hushed");
     let own = Some(response.id);

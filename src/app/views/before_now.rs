@@ -1,4 +1,4 @@
-//! Before / now: what the last gesture changed, and what that did.
+//! View of the last change: the scene and its motion before it and now.
 
 use eframe::egui::{self, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
 

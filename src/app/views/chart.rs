@@ -1,7 +1,7 @@
-//! A picture over the displacement: where things stand in it, and its axes.
+//! Charts over the displacement: coordinates, axes, readout.
 //!
-//! The x axis is the one that all views share, over the whole width, so that pictures above each other line up; what
-//! belongs to the vertical axis is written into the picture.
+//! The x axis is the one that all views share, over the whole width, so that pictures above each other line
+//! up; what belongs to the vertical axis is written into the picture.
 
 use eframe::egui::{Align2, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
@@ -100,7 +100,8 @@ impl Chart {
         }
     }
 
-    /// What belongs to the vertical axis, over what is drawn: its name, with the unit of which one is `unit`, and numbers.
+    /// What belongs to the vertical axis, over what is drawn: its name, with the unit of which one is `unit`,
+    /// and numbers.
     pub fn numbers(&self, ui: &Ui, style: &Style, name: &str, unit: f64) {
         let painter = ui.painter().with_clip_rect(self.area);
         let write = |at: Pos2, align: Align2, text: &str| {

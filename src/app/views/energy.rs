@@ -1,7 +1,8 @@
-//! Energy: where it came from, where it went, and what is there against the barrier.
+//! View of the energy: sources, sinks, and what is left beside the barrier.
 //!
-//! Every number is the live run's own ledger, or the difference of two of them. What comes in is counted up and drawn to
-//! the right, what is taken is counted down and drawn to the left, so that a column adds up to what is stored.
+//! Every number is the live run's own ledger, or the difference of two of them. What comes in is counted up
+//! and drawn to the right, what is taken is counted down and drawn to the left, so that a column adds up to
+//! what is stored.
 
 use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
@@ -34,7 +35,8 @@ const LEDGER: [Row; 5] = [
     ("work in", "Work of the base on the mass.", |own| own.work_j, Style::base),
     (
         "by hand",
-        "Put in or taken out by you: a stop dragged over the mass, a mass put elsewhere, another potential under it.",
+        "Put in or taken out by you: a stop dragged over the mass, a mass put elsewhere, another potential \
+         under it.",
         |own| own.by_hand_j,
         Style::mass,
     ),
@@ -139,8 +141,9 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     if let Some((upto, whole)) = whole {
         let residual = whole.energy_residual();
         let hover = format!(
-            "Up to {upto:.3} s: work + by hand - damping - impacts - stored = {:.1e} J, which is {residual:.0e} of what \
-             was moved. Every term is integrated on its own, so that this is a check of the run, though not its error.",
+            "Up to {upto:.3} s: work + by hand - damping - impacts - stored = {:.1e} J, which is \
+             {residual:.0e} of what was moved. Every term is integrated on its own, so that this is a check \
+             of the run, though not its error.",
             whole.residual_j()
         );
         let text = format!("{} % of the energy accounted for", accounted(residual));
@@ -235,8 +238,8 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
         );
     }
     response.on_hover_text(format!(
-        "Now: potential {} and kinetic energy {} {name}, counted from the bottom of the deeper well. Without shaking the \
-         mass crosses only where their sum passes the barrier.",
+        "Now: potential {} and kinetic energy {} {name}, counted from the bottom of the deeper well. Without \
+         shaking the mass crosses only where their sum passes the barrier.",
         short(potential / unit),
         short(kinetic / unit)
     ));

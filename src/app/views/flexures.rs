@@ -1,8 +1,9 @@
-//! Flexures as they are bent, drawn from the solved mechanism held at the mass's own place.
+//! Drawing of the bent flexures, from the solved mechanism held at the place of the mass.
 //!
-//! The solver is asked once a frame (it takes less than a tenth of a millisecond), so that nothing is read between two
-//! shapes and the bulge ends where it ends. Along the flexures the drawing has a scale of its own; sideways it has the
-//! view's, and the ratio of the two is written. The mass is a body between the two groups, its size no part of the scale.
+//! The solver is asked once a frame (it takes less than a tenth of a millisecond), so that nothing is read
+//! between two shapes and the bulge ends where it ends. Along the flexures the drawing has a scale of its
+//! own; sideways it has the view's, and the ratio of the two is written. The mass is a body between the two
+//! groups, its size no part of the scale.
 
 use eframe::egui::{self, Align2, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 
@@ -22,7 +23,7 @@ pub(super) const CLAMP: f32 = 8.0;
 
 /// Where the drawing stands: between two clamps, with a body in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
+pub(super) struct DrawingArea {
     /// The inner sides of the clamps above and below.
     pub top: f32,
     pub bottom: f32,
@@ -32,16 +33,16 @@ pub(super) struct Place {
 
 /// How the drawing is scaled.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Scale {
-    place: Place,
+pub(super) struct DrawingScale {
+    place: DrawingArea,
     /// Points per m along the flexures.
     along: f64,
     /// Distance of the clamps in m, with a body of no size.
     clamps: f64,
 }
 
-impl Scale {
-    pub fn of(geometry: &Geometry, place: Place) -> Self {
+impl DrawingScale {
+    pub fn of(geometry: &Geometry, place: DrawingArea) -> Self {
         let clamps = geometry.parallel.length + geometry.buckling.length - geometry.preload;
         let room = f64::from((place.bottom - place.top - 2.0 * place.half.y).max(1.0));
         Self { place, along: room / clamps, clamps }

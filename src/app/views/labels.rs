@@ -1,4 +1,4 @@
-//! Where does a text stand in a picture, so that it can be read and hides nothing?
+//! Placement of texts in pictures.
 
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rangef, Rect, Ui, vec2};
 
@@ -46,8 +46,8 @@ pub fn plated(
     place
 }
 
-/// The left end of a text of some width in a row, as near as may be to the middle that it should have: within `room` and
-/// clear of what is taken. None where it would not stand by that middle any more.
+/// The left end of a text of some width in a row, as near as may be to the middle that it should have: within
+/// `room` and clear of what is taken. None where it would not stand by that middle any more.
 pub fn free_place(middle: f32, width: f32, room: Rangef, taken: &[Rangef]) -> Option<f32> {
     let (least, most) = (room.min + APART, room.max - APART - width);
     let wanted = (middle - 0.5 * width).clamp(least, most.max(least));

@@ -1,4 +1,4 @@
-//! What lines and marks mean, in a row over a picture.
+//! Legend in a row over a picture.
 
 use eframe::egui::{Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 

@@ -1,9 +1,10 @@
-//! The mechanism as a drawing, over the well and on its x axis, seen from the base.
+//! View of the mechanism as a drawing, seen from the base, on the x axis of the well.
 //!
-//! Where the force comes from flexures they are drawn as they are bent ([`flexures`](super::flexures)); another force is a
-//! spring in a schematic, and one that is the same everywhere has none. The base stands
-//! still in it, and the push that the mass feels instead is an arrow; the base's own motion is far larger than the travel
-//! and has an inset at its own scale. An impact is a ring whose size is the energy that it takes.
+//! Where the force comes from flexures they are drawn as they are bent ([`flexures`](super::flexures));
+//! another force is a spring in a schematic, and one that is the same everywhere has none. The base stands
+//! still in it, and the push that the mass feels instead is an arrow; the base's own motion is far larger
+//! than the travel and has an inset at its own scale. An impact is a ring whose size is the energy that it
+//! takes.
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -13,7 +14,7 @@ use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 use crate::mechanics::ForceCurve;
 
-use super::flexures::{CLAMP, Place, Scale, bulge_words, clamp, state_at};
+use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
 use super::labels::{ago, haloed, plated};
 use super::stops::{WALL, stops_beside_ui};
 use super::well::mass_ui;
@@ -63,7 +64,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
     let (top, bottom) = (rect.top() + 28.0, rect.bottom() - 12.0);
     // as wide as the ball on the well, so that it touches the stops when it should
     let half = vec2(BALL, ((bottom - top) * 0.13).clamp(14.0, 30.0));
-    let place = Place { top, bottom, half };
+    let place = DrawingArea { top, bottom, half };
     let (middle, words) = match bent_ui(ui, &painter, context, rect, place, state.x) {
         Some(drawn) => drawn,
         None => {
@@ -161,20 +162,21 @@ fn explain(ui: &Ui, place: Rect, word: &str) {
     explained(ui.interact(place, id, Sense::hover()), word);
 }
 
-/// The flexures as they are bent, where there are such: the middle of the body, and what is said of the drawing.
+/// The flexures as they are bent, where there are such: the middle of the body, and what is said of the
+/// drawing.
 fn bent_ui(
     ui: &Ui,
     painter: &egui::Painter,
     context: &mut ViewContext<'_>,
     rect: Rect,
-    place: Place,
+    place: DrawingArea,
     x: f64,
 ) -> Option<(f32, String)> {
     let bent = state_at(context, x)?;
     let style = context.style;
     let mechanism = &context.session.shown().mechanism;
     let geometry = mechanism.flexures.as_ref()?.geometry();
-    let scale = Scale::of(geometry, place);
+    let scale = DrawingScale::of(geometry, place);
     let reach = mechanism.landscape.right_stable().map_or(0.0, |well| well.x.abs());
     if context.filled
         && let Some(own) = scale.true_span(reach, rect)
@@ -262,8 +264,8 @@ fn coil(from: Pos2, to: Pos2) -> Vec<Pos2> {
     [from, from + along * 0.15].into_iter().chain(turns).chain([from + along * 0.85, to]).collect()
 }
 
-/// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g). It lies at the mass's height on the
-/// inner side of the body, where neither flexures nor stops are.
+/// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g). It lies at the mass's
+/// height on the inner side of the body, where neither flexures nor stops are.
 fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, base_accel: f64, rect: Rect) {
     if !context.session.shown().is_shaken() {
         return;
@@ -285,7 +287,8 @@ fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, ba
     }
 }
 
-/// The row over the drawing, where nothing moves: when, what is seen, how hard it is pushed, and how the base moves.
+/// The row over the drawing, where nothing moves: when, what is seen, how hard it is pushed, and how the base
+/// moves.
 fn words_ui(
     ui: &Ui,
     painter: &egui::Painter,

@@ -1,8 +1,8 @@
-//! The views: what of a motion is seen, each in a file of its own.
+//! The views, each in a file of its own.
 //!
 //! A new view is an entry of [`View`], a file with a function `..._ui(ui, &mut ViewContext)`, and a place in
-//! a layout of the window. Views share the x axis of [`Span`], so that mechanism and well stand above each other, and
-//! keep what they must remember between frames in [`Memory`].
+//! a layout of the window. Views share the x axis of [`Span`], so that mechanism and well stand above each
+//! other, and keep what they must remember between frames in [`Memory`].
 
 mod accuracy;
 mod before_now;
@@ -27,9 +27,9 @@ use crate::app::session::Session;
 use crate::app::ui::style::Style;
 use crate::mechanics::flexure::State;
 
-pub use map::Quantity as MapQuantity;
+pub use map::MapQuantity;
 pub use span::Span;
-pub use trace::{Quantity, Timeline};
+pub use trace::{Timeline, TraceQuantity};
 
 /// What can be seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -86,47 +86,51 @@ impl View {
     pub fn about(self) -> &'static str {
         match self {
             Self::Mechanism => {
-                "The mass between its stops, seen from the base that shakes, with its flexures or a spring in their place. The arrow is the push that the mass \
-                 feels. Drag the mass or a stop."
+                "The mass between its stops, seen from the base that shakes, with its flexures or a spring \
+                 in their place. The arrow is the push that the mass feels. Drag the mass or a stop."
             }
             Self::Well => {
-                "The mass rides on the potential like a ball on a tray that the push tips. Drag the ball or a stop."
+                "The mass rides on the potential like a ball on a tray that the push tips. Drag the ball or \
+                 a stop."
             }
             Self::Displacement => {
-                "Where the mass is, seen from the base, over time. The wheel zooms in time; with Shift, or over the numbers of \
-                 the axis, in displacement. A double click is back."
+                "Where the mass is, seen from the base, over time. The wheel zooms in time; with Shift, or \
+                 over the numbers of the axis, in displacement. A double click is back."
             }
             Self::BeforeNow => "What your last change did: the state before it, and the one after it.",
             Self::PhasePortrait => {
-                "Velocity over displacement: a moving mass runs clockwise. An impact is a jump of the velocity. The separatrix \
-                 needs just the energy to stand on the barrier. Click to let the motion go on from a state."
+                "Velocity over displacement: a moving mass runs clockwise. An impact is a jump of the \
+                 velocity. The separatrix needs just the energy to stand on the barrier. Click to let the \
+                 motion go on from a state."
             }
             Self::ForceCurve => {
-                "The force that would hold the mass at a place, positive to the right; the mechanism pulls with as much the other \
-                 way. Where the push is above the curve it drives the mass to the right, below it to the left; a mass on a stop is freed when the push passes the mark there. Filled: stable. \
-                 Hollow: unstable. Diamond: a kink, where the stiffness jumps."
+                "The force that would hold the mass at a place, positive to the right; the mechanism pulls with \
+                 as much the other way. Where the push is above the curve it drives the mass to the right, \
+                 below it to the left; a mass on a stop is freed when the push passes the mark there. Filled: \
+                 stable. Hollow: unstable. Diamond: a kink, where the stiffness jumps."
             }
             Self::Energy => {
                 "Where the energy came from, where it went, and what is there against the barrier."
             }
             Self::Velocity => {
-                "Velocity of the mass, seen from the base, over time. An impact turns it round and leaves a part of it. The \
-                 wheel zooms in time, a double click is back."
+                "Velocity of the mass, seen from the base, over time. An impact turns it round and leaves a \
+                 part of it. The wheel zooms in time, a double click is back."
             }
             Self::BaseAcceleration => {
-                "Acceleration of the base over time. The mass feels the opposite of it, as one does in a bus that brakes. The \
-                 wheel zooms in time, a double click is back."
+                "Acceleration of the base over time. The mass feels the opposite of it, as one does in a bus \
+                 that brakes. The wheel zooms in time, a double click is back."
             }
             Self::Power => {
-                "Work of the base on the mass in a second. Below zero the mass gives energy back to the base. The wheel zooms \
-                 in time, a double click is back."
+                "Work of the base on the mass in a second. Below zero the mass gives energy back to the \
+                 base. The wheel zooms in time, a double click is back."
             }
             Self::Map => {
-                "What every combination of two settings comes to, each in a run of its own. Click to take the scene there."
+                "What every combination of two settings comes to, each in a run of its own. Click to take \
+                 the scene there."
             }
             Self::Accuracy => {
-                "How far the computed motion is from the true one: what each digit costs, and what becomes of the scene in \
-                 fixed steps, as a game or a small applet takes them. From the scene's start."
+                "How far the computed motion is from the true one: what each digit costs, and what becomes \
+                 of the scene in fixed steps, as a game or a small applet takes them. From the scene's start."
             }
         }
     }
@@ -189,8 +193,8 @@ struct Held(Option<(f64, f64)>);
 const SPARE: f64 = 0.08;
 
 impl Held {
-    /// The ends of the axis: those that it should have, or in the midst of a gesture those that it had, as long as what it
-    /// has to show is inside.
+    /// The ends of the axis: those that it should have, or in the midst of a gesture those that it had, as
+    /// long as what it has to show is inside.
     fn keep(&mut self, own: (f64, f64), in_gesture: bool) -> (f64, f64) {
         let spare = SPARE * (own.1 - own.0);
         let holds = |had: &(f64, f64)| had.0 <= own.0 + spare && had.1 >= own.1 - spare;
@@ -234,8 +238,8 @@ pub struct Memory {
     pub points_only: bool,
     /// What the map shows.
     pub map_quantity: MapQuantity,
-    /// What a hand is about to do to the map.
-    map_hand: map::Hand,
+    /// State of the pointer on the map.
+    map_pointer: map::PointerState,
     /// What the view Accuracy shows where there is no room for all of it.
     accuracy_page: accuracy::Page,
 }
@@ -280,14 +284,14 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
     match view {
         View::Mechanism => mechanism::mechanism_ui(ui, context),
         View::Well => well::well_ui(ui, context),
-        View::Displacement => trace::trace_ui(ui, Quantity::Displacement, context),
+        View::Displacement => trace::trace_ui(ui, TraceQuantity::Displacement, context),
         View::BeforeNow => before_now::before_now_ui(ui, context),
         View::PhasePortrait => phase::phase_ui(ui, context),
         View::ForceCurve => force::force_ui(ui, context),
         View::Energy => energy::energy_ui(ui, context),
-        View::Velocity => trace::trace_ui(ui, Quantity::Velocity, context),
-        View::BaseAcceleration => trace::trace_ui(ui, Quantity::BaseAcceleration, context),
-        View::Power => trace::trace_ui(ui, Quantity::Power, context),
+        View::Velocity => trace::trace_ui(ui, TraceQuantity::Velocity, context),
+        View::BaseAcceleration => trace::trace_ui(ui, TraceQuantity::BaseAcceleration, context),
+        View::Power => trace::trace_ui(ui, TraceQuantity::Power, context),
         View::Map => map::map_ui(ui, context),
         View::Accuracy => accuracy::accuracy_ui(ui, context),
     }

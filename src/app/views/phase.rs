@@ -1,7 +1,8 @@
-//! The phase portrait: velocity over displacement, where a motion is a path and a state is a point.
+//! Phase portrait: velocity over displacement.
 //!
-//! The separatrix is the curve of the energy that just suffices to stand on top of the barrier: without shaking and
-//! without loss a state inside one of its loops never leaves that well. Shaking and impacts carry the state across it.
+//! The separatrix is the curve of the energy that just suffices to stand on top of the barrier: without
+//! shaking and without loss a state inside one of its loops never leaves that well. Shaking and impacts carry
+//! the state across it.
 
 use std::collections::VecDeque;
 
@@ -99,8 +100,8 @@ fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) -> f32 {
         ui.spacing_mut().interact_size.y = LEGEND - 4.0;
         ui.spacing_mut().button_padding.y = 0.0;
         let text = egui::RichText::new("points only").small();
-        let hover = "One point a forcing period, always at the same phase, and no path: motion that repeats is a few points, \
-                     chaos is many.";
+        let hover = "One point a forcing period, always at the same phase, and no path: motion that repeats \
+                     is a few points, chaos is many.";
         let response = ui.selectable_label(*points_only, text).on_hover_text(hover);
         if response.clicked() {
             *points_only = !*points_only;
@@ -230,8 +231,8 @@ fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     finish(&mut line, drawn.min(FADES - 1));
 }
 
-/// In how many pieces the way between two samples looks round: from how far the ends of its cubic's tangents are off the
-/// straight line.
+/// In how many pieces the way between two samples looks round: from how far the ends of its cubic's tangents
+/// are off the straight line.
 fn pieces(chart: &Chart, model: &Model, (a, b): (&Sample, &Sample)) -> usize {
     let third = (b.t - a.t) / 3.0;
     let tangent = |own: &Sample, third: f64| {

@@ -1,7 +1,7 @@
-//! How far do the axes of velocity and power reach?
+//! Ranges of the axes of velocity, power and base acceleration.
 //!
-//! An axis that follows the motion tells nothing of its size. These reach to what the scene lets expect, go a coarse
-//! step further where the motion needs it, and are chosen anew only once a change has settled.
+//! An axis that follows the motion tells nothing of its size. These reach to what the scene lets expect, go a
+//! coarse step further where the motion needs it, and are chosen anew only once a change has settled.
 
 use crate::app::session::Session;
 use crate::dynamics::STANDARD_GRAVITY;
@@ -30,8 +30,8 @@ pub fn axis_end(value: f64) -> f64 {
     if end.is_finite() && end > 0.0 { end } else { 1.0 }
 }
 
-/// The largest speed in m/s, power in W and energy in J that have been seen since the last change, and the way out from the
-/// middle in m.
+/// The largest speed in m/s, power in W and energy in J that have been seen since the last change, and the
+/// way out from the middle in m.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Extremes {
     speed: f64,
@@ -111,8 +111,8 @@ impl Ranges {
         self.expected.or(self.seen).or(self.kept)
     }
 
-    /// The displacements in m that an axis has to show: those seen since the last change, or where the past is looked at
-    /// since the start.
+    /// The displacements in m that an axis has to show: those seen since the last change, or where the past
+    /// is looked at since the start.
     pub fn reach(&self, session: &Session) -> (f64, f64) {
         let own = if session.player.is_past() { self.ever } else { self.whole() };
         (own.low, own.high)

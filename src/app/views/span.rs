@@ -26,9 +26,9 @@ pub struct Span {
 }
 
 impl Span {
-    /// What has to be seen of a scene: its wells; without a pair of them its stops and its start; and how far the mass
-    /// settles to go and has been `seen` to go, in m. It depends on the shaking and on the stops as little as it can, and
-    /// grows in coarse steps, so that it stands still while they are changed.
+    /// What has to be seen of a scene: its wells; without a pair of them its stops and its start; and how far
+    /// the mass settles to go and has been `seen` to go, in m. It depends on the shaking and on the stops as
+    /// little as it can, and grows in coarse steps, so that it stands still while they are changed.
     pub fn of(session: &Session, seen: (f64, f64)) -> Self {
         let model = session.shown();
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -98,7 +98,8 @@ impl Span {
     }
 }
 
-/// Round numbers from `low` to `high`, some `count` of them, in thousandths of the unit given, and decimals to write them.
+/// Round numbers from `low` to `high`, some `count` of them, in thousandths of the unit given, and decimals
+/// to write them.
 pub(super) fn ticks(low: f64, high: f64, count: f64) -> (Vec<f64>, usize) {
     let step = round_up((high - low) / count.max(1.0), &ONE_TWO_FIVE);
     if !(step > 0.0 && step.is_finite()) {
@@ -120,7 +121,8 @@ mod tests {
     use crate::app::session::editor::Editor;
     use crate::app::views::Memory;
 
-    /// Whether everything that happened in some seconds is within the axis, which then did not grow too often.
+    /// Whether everything that happened in some seconds is within the axis, which then did not grow too
+    /// often.
     fn holds_what_happens(preset: &str, seconds: f64) {
         let mut session = Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap();
         let mut memory = Memory::default();

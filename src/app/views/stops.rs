@@ -1,4 +1,4 @@
-//! Stops as walls that can be dragged, wherever a view has the shared x axis.
+//! Stops as walls that can be dragged, in every view with the shared x axis.
 
 use eframe::egui::{self, CursorIcon, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -21,13 +21,14 @@ pub(super) fn key_step(session: &Session) -> f64 {
 /// Thickness of a wall in points.
 pub(super) const WALL: f32 = 10.0;
 
-/// Draws the stops over `rect` between the heights `top` and `bottom`, each with its face at the travel limit, and lets them
-/// be dragged. Whether they were.
+/// Draws the stops over `rect` between the heights `top` and `bottom`, each with its face at the travel
+/// limit, and lets them be dragged. Whether they were.
 pub fn stops_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, top: f32, bottom: f32) -> bool {
     stops_beside_ui(ui, context, rect, (top, bottom), 0.0)
 }
 
-/// The stops of what is shown in mm, and whether a hand can move them: those of the past, where they were others, it cannot.
+/// The stops of what is shown in mm, and whether a hand can move them: those of the past, where they were
+/// others, it cannot.
 fn shown_stops(session: &Session) -> ([Option<f64>; 2], bool) {
     let [left, right] = session.scene().stops.limits_mm();
     let present = [left.map(|mm| -mm), right];
@@ -43,8 +44,8 @@ fn shown_stops(session: &Session) -> ([Option<f64>; 2], bool) {
     (then, alike(then[0], present[0]) && alike(then[1], present[1]))
 }
 
-/// The same for a mass whose sides are `radius` points from its place: a stop's face is as far outside its travel limit, so
-/// that the mass touches it when it should.
+/// The same for a mass whose sides are `radius` points from its place: a stop's face is as far outside its
+/// travel limit, so that the mass touches it when it should.
 pub fn stops_beside_ui(
     ui: &mut Ui,
     context: &mut ViewContext<'_>,

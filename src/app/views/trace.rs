@@ -1,8 +1,8 @@
-//! Something over time: it scrolls, rests are shaded, impacts are ticks.
+//! Traces over time: displacement, velocity, base acceleration, power.
 //!
-//! Displacement, velocity, base acceleration and power are one view with four quantities. All traces show the same
-//! stretch of time and the same cursor, so that they can be read below each other. Their vertical ranges come from the
-//! scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
+//! Displacement, velocity, base acceleration and power are one view with four quantities. All traces show the
+//! same stretch of time and the same cursor, so that they can be read below each other. Their vertical ranges
+//! come from the scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
 
 use eframe::egui::{self, Align2, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{
@@ -19,8 +19,8 @@ use super::legend::{LEGEND, Sign, legend};
 use super::ranges::room_for_push;
 use super::span::ticks;
 
-/// Forcing periods that are shown; without a period multiples of the motion's pace. No more swings of the mechanism than
-/// are told apart.
+/// Forcing periods that are shown; without a period multiples of the motion's pace. No more swings of the
+/// mechanism than are told apart.
 const PERIODS: f64 = 6.0;
 const SWINGS: f64 = 8.0;
 const MOST_SWINGS: f64 = 200.0;
@@ -52,7 +52,7 @@ const LOW: f32 = 150.0;
 
 /// What is drawn over time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
+pub enum TraceQuantity {
     /// Displacement relative to the base.
     Displacement,
     /// Velocity relative to the base.
@@ -63,7 +63,7 @@ pub enum Quantity {
     Power,
 }
 
-impl Quantity {
+impl TraceQuantity {
     /// Its value in the unit of its axis.
     pub fn value(self, sample: &Sample, mass: f64) -> f64 {
         match self {
@@ -124,7 +124,7 @@ pub struct Timeline {
 }
 
 /// Draws it. Whether something changed.
-pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) -> bool {
+pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<'_>) -> bool {
     let style = context.style;
     let ends = quantity.ends(context);
     let (low, high) = context.memory.timeline.vertical[quantity as usize].unwrap_or(ends);
@@ -141,7 +141,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
     let stride = ((last.max(first) - first) / MOST_POINTS).max(1);
     let samples: Vec<Sample> =
         shown.range(first..last.max(first)).step_by(stride).copied().chain([state]).collect();
-    let paths = paths(&samples, quantity == Quantity::Displacement, |sample| {
+    let paths = paths(&samples, quantity == TraceQuantity::Displacement, |sample| {
         PlotPoint::new(sample.t, quantity.seen(watch, sample))
     });
     let rests = rests(&samples);
@@ -153,13 +153,14 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
         .filter(|event| matches!(event.kind, EventKind::Impact | EventKind::Contact))
         .map(|event| event.t)
         .collect();
-    let stops = if quantity == Quantity::Displacement { stop_lines(watch, from, to) } else { Vec::new() };
+    let stops =
+        if quantity == TraceQuantity::Displacement { stop_lines(watch, from, to) } else { Vec::new() };
     let pass = ui.ctx().cumulative_pass_nr();
     let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass).map(|cursor| cursor.0);
     let tick = 0.035 * (high - low);
     let line = match quantity {
-        Quantity::Displacement | Quantity::Velocity => style.motion_stroke(),
-        Quantity::BaseAcceleration | Quantity::Power => style.base_stroke(),
+        TraceQuantity::Displacement | TraceQuantity::Velocity => style.motion_stroke(),
+        TraceQuantity::BaseAcceleration | TraceQuantity::Power => style.base_stroke(),
     };
     let rows = f64::from((ui.available_height() / 40.0).clamp(2.0, 6.0));
     let columns = f64::from((ui.available_width() / 80.0).clamp(2.0, 8.0));
@@ -227,7 +228,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
             for path in paths {
                 let own = Line::new(quantity.name(), PlotPoints::Owned(path)).stroke(line);
                 // a band reaches beyond the ends of a steep line
-                plot.line(own.allow_band(quantity != Quantity::Displacement));
+                plot.line(own.allow_band(quantity != TraceQuantity::Displacement));
             }
             if let Some(t) = cursor {
                 let dashed = LineStyle::dashed_dense();
@@ -284,14 +285,14 @@ fn zoom(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, own: 
     }
 }
 
-/// The wheel over the numbers of the vertical axis, or with Shift anywhere, chooses the part of it that is shown, about the
-/// pointer; a double click leaves it to the scene.
+/// The wheel over the numbers of the vertical axis, or with Shift anywhere, chooses the part of it that is
+/// shown, about the pointer; a double click leaves it to the scene.
 fn zoom_up(
     ui: &Ui,
     transform: &PlotTransform,
     area: egui::Rect,
     context: &mut ViewContext<'_>,
-    (quantity, ends): (Quantity, (f64, f64)),
+    (quantity, ends): (TraceQuantity, (f64, f64)),
 ) {
     let Some(at) = ui.input(|input| input.pointer.hover_pos()).filter(|at| area.contains(*at)) else {
         return;
@@ -316,8 +317,8 @@ fn zoom_up(
     *own = (new.1 - new.0 < ends.1 - ends.0).then_some(new);
 }
 
-/// The path as lines. A line that turns on the spot is drawn with a tip that reaches beyond it: between stops each flight is
-/// a line of its own, so that none is seen to go through.
+/// The path as lines. A line that turns on the spot is drawn with a tip that reaches beyond it: between stops
+/// each flight is a line of its own, so that none is seen to go through.
 fn paths(samples: &[Sample], flights: bool, point: impl Fn(&Sample) -> PlotPoint) -> Vec<Vec<PlotPoint>> {
     let turns = |pair: &&[Sample]| pair[0].t == pair[1].t;
     if !flights || samples.windows(2).filter(turns).count() > MOST_FLIGHTS {

@@ -1,8 +1,9 @@
-//! The well: the mass rides on the potential, and the base tips it.
+//! View of the potential well, with the mass on it.
 //!
-//! In the frame of the base the mass feels the force of the mechanism and the push -m a_b, whose potential is m a_b x:
-//! it moves as a ball does on the sum of both. The sum is drawn thick; the mechanism's own curve is a thin ghost that stays.
-//! The vertical range follows the largest push in a few coarse steps, so that the tray tips and does not rescale.
+//! In the frame of the base the mass feels the force of the mechanism and the push -m a_b, whose potential is
+//! m a_b x: it moves as a ball does on the sum of both. The sum is drawn thick; the mechanism's own curve is
+//! a thin ghost that stays. The vertical range follows the largest push in a few coarse steps, so that the
+//! tray tips and does not rescale.
 
 use eframe::egui::{self, Align2, CursorIcon, Pos2, Rangef, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -70,8 +71,8 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     changed
 }
 
-/// Names of the wells and the barrier in a row below the curve, each at its place along x; what has no room beside a stop is
-/// left out.
+/// Names of the wells and the barrier in a row below the curve, each at its place along x; what has no room
+/// beside a stop is left out.
 fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
     let (style, model) = (context.style, context.session.shown());
     let Some(barrier) = model.mechanism.landscape.barrier else { return };
@@ -100,8 +101,8 @@ fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
 /// Steps of a stop's slider that an arrow key moves the mass by; with Shift ten times as many.
 const KEY_STEPS: f64 = 2.0;
 
-/// Lets the mass be grabbed: it is held where the hand is, and the clock stands. With the keyboard's focus on it the arrow
-/// keys take hold of it and move it, and Enter lets go.
+/// Lets the mass be grabbed: it is held where the hand is, and the clock stands. With the keyboard's focus on
+/// it the arrow keys take hold of it and move it, and Enter lets go.
 pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect) -> bool {
     let grab = Rect::from_center_size(at, egui::Vec2::splat(2.0 * GRAB));
     let response = ui

@@ -1,4 +1,4 @@
-//! How do scenes come into the window, and how do they leave it? Files, drops, the clipboard, and the questions on the way.
+//! Opening of scenes and choice of files: dialogs, drops, the clipboard, the questions on the way.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -6,29 +6,25 @@ use std::sync::mpsc::channel;
 
 use eframe::egui::{self, Ui};
 
+use crate::app::clock::Instant;
+use crate::app::disk;
 use crate::app::session::CannotRun;
 use crate::app::session::editor::Editor;
 use crate::app::ui::style::STATUS;
 
 use super::Window;
+use super::command::Command;
 use super::leave::{self, Answer, Next};
-use super::menu::Command;
-use super::typed::{Ended, Typed};
+use super::path_dialog::{Ended, PathDialog};
 
 /// How many of the scenes opened last are kept.
 const MOST_RECENT: usize = 8;
 
-/// A file that was chosen, and what for.
+/// How a question for a file was answered.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Chosen {
-    Open(PathBuf),
-    Save(PathBuf),
-    Csv(PathBuf),
-    Run(PathBuf),
-    Events(PathBuf),
-    Curve(PathBuf),
-    Map(PathBuf),
-    Picture(PathBuf),
+    /// By a file.
+    File(Wanted, PathBuf),
     /// The desktop has no dialog to offer: the file that it would have begun with.
     NoDialog(Wanted, PathBuf),
 }
@@ -38,49 +34,43 @@ const UNSEEN: u128 = 300;
 
 /// What a file is wanted for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Wanted {
+pub enum Wanted {
+    /// A scene to be opened.
     Open,
+    /// The scene.
     Save,
-    Csv,
+    /// The motion that was seen, as CSV.
+    Motion,
+    /// The whole run of the scene, as CSV.
     Run,
+    /// The events, as CSV.
     Events,
+    /// The force curve, as CSV.
     Curve,
+    /// The map, as CSV.
     Map,
+    /// The window, as PNG.
     Picture,
 }
 
 impl Wanted {
-    /// What is asked where a path is typed.
-    pub(super) fn question(self) -> &'static str {
+    /// What is asked where a path is typed; the kind of the file, and how its name ends.
+    pub(super) fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
-            Self::Open => "Open which scene?",
-            Self::Save => "Save the scene to which file?",
-            Self::Csv => "Save the motion that was seen to which file?",
-            Self::Run => "Save the whole run to which file?",
-            Self::Events => "Save the events to which file?",
-            Self::Curve => "Save the force curve to which file?",
-            Self::Map => "Save the map to which file?",
-            Self::Picture => "Save the picture to which file?",
+            Self::Open => ("Open which scene?", "scene", "ron"),
+            Self::Save => ("Save the scene to which file?", "scene", "ron"),
+            Self::Motion => ("Save the motion that was seen to which file?", "motion", "csv"),
+            Self::Run => ("Save the whole run to which file?", "run", "csv"),
+            Self::Events => ("Save the events to which file?", "events", "csv"),
+            Self::Curve => ("Save the force curve to which file?", "curve", "csv"),
+            Self::Map => ("Save the map to which file?", "map", "csv"),
+            Self::Picture => ("Save the picture to which file?", "picture", "png"),
         }
     }
 
     /// What is then done.
     pub(super) fn verb(self) -> &'static str {
         if self == Self::Open { "Open" } else { "Save" }
-    }
-
-    /// The file that was chosen for it.
-    fn with(self, path: PathBuf) -> Chosen {
-        match self {
-            Self::Open => Chosen::Open(path),
-            Self::Save => Chosen::Save(path),
-            Self::Csv => Chosen::Csv(path),
-            Self::Run => Chosen::Run(path),
-            Self::Events => Chosen::Events(path),
-            Self::Curve => Chosen::Curve(path),
-            Self::Map => Chosen::Map(path),
-            Self::Picture => Chosen::Picture(path),
-        }
     }
 }
 
@@ -121,7 +111,7 @@ impl Window {
     /// Puts the scene's file first among the recent ones.
     pub fn remember_file(&mut self) {
         let Some(path) = self.session.editor.path() else { return };
-        let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned()).to_string_lossy().into_owned();
+        let whole = disk::whole(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
         self.recent.retain(|own| *own != whole);
         self.recent.insert(0, whole);
         self.recent.truncate(MOST_RECENT);
@@ -155,24 +145,26 @@ impl Window {
             && let Some(chosen) = self.dialog.current().cloned()
         {
             self.dialog.clear();
-            self.take_file(ctx, chosen);
+            match chosen {
+                Chosen::File(wanted, path) => self.take_file(ctx, wanted, path),
+                Chosen::NoDialog(wanted, path) => self.typed = Some(PathDialog::new(wanted, &path)),
+            }
         } else if !self.dialog.is_running() && self.over_comments.is_none() && self.typed.is_none() {
             // a dialog without a choice: nothing follows
             self.after_save = None;
         }
     }
 
-    fn take_file(&mut self, ctx: &egui::Context, chosen: Chosen) {
-        match chosen {
-            Chosen::Open(path) => self.open_another(&path.to_string_lossy()),
-            Chosen::Save(path) => self.save_to(ctx, &path),
-            Chosen::Csv(path) => self.write_motion(&path),
-            Chosen::Run(path) => self.write_run(path),
-            Chosen::Events(path) => self.write_events(&path),
-            Chosen::Curve(path) => self.write_curve(&path),
-            Chosen::Map(path) => self.write_map(&path),
-            Chosen::Picture(path) => self.write_picture(ctx, path),
-            Chosen::NoDialog(wanted, path) => self.typed = Some(Typed::new(wanted, &path)),
+    fn take_file(&mut self, ctx: &egui::Context, wanted: Wanted, path: PathBuf) {
+        match wanted {
+            Wanted::Open => self.open_another(&path.to_string_lossy()),
+            Wanted::Save => self.save_to(ctx, &path),
+            Wanted::Motion => self.write_motion(&path),
+            Wanted::Run => self.write_run(path),
+            Wanted::Events => self.write_events(&path),
+            Wanted::Curve => self.write_curve(&path),
+            Wanted::Map => self.write_map(&path),
+            Wanted::Picture => self.write_picture(ctx, path),
         }
     }
 
@@ -258,7 +250,7 @@ impl Window {
             let wanted = typed.wanted;
             self.typed = None;
             if let Ended::Chosen(path) = ended {
-                self.take_file(ctx, wanted.with(path));
+                self.take_file(ctx, wanted, path);
             }
         }
         if ui.input(|input| !input.raw.hovered_files.is_empty()) {
@@ -279,7 +271,7 @@ impl Window {
 
     /// Asks for the path of a scene to open, as where the desktop has no dialog.
     pub fn type_path(&mut self) {
-        self.typed = Some(Typed::new(Wanted::Open, Path::new("")));
+        self.typed = Some(PathDialog::new(Wanted::Open, Path::new("")));
     }
 
     /// Asks for a file, without the window waiting for the answer.
@@ -287,29 +279,21 @@ impl Window {
         if !self.dialogs {
             return;
         }
-        let (kind, ending) = match wanted {
-            Wanted::Open | Wanted::Save => ("scene", "ron"),
-            Wanted::Csv => ("motion", "csv"),
-            Wanted::Run => ("run", "csv"),
-            Wanted::Events => ("events", "csv"),
-            Wanted::Curve => ("curve", "csv"),
-            Wanted::Map => ("map", "csv"),
-            Wanted::Picture => ("picture", "png"),
-        };
+        let (_, kind, ending) = wanted.words();
         let path = self.session.editor.path().map(Path::to_path_buf);
         let stem = path.as_ref().and_then(|path| path.file_stem());
         let stem = stem.map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.as_ref().and_then(|path| path.parent()).map(Path::to_path_buf);
         // what a path would begin with where there is no dialog
-        let begin = folder.clone().or_else(|| std::env::current_dir().ok()).unwrap_or_default();
+        let begin = folder.clone().unwrap_or_else(disk::working_folder);
         let begin =
             if wanted == Wanted::Open { begin.join("") } else { begin.join(format!("{stem}.{ending}")) };
         self.dialog.ask(&self.wake, move |_| {
             let mut dialog = rfd::FileDialog::new().add_filter(kind, &[ending]);
-            if let Some(folder) = folder.filter(|folder| folder.is_dir()) {
+            if let Some(folder) = folder.filter(|folder| disk::is_folder(folder)) {
                 dialog = dialog.set_directory(folder);
             }
-            let since = std::time::Instant::now();
+            let since = Instant::now();
             let chosen = if wanted == Wanted::Open {
                 dialog.pick_file()
             } else {
@@ -321,7 +305,7 @@ impl Window {
             if wanted != Wanted::Open && path.extension().is_none() {
                 path.set_extension(ending);
             }
-            Some(wanted.with(path))
+            Some(Chosen::File(wanted, path))
         });
     }
 }

@@ -1,4 +1,4 @@
-//! Which views stand where? Trees of tiles for each layout, and for windows that are as small as a projector's.
+//! Layouts: the tiles of each arrangement of the views.
 
 use eframe::egui::{self, Ui, Vec2, WidgetText};
 use egui_tiles::{
@@ -81,7 +81,8 @@ impl Tiling {
         Self { tree, room }
     }
 
-    /// The tiles of a person's own arrangement, as they were kept; where there is little room, the same views as tabs.
+    /// The tiles of a person's own arrangement, as they were kept; where there is little room, the same views
+    /// as tabs.
     pub fn own(kept: &Tree<View>, room: Room) -> Self {
         let tree = if room == Room::Compact {
             let shown = |id: &TileId| kept.is_visible(*id);
@@ -112,8 +113,8 @@ impl Tiling {
         self.tree.tiles.find_pane(&view).is_some_and(|id| self.tree.is_visible(id))
     }
 
-    /// Shows or hides a view. One that has no place yet comes to those of its kind: below them, or where there is
-    /// little room as a tab.
+    /// Shows or hides a view. One that has no place yet comes to those of its kind: below them, or where
+    /// there is little room as a tab.
     pub fn show(&mut self, view: View, shown: bool) {
         match self.tree.tiles.find_pane(&view) {
             Some(id) => self.tree.set_visible(id, shown),

@@ -1,4 +1,4 @@
-//! What is asked before a scene that is not saved gives way to another, or to nothing.
+//! Questions before a scene that is not saved gives way to another.
 
 use eframe::egui::Ui;
 
@@ -38,12 +38,12 @@ pub fn question_ui(ui: &Ui, title: &str) -> Option<Answer> {
     })
 }
 
-/// Asks before a file that was written by hand is written over; none while there is no answer. Its comments are no part
-/// of a scene, and go.
+/// Asks before a file that was written by hand is written over; none while there is no answer. Its comments
+/// are no part of a scene, and go.
 pub fn comments_ui(ui: &Ui, path: &str) -> Option<Answer> {
     let text = format!(
-        "{path} has comments. They are no part of the scene, and saving over the file does not keep them; its \
-         title and notes stay."
+        "{path} has comments. They are no part of the scene, and saving over the file does not keep them; \
+         its title and notes stay."
     );
     let choice = choice_ui(ui, "comments", "Save without the comments?", &text, ["Save", "Save as..."]);
     choice.map(|choice| match choice {

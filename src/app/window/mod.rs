@@ -23,43 +23,38 @@ use crate::scene::{Layout, PRESETS};
 
 use layouts::{Arrangement, Room, Tiling};
 use leave::Next;
-use menu::Command;
-
-/// Where the scenes opened last are kept between two starts of the program.
-pub const RECENT: &str = "recent";
 
 /// Height in points of the controls as a row, and width of the column that opens beside the views.
 const ROW: f32 = 28.0;
 const MORE: f32 = 276.0;
 
-/// Where the window's size in points is kept, at the zoom 1.
-pub const SIZE: &str = "size";
 /// Height in points of a window that has no room for a line that says little.
 const LOW: f32 = 440.0;
 
 /// Height in points of the line of the first minute.
 const HINT_ROW: f32 = 32.0;
 
-/// Where a person's own arrangement is kept.
-pub const OWN_KEY: &str = "arrangement";
-
-mod commands;
+mod command;
+mod deferred;
 mod files;
+mod kept;
+mod keys;
 pub mod layouts;
 pub mod leave;
-pub mod menu;
-mod place;
-mod release;
-mod shortcuts;
-mod told;
-mod typed;
+mod menu;
+mod messages;
+mod path_dialog;
+mod perform;
+mod size;
 mod writing;
 
+pub use command::Command;
+use deferred::DeferredInput;
 use files::Chosen;
-use place::Place;
-use release::Later;
-use told::Told;
-use typed::Typed;
+pub use files::Wanted;
+use messages::Notice;
+use path_dialog::PathDialog;
+use size::WindowSize;
 
 /// Everything that the window shows.
 pub struct Window {
@@ -78,7 +73,7 @@ pub struct Window {
     /// A message that waits to be read: an error of a file, the notes of the scene, or what this program is.
     message: Option<(String, String)>,
     /// A short message that goes by itself.
-    told: Option<Told>,
+    told: Option<Notice>,
     /// Scene files that were opened or saved, the latest first.
     pub recent: Vec<String>,
     /// What waits for an answer about unsaved changes.
@@ -99,16 +94,16 @@ pub struct Window {
     /// A whole run that is computed and written.
     run: Latest<writing::Written>,
     /// The size of the window on the screen.
-    place: Place,
+    place: WindowSize,
     /// The title that the window has.
     titled: String,
     dialog: Latest<Chosen>,
     /// Whether files are asked for.
     dialogs: bool,
     /// A path that is typed where there is no dialog.
-    typed: Option<Typed>,
+    typed: Option<PathDialog>,
     /// Input that waits for the next frame.
-    later: Later,
+    deferred: DeferredInput,
     hint: hint::Hint,
     /// The line of the first minute has been there.
     hint_row: bool,
@@ -159,12 +154,12 @@ impl Window {
             announcer: Announcer::default(),
             written: channel(),
             run: Latest::default(),
-            place: Place::default(),
+            place: WindowSize::default(),
             titled: String::new(),
             dialog: Latest::default(),
             dialogs: true,
             typed: None,
-            later: Later::default(),
+            deferred: DeferredInput::default(),
             hint_row: false,
             wake,
             applied: None,
@@ -289,7 +284,7 @@ impl Window {
             self.carry_out(&ctx, command);
         }
         self.questions_ui(ui, &ctx);
-        self.shortcuts = self.shortcuts.filter(|opened| shortcuts::shortcuts_ui(ui, *opened));
+        self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened));
         self.message_ui(ui);
         self.told_ui(ui);
         focus_ui(&ctx, &style);
@@ -331,26 +326,6 @@ impl Window {
         if close {
             self.filled = None;
         }
-    }
-
-    /// A person's own arrangement of the views, where there is one.
-    pub fn own_arrangement(&self) -> Option<&Tree<View>> {
-        self.own.as_ref()
-    }
-
-    /// Takes over an arrangement that was kept.
-    pub fn set_own_arrangement(&mut self, own: Option<Tree<View>>) {
-        self.own = own;
-    }
-
-    /// Has the window be of a size that was kept: none at the first start.
-    pub fn restore_size(&mut self, size: Option<[f32; 2]>) {
-        self.place = Place::restored(size);
-    }
-
-    /// The size in points at the zoom 1 that is to be kept.
-    pub fn size(&self) -> Option<[f32; 2]> {
-        self.place.size()
     }
 
     /// What the traces share.
@@ -399,20 +374,13 @@ impl eframe::App for Window {
     }
 
     fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
-        if self.later.hold_back(input) {
+        if self.deferred.hold_back(input) {
             ctx.request_repaint();
         }
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(storage, eframe::APP_KEY, &self.settings);
-        eframe::set_value(storage, RECENT, &self.recent);
-        if let Some(size) = self.size() {
-            eframe::set_value(storage, SIZE, &size);
-        }
-        if let Some(own) = &self.own {
-            eframe::set_value(storage, OWN_KEY, own);
-        }
+        self.keep(storage);
     }
 
     fn persist_egui_memory(&self) -> bool {

@@ -1,4 +1,4 @@
-//! Files that the window writes: the scene, its motion, its whole run, events, force curve, map and picture.
+//! Files that the window writes: scene, motion, whole run, events, force curve, map, picture.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

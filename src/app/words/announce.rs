@@ -1,7 +1,7 @@
-//! When is a screen reader told what the mass does?
+//! Announcements of the motion for screen readers.
 //!
-//! The sentence itself can always be read. It is spoken when the kind of motion changes, and otherwise once it has stood
-//! still for a while: a slider under way would make it talk without end.
+//! The sentence itself can always be read. It is spoken when the kind of motion changes, and otherwise once
+//! it has stood still for a while: a slider under way would make it talk without end.
 
 use eframe::egui::{self, Id, Role, Ui, accesskit::Live};
 
@@ -53,8 +53,8 @@ impl Announcer {
         self.said.as_ref().map(|(_, text)| (self.count, text.as_str()))
     }
 
-    /// Puts what was spoken last into the tree that screen readers read: as a new node for each sentence, since readers
-    /// on Linux speak when a live node enters the tree and not when its text changes.
+    /// Puts what was spoken last into the tree that screen readers read: as a new node for each sentence,
+    /// since readers on Linux speak when a live node enters the tree and not when its text changes.
     pub fn ui(&self, ui: &mut Ui) {
         let Some((count, text)) = self.said() else { return };
         let id = Id::unique(("announcement", count));

@@ -76,8 +76,8 @@ const LONG: ((f64, f64, f64), Scale) = ((10.0, 60.0, 0.1), Scale::Value);
 const WIDE: ((f64, f64, f64), Scale) = ((1.0, 60.0, 0.1), Scale::Value);
 const RAMP: ((f64, f64, f64), Scale) = ((1.0, 600.0, 1.0), Scale::Value);
 
-const LIMIT_HOVER: &str = "Increase: the stops move outward. Inside the wells the mass then rests lower on the hill: it takes more shaking to free \
-     it and travels further once it crosses.";
+const LIMIT_HOVER: &str = "Increase: the stops move outward. Inside the wells the mass then rests lower on \
+                           the hill: it takes more shaking to free it and travels further once it crosses.";
 const REBOUND_HOVER: &str =
     "Increase: a rebound keeps more of the speed, so that the mass chatters for longer before it rests.";
 const SHAKING_HOVER: &str =
@@ -90,8 +90,8 @@ pub static FIELDS: &[FieldInfo] = &[
     field("mass_g", "mass", "g", ((1.0, 50.0, 0.1), Scale::Value), (1e-6, 1e9),
         "Increase: a heavier mass is pushed harder by the same shaking and swings more slowly."),
     field("mechanism.preload_mm", "preload", "mm", ((0.0, 5.0, 0.05), Scale::Preload), (0.0, 1e4),
-        "Increase: the flexures are pushed together further. The wells move apart and get deeper, so that it takes more \
-         shaking to cross; at 0 there is one well."),
+        "Increase: the flexures are pushed together further. The wells move apart and get deeper, so that it \
+         takes more shaking to cross; at 0 there is one well."),
     field("mechanism.thickness_mm", "thickness", "mm", ((0.02, 0.5, 0.005), Scale::Value), LENGTH,
         "Increase: forces grow with the third power of it, and the wells stay where they are."),
     field("mechanism.parallel.length_mm", "parallel flexures, length", "mm", LONG, LENGTH,
@@ -133,8 +133,8 @@ pub static FIELDS: &[FieldInfo] = &[
     field("excitation.high_hz", "highest", "Hz", ((0.1, 50.0, 0.1), Scale::Rate), HZ,
         "Increase: faster shaking comes in."),
     field("run.duration_s", "run length", "s", ((1.0, 120.0, 1.0), Scale::Value), SECONDS,
-        "Increase: what is said of the motion rests on more periods. The second half of the run counts, or what comes after \
-         the settling time of the scene."),
+        "Increase: what is said of the motion rests on more periods. The second half of the run counts, or \
+         what comes after the settling time of the scene."),
 ];
 
 /// Fields that have no slider: what they are called.

@@ -1,4 +1,4 @@
-//! Words of the window that need a sentence, and that sentence: what a label says under the pointer.
+//! Explanations of terms, for the labels that use them.
 
 /// Words in small letters, and what they mean.
 const MEANINGS: &[(&str, &str)] = &[

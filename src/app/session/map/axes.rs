@@ -1,4 +1,4 @@
-//! Which two fields does a map go over, and from where to where?
+//! Choice of the two axes of a map and of their ranges.
 
 use crate::app::words::numbers::{below, decimal, round_up};
 use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};
@@ -31,8 +31,8 @@ const AMPLITUDES_G: (f64, f64, f64) = (0.0, 2.0, 0.02);
 /// Steps of an axis whose range follows from the present value.
 const STEPS: f64 = 40.0;
 
-/// The scene that a map is made of, with the axes' fields in it: from rest, and between the stops that would come if
-/// they were switched on, where an axis moves stops.
+/// The scene that a map is made of, with the axes' fields in it: from rest, and between the stops that would
+/// come if they were switched on, where an axis moves stops.
 pub fn ground(scene: &Scene, when_on: Stops, axes: &[SweepAxis]) -> Scene {
     let mut ground = Scene {
         start: Start::Rest,
@@ -69,7 +69,8 @@ pub fn fields(scene: &Scene, when_on: Stops) -> Vec<String> {
     FIELDS.iter().flat_map(of).collect()
 }
 
-/// The axes of a scene's map: its own two where both have even steps, else travel limit and amplitude, else the first two that it has.
+/// The axes of a scene's map: its own two where both have even steps, else travel limit and amplitude, else
+/// the first two that it has.
 pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Option<[SweepAxis; 2]> {
     let known = fields(scene, when_on);
     if let [a, b] = scene.sweep.as_slice()
@@ -138,7 +139,8 @@ pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
     }
 }
 
-/// What a person calls a field, and its unit, where it has one: `travel limit` and `mm`. `column` is its name in a table.
+/// What a person calls a field, and its unit, where it has one: `travel limit` and `mm`. `column` is its name
+/// in a table.
 pub fn name_and_unit(column: &str) -> (String, Option<String>) {
     let label = Column { name: column.to_owned(), values: Values::Words(Vec::new()) }.label();
     match label.split_once(", ") {

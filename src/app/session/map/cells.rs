@@ -1,4 +1,4 @@
-//! The cells of a map, as far as they are known, and its lines.
+//! Cells of a map, as far as they are known, and its lines.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -21,7 +21,8 @@ pub struct Map {
     pub question: Question,
     /// The cells across and up.
     pub edges: [Edges; 2],
-    /// The least amplitude that frees the mass, in closed form, where that makes sense: `x` and `y` of its points.
+    /// The least amplitude that frees the mass, in closed form, where that makes sense: `x` and `y` of its
+    /// points.
     pub release: Vec<(f64, f64)>,
     /// Where the first crossing cells begin, as far as is known.
     pub crossing: Vec<Vec<(f64, f64)>>,
@@ -147,7 +148,8 @@ impl Map {
         })
     }
 
-    /// Draws the line of first crossings anew, `worked` into the work; not for every part of a map that is large.
+    /// Draws the line of first crossings anew, `worked` into the work; not for every part of a map that is
+    /// large.
     pub(super) fn draw_lines(&mut self, worked: Duration) {
         let every = Duration::from_micros(10 * self.len() as u64);
         if !self.is_whole() && self.lines_after.is_some_and(|last| worked < last + every) {

@@ -1,19 +1,20 @@
-//! The map of the scene: every run of a grid over two of its fields, from rest, coarse first.
+//! Map of the scene: a run for every cell of a grid over two fields, from rest, coarse first.
 //!
-//! It is the sweep of the command line, run on threads of its own and looked at while it comes. It is asked for by the
-//! view that shows it, frame by frame: a map that is not looked at stops where it is, and goes on when it is.
+//! It is the sweep of the command line, run on threads of its own and looked at while it comes. It is asked
+//! for by the view that shows it, frame by frame: a map that is not looked at stops where it is, and goes on
+//! when it is.
 
 mod axes;
 mod cells;
-mod place;
+mod of_session;
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use crate::app::task::{Stream, Wake};
+use crate::app::clock::Instant;
+use crate::app::task::{Stream, Wake, pool};
 use crate::scene::{Scene, SweepAxis};
 use crate::study::{self, Cell};
-use crate::system::threads::{Pool, processors};
 
 use super::editor::Editor;
 
@@ -38,7 +39,8 @@ pub struct Question {
 pub struct Mapping {
     /// The axes that were chosen; none for the scene's own.
     chosen: Option<[SweepAxis; 2]>,
-    /// The scene's own, as they were when the map was first looked at: they do not follow the scene over its map.
+    /// The scene's own, as they were when the map was first looked at: they do not follow the scene over its
+    /// map.
     held: Option<[SweepAxis; 2]>,
     /// What was chosen before a part of the map was enlarged.
     whole: Option<Option<[SweepAxis; 2]>>,
@@ -225,11 +227,9 @@ impl Mapping {
         let (sweep, levels) = (Arc::clone(&map.sweep), Arc::clone(&map.levels));
         let known: Vec<bool> = map.cells.iter().map(Option::is_some).collect();
         let generation = self.generation;
-        // one core stays for the window
-        let threads = processors().saturating_sub(1).max(1);
         self.begun = Some(Instant::now());
         self.task = Stream::start(wake, move |cancel, each| {
-            let Ok(pool) = Pool::new(threads) else { return };
+            let Some(pool) = pool() else { return };
             let task = study::Task { tick: &|| (), cancel };
             let mut begin = 0;
             for end in levels.ends {

@@ -1,11 +1,11 @@
-//! Going on to what is wanted next, as fast as it can be computed: the end of the run, the next release or
-//! crossing.
+//! Fast forward to the end of the run or to the next release or crossing.
 //!
 //! It takes as many frames as it takes. In each the motion is advanced in short stretches until the frame's
 //! share of time is used up, so that the window answers meanwhile.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use crate::app::clock::Instant;
 use crate::dynamics::{Event, EventKind};
 
 use super::Player;

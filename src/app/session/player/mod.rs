@@ -1,7 +1,7 @@
-//! What time is it in the window, and how fast does it go?
+//! The player: time, speed and remembered past of the live motion.
 //!
-//! The motion is live: playing advances it, and a change acts from its present state. Its past is remembered and can be
-//! looked at; playing from there goes through it once more and then on.
+//! The motion is live: playing advances it, and a change acts from its present state. Its past is remembered
+//! and can be looked at; playing from there goes through it once more and then on.
 
 mod goal;
 
@@ -33,7 +33,8 @@ pub fn fitting_speed(pace: f64) -> f64 {
     speeds.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(1.0)
 }
 
-/// Longest stretch of real time in s that one frame plays: after a pause of the window it goes on where it was.
+/// Longest stretch of real time in s that one frame plays: after a pause of the window it goes on where it
+/// was.
 const LONGEST_FRAME: f64 = 0.1;
 
 /// Time on the screen in s that a single step takes.
@@ -161,8 +162,8 @@ impl Player {
         self.past = (t < self.watch.time()).then_some(t);
     }
 
-    /// Goes to the next or the previous event and pauses there; what has not happened yet is played up to it, as
-    /// far as `most` seconds ahead. Whether there was one.
+    /// Goes to the next or the previous event and pauses there; what has not happened yet is played up to it,
+    /// as far as `most` seconds ahead. Whether there was one.
     pub fn seek_event(&mut self, later: bool, most: f64) -> bool {
         self.set_playing(false);
         let t = self.time();

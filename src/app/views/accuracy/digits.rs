@@ -1,4 +1,4 @@
-//! What each digit costs: a table of the scene's run at several tolerances, and error over time where there is room.
+//! Table of runs at several tolerances, and error over time where there is room.
 
 use eframe::egui::{Align2, Grid, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
 
@@ -39,8 +39,8 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         }
         // where no path is right to its end, its largest error says nothing
         if parted == known.runs.len() {
-            let text = "A thousand times the accuracy buys only a little more time: in chaos every small difference grows \
-                        until it is all there is. Averages such as the RMS velocity stay.";
+            let text = "A thousand times the accuracy buys only a little more time: in chaos every small \
+                        difference grows until it is all there is. Averages such as the RMS velocity stay.";
             ui.label(text);
             return;
         }
@@ -58,7 +58,8 @@ fn table_ui(ui: &mut Ui, style: &Style, known: &Tolerances, own: f64) {
             ("tolerance", "Error allowed in a step, in parts of the scene's length and speed."),
             (
                 "error",
-                "How far the displacement is off at most, beside a run with a hundredth of the smallest tolerance.",
+                "How far the displacement is off at most, beside a run with a hundredth of the smallest \
+                 tolerance.",
             ),
             ("time", "Processor time of the whole run."),
             ("steps", "Steps of the whole run."),

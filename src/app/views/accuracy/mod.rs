@@ -1,7 +1,7 @@
-//! Accuracy: what each digit of the scene's run costs, and what becomes of it in fixed steps.
+//! View of the accuracy: cost of each digit, and the same run in fixed steps.
 //!
-//! Nothing of it is worked out while the view is closed. Where there is room both parts stand beside each other, else one
-//! of them is chosen.
+//! Nothing of it is worked out while the view is closed. Where there is room both parts stand beside each
+//! other, else one of them is chosen.
 
 mod digits;
 mod steps;

@@ -1,4 +1,4 @@
-//! What the step size does: the run in fixed steps as a ghost over the true one, and what is wrong with it in numbers.
+//! The run in fixed steps over the true one, and its errors in numbers.
 
 use eframe::egui::{self, ComboBox, Rect, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Points};
@@ -97,9 +97,9 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 /// Which run this is, and how it is compared.
 fn about(known: &StepSize) -> String {
     format!(
-        "The first {} of the scene from its start, {} steps of {}. A step that ends beyond a stop is put onto it, and the \
-         mass bounces from there (clamp and bounce). The true run locates each impact; it counts those down to a millionth \
-         of the scene's speed, and the rest of a chatter in one sum.",
+        "The first {} of the scene from its start, {} steps of {}. A step that ends beyond a stop is put \
+         onto it, and the mass bounces from there (clamp and bounce). The true run locates each impact; it \
+         counts those down to a millionth of the scene's speed, and the rest of a chatter in one sum.",
         crate::study::accuracy::scene::duration(known.span),
         known.steps.1,
         step_name(known.step)
@@ -159,13 +159,13 @@ fn step_ui(ui: &mut Ui, accuracy: &mut Accuracy) {
 fn what(scheme: Scheme) -> &'static str {
     match scheme {
         Scheme::SemiImplicitEuler => {
-            "Velocity first, then displacement by the new velocity: the simplest that keeps a swing alive. Half the step, \
-             half the error."
+            "Velocity first, then displacement by the new velocity: the simplest that keeps a swing alive. \
+             Half the step, half the error."
         }
         Scheme::VelocityVerlet => "What molecules and games move by. Half the step, a quarter of the error.",
         Scheme::RungeKutta4 => {
-            "The classical method of Runge and Kutta, four looks at the force a step. Half the step, a sixteenth of the \
-             error, except at impacts."
+            "The classical method of Runge and Kutta, four looks at the force a step. Half the step, a \
+             sixteenth of the error, except at impacts."
         }
     }
 }

@@ -1,8 +1,8 @@
-//! The map: what every combination of two fields comes to, each run from rest; a click takes the scene there.
+//! View of the map: every combination of two fields, each run from rest.
 
-mod frame;
-mod hand;
+mod coordinates;
 mod picture;
+mod pointer;
 mod quantity;
 mod tools;
 
@@ -16,11 +16,11 @@ use crate::output::sweep_about;
 
 use super::{ViewContext, too_small_ui};
 
-use frame::Frame;
-pub use hand::Hand;
+use coordinates::Coordinates;
 use picture::{Picture, bar, lines};
-pub use quantity::Quantity;
-use quantity::{Scale, kind, kind_name};
+pub use pointer::PointerState;
+pub use quantity::MapQuantity;
+use quantity::{ColourScale, kind, kind_name};
 
 /// Draws it. Whether something changed.
 pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
@@ -41,7 +41,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         return changed;
     }
     let quantity = context.memory.map_quantity;
-    let scale = Scale::of(quantity, map);
+    let scale = ColourScale::of(quantity, map);
     let id = ui.scope_id().with("picture");
     let old = ui.data(|data| data.get_temp::<Option<Picture>>(id)).flatten();
     let key = (context.session.map.version(), quantity, style, current);
@@ -49,7 +49,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let painter = ui.painter().with_clip_rect(area);
     let about = sweep_about(map.grid(), &map.question.scene);
     let legend = tools::legend(&painter, area, &picture, map, &style, &about);
-    let frame = Frame::new(area.with_min_y(legend), map, scale.bar.is_some());
+    let frame = Coordinates::new(area.with_min_y(legend), map, scale.bar.is_some());
     let spoken = ui.interact(frame.rect, ui.scope_id().with("cells"), Sense::hover());
     spoken.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "map"));
     picture.draw(&painter, &frame, &style);
@@ -72,20 +72,20 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         let over = response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
         over.on_hover_text_at_pointer(text);
     }
-    let hand = (&mut context.memory.map_hand, context.session.map.is_enlarged());
-    let wanted = hand::wanted_ui(ui, (&response, &frame), map, hand, (&style, at));
+    let hand = (&mut context.memory.map_pointer, context.session.map.is_enlarged());
+    let wanted = pointer::action_ui(ui, (&response, &frame), map, hand, (&style, at));
     ui.data_mut(|data| data.insert_temp(id, Some(picture)));
-    changed | hand::done(context, wanted)
+    changed | pointer::perform(context, wanted)
 }
 
 /// The cell at a place on the screen.
-fn cell_at(frame: &Frame, map: &Map, at: Pos2) -> Option<(usize, usize)> {
+fn cell_at(frame: &Coordinates, map: &Map, at: Pos2) -> Option<(usize, usize)> {
     let (x, y) = frame.world_from_screen(at);
     map.edges[0].cell(x).zip(map.edges[1].cell(y))
 }
 
 /// The edge of a cell.
-fn outline(frame: &Frame, map: &Map, column: usize, row: usize, style: &Style) -> Shape {
+fn outline(frame: &Coordinates, map: &Map, column: usize, row: usize, style: &Style) -> Shape {
     let (x, y) = (&map.edges[0].edges, &map.edges[1].edges);
     let corners =
         [(x[column], y[row]), (x[column + 1], y[row + 1])].map(|corner| frame.screen_from_world(corner));
@@ -147,7 +147,7 @@ fn named(column: &str, value: f64) -> String {
 }
 
 /// Where the scene is: a ring, or an arrow at the edge that it lies beyond. The place of either.
-fn marker(painter: &egui::Painter, frame: &Frame, style: &Style, place: [Option<f64>; 2]) -> Pos2 {
+fn marker(painter: &egui::Painter, frame: &Coordinates, style: &Style, place: [Option<f64>; 2]) -> Pos2 {
     // without a stop the mass goes as far as it would with one far out
     let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));
     let inside = |axis: &crate::output::Axis, value: f64| (axis.low..=axis.high).contains(&value);

@@ -1,4 +1,4 @@
-//! The cells as a texture, hatching and symbols over it, lines, the colour bar.
+//! Picture of the map: cells as a texture, hatching, symbols, lines, colour bar.
 
 use std::sync::Arc;
 
@@ -12,8 +12,8 @@ use crate::app::ui::style::Style;
 use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::status::Kind;
 
-use super::frame::{Frame, upright};
-use super::quantity::{Look, Quantity, Scale};
+use super::coordinates::{Coordinates, upright};
+use super::quantity::{ColourScale, Look, MapQuantity};
 
 /// Points between lines of hatching, and between samples along one.
 const HATCH: f32 = 7.0;
@@ -37,7 +37,7 @@ pub struct Picture {
     key: Key,
 }
 
-type Key = (u64, Quantity, Style, bool);
+type Key = (u64, MapQuantity, Style, bool);
 
 impl Picture {
     /// The picture of a map, made anew where `version` or the way it is shown has changed.
@@ -45,7 +45,7 @@ impl Picture {
         ui: &Ui,
         old: Option<Self>,
         map: &Map,
-        scale: &Scale,
+        scale: &ColourScale,
         (version, quantity, style, whose): Key,
     ) -> Self {
         let key = (version, quantity, style, whose);
@@ -76,13 +76,13 @@ impl Picture {
     }
 
     /// Draws cells, hatching and symbols.
-    pub fn draw(&self, painter: &Painter, frame: &Frame, style: &Style) {
+    pub fn draw(&self, painter: &Painter, frame: &Coordinates, style: &Style) {
         let all = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
         painter.image(self.texture.id(), frame.rect, all, Color32::WHITE);
         self.hatch(painter, frame.rect, Look::Rest, 1.0, style.hatch_stroke());
         self.hatch(painter, frame.rect, Look::Missing, 1.0, style.missing_stroke());
         self.hatch(painter, frame.rect, Look::Missing, -1.0, style.missing_stroke());
-        if self.key.1 == Quantity::Regime {
+        if self.key.1 == MapQuantity::Regime {
             self.symbols(painter, frame.rect, style);
         }
         self.dots(painter, frame.rect, style);
@@ -176,7 +176,7 @@ fn colour(style: &Style, look: Look) -> Color32 {
 }
 
 /// Release and first crossing.
-pub fn lines(painter: &Painter, frame: &Frame, map: &Map, style: &Style) {
+pub fn lines(painter: &Painter, frame: &Coordinates, map: &Map, style: &Style) {
     let painter = painter.with_clip_rect(frame.rect);
     let screen =
         |points: &[(f64, f64)]| -> Vec<Pos2> { points.iter().map(|p| frame.screen_from_world(*p)).collect() };
@@ -193,7 +193,7 @@ pub fn lines(painter: &Painter, frame: &Frame, map: &Map, style: &Style) {
 }
 
 /// The colours and their values.
-pub fn bar(painter: &Painter, frame: &Frame, scale: &Scale, style: &Style) {
+pub fn bar(painter: &Painter, frame: &Coordinates, scale: &ColourScale, style: &Style) {
     let (Some(rect), Some(axis)) = (frame.bar, &scale.bar) else { return };
     let steps = scale.steps().unwrap_or(rect.height().max(2.0) as usize);
     let height = rect.height() / steps as f32;

@@ -1,4 +1,4 @@
-//! What can a map show, and which colour is which value?
+//! Quantities that a map can show, and their colours.
 
 use crate::app::session::map::Map;
 use crate::app::words::status::Kind;
@@ -8,7 +8,7 @@ use crate::study::Cell;
 
 /// What the colour of a map says.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Quantity {
+pub enum MapQuantity {
     /// RMS velocity.
     #[default]
     Speed,
@@ -39,7 +39,7 @@ pub enum Look {
     Share(f32),
 }
 
-impl Quantity {
+impl MapQuantity {
     /// All of them, in the order of the choice.
     pub const ALL: [Self; 5] = [Self::Speed, Self::Regime, Self::Reach, Self::Impacts, Self::Period];
 
@@ -68,8 +68,8 @@ impl Quantity {
 }
 
 /// The colours of one map of one quantity.
-pub struct Scale {
-    quantity: Quantity,
+pub struct ColourScale {
+    quantity: MapQuantity,
     per_speed: f64,
     /// The bar beside the map; none for regimes.
     pub bar: Option<Axis>,
@@ -77,27 +77,27 @@ pub struct Scale {
     log: bool,
 }
 
-impl Scale {
+impl ColourScale {
     /// From nothing to the largest value that the map has so far.
-    pub fn of(quantity: Quantity, map: &Map) -> Self {
+    pub fn of(quantity: MapQuantity, map: &Map) -> Self {
         let speeds = map.own_cells().filter_map(|cell| cell.summary?.rms_velocity);
         let (per_speed, unit) = speed_unit(speeds);
         let values = map.own_cells().filter_map(|cell| quantity.value(cell, per_speed));
         let most = values.fold(0.0_f64, f64::max);
         let window = map.window_s();
         let bar = match quantity {
-            Quantity::Regime => None,
-            Quantity::Speed => Some(Axis::between(0.0, most, 5, &format!("RMS velocity ({unit})"))),
-            Quantity::Reach => Some(Axis::between(0.0, most, 5, "reach (mm)")),
-            Quantity::Impacts => Some(counts(most, &format!("impacts in {window} s"))),
-            Quantity::Period => Some(Axis {
+            MapQuantity::Regime => None,
+            MapQuantity::Speed => Some(Axis::between(0.0, most, 5, &format!("RMS velocity ({unit})"))),
+            MapQuantity::Reach => Some(Axis::between(0.0, most, 5, "reach (mm)")),
+            MapQuantity::Impacts => Some(counts(most, &format!("impacts in {window} s"))),
+            MapQuantity::Period => Some(Axis {
                 low: 0.5,
                 high: 12.5,
                 ticks: (1..=12).map(|n| (f64::from(n), n.to_string())).collect(),
                 label: "repeats after forcing periods".to_owned(),
             }),
         };
-        Self { quantity, per_speed, bar, log: quantity == Quantity::Impacts }
+        Self { quantity, per_speed, bar, log: quantity == MapQuantity::Impacts }
     }
 
     /// What a cell shows.
@@ -105,7 +105,7 @@ impl Scale {
         let Some(summary) = cell.settled() else { return Look::Missing };
         match (summary.regime, self.quantity) {
             (Regime::Rest, _) => Look::Rest,
-            (regime, Quantity::Regime) => Look::Kind(kind(regime)),
+            (regime, MapQuantity::Regime) => Look::Kind(kind(regime)),
             _ => match (self.quantity.value(cell, self.per_speed), &self.bar) {
                 (Some(value), Some(bar)) => Look::Share(self.share(value, bar) as f32),
                 _ => Look::None,
@@ -120,7 +120,7 @@ impl Scale {
 
     /// Whether each whole number has one colour of its own.
     pub fn steps(&self) -> Option<usize> {
-        (self.quantity == Quantity::Period).then_some(12)
+        (self.quantity == MapQuantity::Period).then_some(12)
     }
 }
 

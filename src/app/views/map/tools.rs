@@ -1,4 +1,4 @@
-//! What the map shows, over which fields, and how far it is; its legend.
+//! Controls over the map, its progress and its legend.
 
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{self, Align2, ComboBox, Painter, PopupCloseBehavior, Rect, RichText, Ui, pos2, vec2};
@@ -12,7 +12,7 @@ use crate::scene::{SweepAxis, column_names};
 
 use super::super::ViewContext;
 use super::picture::{self, Picture, kinds};
-use super::quantity::{Look, Quantity, kind_name};
+use super::quantity::{Look, MapQuantity, kind_name};
 
 /// Width in points below which the choices take two rows.
 const NARROW: f32 = 740.0;
@@ -49,12 +49,12 @@ pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     false
 }
 
-fn quantity_ui(ui: &mut Ui, quantity: &mut Quantity) {
+fn quantity_ui(ui: &mut Ui, quantity: &mut MapQuantity) {
     let combo = ComboBox::from_id_salt("quantity")
         .width(118.0)
         .selected_text(RichText::new(quantity.name()).heading());
     let inner = combo.show_ui(ui, |ui| {
-        for one in Quantity::ALL {
+        for one in MapQuantity::ALL {
             ui.selectable_value(quantity, one, one.name());
         }
     });

@@ -1,4 +1,4 @@
-//! The sentence of a mass that is shaken.
+//! Sentence about a shaken mass.
 
 use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, Summary};
 use crate::scene::{Excitation, Scene, Stops};

@@ -1,7 +1,7 @@
-//! The sentence that says what the mass does.
+//! The sentence about what the mass does.
 //!
-//! Its form is: name: what the mass does; number; what it would take. Every number comes from a run. What has not been seen on
-//! the screen yet is told in the future tense, and what is not known is said to be unknown.
+//! Its form is: name: what the mass does; number; what it would take. Every number comes from a run. What has
+//! not been seen on the screen yet is told in the future tense, and what is not known is said to be unknown.
 
 mod driven;
 mod numbers;

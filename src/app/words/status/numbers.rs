@@ -1,4 +1,4 @@
-//! Numbers as the sentences write them.
+//! Formats of the numbers in the sentences.
 
 /// A number with so many significant digits, written out.
 fn significant(value: f64, digits: i32) -> String {

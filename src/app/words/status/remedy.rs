@@ -63,7 +63,8 @@ fn capital(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// What it would take to cross, or to cross every period: more shaking or stops, where they were searched for.
+/// What it would take to cross, or to cross every period: more shaking or stops, where they were searched
+/// for.
 ///
 /// `stops_mm` is the travel limit that [`study::stops_that_cross`](crate::study::stops_that_cross) found.
 pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm: Option<f64>) -> String {

@@ -1,4 +1,4 @@
-//! Where on the screen is a value of the map's axes?
+//! Coordinates and axes of the map on the screen.
 
 use eframe::egui::{
     Align2, FontId, Painter, Pos2, Rect, Stroke, Vec2, emath::Rot2, epaint::TextShape, pos2, vec2,
@@ -20,7 +20,7 @@ const PLAIN_ROOM: f32 = 12.0;
 const TICK: f32 = 4.0;
 
 /// The map on the screen.
-pub struct Frame {
+pub struct Coordinates {
     /// The cells.
     pub rect: Rect,
     /// The colour bar, where there is one.
@@ -31,7 +31,7 @@ pub struct Frame {
     pub y: Axis,
 }
 
-impl Frame {
+impl Coordinates {
     /// The map in `area`.
     pub fn new(area: Rect, map: &Map, bar: bool) -> Self {
         let room = if bar { BAR_ROOM } else { PLAIN_ROOM };

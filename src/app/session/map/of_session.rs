@@ -1,9 +1,10 @@
-//! The map of the scene that is open: which one it is, where the scene stands on it, and the way there.
+//! The map of the open scene: its axes, the place of the scene on it, moves to a cell.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::app::session::Session;
+use crate::app::task::wait_while;
 use crate::app::words::fields::name_and_unit;
 use crate::scene::{Axis, FieldPath, Stops, SweepAxis};
 use crate::study::release_line;
@@ -37,7 +38,8 @@ impl Session {
         self.model().mechanism.landscape.right_stable().map(|well| well.x * 1e3)
     }
 
-    /// Asks for the map of the scene as it stands, in the frame at `time`. Whether it waits for the hand to be still.
+    /// Asks for the map of the scene as it stands, in the frame at `time`. Whether it waits for the hand to
+    /// be still.
     pub fn want_map(&mut self, time: f64) -> bool {
         let Some(axes) = self.map_axes() else {
             self.map.problem = Some("This scene has no two fields to make a map over.".to_owned());
@@ -68,7 +70,8 @@ impl Session {
         waits
     }
 
-    /// Where the scene stands on the axes of a map; none on an axis whose field it lacks, as a travel limit without stops.
+    /// Where the scene stands on the axes of a map; none on an axis whose field it lacks, as a travel limit
+    /// without stops.
     pub fn place_on_map(&self, question: &Question) -> [Option<f64>; 2] {
         question.axes.each_ref().map(|axis| FieldPath::new(&axis.field).get(self.scene()))
     }
@@ -112,11 +115,10 @@ impl Session {
 
     /// Waits until the map that was asked for is whole, at most so long. Whether it is.
     pub fn wait_for_map(&mut self, most: Duration) -> bool {
-        let until = Instant::now() + most;
-        while self.map.is_running() && Instant::now() < until {
+        wait_while(most, || {
             self.map.take();
-            std::thread::sleep(Duration::from_millis(2));
-        }
+            self.map.is_running()
+        });
         self.map.map().is_some_and(Map::is_whole)
     }
 }

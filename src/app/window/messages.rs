@@ -1,4 +1,4 @@
-//! Messages over the window: those that wait for an answer, and short ones that go by themselves.
+//! Messages over the window: some wait for an answer, short ones go by themselves.
 
 use eframe::egui::{self, Align2, Area, Id, Order, Ui, accesskit::Live, vec2};
 
@@ -13,7 +13,7 @@ const ABOVE: f32 = 72.0;
 
 /// A short message, and since when it stands.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Told {
+pub(super) struct Notice {
     text: String,
     since: Option<f64>,
 }
@@ -21,7 +21,7 @@ pub(super) struct Told {
 impl Window {
     /// Says something for some seconds.
     pub(super) fn tell(&mut self, text: impl Into<String>) {
-        self.told = Some(Told { text: text.into(), since: None });
+        self.told = Some(Notice { text: text.into(), since: None });
     }
 
     /// What was said last, while it stands.

@@ -1,18 +1,18 @@
-//! Where was the pointer when a button was let go?
+//! Deferral of input that follows the release of a pointer button.
 //!
-//! All that happens between two frames comes to the next frame at once, and a slider takes the last place of the pointer
-//! for the place where it was let go. Where a frame takes long, a hand that goes on after letting go would drag the
-//! slider along: what comes after a release waits for the frame after.
+//! All that happens between two frames comes to the next frame at once, and a slider takes the last place of
+//! the pointer for the place where it was let go. Where a frame takes long, a hand that goes on after letting
+//! go would drag the slider along: what comes after a release waits for the frame after.
 
 use eframe::egui::{Event, RawInput};
 
 /// What waits for the next frame.
 #[derive(Debug, Default)]
-pub struct Later {
+pub struct DeferredInput {
     events: Vec<Event>,
 }
 
-impl Later {
+impl DeferredInput {
     /// Leaves in `input` the events up to the first release, those that waited first. Whether more wait.
     pub fn hold_back(&mut self, input: &mut RawInput) -> bool {
         let mut events = std::mem::take(&mut self.events);
@@ -43,15 +43,15 @@ mod tests {
         let moved = |x| Event::PointerMoved(pos2(x, 0.0));
         let all =
             [moved(1.0), button(true), moved(3.0), button(false), moved(9.0), button(true), button(false)];
-        let mut later = Later::default();
+        let mut deferred = DeferredInput::default();
         let mut input = RawInput { events: all.to_vec(), ..RawInput::default() };
-        assert!(later.hold_back(&mut input));
+        assert!(deferred.hold_back(&mut input));
         assert_eq!(input.events, all[..4]);
         let mut input = RawInput { events: vec![moved(10.0)], ..RawInput::default() };
-        assert!(later.hold_back(&mut input));
+        assert!(deferred.hold_back(&mut input));
         assert_eq!(input.events, all[4..]);
         let mut input = RawInput::default();
-        assert!(!later.hold_back(&mut input));
+        assert!(!deferred.hold_back(&mut input));
         assert_eq!(input.events, [moved(10.0)]);
     }
 }

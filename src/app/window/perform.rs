@@ -1,4 +1,4 @@
-//! What menus, keys and buttons ask for, done.
+//! Execution of the commands.
 
 use std::path::PathBuf;
 
@@ -13,10 +13,11 @@ use crate::dynamics::EventKind;
 use crate::scene::Layout;
 
 use super::Window;
+use super::command::{Command, UNDO};
 use super::files::Wanted;
+use super::keys;
 use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::Next;
-use super::menu::{self, Command};
 
 /// How many periods of the motion an event is looked for.
 const PERIODS_AHEAD: f64 = 300.0;
@@ -41,7 +42,7 @@ impl Window {
             }
             return;
         }
-        for command in menu::keys(ctx, self.settings, self.filled.is_some()) {
+        for command in keys::pressed(ctx, self.filled.is_some()) {
             self.carry_out(ctx, command);
         }
     }
@@ -56,12 +57,7 @@ impl Window {
                 Some(path) => self.save_to(ctx, &path),
                 None => self.choose(Wanted::Save),
             },
-            Command::SaveAs => self.choose(Wanted::Save),
-            Command::SaveMotion => self.choose(Wanted::Csv),
-            Command::SaveRun => self.choose(Wanted::Run),
-            Command::SaveEvents => self.choose(Wanted::Events),
-            Command::SaveCurve => self.choose(Wanted::Curve),
-            Command::SavePicture => self.choose(Wanted::Picture),
+            Command::SaveAs(wanted) => self.choose(wanted),
             Command::CopyScene => self.copy_scene(ctx),
             Command::PasteScene => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Command::CopyCommand => match export::command_line(&self.session) {
@@ -71,14 +67,13 @@ impl Window {
                         Runs::Whole => "Copied: the command line of this motion, from its start",
                         Runs::FromNow => "Copied: the command line of this motion, from its present state on",
                         Runs::Another => {
-                            "Copied: the command line of the scene from its start. This motion was changed on \
-                             its way and is another"
+                            "Copied: the command line of the scene from its start. This motion was changed \
+                             on its way and is another"
                         }
                     });
                 }
                 None => self.say_nameless(),
             },
-            Command::SaveMap => self.choose(Wanted::Map),
             Command::CopyMapCommand => match export::map_command_line(&self.session) {
                 Some(line) => {
                     ctx.copy_text(line);
@@ -88,12 +83,8 @@ impl Window {
                 None => {}
             },
             Command::Quit => self.leave_for(ctx, Next::Quit),
-            Command::Undo => {
-                self.session.undo();
-            }
-            Command::Redo => {
-                self.session.redo();
-            }
+            Command::Undo => _ = self.session.undo(),
+            Command::Redo => _ = self.session.redo(),
             Command::BackToStart => {
                 let changed = self.session.editor.is_dirty();
                 self.session.back_to_start();
@@ -102,19 +93,15 @@ impl Window {
                 self.hint = hint::Hint::for_scene(&self.session);
                 self.ways = false;
                 if changed {
-                    let undo = ctx.format_shortcut(&menu::UNDO);
+                    let undo = ctx.format_shortcut(&UNDO);
                     self.tell(format!("Your changes are discarded; {undo} brings them back"));
                 }
                 self.arrange(self.tiling.room());
             }
             Command::PlayPause => self.session.play_or_pause(),
             Command::Step => self.session.player.step(),
-            Command::PreviousEvent => {
-                self.session.player.seek_event(false, EVENT_AHEAD);
-            }
-            Command::NextEvent => {
-                self.session.player.seek_event(true, EVENT_AHEAD);
-            }
+            Command::PreviousEvent => _ = self.session.player.seek_event(false, EVENT_AHEAD),
+            Command::NextEvent => _ = self.session.player.seek_event(true, EVENT_AHEAD),
             Command::NextRelease => self.go_to_first(EventKind::Release),
             Command::NextCrossing => self.go_to_first(EventKind::Crossing),
             Command::RunToEnd => match self.session.end_of_run() {
@@ -154,7 +141,10 @@ impl Window {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!full));
             }
-            Command::Set(settings) => self.settings = settings,
+            Command::Toggle(setting) => {
+                let own = self.settings.of(setting);
+                *own = !*own;
+            }
             Command::Grab => self.memory.grab = true,
             Command::Ways => self.ways = !self.ways,
             Command::Notes => self.message = Some(self.notes()),

@@ -1,16 +1,17 @@
-//! Which file, where the desktop has no dialog to ask with? A path is typed.
+//! Dialog in which a path is typed, where the desktop has none of its own.
 
 use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Key, RichText, TextEdit, Ui};
 
+use crate::app::disk;
 use crate::app::ui::widgets::{dialog, dialog_width};
 
 use super::files::Wanted;
 
 /// A path that is being typed, and what for.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Typed {
+pub(super) struct PathDialog {
     /// What the file is wanted for.
     pub wanted: Wanted,
     /// The path so far.
@@ -28,7 +29,7 @@ pub(super) enum Ended {
     Cancelled,
 }
 
-impl Typed {
+impl PathDialog {
     /// Begins with a path that would do.
     pub fn new(wanted: Wanted, path: &Path) -> Self {
         Self { wanted, path: path.to_string_lossy().into_owned(), begun: false }
@@ -40,13 +41,13 @@ impl Typed {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         if self.path.trim().is_empty() {
             (false, Some("A path is needed."))
-        } else if path.is_dir() {
+        } else if disk::is_folder(path) {
             (false, Some("This is a folder: add the name of a file."))
         } else if self.wanted == Wanted::Open {
-            if path.is_file() { (true, None) } else { (false, Some("There is no such file.")) }
-        } else if folder.is_some_and(|folder| !folder.is_dir()) {
+            if disk::is_file(path) { (true, None) } else { (false, Some("There is no such file.")) }
+        } else if folder.is_some_and(|folder| !disk::is_folder(folder)) {
             (false, Some("There is no such folder."))
-        } else if path.exists() {
+        } else if disk::exists(path) {
             (true, Some("This file exists and will be replaced."))
         } else {
             (true, None)
@@ -57,7 +58,7 @@ impl Typed {
     pub fn ui(&mut self, ui: &Ui) -> Option<Ended> {
         let answer = dialog(ui.ctx(), "path").show(ui.ctx(), |ui| {
             ui.set_width(dialog_width(ui, 520.0));
-            ui.heading(self.wanted.question());
+            ui.heading(self.wanted.words().0);
             ui.label("This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one).");
             ui.add_space(4.0);
             let name = ui.label("path of the file");

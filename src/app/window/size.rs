@@ -1,4 +1,4 @@
-//! The size of the window on the screen, from one start of the program to the next.
+//! Size of the window on the screen, kept from one start of the program to the next.
 //!
 //! What eframe keeps is in points of the zoom of then, and is read before a zoom is set: a window of the
 //! projector mode would come back smaller with every start. The size is therefore kept here, in points of the
@@ -13,7 +13,7 @@ const FRAMED: u32 = 90;
 
 /// Where the window is on its way to its size.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Place {
+pub(super) struct WindowSize {
     /// The size that it is to have, until it was asked for.
     wanted: Option<Vec2>,
     /// Frames with the zoom that is wanted.
@@ -24,7 +24,7 @@ pub(super) struct Place {
     size: Option<Vec2>,
 }
 
-impl Place {
+impl WindowSize {
     /// A window of a size that was kept; none at the first start.
     pub fn restored(size: Option<[f32; 2]>) -> Self {
         let sane = |size: &Vec2| size.is_finite() && size.min_elem() >= 1.0;

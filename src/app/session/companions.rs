@@ -1,7 +1,8 @@
-//! Files that a scene names, put beside the file that the scene is saved to.
+//! Copies of the files that a scene names, beside the file that it is saved to.
 
 use std::path::{Path, PathBuf};
 
+use crate::app::disk;
 use crate::output::write_file;
 use crate::scene::{FileError, Files, Scene, named_paths};
 
@@ -23,7 +24,7 @@ pub fn bring(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<Stri
         };
         let text = text.map_err(|error| format!("the scene names a file that cannot be read: {error}"))?;
         let name = free_name(path, &text, target)?;
-        if !target.with_file_name(&name).exists() {
+        if !disk::exists(&target.with_file_name(&name)) {
             write_file(&target.with_file_name(&name), text.as_bytes())?;
             written.push(name.clone());
         }
@@ -58,7 +59,7 @@ fn free_name(path: &str, text: &str, target: &Path) -> Result<String, String> {
     });
     let fits = |name: &String| {
         let there = target.with_file_name(name);
-        there != target && (!there.exists() || std::fs::read(&there).is_ok_and(|own| own == text.as_bytes()))
+        there != target && (!disk::exists(&there) || disk::holds(&there, text.as_bytes()))
     };
     names
         .take(1000)
@@ -73,7 +74,7 @@ fn folder_of(file: &Path) -> PathBuf {
 fn is_same(a: &Path, b: PathBuf) -> bool {
     let whole = |path: &Path| {
         let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
-        path.canonicalize().ok()
+        disk::whole(path)
     };
     whole(a).is_some_and(|a| whole(&b) == Some(a))
 }

@@ -1,4 +1,4 @@
-//! Hands on the map: a click takes the scene there, the cross-hair is dragged, a box enlarges, a double click is back.
+//! Pointer and keyboard input on the map: choose a cell, drag the cross-hair, enlarge a box.
 
 use eframe::egui::{self, CursorIcon, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2};
 
@@ -8,23 +8,23 @@ use crate::scene::SweepAxis;
 
 use super::super::ViewContext;
 use super::cell_at;
-use super::frame::Frame;
+use super::coordinates::Coordinates;
 
-/// The least side in points of a box that enlarges: less is a click of an unsteady hand.
+/// The least side in points of a box that enlarges: less is a click of an unsteady state.
 const LEAST_BOX: f32 = 10.0;
 
 /// What is kept between frames.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Hand {
+pub struct PointerState {
     /// Where a box begins.
     corner: Option<Pos2>,
     /// A click that waits whether it is the first of two, and since when.
     clicked: Option<((usize, usize), f64)>,
 }
 
-/// What a hand wants of the map.
+/// What the pointer or the keyboard asks of the map.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Wanted {
+pub enum MapAction {
     /// The scene of a cell.
     Cell(usize, usize),
     /// The same on the way of a drag, and whether that has ended.
@@ -35,55 +35,55 @@ pub enum Wanted {
     Whole,
 }
 
-/// Looks at the hand; the scene stands at the place `at` on the screen.
-pub fn wanted_ui(
+/// Reads pointer and keyboard; the scene stands at the place `at` on the screen.
+pub fn action_ui(
     ui: &Ui,
-    (response, frame): (&Response, &Frame),
+    (response, frame): (&Response, &Coordinates),
     map: &Map,
-    (hand, is_enlarged): (&mut Hand, bool),
+    (state, is_enlarged): (&mut PointerState, bool),
     (style, at): (&Style, Pos2),
-) -> Option<Wanted> {
+) -> Option<MapAction> {
     // only on an enlarged map there is something that a second click means
     let second = ui.options(|options| options.input_options.max_double_click_delay);
     let wait = if is_enlarged { second } else { 0.0 };
-    if let Some(wanted) = cross_hair_ui(ui, frame, map, (style, at)) {
-        return Some(wanted);
+    if let Some(action) = cross_hair_ui(ui, frame, map, (style, at)) {
+        return Some(action);
     }
     let time = ui.input(|input| input.time);
     let pointer = response.interact_pointer_pos().map(|at| frame.rect.clamp(at));
     if response.drag_started() {
         let origin = ui.input(|input| input.pointer.press_origin());
-        hand.corner = origin.filter(|at| frame.rect.contains(*at));
+        state.corner = origin.filter(|at| frame.rect.contains(*at));
     }
-    if let (Some(corner), Some(pointer)) = (hand.corner, pointer) {
+    if let (Some(corner), Some(pointer)) = (state.corner, pointer) {
         let dragged = Rect::from_two_pos(corner, pointer);
         let painter = ui.painter();
         painter.rect_filled(dragged, 0.0, style.veil());
         painter.rect_stroke(dragged, 0.0, Stroke::new(1.5, style.ink()), StrokeKind::Inside);
         if response.drag_stopped() {
-            hand.corner = None;
+            state.corner = None;
             let large = dragged.width() >= LEAST_BOX && dragged.height() >= LEAST_BOX;
-            return large.then(|| Wanted::Part(axes_of(frame, map, dragged)));
+            return large.then(|| MapAction::Part(axes_of(frame, map, dragged)));
         }
     }
     if response.double_clicked() {
-        hand.clicked = None;
-        return Some(Wanted::Whole);
+        state.clicked = None;
+        return Some(MapAction::Whole);
     }
     if response.clicked() {
         let cell = response.interact_pointer_pos().and_then(|at| cell_at(frame, map, at))?;
-        hand.clicked = Some((cell, time));
+        state.clicked = Some((cell, time));
     }
-    let ((column, row), since) = hand.clicked?;
+    let ((column, row), since) = state.clicked?;
     if time - since < wait {
         ui.ctx().request_repaint_after_secs((wait - (time - since)) as f32);
         return None;
     }
-    hand.clicked = None;
-    Some(Wanted::Cell(column, row))
+    state.clicked = None;
+    Some(MapAction::Cell(column, row))
 }
 
-fn axes_of(frame: &Frame, map: &Map, dragged: Rect) -> [SweepAxis; 2] {
+fn axes_of(frame: &Coordinates, map: &Map, dragged: Rect) -> [SweepAxis; 2] {
     let (left, low) = frame.world_from_screen(dragged.left_bottom());
     let (right, high) = frame.world_from_screen(dragged.right_top());
     let [across, up] = &map.question.axes;
@@ -91,7 +91,7 @@ fn axes_of(frame: &Frame, map: &Map, dragged: Rect) -> [SweepAxis; 2] {
 }
 
 /// The cross-hair can be dragged, and moved from cell to cell by the arrow keys.
-fn cross_hair_ui(ui: &Ui, frame: &Frame, map: &Map, (style, at): (&Style, Pos2)) -> Option<Wanted> {
+fn cross_hair_ui(ui: &Ui, frame: &Coordinates, map: &Map, (style, at): (&Style, Pos2)) -> Option<MapAction> {
     let grab = Rect::from_center_size(at, Vec2::splat(2.0 * GRAB));
     let id = ui.scope_id().with("cross-hair");
     let response = ui.interact(grab, id, Sense::drag()).on_hover_and_drag_cursor(CursorIcon::Move);
@@ -99,7 +99,7 @@ fn cross_hair_ui(ui: &Ui, frame: &Frame, map: &Map, (style, at): (&Style, Pos2))
     if response.dragged() || response.drag_stopped() {
         let inside = |at: Pos2| frame.rect.shrink(0.5).clamp(at);
         let cell = response.interact_pointer_pos().and_then(|at| cell_at(frame, map, inside(at)));
-        return Some(Wanted::Drag(cell, response.drag_stopped()));
+        return Some(MapAction::Drag(cell, response.drag_stopped()));
     }
     if !response.has_focus() {
         return None;
@@ -117,16 +117,16 @@ fn cross_hair_ui(ui: &Ui, frame: &Frame, map: &Map, (style, at): (&Style, Pos2))
     let (column, row) = cell_at(frame, map, frame.rect.shrink(0.5).clamp(at))?;
     let [columns, rows] = map.size();
     let moved = |own: usize, by: i64, count: usize| own.saturating_add_signed(by as isize).min(count - 1);
-    Some(Wanted::Cell(moved(column, across, columns), moved(row, up, rows)))
+    Some(MapAction::Cell(moved(column, across, columns), moved(row, up, rows)))
 }
 
-/// Does what was wanted. Whether the scene changed.
-pub fn done(context: &mut ViewContext<'_>, wanted: Option<Wanted>) -> bool {
+/// Performs an action. Whether the scene changed.
+pub fn perform(context: &mut ViewContext<'_>, action: Option<MapAction>) -> bool {
     let session = &mut *context.session;
-    match wanted {
+    match action {
         None => false,
-        Some(Wanted::Cell(column, row)) => session.go_to_cell(column, row),
-        Some(Wanted::Drag(cell, ended)) => {
+        Some(MapAction::Cell(column, row)) => session.go_to_cell(column, row),
+        Some(MapAction::Drag(cell, ended)) => {
             session.end_presses();
             let changed = cell.is_some_and(|(column, row)| session.drag_to_cell(column, row));
             if ended {
@@ -134,13 +134,13 @@ pub fn done(context: &mut ViewContext<'_>, wanted: Option<Wanted>) -> bool {
             }
             changed
         }
-        Some(Wanted::Part(axes)) => {
+        Some(MapAction::Part(axes)) => {
             if session.map_problem(&axes).is_none() {
                 session.map.enlarge(axes);
             }
             false
         }
-        Some(Wanted::Whole) => {
+        Some(MapAction::Whole) => {
             session.map.show_whole();
             false
         }

@@ -1,0 +1,198 @@
+//! Changes of the scene: gestures, undo, and single numbers by drags, key presses or typing.
+
+use std::sync::Arc;
+
+use crate::app::words::fields::{in_words, name_and_unit};
+use crate::dynamics::{Model, STANDARD_GRAVITY};
+use crate::mechanics::FLEXURE_TOLERANCE;
+use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
+
+use super::Session;
+use super::build::{solved, why};
+use super::editor::Editor;
+
+/// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and
+/// what it is off by is not seen. At the end of the gesture they are solved as every study solves them.
+const HANDLED_TOLERANCE: f64 = 1e-6;
+
+/// Time in s within which another press of an arrow key belongs to the same gesture.
+const PRESSES: f64 = 1.0;
+
+impl Session {
+    /// Changes the scene as part of a gesture; see [`Editor::edit`].
+    pub fn edit(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
+        let now = (!self.editor.in_gesture()).then(|| self.now_card());
+        let changed = self.editor.edit(change);
+        if let (true, Some(now)) = (changed, now) {
+            self.before = Some(now);
+        }
+        changed
+    }
+
+    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run; if not,
+    /// everything stays as it is and [`refused`](Self::refused) says why. Whether it changed.
+    pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut Mechanism)) -> bool {
+        let mut document = self.editor.runnable();
+        change(&mut document.scene.mechanism);
+        if document.scene.mechanism == self.scene().mechanism {
+            return false;
+        }
+        let wanted = document.scene.mechanism.clone();
+        match solved(&document, HANDLED_TOLERANCE) {
+            Ok(mechanism) => {
+                (self.mechanism, self.mechanism_of, self.hurried) = (mechanism, wanted.clone(), true);
+                self.refused = None;
+                self.edit(|scene| scene.mechanism = wanted)
+            }
+            Err(error) => {
+                self.refused = Some(why(&error, &document.scene));
+                false
+            }
+        }
+    }
+
+    /// Why the last change that a hand wanted of the mechanism was not made.
+    pub fn refused(&self) -> Option<&str> {
+        self.refused.as_deref()
+    }
+
+    /// Ends the gesture.
+    pub fn end_gesture(&mut self) {
+        self.presses = None;
+        if self.editor.in_gesture() {
+            self.apply();
+            self.editor.end_gesture();
+            self.solve_in_earnest();
+            self.ask_thresholds();
+        }
+    }
+
+    /// Solves a mechanism anew that was solved in a hurry; where that fails, the hurried one stays.
+    fn solve_in_earnest(&mut self) {
+        if !std::mem::take(&mut self.hurried) {
+            return;
+        }
+        let Ok(mechanism) = solved(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
+        self.mechanism = mechanism;
+        if let Ok(model) = Model::build(self.scene(), Arc::clone(&self.mechanism)) {
+            self.model = Arc::new(model);
+            self.player.change(&self.model);
+            self.continued = true;
+            self.ask_settled();
+        }
+    }
+
+    /// Changes the scene by one gesture of its own.
+    pub fn edit_once(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
+        self.end_gesture();
+        let changed = self.edit(change);
+        self.end_gesture();
+        changed
+    }
+
+    /// A step back. Whether there was one.
+    pub fn undo(&mut self) -> bool {
+        self.travel(Editor::undo)
+    }
+
+    /// A step forward again. Whether there was one.
+    pub fn redo(&mut self) -> bool {
+        self.travel(Editor::redo)
+    }
+
+    pub(super) fn travel(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
+        self.end_gesture();
+        self.refused = None;
+        let now = self.now_card();
+        let moved = step(&mut self.editor);
+        if moved {
+            self.before = Some(now);
+            self.apply();
+            self.ask_thresholds();
+        }
+        moved
+    }
+
+    /// The number at a path; that of the stops is, while they are off, of those that come.
+    pub fn number(&self, path: &str) -> Option<f64> {
+        FieldPath::new(path).get(&self.with_stops_for(path))
+    }
+
+    /// Changes the number at a path as part of a gesture; a number of the stops switches them on. Whether the
+    /// scene changed, or why it stays as it was.
+    pub fn set_number(&mut self, path: &str, value: f64) -> Result<bool, String> {
+        let mut wanted = self.with_stops_for(path);
+        if !FieldPath::new(path).set(&mut wanted, value) {
+            return Ok(false);
+        }
+        if path == "run.duration_s" {
+            // a window that would begin after the end begins in the middle
+            wanted.run.settle_s = wanted.run.settle_s.filter(|settle| *settle < value);
+        }
+        let section = |path: &str| path.split('.').next().map(str::to_owned);
+        let own = |field: &str| section(field) == section(path);
+        let fault = check(&wanted).faults.into_iter().find(|fault| own(&fault.field));
+        if let (Some(fault), None) = (fault, self.fault()) {
+            let problem = in_words(&fault.problem, &wanted);
+            return Err(match fault.field == path {
+                true => problem,
+                false => format!("{} {problem}", name_and_unit(&fault.field).0),
+            });
+        }
+        if wanted.mechanism == self.scene().mechanism {
+            return Ok(self.edit(|scene| *scene = wanted));
+        }
+        let changed = self.edit_mechanism(|mechanism| *mechanism = wanted.mechanism);
+        match self.refused().filter(|_| !changed) {
+            Some(why) => Err(why.to_owned()),
+            None => Ok(changed),
+        }
+    }
+
+    fn with_stops_for(&self, path: &str) -> Scene {
+        let mut scene = self.scene().clone();
+        if scene.stops == Stops::None && path.starts_with("stops.") {
+            scene.stops = self.remembered_stops();
+        }
+        scene
+    }
+
+    /// A key is pressed on a field at the time `now` in s: presses on one field within a second are one
+    /// gesture.
+    pub fn press(&mut self, field: &'static str, now: f64) {
+        if self.presses.is_none_or(|(own, last)| own != field || now - last > PRESSES) {
+            self.end_gesture();
+        }
+        self.presses = Some((field, now));
+    }
+
+    /// Ends presses that something else follows.
+    pub fn end_presses(&mut self) {
+        if self.presses.is_some() {
+            self.end_gesture();
+        }
+    }
+
+    /// Ends presses that no other one has followed for a second. How long in s others are waited for from
+    /// `now` on.
+    pub fn follow_presses(&mut self, now: f64) -> Option<f64> {
+        let (_, last) = self.presses?;
+        let left = last + PRESSES - now;
+        if left <= 0.0 {
+            self.end_gesture();
+        }
+        (left > 0.0).then_some(left)
+    }
+
+    /// A sine that suits the scales of the mechanism; for the prototype 3 Hz and 0.5 g.
+    pub fn suiting_sine(&self) -> Excitation {
+        let scales = &self.model().scales;
+        let digit = |value: f64, otherwise: f64| match value > 0.0 && value.is_finite() {
+            true => format!("{value:.0e}").parse().unwrap_or(otherwise),
+            false => otherwise,
+        };
+        let frequency_hz = digit(0.2 / (std::f64::consts::TAU * scales.time), 3.0);
+        let amplitude_g = digit(0.075 * scales.length / scales.time.powi(2) / STANDARD_GRAVITY, 0.5);
+        Excitation::Sine { frequency_hz, amplitude_g, phase_deg: 0.0 }
+    }
+}

@@ -1,0 +1,48 @@
+//! Choice of the sentence about the open scene.
+
+use crate::app::words::status::{self, Sentence, Told};
+
+use super::Session;
+
+impl Session {
+    /// What the status line says.
+    pub fn sentence(&self) -> Sentence {
+        if let Some(fault) = &self.fault {
+            return Sentence::fault(fault);
+        }
+        let state = self.player.state();
+        if self.player.is_held() {
+            return status::held(&self.model, &state);
+        }
+        if let Some(outcome) = self.player.ended() {
+            return status::ended(&self.model, outcome);
+        }
+        if !self.model.is_shaken() {
+            return status::unshaken(&self.model, &state);
+        }
+        match self.told() {
+            Some(told) => status::driven(&told),
+            None if self.settled.is_running() => Sentence::waiting(),
+            None => stopped(),
+        }
+    }
+
+    /// What the sentence tells of, once it is known.
+    pub(super) fn told(&self) -> Option<Told<'_>> {
+        let settled = self.settled.current()?;
+        Some(Told {
+            scene: self.scene(),
+            model: &self.model,
+            summary: settled,
+            thresholds: self.thresholds.current(),
+            origin: self.asked_from,
+            now: self.player.watch().time(),
+        })
+    }
+}
+
+/// While it is not known what the motion settles to, because a person has stopped that.
+fn stopped() -> Sentence {
+    let text = "Stopped before it was known what this settles to: a shorter run length is known sooner.";
+    Sentence { kind: status::Kind::Other, text: text.to_owned(), remedy: String::new() }
+}

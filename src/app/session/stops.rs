@@ -1,0 +1,60 @@
+//! Stops of the open scene that are switched off and on.
+
+use crate::dynamics::Model;
+use crate::scene::{Scene, Stops};
+
+use super::Session;
+
+/// The share of speed that stops keep where a scene does not say which stops come.
+const RESTITUTION: f64 = 0.36;
+
+impl Session {
+    /// Switches the stops; the ones that were there are remembered.
+    pub fn switch_stops(&mut self, on: bool) -> bool {
+        let stops = if on { self.remembered_stops } else { Stops::None };
+        if !on && self.scene().stops != Stops::None {
+            self.remembered_stops = self.scene().stops;
+        }
+        self.edit_once(|scene| scene.stops = stops)
+    }
+
+    /// The stops that come when they are switched on.
+    pub fn remembered_stops(&self) -> Stops {
+        self.remembered_stops
+    }
+}
+
+/// The stops that come when they are switched on, before a hand has moved any.
+pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
+    let hinted = || scene.app.as_ref().and_then(|hints| hints.stops_when_on);
+    let suiting = || {
+        let well = model.mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
+        Stops::Rigid { travel_limit_mm: suiting_limit(well), restitution: RESTITUTION }
+    };
+    match scene.stops {
+        Stops::None => hinted().unwrap_or_else(suiting),
+        stops => stops,
+    }
+}
+
+/// Stops that suit a scene that does not say which: where the prototype has them, in parts of the well's
+/// distance.
+pub fn suiting_limit(well_mm: Option<f64>) -> f64 {
+    match well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()) {
+        Some(mm) => format!("{:.1e}", 0.215 * mm).parse().unwrap_or(mm),
+        None => 1.5,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stops_suit_the_distance_of_the_wells() {
+        assert_eq!(
+            (suiting_limit(Some(6.9)), suiting_limit(Some(1000.0)), suiting_limit(None)),
+            (1.5, 220.0, 1.5)
+        );
+    }
+}

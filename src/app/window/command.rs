@@ -1,0 +1,200 @@
+//! Table of the commands, from which the menus, the keys and the list of keys are made.
+
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+
+use crate::app::ui::settings::Setting;
+use crate::app::views::View;
+use crate::scene::Layout;
+
+use super::files::Wanted;
+
+/// What menus, keys and buttons ask for.
+#[derive(Debug, Clone, PartialEq)]
+#[expect(missing_docs, reason = "the table says what each one does")]
+pub enum Command {
+    OpenPreset(&'static str),
+    OpenRecent(String),
+    Open,
+    Save,
+    SaveAs(Wanted),
+    CopyScene,
+    PasteScene,
+    CopyCommand,
+    CopyMapCommand,
+    Quit,
+    Undo,
+    Redo,
+    BackToStart,
+    PlayPause,
+    Step,
+    PreviousEvent,
+    NextEvent,
+    NextRelease,
+    NextCrossing,
+    RunToEnd,
+    /// One of the speeds.
+    Speed(usize),
+    Arrange(Layout),
+    ArrangeOwn,
+    KeepOwn,
+    /// Show or hide a view.
+    Show(View, bool),
+    NextTab,
+    /// One view over the whole window, or all again.
+    Fill,
+    Cover,
+    FullScreen,
+    Toggle(Setting),
+    Grab,
+    Ways,
+    Notes,
+    Shortcuts,
+    About,
+}
+
+/// A part of a menu.
+pub(super) enum Part {
+    /// A command: its name, none where it stands in no menu; its key; its place in the list of keys.
+    Item(&'static str, Option<KeyboardShortcut>, Command, Listed),
+    /// A row of the list of keys alone: its heading, the keys, and what they do.
+    Row(&'static str, &'static str, &'static str),
+    /// A menu within the menu.
+    Menu(&'static str, &'static [Part]),
+    /// A line between commands.
+    Line,
+    /// The built-in scenes.
+    Presets,
+    /// The scene files opened last.
+    Recent,
+    /// The settings as boxes to tick.
+    Settings,
+    /// The views as boxes to tick.
+    Views,
+    /// The speeds, with the keys 1 to 7.
+    Speeds,
+}
+
+/// How the key of a command is listed.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Listed {
+    No,
+    /// By a row under a heading that says what it does.
+    As(&'static str, &'static str),
+    /// In the row of the command before.
+    Joined,
+}
+
+const fn plain(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::NONE, key))
+}
+
+const fn control(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::COMMAND, key))
+}
+
+const fn control_shift(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
+}
+
+/// A step back.
+pub const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+
+/// What the way back to the scene as it was opened is called.
+pub(super) const DISCARD: &str = "Discard changes";
+
+use Command as C;
+use Listed::{As, Joined, No};
+use Part::{Item, Line, Row};
+
+/// The menus.
+#[rustfmt::skip]
+pub(super) static MENUS: [(&str, &[Part]); 5] = [
+    ("File", &[
+        Part::Presets,
+        Item("Open...", control(Key::O), C::Open, As("Scene", "open, save")),
+        Part::Recent,
+        Line,
+        Item("Save", control(Key::S), C::Save, Joined),
+        Item("Save as...", control_shift(Key::S), C::SaveAs(Wanted::Save), No),
+        Line,
+        Item("Save the motion seen as CSV...", None, C::SaveAs(Wanted::Motion), No),
+        Item("Save the whole run as CSV...", None, C::SaveAs(Wanted::Run), No),
+        Item("Save the events as CSV...", None, C::SaveAs(Wanted::Events), No),
+        Item("Save the force curve as CSV...", None, C::SaveAs(Wanted::Curve), No),
+        Item("Save a picture of the window...", None, C::SaveAs(Wanted::Picture), No),
+        Item("Save the map as CSV...", None, C::SaveAs(Wanted::Map), No),
+        Item("Copy the map's command line", None, C::CopyMapCommand, No),
+        Line,
+        Item("Quit", control(Key::Q), C::Quit, As("Scene", "quit")),
+    ]),
+    ("Edit", &[
+        Item("Undo", Some(UNDO), C::Undo, As("Scene", "undo, redo")),
+        Item("Redo", control_shift(Key::Z), C::Redo, No),
+        Item("", control(Key::Y), C::Redo, Joined),
+        Item(DISCARD, plain(Key::Home), C::BackToStart,
+            As("Time", "discard your changes: scene, view and time as opened")),
+        Line,
+        Item("Copy the scene as text", control(Key::C), C::CopyScene, As("Scene", "copy, paste the scene as text")),
+        Item("Paste a scene", control(Key::V), C::PasteScene, Joined),
+        Item("Copy the command line", control_shift(Key::C), C::CopyCommand,
+            As("Scene", "copy the command line that runs it")),
+    ]),
+    ("View", &[
+        Row("Views", "Ctrl+1, 2, 3, 4", "arrange as Look, Study, Map, your own"),
+        Part::Menu("Arrangement", &[
+            Item("Look", control(Key::Num1), C::Arrange(Layout::Look), No),
+            Item("Study", control(Key::Num2), C::Arrange(Layout::Study), No),
+            Item("Map", control(Key::Num3), C::Arrange(Layout::Map), No),
+            Item("Your own", control(Key::Num4), C::ArrangeOwn, No),
+            Item("Keep this as your own", None, C::KeepOwn, No),
+        ]),
+        Part::Settings,
+        Item("", plain(Key::P), C::Toggle(Setting::Projector),
+            As("Views", "projector: light, larger, thicker lines")),
+        Item("", plain(Key::D), C::Toggle(Setting::Dark), As("Views", "light letters on a dark ground")),
+        Line,
+        Part::Views,
+        Item("The next tab", control(Key::Tab), C::NextTab,
+            As("Views", "the next of the views that share a place")),
+        Item("One view over the window", plain(Key::Z), C::Fill,
+            As("Views", "the view under the pointer over the whole window")),
+        Item("", plain(Key::Escape), C::Fill, No),
+        Row("Views", "Esc", "all views again"),
+        Item("Cover the results", plain(Key::C), C::Cover,
+            As("Views", "cover the motion and all results, until C again: predict first")),
+        Item("What it would take", plain(Key::H), C::Ways, As("Views", "what it would take to cross")),
+        Item("Full screen", plain(Key::F11), C::FullScreen, As("Views", "full screen")),
+    ]),
+    ("Motion", &[
+        Item("Play, pause", plain(Key::Space), C::PlayPause, As("Time", "play, pause")),
+        Item("A single step", plain(Key::Period), C::Step, As("Time", "a single step")),
+        Item("To the event before", plain(Key::PageUp), C::PreviousEvent, As("Time", "to the event before, after")),
+        Item("To the event after", plain(Key::PageDown), C::NextEvent, Joined),
+        Line,
+        Item("To the next release", plain(Key::R), C::NextRelease,
+            As("Time", "to the next release, the next crossing")),
+        Item("To the next crossing", plain(Key::X), C::NextCrossing, Joined),
+        Item("To the end of the run", plain(Key::End), C::RunToEnd, As("Time", "to the end of the run")),
+        Line,
+        Part::Speeds,
+        Row("Time", "1 to 7", "speed, from 1/1000 of real time to 100 times"),
+        Item("", plain(Key::G), C::Grab, As("Hands", "take hold of the mass")),
+        Row("Hands", "Left, Right", "move what has the focus by a step, the held mass by 0.1 mm"),
+        Row("Hands", "Shift", "with these, ten steps"),
+        Row("Hands", "Enter", "let go of the mass"),
+        Row("Hands", "Tab, Space", "to the next control, press it"),
+    ]),
+    ("Help", &[
+        Item("About this scene", None, C::Notes, No),
+        Item("Keys", plain(Key::F1), C::Shortcuts, No),
+        Item("About", None, C::About, No),
+    ]),
+];
+
+/// The parts of all menus.
+pub(super) fn parts() -> impl Iterator<Item = &'static Part> {
+    MENUS.iter().flat_map(|menu| menu.1).flat_map(|part| match part {
+        Part::Menu(_, parts) => parts.iter(),
+        own => std::slice::from_ref(own).iter(),
+    })
+}

@@ -1,0 +1,112 @@
+//! Keys of the commands, and the list of keys that F1 shows.
+
+use eframe::egui::{self, Context, Grid, Key, KeyboardShortcut, Modifiers, Popup, RichText, Ui};
+
+use crate::app::session::player::SPEEDS;
+use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
+
+use super::command::{Command, Listed, Part, parts};
+
+/// The keys of the speeds, the slowest first.
+pub(super) const SPEED_KEYS: [Key; SPEEDS.len()] =
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
+
+/// Headings of the list of keys, and the width in points from which on they stand in two columns.
+const GROUPS: [&str; 4] = ["Time", "Hands", "Views", "Scene"];
+const SIDE_BY_SIDE: f32 = 800.0;
+
+/// What the keyboard asks for; nothing while something is typed. To be called only where no dialog is open.
+pub fn pressed(ctx: &Context, filled: bool) -> Vec<Command> {
+    let mut asked = Vec::new();
+    if ctx.text_edit_focused() {
+        return asked;
+    }
+    let speeds = SPEED_KEYS.into_iter().enumerate();
+    let speeds = speeds.map(|(i, key)| (KeyboardShortcut::new(Modifiers::NONE, key), Command::Speed(i)));
+    let commands = parts().filter_map(|part| match part {
+        Part::Item(_, Some(key), command, _) => Some((*key, command.clone())),
+        _ => None,
+    });
+    let (longer, shorter): (Vec<_>, Vec<_>) =
+        commands.chain(speeds).partition(|(key, _)| key.modifiers.shift);
+    // the longer ones first: the shorter ones would take them for themselves
+    for (key, command) in longer.into_iter().chain(shorter) {
+        if is_free(ctx, &key, &command, filled) && ctx.input_mut(|input| input.consume_shortcut(&key)) {
+            asked.push(command);
+        }
+    }
+    asked
+}
+
+/// Whether a key is that of the command now.
+fn is_free(ctx: &Context, key: &KeyboardShortcut, command: &Command, filled: bool) -> bool {
+    match (command, key.logical_key) {
+        // the system says so itself
+        (Command::CopyScene | Command::PasteScene, _) => false,
+        // what has the keyboard's focus is pressed by it
+        (_, Key::Space) => {
+            let focused = ctx.memory(egui::Memory::focused).and_then(|id| ctx.read_response(id));
+            !focused.is_some_and(|response| response.sense.senses_click())
+        }
+        (_, Key::Escape) => filled && !Popup::is_any_open(ctx),
+        _ => true,
+    }
+}
+
+/// The rows of the list under a heading: keys, and what they do.
+fn rows(ctx: &Context, heading: &str) -> Vec<(String, &'static str)> {
+    let mut rows: Vec<(&str, String, &str)> = Vec::new();
+    for part in parts() {
+        match (part, rows.last_mut()) {
+            (Part::Row(group, keys, text), _) => rows.push((group, (*keys).to_owned(), text)),
+            (Part::Item(_, Some(key), _, Listed::As(group, text)), _) => {
+                rows.push((group, ctx.format_shortcut(key), text));
+            }
+            (Part::Item(_, Some(key), _, Listed::Joined), Some(row)) => {
+                row.1 += &format!(", {}", ctx.format_shortcut(key));
+            }
+            _ => {}
+        }
+    }
+    rows.into_iter().filter(|row| row.0 == heading).map(|(_, keys, text)| (keys, text)).collect()
+}
+
+/// A group of the list with its heading.
+fn group_ui(ui: &mut Ui, group: &str) {
+    ui.label(RichText::new(group).heading());
+    Grid::new(group).num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
+        for (keys, does) in rows(ui.ctx(), group) {
+            ui.label(keys);
+            ui.label(does);
+            ui.end_row();
+        }
+    });
+    ui.add_space(8.0);
+}
+
+/// Shows the list of keys, which was opened at the time `opened` in s; false once it is to be closed.
+pub fn list_ui(ui: &Ui, opened: f64) -> bool {
+    let answer = dialog(ui.ctx(), "shortcuts").show(ui.ctx(), |ui| {
+        ui.set_max_width(dialog_width(ui, 960.0));
+        ui.heading("Keys");
+        ui.add_space(4.0);
+        let room = (ui.ctx().content_rect().height() - 130.0).max(120.0);
+        // every opening begins at the top
+        let list = egui::ScrollArea::vertical().id_salt(opened.to_bits());
+        list.max_height(room).min_scrolled_height(room).show(ui, |ui| {
+            if ui.available_width() < SIDE_BY_SIDE {
+                return GROUPS.iter().for_each(|group| group_ui(ui, group));
+            }
+            ui.horizontal_top(|ui| {
+                for groups in GROUPS.chunks(2) {
+                    ui.vertical(|ui| groups.iter().for_each(|group| group_ui(ui, group)));
+                    ui.add_space(24.0);
+                }
+            });
+        });
+        ui.add_space(8.0);
+        close_ui(ui)
+    });
+    let again = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F1));
+    !(answer.inner || answer.should_close() || again)
+}
