@@ -172,7 +172,12 @@ impl Tiling {
         let width = |id: &TileId| {
             let view = self.tree.tiles.get_pane(id).filter(|_| self.tree.is_visible(*id))?;
             let font = egui::FontId::proportional(BODY);
-            Some(ui.painter().layout_no_wrap(view.name().to_owned(), font, egui::Color32::PLACEHOLDER).size().x)
+            Some(
+                ui.painter()
+                    .layout_no_wrap(view.name().to_owned(), font, egui::Color32::PLACEHOLDER)
+                    .size()
+                    .x,
+            )
         };
         let fitting = |(id, tile): (&TileId, &Tile<View>)| {
             let Tile::Container(Container::Tabs(tabs)) = tile else { return None };

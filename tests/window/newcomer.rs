@@ -83,14 +83,15 @@ fn shaken_out() -> Harness<'static, Window> {
 fn a_run_that_ended_begins_again() {
     // by less shaking
     let mut harness = shaken_out();
-    let ended_at = harness.state().session.player.time();
     assert!(harness.state_mut().session.undo());
-    harness.run_steps(5);
+    assert_eq!(harness.state().session.player.time(), 0.0);
+    harness.run_steps(60);
     let session = &harness.state().session;
-    assert!(session.player.ended().is_none() && session.player.is_playing());
-    assert!(session.player.time() < ended_at && !session.is_continued());
+    assert!(session.player.ended().is_none() && session.player.is_playing() && !session.is_continued());
     // by playing
     let mut harness = shaken_out();
+    let ended_at = harness.state().session.player.time();
+    harness.key_press(Key::Num3);
     harness.key_press(Key::Space);
     harness.run_steps(2);
     let session = &harness.state().session;
@@ -129,7 +130,8 @@ fn the_lesson_says_what_the_scene_does() {
         let landscape = &harness.state().session.model().mechanism.landscape;
         let well = landscape.right_stable().unwrap().x;
         let hardest = landscape.extrema.iter().find(|own| own.x > 1e-4 && own.x < well).unwrap();
-        let words = format!("most of all at ±{:.1} mm, and from there to the well less again", hardest.x * 1e3);
+        let words =
+            format!("most of all at ±{:.1} mm, and from there to the well less again", hardest.x * 1e3);
         harness.get_by_label_contains(&words);
         let session = &harness.state().session;
         let weak = harness.query_by_label_contains("Here this push does not carry it over.").is_some();
@@ -239,7 +241,12 @@ fn notes_speak_of_what_the_window_has() {
         assert!(!notes.contains("excitation.") && !notes.contains("run.t"), "{}: {notes}", preset.name);
         let sweeps = notes.matches("sweep").count();
         let told = ["The sweep of the command line", "The sweep, or the map of the window,"];
-        assert_eq!(sweeps, told.map(|words| notes.matches(words).count()).iter().sum::<usize>(), "{}", preset.name);
+        assert_eq!(
+            sweeps,
+            told.map(|words| notes.matches(words).count()).iter().sum::<usize>(),
+            "{}",
+            preset.name
+        );
     }
 }
 
@@ -301,7 +308,7 @@ fn notes_in_the_column_end_with_a_sentence() {
         let notes = harness.state().session.scene().notes.clone();
         let begin = &notes[..30];
         let own = painted(&harness).into_iter().find(|own| own.0.starts_with(begin));
-        assert!(own.is_none_or(|own| own.0.ends_with(['.', ';', ':'])));
+        assert!(own.is_none_or(|own| own.0.ends_with('.')));
     }
 }
 

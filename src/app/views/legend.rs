@@ -16,7 +16,7 @@ const APART: f32 = 14.0;
 /// What long entries are called where room is short.
 const SHORT: [(&str, &str); 5] = [
     ("potential with the push", "with the push"),
-    ("the mechanism's own", "without"),
+    ("the mechanism's own", "its own"),
     ("holds the mass there", "holds it"),
     ("push of the base", "push"),
     ("at rest on a stop", "at rest"),
