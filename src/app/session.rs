@@ -44,8 +44,8 @@ const MOMENT: f64 = 0.02;
 /// Share of the length scale by which a change has to carry the mass to be worth a word.
 const CARRIED: f64 = 0.02;
 
-/// Scales of a scene that set how far its sliders go: those of the scene as it was opened, so that no slider jumps
-/// while another one is moved.
+/// Scales of a scene that set how far its sliders go: those of the scene as it was opened, so that no slider
+/// jumps while another one is moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OpenedScales {
     /// Length in m and time in s.
@@ -377,8 +377,8 @@ impl Session {
         }
     }
 
-    /// Lets the motion go on from its present state by the model; one that has ended, and could not go on from there,
-    /// begins again.
+    /// Lets the motion go on from its present state by the model; one that has ended, and could not go on
+    /// from there, begins again.
     fn go_on(&mut self) {
         let (ended, before) = (self.player.ended().is_some(), self.player.watch().now().x);
         self.player.change(&self.model);

@@ -1,4 +1,5 @@
-//! What a person meets who sees the window for the first time: runs that end, a lesson, words, and room for them.
+//! What a person meets who sees the window for the first time: runs that end, a lesson, words, and room for
+//! them.
 
 use eframe::egui::{self, Key, Modifiers, Rect};
 use egui_kittest::Harness;
@@ -324,4 +325,14 @@ fn the_keys_are_all_there() {
             assert!(last.bottom() < harness.get_by_label("Close").rect().top(), "{last:?}");
         }
     }
+}
+
+#[test]
+fn the_bar_of_the_present_fits_the_scene() {
+    let mut harness = opened("bouncing-ball", WIDE);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num2);
+    harness.run_steps(20);
+    // 1 kg that falls 1 m
+    let end = painted(&harness).into_iter().map(|own| own.0).find(|text| text.ends_with(" J"));
+    assert_eq!(end.as_deref(), Some("10 J"));
 }
