@@ -333,6 +333,6 @@ fn the_bar_of_the_present_fits_the_scene() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Num2);
     harness.run_steps(20);
     // 1 kg that falls 1 m
-    let end = painted(&harness).into_iter().map(|own| own.0).find(|text| text.ends_with(" J"));
+    let end = painted(&harness).into_iter().map(|own| own.0).find(|text| text.ends_with("0 J"));
     assert_eq!(end.as_deref(), Some("10 J"));
 }
