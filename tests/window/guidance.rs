@@ -51,15 +51,12 @@ fn the_hint_leads_on_and_ends() {
             *amplitude_g = 1.4;
         }
     });
-    harness.run_steps(3);
-    harness.state_mut().session.wait(LONG);
-    harness.run_steps(3);
-    // it is known before it is seen
-    harness.get_by_label("Now it will cross.");
+    harness.state_mut().session.wait_settled(LONG);
     harness.run_steps(200);
     harness.get_by_label("Harder shaking made it cross.");
     harness.get_by_label_contains("Now go back to 0.900 g and switch the stops on");
     harness.state_mut().session.switch_stops(true);
+    harness.state_mut().session.wait_settled(LONG);
     harness.run_steps(120);
     // with stops, but not yet with less shaking
     harness.get_by_label("Now with less shaking.");
@@ -68,12 +65,14 @@ fn the_hint_leads_on_and_ends() {
             *amplitude_g = 0.9;
         }
     });
+    harness.state_mut().session.wait_settled(LONG);
     harness.run_steps(120);
     harness.get_by_label("Between these stops it crossed, without more shaking.");
     harness.state_mut().session.switch_stops(false);
     harness.run_steps(3);
     harness.get_by_label("Now with stops.");
     harness.state_mut().session.switch_stops(true);
+    harness.state_mut().session.wait_settled(LONG);
     harness.run_steps(120);
     harness
         .state_mut()

@@ -177,7 +177,7 @@ fn held_ended_and_wrong() {
     let own = session("first-look", &["start=At(x_mm: 7.9, v_m_per_s: 2)"]);
     let (kind, text) = says(&own);
     assert!(kind == Kind::Fault && text.starts_with("The run ended at 0.0"), "{text}");
-    assert!(text.contains("beyond what was solved of the flexures, which ends at 8.3 mm"), "{text}");
+    assert!(text.contains("went further than the flexures were computed, 8.3 mm"), "{text}");
     let own = session("paper-table", &["stops=None", "start=At(x_mm: 7.9, v_m_per_s: 2)"]);
     assert!(says(&own).1.contains("left the force table"), "{:?}", says(&own));
 

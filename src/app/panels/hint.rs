@@ -11,6 +11,11 @@ use crate::scene::Excitation;
 /// How far in mm the stops are moved before the trade-off counts as tried.
 const TRIED_MM: f64 = 0.3;
 
+/// What stops do between any two wells.
+const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier, so that a weaker push carries \
+                      it over; but the mass travels less. Further out the mechanism presses the mass harder \
+                      against the stop";
+
 /// What is to be tried.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
@@ -83,8 +88,8 @@ impl Hint {
         session.amplitude_g().is_some_and(|g| g.abs() <= self.opened_g.abs() * (1.0 + 1e-9))
     }
 
-    /// What it says: what there is, and what to try. What it says of the motion is what the present scene settles to; where
-    /// that is not known, it says nothing of it.
+    /// What it says: what there is, and what to try. What it says of the motion is what the present scene
+    /// settles to; where that is not known, it says nothing of it.
     pub fn text(&self, session: &Session) -> (&'static str, String) {
         let (opened, crosses) = (grams(self.opened_g), session.crosses());
         let (as_opened, alone) = (self.is_as_opened(session), self.is_alone(session));
@@ -97,12 +102,12 @@ impl Hint {
                 "Two things help: shake harder, or put stops near the middle.",
             ),
             (Stage::Compare | Stage::Move { .. }, false, false, _) => {
-                let first = match crosses {
-                    Some(true) if alone => "Harder shaking made it cross.",
-                    _ => "Now with stops.",
+                let (first, now) = match crosses {
+                    Some(true) if alone => ("Harder shaking made it cross.", "Now go"),
+                    _ => ("Now with stops.", "Go"),
                 };
                 let then = "switch the stops on: what is gained, what does it cost?";
-                return (first, format!("Now go back to {opened} g and {then}"));
+                return (first, format!("{now} back to {opened} g and {then}"));
             }
             (Stage::Compare | Stage::Move { .. }, false, true, _) => {
                 ("Now with stops.", "Switch them on at this shaking: does it cross, and what does it cost?")
@@ -164,9 +169,7 @@ impl Hint {
 
 /// What stops do between these wells, wherever they stand.
 fn answer(session: &Session) -> String {
-    let mut text = "a stop near the middle holds the mass high on the barrier, so that a weaker push carries it over; \
-                    but the mass travels less. Further out the mechanism presses the mass harder against the stop"
-        .to_owned();
+    let mut text = MIDDLE.to_owned();
     text += &match hardest_mm(session) {
         Some(mm) => format!(", most of all at ±{mm:.1} mm, and from there to the well less again."),
         None => ", and near the well less again.".to_owned(),
@@ -177,7 +180,8 @@ fn answer(session: &Session) -> String {
     text
 }
 
-/// Where between the middle and the wells the mechanism presses the mass outwards hardest, in mm, if on both sides alike.
+/// Where between the middle and the wells the mechanism presses the mass outwards hardest, in mm, if on both
+/// sides alike.
 fn hardest_mm(session: &Session) -> Option<f64> {
     let landscape = &session.model().mechanism.landscape;
     let barrier = landscape.barrier?;

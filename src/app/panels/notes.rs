@@ -33,7 +33,7 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, bottom: f32) -> bool {
         return false;
     }
     // as many whole sentences as there is room for
-    let ends = notes.match_indices(['.', ';', ':']).map(|(at, _)| at + 1);
+    let ends = notes.match_indices('.').map(|(at, _)| at + 1);
     let ends: Vec<usize> = ends.filter(|at| notes[*at..].starts_with(char::is_whitespace)).collect();
     let count = ends.partition_point(|end| height(&notes[..*end]) <= room - HEADING - MORE);
     let end = count.checked_sub(1).and_then(|last| ends.get(last)).copied().unwrap_or(0);

@@ -108,8 +108,9 @@ fn row(kind: EventKind) -> usize {
     }
 }
 
-/// Of each row the first event in every stretch of time, at least `least` seconds long, that has some. The stretches are
-/// powers of two of a second and begin at multiples of themselves, so that the signs stay while time goes on.
+/// Of each row the first event in every stretch of time, at least `least` seconds long, that has some. The
+/// stretches are powers of two of a second and begin at multiples of themselves, so that the signs stay while
+/// time goes on.
 fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Event> {
     let stretch = least.max(f64::MIN_POSITIVE).log2().ceil().exp2();
     let mut last = [f64::NAN; 3];
@@ -121,7 +122,8 @@ fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Even
     seen.filter(is_first).copied().collect()
 }
 
-/// What stands for an event around a place: a line for an impact, a triangle for a release, a diamond for a crossing.
+/// What stands for an event around a place: a line for an impact, a triangle for a release, a diamond for a
+/// crossing.
 fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
     let convex = |points: &[(f32, f32)], color: Color32| {
         let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();

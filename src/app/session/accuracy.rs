@@ -57,8 +57,8 @@ fn long(trust: &Trust, from: f64) -> String {
     let hangs = match (trust.course, trust.same_regime) {
         (Course::Kept, _) => "",
         (_, true) => {
-            " This is about the path, where the mass is at an instant: both runs come to the same regime, which does not hang \
-             on it."
+            " This is about the path, where the mass is at an instant: both runs come to the same regime, \
+             which does not hang on it."
         }
         (_, false) => " The two runs also come to different regimes, so that the regime hangs on it.",
     };

@@ -206,7 +206,8 @@ impl Knob<'_> {
     }
 }
 
-/// A number with a point where a single comma can only be that: not one before three digits, which may stand for thousands.
+/// A number with a point where a single comma can only be that: not one before three digits, which may stand
+/// for thousands.
 fn with_point(number: &str) -> String {
     let Some((whole, part)) = number.split_once(',') else { return number.to_owned() };
     let digits = part.chars().take_while(char::is_ascii_digit).count();

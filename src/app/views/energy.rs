@@ -9,7 +9,7 @@ use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, 
 use crate::app::ui::style::Style;
 use crate::dynamics::LiveLedger;
 
-use super::ranges::axis_end;
+use super::ranges::{axis_end, floor};
 use super::{ViewContext, too_small_ui};
 
 /// Widths in points of the names and of the numbers.
@@ -191,10 +191,9 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     let (kinetic, potential) = model.energies(state.x, state.v);
     let landscape = &model.mechanism.landscape;
     let wells = landscape.equilibria.iter().filter(|own| own.stable);
-    let bottom = wells
-        .map(|own| model.mechanism.curve.potential(own.x))
-        .reduce(f64::min)
-        .unwrap_or(potential.min(0.0));
+    let wells = wells.map(|own| model.mechanism.curve.potential(own.x)).reduce(f64::min);
+    // without a well the lower stop is the bottom
+    let bottom = wells.or(floor(model)).unwrap_or(potential.min(0.0));
     let (potential, barrier) = (
         (potential - bottom).max(0.0),
         landscape.barrier.map(|barrier| model.mechanism.curve.potential(barrier.x) - bottom),
@@ -238,8 +237,9 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
         );
     }
     response.on_hover_text(format!(
-        "Now: potential {} and kinetic energy {} {name}, counted from the bottom of the deeper well. Without \
-         shaking the mass crosses only where their sum passes the barrier.",
+        "Now: potential {} and kinetic energy {} {name}, counted from the bottom of the deeper well, or \
+         without one from the lower stop. Without shaking the mass crosses only where their sum passes the \
+         barrier.",
         short(potential / unit),
         short(kinetic / unit)
     ));

@@ -16,7 +16,7 @@ const APART: f32 = 14.0;
 /// What long entries are called where room is short.
 const SHORT: [(&str, &str); 5] = [
     ("potential with the push", "with the push"),
-    ("the mechanism's own", "without"),
+    ("the mechanism's own", "its own"),
     ("holds the mass there", "holds it"),
     ("push of the base", "push"),
     ("at rest on a stop", "at rest"),
@@ -55,8 +55,8 @@ impl Sign {
     }
 }
 
-/// The entries in the upper row of `area`, in their short words where there is no room before `right` for all of the long
-/// ones; what has no room even so is left out. Each says under the pointer what it means.
+/// The entries in the upper row of `area`, in their short words where there is no room before `right` for all
+/// of the long ones; what has no room even so is left out. Each says under the pointer what it means.
 pub fn legend(ui: &Ui, style: &Style, area: Rect, right: f32, entries: &[(Sign, &str)]) {
     let painter = ui.painter().with_clip_rect(area);
     let written = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.faint());

@@ -27,6 +27,9 @@ const COIL: f32 = 9.0;
 /// The least size in points of a drawing whose parts are named.
 const NAMED: egui::Vec2 = vec2(280.0, 140.0);
 
+/// Room in points between a name and a flexure below it.
+const CLEAR: f32 = 10.0;
+
 /// Length in points of an arrow's head.
 const ARROW_HEAD: f32 = 12.0;
 
@@ -87,8 +90,9 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
     changed
 }
 
-/// What the parts are called, each once: a flexure at its clamp and the mass, each on the side to which the flexure does
-/// not go from there; a stop at its foot on the outer side, or where there is no room on the inner one.
+/// What the parts are called, each once: a flexure at its clamp and the mass, each on the side to which the
+/// flexure does not go from there; a stop at its foot on the outer side, or where there is no room on the
+/// inner one.
 fn names(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
@@ -107,7 +111,8 @@ fn names(
             true => x_right + width(name) < rect.right(),
             false => x_left - width(name) > rect.left(),
         };
-        let right = if fits(right) { right } else { !right };
+        // on the other side it stands clear of the flexure
+        let (right, y) = if fits(right) { (right, y) } else { (!right, if below { y } else { y - CLEAR }) };
         let align = match (right, below) {
             (true, true) => Align2::LEFT_TOP,
             (true, false) => Align2::LEFT_BOTTOM,
@@ -139,8 +144,8 @@ fn names(
     }
 }
 
-/// Whether the flexure over the mass goes to the right from its clamp, and from the mass. A spring leaves the mass to the
-/// side of the barrier.
+/// Whether the flexure over the mass goes to the right from its clamp, and from the mass. A spring leaves the
+/// mass to the side of the barrier.
 fn leaves_right(context: &ViewContext<'_>) -> (bool, bool) {
     let model = context.session.shown();
     let bent = context.memory.bent.as_ref().filter(|_| model.mechanism.flexures.is_some());

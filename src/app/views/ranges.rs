@@ -4,7 +4,7 @@
 //! coarse step further where the motion needs it, and are chosen anew only once a change has settled.
 
 use crate::app::session::Session;
-use crate::dynamics::STANDARD_GRAVITY;
+use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::numeric::round::round_up;
 
 /// Pushes in g that an axis of the base's acceleration has room for.
@@ -28,6 +28,16 @@ pub fn room_for_push(push: f64) -> f64 {
 pub fn axis_end(value: f64) -> f64 {
     let end = round_up(value, &ENDS);
     if end.is_finite() && end > 0.0 { end } else { 1.0 }
+}
+
+/// The potential in J of the lowest place between the stops, where there is one.
+pub fn floor(model: &Model) -> Option<f64> {
+    let (left, right) = model.stop_positions();
+    let inside = |x: &f64| left.is_none_or(|stop| *x >= stop) && right.is_none_or(|stop| *x <= stop);
+    let landscape = &model.mechanism.landscape;
+    let wells = landscape.equilibria.iter().filter(|own| own.stable).map(|own| own.x).filter(inside);
+    let places = wells.chain(left).chain(right);
+    places.map(|x| model.mechanism.curve.potential(x)).reduce(f64::min)
 }
 
 /// The largest speed in m/s, power in W and energy in J that have been seen since the last change, and the
@@ -97,9 +107,18 @@ impl Ranges {
             });
         }
         self.looked_to = watch.time();
-        let speed = model.mechanism.landscape.barrier.map_or(SHARE * model.scales.speed, |barrier| {
-            (2.0 * barrier.from_left_j.max(barrier.from_right_j) / model.mass).sqrt()
-        });
+        let falls = match model.mechanism.landscape.barrier {
+            Some(barrier) => barrier.from_left_j.max(barrier.from_right_j),
+            None if !model.is_shaken() => {
+                let (kinetic, potential) = model.energies(model.start.0, model.start.1);
+                kinetic + potential - floor(model).unwrap_or(potential)
+            }
+            None => 0.0,
+        };
+        let speed = match falls > 0.0 {
+            true => (2.0 * falls / model.mass).sqrt(),
+            false => SHARE * model.scales.speed,
+        };
         let power = SHARE * speed * model.mass * room_for_push(model.largest_push());
         let kinetic = 0.5 * model.mass * speed * speed;
         self.expected = Extremes { speed, power, kinetic, ..Extremes::default() };

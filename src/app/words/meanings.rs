@@ -32,9 +32,9 @@ const MEANINGS: &[(&str, &str)] = &[
     ),
     (
         "crosses from",
-        "The least shaking at this frequency whose settled motion, begun at rest, crosses the barrier between \
-         these stops, or without any. Stops near the middle lower it; stops further out, up to the wells, can \
-         raise it above that without stops, since every impact takes energy.",
+        "The least shaking at this frequency whose settled motion, begun at rest, crosses the barrier \
+         between these stops, or without any. Stops near the middle lower it; stops further out, up to the \
+         wells, can raise it above that without stops, since every impact takes energy.",
     ),
     (
         "release",
@@ -56,8 +56,8 @@ const MEANINGS: &[(&str, &str)] = &[
     ("hopping", "It leaves its stop and falls back on the same one, without crossing."),
     (
         "rms velocity",
-        "The root of the mean square of the velocity relative to the base, over the second half of the run or \
-         whatever the scene takes for settled. The mean power that damping takes grows with its square.",
+        "The root of the mean square of the velocity relative to the base, over the second half of the run \
+         or whatever the scene takes for settled. The mean power that damping takes grows with its square.",
     ),
     (
         "settling",
@@ -71,8 +71,8 @@ const MEANINGS: &[(&str, &str)] = &[
     ),
     (
         "separatrix",
-        "The states with just the energy to stand on top of the barrier: inside either loop the mass stays in \
-         its well, outside it crosses, as long as nothing shakes it.",
+        "The states with just the energy to stand on top of the barrier: inside either loop the mass stays \
+         in its well, outside it crosses, as long as nothing shakes it.",
     ),
     ("once a period", "The state once a forcing period, always at the same phase of the shaking."),
     ("at rest on a stop", "The mechanism presses the mass on its stop, harder than the push pulls."),
@@ -85,8 +85,8 @@ const MEANINGS: &[(&str, &str)] = &[
     ("the mechanism's own", "The potential of the mechanism without any push."),
     (
         "holds the mass there",
-        "The force that would hold the mass at each place, positive to the right. The mechanism pulls with as \
-         much the other way.",
+        "The force that would hold the mass at each place, positive to the right. The mechanism pulls with \
+         as much the other way.",
     ),
     ("push of the base", "What the mass feels because the base accelerates, positive to the right."),
 ];

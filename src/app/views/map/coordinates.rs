@@ -86,8 +86,8 @@ impl Coordinates {
     }
 }
 
-/// Text that reads upwards, with its middle at a place; where it has not so much room it is written small, or its unit
-/// alone.
+/// Text that reads upwards, with its middle at a place; where it has not so much room it is written small, or
+/// its unit alone.
 pub fn upright(painter: &Painter, style: &Style, (at, room): (Pos2, f32), text: &str) {
     let unit = text.rsplit_once('(').map_or("", |(_, unit)| unit.trim_end_matches(')'));
     let written = |text: &str, font: FontId| painter.layout_no_wrap(text.to_owned(), font, style.ink());

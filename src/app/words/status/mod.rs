@@ -104,8 +104,8 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
                 return Sentence::new(
                     Kind::Fault,
                     format!(
-                        "The run ended at {at:.2} s: the mass went further than the flexures were computed, {end} mm. Set \
-                         stops inside that, or shake less."
+                        "The run ended at {at:.2} s: the mass went further than the flexures were computed, \
+                         {end} mm. Set stops inside that, or shake less."
                     ),
                 );
             }
