@@ -104,7 +104,7 @@ impl Session {
         let model =
             Model::build(&scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
         let hints = scene.app.clone().unwrap_or_default();
-        let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.pace()));
+        let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.characteristic_time()));
         let player = Player::new(&model, speed);
         let remembered_stops = first_stops(&scene, &model);
         let mut session = Self {
@@ -272,7 +272,7 @@ impl Session {
         self.remembered_stops = first_stops(self.scene(), &self.model);
         self.restart();
         let hinted = self.scene().app.as_ref().and_then(|hints| hints.speed);
-        self.player.speed = hinted.unwrap_or_else(|| fitting_speed(self.model.pace()));
+        self.player.speed = hinted.unwrap_or_else(|| fitting_speed(self.model.characteristic_time()));
         self.player.set_playing(true);
     }
 

@@ -314,6 +314,6 @@ impl Watch {
 }
 
 fn sampling_step(model: &Model) -> f64 {
-    let swing = model.swing();
+    let swing = model.natural_time();
     model.forcing_period.map_or(swing, |period| period.min(swing)) / PER_PERIOD
 }

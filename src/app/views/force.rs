@@ -102,8 +102,8 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
     }
     let push = if model.is_shaken() {
         model.mass
-            * room_for_push(context.session.shown().largest_push())
-                .min(1.1 * context.session.shown().largest_push())
+            * room_for_push(context.session.shown().largest_base_acceleration())
+                .min(1.1 * context.session.shown().largest_base_acceleration())
     } else {
         0.0
     };

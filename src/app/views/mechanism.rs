@@ -245,7 +245,7 @@ fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, ba
     }
     let style = context.style;
     let full = f64::from(rect.width()) * 0.16;
-    let room = context.session.shown().largest_push().max(1e-9);
+    let room = context.session.shown().largest_base_acceleration().max(1e-9);
     let push = (-base_accel / room * full) as f32;
     let inner = if body.center().x > rect.center().x { -1.0 } else { 1.0 };
     let near = body.center().x + inner * (body.width() * 0.5 + 6.0);
@@ -283,7 +283,7 @@ fn words_ui(
     put(words.to_owned(), style.faint());
     if context.session.shown().is_shaken() {
         // hundredths, and more only where these say nothing
-        let most = context.session.shown().largest_push() / STANDARD_GRAVITY;
+        let most = context.session.shown().largest_base_acceleration() / STANDARD_GRAVITY;
         let decimals = if most < 0.1 { decimals_for(most) } else { 2 };
         put(format!("push {:.decimals$} g", (base_accel / STANDARD_GRAVITY).abs()), style.base());
     }

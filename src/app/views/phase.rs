@@ -181,7 +181,8 @@ fn turning(height: &impl Fn(f64) -> f64, mut above: f64, mut below: f64) -> f64 
 fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let (session, style) = (&context.session, context.style);
     let model = session.shown();
-    let length = model.forcing_period.map_or(TRAIL_SWINGS * model.swing(), |period| TRAIL_PERIODS * period);
+    let length =
+        model.forcing_period.map_or(TRAIL_SWINGS * model.natural_time(), |period| TRAIL_PERIODS * period);
     let state = session.player.state();
     let watch = session.player.watch();
     let path = recent(watch.samples(), state, length);

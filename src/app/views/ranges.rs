@@ -100,7 +100,7 @@ impl Ranges {
         let speed = model.mechanism.landscape.barrier.map_or(SHARE * model.scales.speed, |barrier| {
             (2.0 * barrier.from_left_j.max(barrier.from_right_j) / model.mass).sqrt()
         });
-        let power = SHARE * speed * model.mass * room_for_push(model.largest_push());
+        let power = SHARE * speed * model.mass * room_for_push(model.largest_base_acceleration());
         let kinetic = 0.5 * model.mass * speed * speed;
         self.expected = Extremes { speed, power, kinetic, ..Extremes::default() };
         self.ever = self.ever.or(self.seen);

@@ -104,9 +104,9 @@ impl Quantity {
         match self {
             Self::Displacement => (context.span.low * 1e3, context.span.high * 1e3),
             Self::Velocity => both(context.memory.ranges.follow(context.session).speed() * 1e3),
-            Self::BaseAcceleration => {
-                both(1.12 * room_for_push(context.session.shown().largest_push()) / STANDARD_GRAVITY)
-            }
+            Self::BaseAcceleration => both(
+                1.12 * room_for_push(context.session.shown().largest_base_acceleration()) / STANDARD_GRAVITY,
+            ),
             Self::Power => both(context.memory.ranges.follow(context.session).power() * 1e3),
         }
     }
@@ -258,8 +258,8 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
 
 /// How many seconds are shown of a motion by a model.
 fn stretch(model: &Model) -> f64 {
-    let most = MOST_SWINGS * model.swing();
-    model.forcing_period.map_or(SWINGS * model.pace(), |period| (PERIODS * period).min(most))
+    let most = MOST_SWINGS * model.natural_time();
+    model.forcing_period.map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(most))
 }
 
 fn watch_begin(context: &ViewContext<'_>) -> f64 {

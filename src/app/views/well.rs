@@ -167,7 +167,7 @@ struct Heights {
 impl Heights {
     /// From a little below the deepest to a little above the highest place that the mass gets to.
     fn of(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect) -> Self {
-        let room = room_for_push(context.session.shown().largest_push());
+        let room = room_for_push(context.session.shown().largest_base_acceleration());
         let model = context.session.shown();
         let curve = &model.mechanism.curve;
         let landscape = &model.mechanism.landscape;

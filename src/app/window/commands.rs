@@ -171,7 +171,7 @@ impl Window {
             let why = if name == "crossing" { "there is no barrier" } else { "there are no stops" };
             return self.tell(format!("No {name} can come: {why}"));
         }
-        let ahead = model.duration.max(PERIODS_AHEAD * model.pace());
+        let ahead = model.duration.max(PERIODS_AHEAD * model.characteristic_time());
         let until = self.session.player.watch().time() + ahead;
         self.session.player.go_to(Goal::First(kind, until));
     }

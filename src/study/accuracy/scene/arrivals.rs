@@ -50,7 +50,7 @@ pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<
         let same = |other: &&Event| other.side == arrival.side;
         let gaps = [arrivals[..i].iter().rfind(same), arrivals[i + 1..].iter().find(same)];
         let gap = gaps.into_iter().flatten().map(|other| (other.t - arrival.t).abs()).reduce(f64::min);
-        let room = 0.5 * gap.unwrap_or(model.pace());
+        let room = 0.5 * gap.unwrap_or(model.characteristic_time());
         let Some(found) = nearest(own, arrival, room) else { break };
         late.push(found.t - arrival.t);
     }

@@ -94,7 +94,7 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
         return Err(Unfit::Compliant);
     }
     let model = &at_tolerance(&within_reach(model, step), model.tolerance.min(TRUE_TOLERANCE));
-    let drawn = model.duration.min(DRAWN_PERIODS * model.pace());
+    let drawn = model.duration.min(DRAWN_PERIODS * model.characteristic_time());
     let (even, fine, steps) = (times(model), spread(drawn, MOST_POINTS), step_times(drawn, step));
 
     let request =
