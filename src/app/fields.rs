@@ -196,7 +196,7 @@ impl FieldInfo {
     pub fn reach(&self, session: &Session) -> Reach {
         let (low, high, step) = self.slider;
         let saved = FieldPath::new(self.path).get(session.editor.saved());
-        let scales = &session.model().scales;
+        let scales = &session.model().scales();
         // of the prototype these are 2 g and 20 Hz
         let own = match self.scale {
             Scale::Fixed => None,
@@ -225,7 +225,7 @@ impl FieldInfo {
 /// The slider of a stop: from near the middle to beyond the well.
 fn travel(session: &Session) -> Reach {
     let (saved, limits) = (session.editor.saved(), [session.remembered_stops(), session.scene().stops]);
-    let well = session.model().mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
+    let well = session.model().mechanism().landscape.right_stable().map(|well| well.x.abs() * 1e3);
     let furthest = |stops: &Stops| match *stops {
         Stops::None => None,
         Stops::Rigid { travel_limit_mm, .. } | Stops::Hertz { travel_limit_mm, .. } => Some(travel_limit_mm),

@@ -39,7 +39,7 @@ impl Hint {
     /// Where a scene begins in a well, with something to cross and stops to switch on.
     pub fn for_scene(session: &Session) -> Self {
         let offered = session.scene().app.as_ref().is_some_and(|app| app.stops_when_on.is_some());
-        let barrier = session.model().mechanism.landscape.barrier.is_some();
+        let barrier = session.model().mechanism().landscape.barrier.is_some();
         match session.amplitude_g().filter(|_| offered && barrier) {
             Some(opened_g) => Self { stage: Stage::Cross, opened_g },
             None => Self { stage: Stage::Done, opened_g: 0.0 },

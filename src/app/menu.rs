@@ -232,7 +232,7 @@ fn item(
 fn motion_menu_ui(ui: &mut Ui, asked: &mut Vec<Command>, session: &Session) {
     let model = session.model();
     let stops = model.stop_positions() != (None, None);
-    let barrier = model.mechanism.landscape.barrier.is_some();
+    let barrier = model.mechanism().landscape.barrier.is_some();
     item(ui, asked, "Play, pause", Some(plain(Key::Space)), true, Command::PlayPause);
     item(ui, asked, "A single step", Some(plain(Key::Period)), true, Command::Step);
     item(ui, asked, "To the event before", Some(plain(Key::PageUp)), true, Command::PreviousEvent);

@@ -372,7 +372,7 @@ impl Session {
     /// or after the start where the shaking is a function of the time since then.
     pub fn end_of_run(&self) -> f64 {
         let begins_here = self.player.watch().from_here().is_some();
-        self.model.duration + if begins_here { self.changed_at } else { 0.0 }
+        self.model.duration() + if begins_here { self.changed_at } else { 0.0 }
     }
 
     /// Whether something was changed on the motion's way, so that it is no run of the scene from its start.
@@ -458,7 +458,7 @@ fn stopped() -> Sentence {
 fn first_stops(scene: &Scene, model: &Model) -> Stops {
     let hinted = || scene.app.as_ref().and_then(|hints| hints.stops_when_on);
     let suiting = || {
-        let well = model.mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
+        let well = model.mechanism().landscape.right_stable().map(|well| well.x.abs() * 1e3);
         Stops::Rigid { travel_limit_mm: suiting_limit(well), restitution: RESTITUTION }
     };
     match scene.stops {

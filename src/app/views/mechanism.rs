@@ -123,7 +123,8 @@ fn names(
 
 /// Whether the flexure over the mass bows to the right; a sketched one does.
 fn bows_right(context: &ViewContext<'_>) -> bool {
-    let bent = context.memory.bent.as_ref().filter(|_| context.session.shown().mechanism.flexures.is_some());
+    let bent =
+        context.memory.bent.as_ref().filter(|_| context.session.shown().mechanism().flexures.is_some());
     let Some(line) = bent.and_then(|bent| bent.lines.get(1)) else { return true };
     let across = |i: usize| line.points.get(i).map_or(0.0, |point| point[2]);
     let last = line.points.len().saturating_sub(1);
@@ -147,7 +148,7 @@ fn bent_ui(
 ) -> Option<(f32, String)> {
     let bent = state_at(context, x)?;
     let style = context.style;
-    let mechanism = &context.session.shown().mechanism;
+    let mechanism = &context.session.shown().mechanism();
     let geometry = mechanism.flexures.as_ref()?.geometry();
     let scale = Scale::of(geometry, place);
     let reach = mechanism.landscape.right_stable().map_or(0.0, |well| well.x.abs());
@@ -211,13 +212,13 @@ fn schematic(
     top: f32,
 ) -> String {
     let style = context.style;
-    let curve = &context.session.shown().mechanism.curve;
+    let curve = &context.session.shown().mechanism().curve;
     let own = Schematic::of(curve, context.span);
     painter.hline(rect.x_range().shrink(6.0), middle + half.y + 3.0, Stroke::new(2.0, style.faint()));
     if own == Schematic::Spring {
         let clamp_at = Rect::from_x_y_ranges(rect.x_range().shrink(6.0), top - CLAMP..=top);
         clamp(painter, &style, clamp_at, true);
-        let barrier = context.session.shown().mechanism.landscape.barrier;
+        let barrier = context.session.shown().mechanism().landscape.barrier;
         let foot = context.span.screen_from_world(barrier.map_or(0.0, |barrier| barrier.x), rect);
         let (from, to) = (pos2(foot, top), pos2(x, middle - half.y));
         painter.add(Shape::line(coil(from, to), style.flexure_stroke()));
@@ -320,12 +321,12 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
     if to > from && !context.reduce_motion {
         let watch = context.session.player.watch();
         let first = watch.events().partition_point(|event| event.t <= from);
-        let scale = model.scales.speed * model.scales.speed;
+        let scale = model.scales().speed * model.scales().speed;
         for event in watch.events().range(first..).take_while(|event| event.t <= to) {
             let side = usize::from(event.side == Side::Right);
             let busy = context.memory.rings[side].is_some_and(|ring| now - ring.began < RING_SECONDS);
             // A compliant stop takes its share over the contact that begins here.
-            let kept = match &model.compliant {
+            let kept = match &model.compliant() {
                 Some(stop) => stop.restitution(event.v_in.abs()) * event.v_in,
                 None => event.v_out,
             };
@@ -365,7 +366,7 @@ mod tests {
     fn only_a_force_that_depends_on_the_place_has_a_spring() {
         let words = |preset: &str| {
             let session = Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap();
-            let curve = &session.model().mechanism.curve;
+            let curve = &session.model().mechanism().curve;
             Schematic::of(curve, Span::of(&session, (0.0, 0.0))).words(curve.force(0.0))
         };
         assert_eq!(words("bouncing-ball"), "a steady force of 9.81 N to the left, seen from the base");

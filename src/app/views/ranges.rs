@@ -90,18 +90,18 @@ impl Ranges {
         for sample in watch.samples().range(first..) {
             self.seen = self.seen.or(Extremes {
                 speed: sample.v.abs(),
-                power: sample.work_rate(model.mass).abs(),
+                power: sample.work_rate(model.mass()).abs(),
                 kinetic: model.energies(sample.x, sample.v).0,
                 low: sample.x,
                 high: sample.x,
             });
         }
         self.looked_to = watch.time();
-        let speed = model.mechanism.landscape.barrier.map_or(SHARE * model.scales.speed, |barrier| {
-            (2.0 * barrier.from_left_j.max(barrier.from_right_j) / model.mass).sqrt()
+        let speed = model.mechanism().landscape.barrier.map_or(SHARE * model.scales().speed, |barrier| {
+            (2.0 * barrier.from_left_j.max(barrier.from_right_j) / model.mass()).sqrt()
         });
-        let power = SHARE * speed * model.mass * room_for_push(model.largest_base_acceleration());
-        let kinetic = 0.5 * model.mass * speed * speed;
+        let power = SHARE * speed * model.mass() * room_for_push(model.largest_base_acceleration());
+        let kinetic = 0.5 * model.mass() * speed * speed;
         self.expected = Extremes { speed, power, kinetic, ..Extremes::default() };
         self.ever = self.ever.or(self.seen);
         self

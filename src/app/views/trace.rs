@@ -76,7 +76,7 @@ impl Quantity {
 
     /// Its value in a motion that was seen, with the mass of then.
     fn seen(self, watch: &Watch, sample: &Sample) -> f64 {
-        let mass = if self == Self::Power { watch.model_at(sample.t).mass } else { 0.0 };
+        let mass = if self == Self::Power { watch.model_at(sample.t).mass() } else { 0.0 };
         self.value(sample, mass)
     }
 
@@ -259,7 +259,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: Quantity, context: &mut ViewContext<'_>) 
 /// How many seconds are shown of a motion by a model.
 fn stretch(model: &Model) -> f64 {
     let most = MOST_SWINGS * model.natural_time();
-    model.forcing_period.map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(most))
+    model.forcing_period().map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(most))
 }
 
 fn watch_begin(context: &ViewContext<'_>) -> f64 {

@@ -44,7 +44,7 @@ impl Lateness {
 /// among the impacts of the other run on the same stop, within half the time to its neighbours. Where one is not
 /// found the other run has taken another course, and what follows is not compared.
 pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<Lateness> {
-    let arrivals = arrivals(exact, SLOWEST * model.scales.speed);
+    let arrivals = arrivals(exact, SLOWEST * model.scales().speed);
     let mut late: Vec<f64> = Vec::new();
     for (i, arrival) in arrivals.iter().enumerate() {
         let same = |other: &&Event| other.side == arrival.side;
