@@ -48,7 +48,7 @@ fn main() {
         by_hand("one well, sine", tolerance, &model(&ONE_WELL, &[SINE]), sine, (0.0, 0.0));
         by_hand("one well, no drive", tolerance, &model(&ONE_WELL, &STILL), None, still);
         let two = model(&TWO_WELLS, &[SINE]);
-        let rest = two.mechanism.landscape.right_stable().unwrap().x;
+        let rest = two.mechanism().landscape.right_stable().unwrap().x;
         by_hand("two wells, sine", tolerance, &two, sine, (rest, 0.0));
         by_hand("two wells, no drive", tolerance, &model(&TWO_WELLS, &STILL), None, still);
     }

@@ -100,11 +100,10 @@ fn flexures() {
         ("stops, its cycle comes back", &[]),
         ("stops, integrated to its end", &["run.recurrence=false"]),
     ] {
-        let mut model = shared::preset("paper", changes);
+        let model = shared::preset("paper", changes);
         let exact = model.run_reference(&Request::default(), REFERENCE).summary.rms_velocity.unwrap();
         for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
-            model.tolerance = tolerance;
-            let run = model.run(&Request::default()).summary;
+            let run = model.with_tolerance(tolerance).run(&Request::default()).summary;
             let error = (run.rms_velocity.unwrap() / exact - 1.0).abs();
             let (alone, together) = alone_and_together(&model);
             let (alone, together) = (alone * 1e6, together * 1e6);
@@ -248,7 +247,7 @@ fn measures() {
     for (name, scene, changes, size) in rows {
         let on = cells(&shared::changed(scene, changes), size);
         let mut off = on.clone();
-        off.iter_mut().for_each(|model| model.recurrence = false);
+        off.iter_mut().for_each(|model| *model = model.with_recurrence(false));
         let all = [cpu_of(&on, true), cpu_of(&on, false), cpu_of(&off, true), cpu_of(&off, false)];
         let text: Vec<String> =
             all.iter().map(|time| format!("{time:.3} s ({:.1})", time / all[0])).collect();

@@ -54,8 +54,7 @@ fn runs() {
     {
         let exact = model.run_reference(&kept, REFERENCE);
         for tolerance in TOLERANCES {
-            let mut model = model.clone();
-            model.tolerance = tolerance;
+            let model = model.with_tolerance(tolerance);
             let run = model.run(&kept);
             let error = match name {
                 "P1, no stops" => (run.summary.final_x - exact.summary.final_x).abs() / WELL,
@@ -89,7 +88,7 @@ fn late(model: &Model, run: &Run, exact: &Run) -> f64 {
     if mine.len() != exact.len() {
         return f64::INFINITY;
     }
-    let period = model.forcing_period.unwrap();
+    let period = model.forcing_period().unwrap();
     mine.iter().zip(&exact).map(|(a, b)| (a - b).abs() / period).fold(0.0, f64::max)
 }
 
@@ -103,7 +102,7 @@ fn map() {
         models = models.into_iter().step_by(97).collect();
     }
     let mut at = |tolerance: f64| -> Vec<Summary> {
-        models.iter_mut().for_each(|model| model.tolerance = tolerance);
+        models.iter_mut().for_each(|model| *model = model.with_tolerance(tolerance));
         models
             .chunks(TOGETHER)
             .flat_map(|many| Model::run_all(many, None, None))

@@ -47,21 +47,21 @@ impl Problem {
     /// The run of a model of an odd cubic; `sine` is amplitude in g and frequency in Hz, `start` displacement in m and
     /// velocity in m/s. The duration must be a whole number of periods (without a sine, of 2^-16 time units).
     pub fn new(model: &Model, sine: Option<(f64, f64)>, start: (f64, f64)) -> Self {
-        let unit = model.scales.time.log2().round().exp2();
-        let [0.0, linear, 0.0, cubic] = model.mechanism.curve.pieces()[0].coefficients[..] else {
+        let unit = model.scales().time.log2().round().exp2();
+        let [0.0, linear, 0.0, cubic] = model.mechanism().curve.pieces()[0].coefficients[..] else {
             panic!("not an odd cubic");
         };
-        let square = (unit * unit) / model.mass;
+        let square = (unit * unit) / model.mass();
         let frequency = sine.map_or(1.0 / (unit * (1.0 / 65536.0)), |s| s.1);
-        let cycles = model.duration * frequency;
+        let cycles = model.duration() * frequency;
         assert_eq!(cycles.fract(), 0.0, "not a whole number of periods");
-        let local = model.tolerance * 0.02;
+        let local = model.tolerance() * 0.02;
         let order = (3.0 - 1.25 * local.log10()).round().clamp(8.0, 32.0) as usize;
         Self {
             unit,
             linear: linear * square,
             cubic: cubic * square,
-            damping: (model.damping * unit) / model.mass,
+            damping: (model.damping() * unit) / model.mass(),
             sine: sine.map(|(g, f)| (g * interwell::dynamics::STANDARD_GRAVITY * (unit * unit), f * unit)),
             x: start.0,
             v: start.1 * unit,
@@ -69,8 +69,8 @@ impl Problem {
             period: 1.0 / (frequency * unit),
             order,
             tolerance: local,
-            speed: model.scales.speed * unit,
-            longest: if order < 20 { 3.0 } else { 8.0 } * model.scales.time / unit,
+            speed: model.scales().speed * unit,
+            longest: if order < 20 { 3.0 } else { 8.0 } * model.scales().time / unit,
         }
     }
 

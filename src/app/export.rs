@@ -44,7 +44,7 @@ pub fn events_csv(player: &Player) -> String {
 /// Force, potential and stiffness of the mechanism in the columns and at the positions of the command line's
 /// `curve`.
 pub fn curve_csv(session: &Session) -> Result<String, OutsideCurve> {
-    let mechanism = &session.model().mechanism;
+    let mechanism = &session.model().mechanism();
     let table = curve(mechanism, default_positions(session.scene(), mechanism, CURVE_POINTS as usize))?;
     Ok(header(&table) + &rows(&table, 0..table.rows()))
 }

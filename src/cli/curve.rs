@@ -158,8 +158,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     }
     if let Some((table, model)) = &contacts {
         write_table(&mut sinks[4], table)?;
-        if let Some((picture, stop)) = contact_picture.zip(model.compliant) {
-            let figure = contact_figure(table, &stop, model.mass, &caption(&document), picture.theme);
+        if let Some((picture, stop)) = contact_picture.zip(model.compliant()) {
+            let figure = contact_figure(table, &stop, model.mass(), &caption(&document), picture.theme);
             picture.write(&mut sinks[5], figure)?;
         }
     }

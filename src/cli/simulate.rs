@@ -79,7 +79,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
     let times = sample_times(&document.scene, &model, &sampling, until_settled)?;
     let window = axes.x.or_else(|| spanned(&sampling));
-    let most = until_settled.unwrap_or(model.duration);
+    let most = until_settled.unwrap_or(model.duration());
     if let Some((from, to)) = window.filter(|(from, to)| *from < 0.0 || *to > most) {
         let message = format!("--plot-time {from}:{to}: the run lasts from 0 to {most} s");
         return Err(Failure::argument(message));
@@ -107,7 +107,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     write_table(events, &simulation.events)?;
     write_text(about, &summary(&simulation.summary, &document.scene, &watch.origin(1)))?;
     if let Some((picture, trace)) = picture.zip(trace) {
-        let (about, mechanism) = (caption(&document), &model.mechanism);
+        let (about, mechanism) = (caption(&document), &model.mechanism());
         let figure = run_figure(&trace, &simulation.summary, mechanism, axes, &about, picture.theme);
         picture.write(plot, figure)?;
     }

@@ -138,11 +138,11 @@ pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> 
     };
     let scene = &document.name;
     if !model.can_settle() {
-        return match model.forcing_period {
+        return match model.forcing_period() {
             Some(period) if model.repeats() => wrong(format!(
                 "{scene}: its settled window of {} s holds less than two forcing periods of {period} s, too \
                  few to tell whether the motion repeats; lengthen run.duration_s",
-                model.duration - model.settle()
+                model.duration() - model.settle()
             )),
             _ => wrong(format!(
                 "{scene}: its excitation does not repeat, so the motion has no period to wait for; take a \
@@ -150,10 +150,10 @@ pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> 
             )),
         };
     }
-    if until < model.duration {
+    if until < model.duration() {
         return wrong(format!(
             "{scene}: its run already lasts {} s; give at least that, or shorten run.duration_s",
-            model.duration
+            model.duration()
         ));
     }
     if until > LONGEST_WAIT {

@@ -17,8 +17,7 @@ mod step;
 
 pub use live::{Live, LiveLedger, LiveOutput};
 pub use model::Model;
-pub use model::excitation::STANDARD_GRAVITY;
-pub(crate) use model::excitation::TonePart;
+pub use model::excitation::{ChirpPart, ExcitationParts, NoisePart, STANDARD_GRAVITY, TonePart};
 pub use model::scales::Scales;
-pub(crate) use model::stops::StopAt;
+pub use model::stops::{StopAt, StopPair};
 pub use result::*;

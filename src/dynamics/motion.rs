@@ -104,6 +104,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
     }
 
     /// Passes a call to the recorder, and to the log where there is one.
+    #[inline]
     pub fn tell(&mut self, told: Call<T>) {
         if let Some(log) = &mut self.log {
             log.add(told);

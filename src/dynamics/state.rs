@@ -119,6 +119,7 @@ impl<T: Scalar> MotionState<T> {
     }
 
     /// The mass crosses an end of its mode into the next one.
+    #[inline]
     pub fn enter(&mut self, end: End) {
         match end {
             End::Low => self.mode -= 1,

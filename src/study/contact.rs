@@ -23,18 +23,18 @@ const SPEEDS: usize = 401;
 /// restitution of a rigid stop is the constant `rigid`, and where there is no time (at speed 0) or the
 /// material is not known the value is missing. All are closed forms: see [`Hertz`].
 pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
-    let stop = model.compliant?;
-    let top = round_up(2.0 * model.scales.speed, &ONE_TWO_FIVE);
+    let stop = model.compliant()?;
+    let top = round_up(2.0 * model.scales().speed, &ONE_TWO_FIVE);
     let last = (SPEEDS - 1) as f64;
     let speeds: Vec<f64> = (0..SPEEDS).map(|i| top * i as f64 / last).collect();
     let column = |of: &dyn Fn(f64) -> f64| Values::Numbers(speeds.iter().map(|v| of(*v)).collect());
-    let force = |v: f64| stop.peak_force(model.mass, v);
-    let time = |v: f64| if v > 0.0 { stop.contact_time(model.mass, v) } else { f64::NAN };
+    let force = |v: f64| stop.peak_force(model.mass(), v);
+    let time = |v: f64| if v > 0.0 { stop.contact_time(model.mass(), v) } else { f64::NAN };
     let table = Table::new()
         .with("restitution", column(&|v| stop.restitution(v)))
         .with("rigid_restitution", column(&|_| rigid))
         .with("contact_time_s", column(&time))
-        .with("depth_m", column(&|v| stop.depth(model.mass, v)))
+        .with("depth_m", column(&|v| stop.depth(model.mass(), v)))
         .with("peak_force_n", column(&force))
         .with("peak_pressure_pa", column(&|v| stop.pressure(force(v)).unwrap_or(f64::NAN)));
     let mut whole = Table::new().with("speed_m_per_s", Values::Numbers(speeds));
@@ -55,7 +55,7 @@ pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
 
 /// One sentence where the contact of a run was pressed beyond what its material bears.
 pub fn yield_warning(model: &Model, summary: &Summary) -> Option<String> {
-    let material = model.compliant?.material?;
+    let material = model.compliant()?.material?;
     let pressure = summary.peak_contact_pressure.filter(|own| *own > material.yield_pressure())?;
     let gpa = |pascal: f64| short(pascal / 1e9);
     Some(format!(
@@ -125,7 +125,7 @@ pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
     let Strikes { speed, count, settled } = threads::within(PATIENCE, |cancel| strikes(model, cancel))?;
     let loss = |restitution: f64| Hertz::struck_for(restitution).map(|struck| short(struck / speed));
     let window = if settled { "in the settled window" } else { "in the run, before its settled window" };
-    let what = match model.compliant {
+    let what = match model.compliant() {
         Some(stop) => {
             let wanted = WANTED.map(|e| format!("{e} takes {} s/m", loss(e).unwrap_or_default()));
             format!("restitution {} there; {}", short(stop.restitution(speed)), wanted.join(", "))

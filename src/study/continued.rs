@@ -7,13 +7,13 @@ use crate::scene::{Excitation, Scene, Start};
 /// ([`Watch::from_here`](super::Watch::from_here)). None where no scene says that: a noise begins as its seed
 /// says, and a compliant stop that is pressed in is no start.
 pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
-    let (x, v) = here.start;
-    if !here.excitation.noises.is_empty() || here.compliant.is_some() && here.pressed_depth(x).is_some() {
+    let (x, v) = here.start();
+    if !here.excitation().noises.is_empty() || here.compliant().is_some() && here.pressed_depth(x).is_some() {
         return None;
     }
     let mut scene = scene.clone();
     scene.start = Start::At { x_mm: millimetres(x), v_m_per_s: v };
-    let mut turns = here.excitation.tones.iter().map(|tone| {
+    let mut turns = here.excitation().tones.iter().map(|tone| {
         let half = if tone.amplitude < 0.0 { 0.5 } else { 0.0 };
         (tone.phase + if tone.quarter { 0.25 } else { 0.0 }, half)
     });

@@ -24,7 +24,7 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
         lines.push(force_curve(mechanism));
     }
     lines.extend(damping(scene, &model));
-    lines.extend(landscape(&mechanism.landscape, model.mass));
+    lines.extend(landscape(&mechanism.landscape, model.mass()));
     lines.extend(strikes_in_words(&model, &scene.stops));
     Ok(lines)
 }
@@ -122,7 +122,7 @@ fn force_curve(mechanism: &Mechanism) -> String {
 /// readings of the same ratio give.
 fn damping(scene: &Scene, model: &Model) -> Vec<String> {
     let Damping::Ratio(xi) = scene.damping else { return Vec::new() };
-    let landscape = &model.mechanism.landscape;
+    let landscape = &model.mechanism().landscape;
     let Some(used) = landscape.damping_stiffness() else { return Vec::new() };
     let beside = landscape.kink_at_right_well();
     let kink = beside.map(|kink| kink.x).or(landscape.damping_kink().map(|kink| kink.x));
@@ -137,15 +137,15 @@ fn damping(scene: &Scene, model: &Model) -> Vec<String> {
         "damping ratio {xi}: with k = {} N/m{}, c = 2 xi sqrt(k m) = {} N s/m",
         short(used),
         place.unwrap_or_default(),
-        short(model.damping)
+        short(model.damping())
     )];
     let Some(kink) = beside.filter(|kink| short(kink.inner) != short(kink.outer)) else { return lines };
     lines[0] += ", which is used";
-    let coefficient = |stiffness: f64| 2.0 * xi * (stiffness * model.mass).sqrt();
+    let coefficient = |stiffness: f64| 2.0 * xi * (stiffness * model.mass()).sqrt();
     let pluck =
         Equilibrium { x: kink.x, stable: true, stiffness_left: kink.inner, stiffness_right: kink.outer };
-    let mixed = small_amplitude_frequency(model.mass, &pluck).map(|frequency| {
-        let stiffness = model.mass * (std::f64::consts::TAU * frequency).powi(2);
+    let mixed = small_amplitude_frequency(model.mass(), &pluck).map(|frequency| {
+        let stiffness = model.mass() * (std::f64::consts::TAU * frequency).powi(2);
         format!(
             "; with the mixed period of a small pluck over it ({} Hz, as of {} N/m) c = {} N s/m",
             short(frequency),

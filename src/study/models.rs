@@ -101,7 +101,7 @@ mod tests {
     }
 
     fn mass(own: &Models, t: f64) -> f64 {
-        (own.at(t).mass * 1e3).round()
+        (own.at(t).mass() * 1e3).round()
     }
 
     #[test]

@@ -12,10 +12,10 @@ const PATIENCE: f64 = 1000.0;
 /// periods have passed without that; under an amplitude ramp to the ramp's end, but no longer. None where it
 /// was cancelled.
 pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Summary> {
-    let until_settled = model.forcing_period.map(|period| model.duration + PATIENCE * period);
+    let until_settled = model.forcing_period().map(|period| model.duration() + PATIENCE * period);
     let ramp = until_settled.and_then(|until| model.ramp_end().map(|end| end.min(until)));
-    let mut model = model.clone();
-    model.duration = ramp.map_or(model.duration, |end| end.max(model.duration));
+    let duration = ramp.map_or(model.duration(), |end| end.max(model.duration()));
+    let model = model.with_duration(duration, model.settle());
     let run = model.run(&Request { ledger: true, cancel: Some(cancel), until_settled, ..Request::default() });
     let cancelled = matches!(run.summary.outcome, Outcome::Cancelled { .. });
     (!cancelled).then_some(run.summary)
@@ -23,9 +23,7 @@ pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Summary> {
 
 /// Whether a run of `model` gets through its first `seconds`.
 pub fn lasts(model: &Model, seconds: f64) -> bool {
-    let mut model = model.clone();
-    (model.duration, model.settle) = (seconds, 0.0);
-    model.run(&Request::default()).summary.outcome == Outcome::Done
+    model.with_duration(seconds, 0.0).run(&Request::default()).summary.outcome == Outcome::Done
 }
 
 /// Where a mass stands, or swings, that nothing shakes.
@@ -43,8 +41,8 @@ pub struct Standing {
 
 /// Where the mass is in the landscape, in words' numbers; none where there is no barrier.
 pub fn standing(model: &Model, state: &Sample) -> Option<Standing> {
-    let curve = &model.mechanism.curve;
-    let barrier = model.mechanism.landscape.barrier?;
+    let curve = &model.mechanism().curve;
+    let barrier = model.mechanism().landscape.barrier?;
     let side = if state.x >= barrier.x { Side::Right } else { Side::Left };
     let (left, right) = model.stop_positions();
     let lowest = match side {
@@ -55,7 +53,7 @@ pub fn standing(model: &Model, state: &Sample) -> Option<Standing> {
     Some(Standing {
         side,
         pressed_n: (state.phase != Phase::Free).then(|| curve.force(state.x).abs()),
-        energy_j: 0.5 * model.mass * state.v * state.v + curve.potential(state.x) - floor,
+        energy_j: 0.5 * model.mass() * state.v * state.v + curve.potential(state.x) - floor,
         needed_j: curve.potential(barrier.x) - floor,
     })
 }

@@ -47,11 +47,11 @@ pub fn sample_times(
     sampling: &Sampling,
     until_settled: Option<f64>,
 ) -> Result<Vec<f64>, TimesError> {
-    let duration = until_settled.unwrap_or(model.duration);
+    let duration = until_settled.unwrap_or(model.duration());
     let step = match sampling {
         Sampling::At(times) => return listed_times(times, duration),
         Sampling::Every(dt) => Step::Seconds(*dt),
-        Sampling::Default => match (&scene.excitation, model.forcing_period) {
+        Sampling::Default => match (&scene.excitation, model.forcing_period()) {
             (Excitation::Sine { frequency_hz, .. } | Excitation::AmplitudeRamp { frequency_hz, .. }, _) => {
                 Step::PeriodOf(*frequency_hz)
             }

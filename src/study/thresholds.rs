@@ -81,7 +81,7 @@ const PATIENCE: f64 = 250.0;
 
 /// The time in s up to which a run is followed until its motion repeats.
 fn longest(model: &Model) -> f64 {
-    model.duration + PATIENCE * model.forcing_period.unwrap_or(0.0)
+    model.duration() + PATIENCE * model.forcing_period().unwrap_or(0.0)
 }
 
 /// Runs that are asked for together.

@@ -66,14 +66,14 @@ pub fn simulate_with_trace(
     // where the run ends and what its window is must be known before it is asked for samples
     let span = match keep.until_settled {
         Some(_) => model.run(&request).summary.window,
-        None => (model.settle, model.duration),
+        None => (model.settle(), model.duration()),
     };
     let mut close = window.unwrap_or((portrait_from(model, span), span.1));
     let mut seen = picture_times(model, close, span.1);
     let times = ascending(seen.iter().chain(&keep.times).copied().collect());
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
     let stop = |side: Option<f64>| side.unwrap_or(f64::NAN);
-    let stops = model.stops.map_or((f64::NAN, f64::NAN), |pair| {
+    let stops = model.stops().map_or((f64::NAN, f64::NAN), |pair| {
         (stop(pair.left.map(|own| own.x)), stop(pair.right.map(|own| own.x)))
     });
     let end = run.summary.outcome.ended_at().unwrap_or(span.1);
@@ -114,15 +114,15 @@ pub fn simulate_with_trace(
 
 /// From when on in s the phase portrait of a run with this settled window is shown.
 fn portrait_from(model: &Model, (settle, end): (f64, f64)) -> f64 {
-    match model.forcing_period {
+    match model.forcing_period() {
         Some(period) => settle.max(end - PORTRAIT_PERIODS * period).min(end),
         None => 0.0,
     }
 }
 
 fn shown_from(model: &Model, end: f64) -> f64 {
-    let repeats = model.excitation.tones.iter().all(|tone| tone.ramp.is_none());
-    match model.forcing_period {
+    let repeats = model.excitation().tones.iter().all(|tone| tone.ramp.is_none());
+    match model.forcing_period() {
         Some(period) if repeats && end > BAND_PERIODS * period => end - SHOWN_PERIODS * period,
         _ => 0.0,
     }
@@ -136,8 +136,8 @@ fn ascending(mut times: Vec<f64>) -> Vec<f64> {
 
 /// Even times up to `duration`, and closer ones from one time to another, in ascending order.
 fn picture_times(model: &Model, close: (f64, f64), duration: f64) -> Vec<f64> {
-    let swing = std::f64::consts::TAU * model.scales.time;
-    let fastest = model.forcing_period.map_or(swing, |period| period.min(swing));
+    let swing = std::f64::consts::TAU * model.scales().time;
+    let fastest = model.forcing_period().map_or(swing, |period| period.min(swing));
     let count = (duration / fastest * PER_PERIOD).clamp(OVERVIEW.0, OVERVIEW.1).floor();
     let even = |(from, to): (f64, f64), count: f64| {
         let time = move |i: u32| (from + (to - from) * f64::from(i) / count).min(duration);

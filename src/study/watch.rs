@@ -106,7 +106,7 @@ impl Watch {
 
     /// The ends of forcing periods after `from` and up to `to` in s.
     fn marks(&self, from: f64, to: f64) -> Vec<f64> {
-        let period = self.live.model().forcing_period.filter(|_| self.keeps_ledgers);
+        let period = self.live.model().forcing_period().filter(|_| self.keeps_ledgers);
         let Some(period) = period else { return Vec::new() };
         let last = (to / period).floor();
         let first = ((from / period).floor() + 1.0).max(last + 1.0 - LEDGERS_AT_ONCE);
@@ -169,7 +169,7 @@ impl Watch {
         if t >= self.now.t {
             return Some((self.now.t, self.ledger()));
         }
-        let period = self.models.at(t).forcing_period?;
+        let period = self.models.at(t).forcing_period()?;
         let after = self.ledgers.partition_point(|mark| mark.0 <= t);
         let mark = self.ledgers.get(after.checked_sub(1)?)?;
         (t - mark.0 < period * (1.0 + 1e-9)).then_some(*mark)
@@ -178,7 +178,7 @@ impl Watch {
     /// Where the energy went in the last whole forcing period that had ended at a time in s. None without a
     /// period, and while the first one since the period was changed, or since ledgers are kept, still lasts.
     pub fn last_period(&self, t: f64) -> Option<LiveLedger> {
-        let period = self.models.at(t).forcing_period?;
+        let period = self.models.at(t).forcing_period()?;
         let after = self.ledgers.partition_point(|mark| mark.0 <= t);
         let (begin, end) = (self.ledgers.get(after.checked_sub(2)?)?, self.ledgers.get(after - 1)?);
         let whole = ((end.0 - begin.0) / period - 1.0).abs() < 1e-6;
@@ -316,6 +316,6 @@ impl Watch {
 }
 
 fn sampling_step(model: &Model) -> f64 {
-    let swing = model.swing();
-    model.forcing_period.map_or(swing, |period| period.min(swing)) / PER_PERIOD
+    let swing = model.natural_time();
+    model.forcing_period().map_or(swing, |period| period.min(swing)) / PER_PERIOD
 }

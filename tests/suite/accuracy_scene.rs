@@ -103,7 +103,7 @@ fn an_error_is_estimated_that_is_known_otherwise() {
         let model = preset(name, &[]);
         let own = trusted(&model);
         assert_eq!(own.course, Course::Kept, "{name}");
-        assert_eq!((own.tolerances, own.span), ((1e-9, 1e-9 * 1e-2), model.duration), "{name}");
+        assert_eq!((own.tolerances, own.span), ((1e-9, 1e-9 * 1e-2), model.duration()), "{name}");
         assert!(own.error > 0.0 && own.error < 1e-4 * own.travel, "{name} {own:?}");
         let words = own.short(0.0).unwrap();
         assert!(words.starts_with("Error about ") && words.ends_with(" mm"), "{words}");

@@ -41,7 +41,7 @@ fn a_chirp_is_its_formula_and_holds_its_last_frequency() {
     for s in run_at(&m, &every(0.0371, 240)).samples {
         near(s.base_accel, g * STANDARD_GRAVITY * (TAU * turns(s.t)).sin(), 2e-13 * g * STANDARD_GRAVITY);
     }
-    assert_eq!(m.forcing_period, None);
+    assert_eq!(m.forcing_period(), None);
 }
 
 #[test]
@@ -74,8 +74,8 @@ fn a_mass_follows_chirp_noise_and_record_as_twice_the_digits_do() {
             let (a, b) = (m.run(&request), m.run_reference(&request, 1e-26));
             assert_eq!(a.samples.len(), 36);
             for (s, r) in a.samples.iter().zip(&b.samples) {
-                near(s.x, r.x, 1e-8 * m.scales.length);
-                near(s.v, r.v, 1e-8 * m.scales.speed);
+                near(s.x, r.x, 1e-8 * m.scales().length);
+                near(s.v, r.v, 1e-8 * m.scales().speed);
                 near(s.base_accel, r.base_accel, 1e-12 * STANDARD_GRAVITY);
             }
             let releases = |run: &interwell::dynamics::Run| of_kind(run, EventKind::Release).len();

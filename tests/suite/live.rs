@@ -38,7 +38,7 @@ fn in_any_pieces_it_is_one_run() {
     for name in SCENES {
         // A half cycle that is mirrored is the same to rounding only.
         let model = preset(name, &["run.recurrence=false"]);
-        let duration = model.duration.min(12.0);
+        let duration = model.duration().min(12.0);
         // the last step of a run is cut short, so both are compared before it
         let times: Vec<f64> = every(0.003_7, (duration * 0.9 / 0.003_7) as usize);
         let run = run_at(&model, &times);
@@ -67,12 +67,12 @@ fn the_present_lies_on_the_run_and_the_ledger_closes() {
                 continue;
             }
             let (state, sample) = (live.state(), passage.samples.last().unwrap());
-            near(state.x, sample.x, 1e-12 * model.scales.length);
-            near(state.v, sample.v, 1e-9 * model.scales.speed);
+            near(state.x, sample.x, 1e-12 * model.scales().length);
+            near(state.v, sample.v, 1e-9 * model.scales().speed);
             let ledger = live.ledger();
             let left =
                 ledger.work_j + ledger.by_hand_j - ledger.damping_j - ledger.impact_j - ledger.stored_j;
-            let size = model.mass * model.scales.speed.powi(2);
+            let size = model.mass() * model.scales().speed.powi(2);
             near(left, 0.0, 1e-8 * size.max(ledger.impact_j + ledger.damping_j));
             assert_eq!(ledger.by_hand_j, 0.0);
         }
@@ -87,8 +87,8 @@ fn at(model: &Model, t: f64) -> (Live, LiveOutput) {
 }
 
 fn close(a: &Sample, b: &Sample, model: &Model) {
-    near(a.x, b.x, 1e-12 * model.scales.length);
-    near(a.v, b.v, 1e-9 * model.scales.speed);
+    near(a.x, b.x, 1e-12 * model.scales().length);
+    near(a.v, b.v, 1e-9 * model.scales().speed);
     near(a.base_accel, b.base_accel, 1e-9);
 }
 
@@ -153,8 +153,8 @@ fn a_stop_dragged_over_the_mass_carries_it_along() {
     let state = live.state();
     assert_eq!((state.x, state.phase), (2e-3, Phase::RightStop));
     assert_eq!(passage.events.last().map(|event| event.kind), Some(EventKind::Rest));
-    let potential = |x: f64| model.mechanism.curve.potential(x);
-    let kinetic = |v: f64| 0.5 * model.mass * v * v;
+    let potential = |x: f64| model.mechanism().curve.potential(x);
+    let kinetic = |v: f64| 0.5 * model.mass() * v * v;
     let given = potential(state.x) + kinetic(state.v) - potential(before.x) - kinetic(before.v);
     near(live.ledger().by_hand_j, given, 1e-12);
     assert!(given > 0.0);

@@ -91,8 +91,8 @@ fn the_ramp_lets_go_where_the_push_equals_the_force() {
     near(released, 103.413_146_21, 1e-8);
     near(of_kind(&ramp, EventKind::Crossing)[0].t, 107.827_700_24, 1e-8);
     let push = 2.0 * released / 300.0 * (std::f64::consts::TAU * 3.0 * released).sin();
-    let force = model.mechanism.curve.force(1.5e-3);
-    near(push, -force / (model.mass * STANDARD_GRAVITY), 1e-9);
+    let force = model.mechanism().curve.force(1.5e-3);
+    near(push, -force / (model.mass() * STANDARD_GRAVITY), 1e-9);
 }
 
 #[test]
@@ -123,7 +123,8 @@ fn two_models_of_one_prototype() {
     // Beams against the solid model of `paper-table`. Not the same physics: near the middle a wide strip that cannot curl
     // is stiffer by up to 1 / (1 - poisson^2); the solid model's wells lie 0.3 mm nearer to the middle, so that a
     // comparison of forces near the wells says nothing.
-    let (beams, solid) = (preset("paper", &[]).mechanism, preset("paper-table", &[]).mechanism);
+    let (beams, solid) =
+        (preset("paper", &[]).mechanism().clone(), preset("paper-table", &[]).mechanism().clone());
     let force = |mechanism: &Mechanism, x: f64| mechanism.curve.force(x);
     let most = |reach: i32, own: &Mechanism| {
         let apart = (0..=reach).map(|i| f64::from(i) * 1e-5).map(|x| force(own, x) - force(&solid, x));
@@ -131,7 +132,7 @@ fn two_models_of_one_prototype() {
     };
     near(most(550, &beams), 12.9e-3, 2e-4);
     // Strips that cannot curl at all: within 5 mN as far as 2 mm.
-    let wide = preset("paper", &["mechanism.plane_strain=true"]).mechanism;
+    let wide = preset("paper", &["mechanism.plane_strain=true"]).mechanism().clone();
     near(most(200, &wide), 4.8e-3, 2e-4);
     let barrier = |own: &Mechanism| own.landscape.barrier.unwrap().from_right_j;
     near_relative(barrier(&beams), barrier(&solid), 0.015);

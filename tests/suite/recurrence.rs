@@ -23,7 +23,7 @@ fn close_options(a: Option<f64>, b: Option<f64>, size: f64) -> bool {
 
 /// Counts, words and numbers of two runs of one model.
 fn same_summary(model: &Model, a: &Summary, b: &Summary) {
-    let (length, speed) = (model.scales.length, model.scales.speed);
+    let (length, speed) = (model.scales().length, model.scales().speed);
     let counts = |s: &Summary| {
         (
             [s.crossings, s.impacts, s.releases, s.total_crossings, s.total_impacts, s.chatter_sums, s.rests],
@@ -50,7 +50,7 @@ fn same_summary(model: &Model, a: &Summary, b: &Summary) {
 }
 
 fn same_motion(model: &Model, a: &Run, b: &Run) {
-    let (length, speed) = (model.scales.length, model.scales.speed);
+    let (length, speed) = (model.scales().length, model.scales().speed);
     assert_eq!((a.samples.len(), a.events.len()), (b.samples.len(), b.events.len()));
     for (a, b) in a.samples.iter().zip(&b.samples) {
         assert!(close(a.x, b.x, length) && close(a.v, b.v, speed), "{a:?} {b:?}");
@@ -58,7 +58,7 @@ fn same_motion(model: &Model, a: &Run, b: &Run) {
         assert_eq!(a.phase, b.phase);
     }
     for (a, b) in a.events.iter().zip(&b.events) {
-        assert!(close(a.t, b.t, model.duration), "{a:?} {b:?}");
+        assert!(close(a.t, b.t, model.duration()), "{a:?} {b:?}");
         assert_eq!((a.kind, a.side), (b.kind, b.side));
         assert!(close(a.v_in, b.v_in, speed) && close(a.v_out, b.v_out, speed), "{a:?} {b:?}");
     }
@@ -70,7 +70,7 @@ fn compare(scene: &str, changes: &[&str]) -> bool {
         let flag = format!("run.recurrence={flag}");
         let changes: Vec<&str> = changes.iter().copied().chain([flag.as_str()]).collect();
         let model = preset(scene, &changes);
-        let times = every(model.duration / 311.7, 312);
+        let times = every(model.duration() / 311.7, 312);
         let runs = both(&model, &times);
         (model, runs)
     };

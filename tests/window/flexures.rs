@@ -25,12 +25,12 @@ fn set(mechanism: &mut Mechanism, mm: f64) {
 fn preload_reshapes_the_well_under_the_moving_mass() {
     let mut own = session("first-look", &[]);
     own.player.tick(0.1);
-    let (before, barrier) = (own.player.state(), own.model().mechanism.landscape.barrier.unwrap());
+    let (before, barrier) = (own.player.state(), own.model().mechanism().landscape.barrier.unwrap());
     for mm in [2.75, 2.9, 3.1] {
         assert!(own.edit_mechanism(|mechanism| set(mechanism, mm)));
         own.poll();
     }
-    assert!(own.model().mechanism.landscape.barrier.unwrap().right_well > barrier.right_well);
+    assert!(own.model().mechanism().landscape.barrier.unwrap().right_well > barrier.right_well);
     own.end_gesture();
     let after = own.player.state();
     assert_eq!((before.t, before.x), (after.t, after.x));
@@ -41,9 +41,9 @@ fn preload_reshapes_the_well_under_the_moving_mass() {
         &own.editor.document().files,
         FLEXURE_TOLERANCE,
     );
-    assert_eq!(own.model().mechanism.curve, earnest.unwrap().curve);
+    assert_eq!(own.model().mechanism().curve, earnest.unwrap().curve);
     assert!(own.undo() && preload(&own.scene().mechanism) == 2.7 && !own.undo());
-    assert_eq!(own.model().mechanism.landscape.barrier.unwrap(), barrier);
+    assert_eq!(own.model().mechanism().landscape.barrier.unwrap(), barrier);
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn a_mass_beyond_the_new_curve_is_carried_along() {
     own.edit_once(|scene| scene.start = interwell::scene::Start::Rest);
     assert!(own.edit_mechanism(|mechanism| set(mechanism, 0.4)));
     own.end_gesture();
-    let end = own.model().mechanism.curve.domain().1;
+    let end = own.model().mechanism().curve.domain().1;
     assert!(end < 7.5e-3 && own.player.state().x <= end);
     assert!(own.player.watch().ledger().by_hand_j.abs() > 1e-6);
 }
@@ -60,18 +60,18 @@ fn a_mass_beyond_the_new_curve_is_carried_along() {
 #[test]
 fn what_cannot_be_solved_is_refused_in_words() {
     let mut own = session("first-look", &[]);
-    let curve = own.model().mechanism.curve.clone();
+    let curve = own.model().mechanism().curve.clone();
     for mm in [-1.0, 14.0, f64::NAN, f64::INFINITY, 1e300] {
         assert!(!own.edit_mechanism(|mechanism| set(mechanism, mm)));
         assert!(own.refused().is_some_and(|why| why.len() > 20), "{mm}");
         own.end_gesture();
         assert!(own.fault().is_none() && preload(&own.scene().mechanism) == 2.7);
-        assert_eq!(own.model().mechanism.curve, curve);
+        assert_eq!(own.model().mechanism().curve, curve);
     }
     assert!(!own.editor.can_undo());
     assert!(own.edit_mechanism(|mechanism| set(mechanism, 0.0)) && own.refused().is_none());
     own.end_gesture();
-    assert!(own.model().mechanism.landscape.barrier.is_none());
+    assert!(own.model().mechanism().landscape.barrier.is_none());
 }
 
 #[test]

@@ -87,7 +87,7 @@ fn the_next_release_and_crossing_are_found() {
 #[test]
 fn the_end_of_the_run_is_reached_or_given_up() {
     let mut harness = window("paper", WIDE, Settings::default());
-    let end = harness.state().session.model().duration;
+    let end = harness.state().session.model().duration();
     press(&mut harness, Key::End);
     arrive(&mut harness);
     assert_eq!(harness.state().session.player.time(), end);

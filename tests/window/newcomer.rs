@@ -128,7 +128,7 @@ fn the_lesson_says_what_the_scene_does() {
     for limit in [1.9, 4.0, 6.875, 12.0] {
         set(&mut harness, "stops.travel_limit_mm", limit);
         harness.get_by_label("What stops do, and why:");
-        let landscape = &harness.state().session.model().mechanism.landscape;
+        let landscape = &harness.state().session.model().mechanism().landscape;
         let well = landscape.right_stable().unwrap().x;
         let hardest = landscape.extrema.iter().find(|own| own.x > 1e-4 && own.x < well).unwrap();
         let words =

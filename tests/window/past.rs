@@ -36,7 +36,10 @@ fn the_model_of_then_is_shown() {
     assert!(session.player.is_past() && early > 0.0);
     let (shown, present) = (session.shown(), session.model());
     assert_eq!((shown.stop_positions().1, present.stop_positions().1), (Some(1.5e-3), Some(3e-3)));
-    assert!((shown.largest_push() - G).abs() < 1e-9 && (present.largest_push() - 0.5 * G).abs() < 1e-9);
+    assert!(
+        (shown.largest_base_acceleration() - G).abs() < 1e-9
+            && (present.largest_base_acceleration() - 0.5 * G).abs() < 1e-9
+    );
     // the stops of then are no handles for those of now
     assert!(harness.query_all_by_role_and_label(Role::Slider, "right stop").next().is_none());
     harness.get_by_label_contains("go to now").click();
@@ -66,8 +69,8 @@ fn a_dragged_slider_does_not_fill_the_memory() {
     assert!(held.len() > 100 && held.len() <= 201, "{}", held.len());
     // what is left is in order, and the newest is the present
     assert!(held.windows(2).all(|pair| pair[0].1 == pair[1].0));
-    assert!((session.shown().largest_push() - 1.2 * G).abs() < 1e-9);
-    assert!(watch.model_at(0.5 * watch.time()).largest_push() < 1.15 * G);
+    assert!((session.shown().largest_base_acceleration() - 1.2 * G).abs() < 1e-9);
+    assert!(watch.model_at(0.5 * watch.time()).largest_base_acceleration() < 1.15 * G);
 }
 
 #[test]

@@ -159,7 +159,7 @@ fn the_energy_view_says_what_the_ledger_says() {
     let session = &harness.state().session;
     let (watch, now) = (session.player.watch(), session.player.time());
     let model = session.model();
-    let (unit, _) = energy::unit_of(model.mass * model.scales.speed.powi(2));
+    let (unit, _) = energy::unit_of(model.mass() * model.scales().speed.powi(2));
     let (at, whole) = watch.ledger_at(now).unwrap();
     assert_eq!((at, whole), (now, watch.ledger()));
     let period = watch.last_period(now).unwrap();
@@ -203,13 +203,13 @@ fn the_wheel_zooms_all_traces() {
 #[test]
 fn axes_stand_still_while_the_wells_move_apart() {
     let (mut own, mut memory) = (session("first-look", &[]), Memory::default());
-    let (before, well) = (memory.span(&own), own.model().mechanism.landscape.barrier.unwrap().right_well);
+    let (before, well) = (memory.span(&own), own.model().mechanism().landscape.barrier.unwrap().right_well);
     for mm in [2.75, 2.9, 3.1] {
         assert!(own.set_number("mechanism.preload_mm", mm).unwrap());
         own.poll();
         assert_eq!(memory.span(&own), before, "{mm}");
     }
-    let moved = own.model().mechanism.landscape.barrier.unwrap().right_well;
+    let moved = own.model().mechanism().landscape.barrier.unwrap().right_well;
     assert!(moved > 1.04 * well && moved < before.high, "{well} {moved} {before:?}");
     own.end_gesture();
     assert!(memory.span(&own).high > before.high);

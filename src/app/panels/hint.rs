@@ -43,7 +43,7 @@ impl Hint {
     /// Where a scene begins in a well, with something to cross and stops to switch on.
     pub fn for_scene(session: &Session) -> Self {
         let offered = session.scene().app.as_ref().is_some_and(|app| app.stops_when_on.is_some());
-        let barrier = session.model().mechanism.landscape.barrier.is_some();
+        let barrier = session.model().mechanism().landscape.barrier.is_some();
         match session.amplitude_g().filter(|_| offered && barrier) {
             Some(opened_g) => Self { stage: Stage::Cross, opened_g },
             None => Self { stage: Stage::Done, opened_g: 0.0 },
@@ -52,7 +52,7 @@ impl Hint {
 
     /// Whether it is to be shown; goes on to the next stage once one is done.
     pub fn is_shown(&mut self, session: &Session) -> bool {
-        if self.stage == Stage::Done || session.model().mechanism.landscape.barrier.is_none() {
+        if self.stage == Stage::Done || session.model().mechanism().landscape.barrier.is_none() {
             return false;
         }
         // Crossings are rare and recent: a look at the last events is enough. One by hand does not count.
@@ -183,7 +183,7 @@ fn answer(session: &Session) -> String {
 /// Where between the middle and the wells the mechanism presses the mass outwards hardest, in mm, if on both
 /// sides alike.
 fn hardest_mm(session: &Session) -> Option<f64> {
-    let landscape = &session.model().mechanism.landscape;
+    let landscape = &session.model().mechanism().landscape;
     let barrier = landscape.barrier?;
     let side = |low: f64, high: f64| {
         let between = landscape.extrema.iter().filter(|own| own.x > low && own.x < high);

@@ -120,7 +120,7 @@ impl Accuracy {
     pub(super) fn follow(&mut self, now: f64, wake: &Wake) {
         let Some((model, from)) = &self.origin else { return };
         let span = match (self.asked, self.trust.current()) {
-            (None, _) => model.duration,
+            (None, _) => model.duration(),
             // what parts stays parted
             (Some(asked), Some(known)) if known.course.until().is_none() && now - from > asked => {
                 STRETCH * (now - from)

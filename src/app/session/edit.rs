@@ -186,7 +186,7 @@ impl Session {
 
     /// A sine that suits the scales of the mechanism; for the prototype 3 Hz and 0.5 g.
     pub fn suiting_sine(&self) -> Excitation {
-        let scales = &self.model().scales;
+        let scales = &self.model().scales();
         let digit = |value: f64, otherwise: f64| match value > 0.0 && value.is_finite() {
             true => format!("{value:.0e}").parse().unwrap_or(otherwise),
             false => otherwise,

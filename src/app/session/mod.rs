@@ -54,8 +54,8 @@ pub struct OpenedScales {
 
 impl OpenedScales {
     fn of(model: &Model) -> Self {
-        let well_mm = model.mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
-        Self { length: model.scales.length, time: model.scales.time, well_mm }
+        let well_mm = model.mechanism().landscape.right_stable().map(|well| well.x.abs() * 1e3);
+        Self { length: model.scales().length, time: model.scales().time, well_mm }
     }
 }
 
@@ -129,7 +129,7 @@ impl Session {
         let model =
             Model::build(&scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
         let hints = scene.app.clone().unwrap_or_default();
-        let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.pace()));
+        let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.characteristic_time()));
         let player = Player::new(&model, speed);
         let remembered_stops = first_stops(&scene, &model);
         let opened = OpenedScales::of(&model);
@@ -206,7 +206,7 @@ impl Session {
         self.remembered_stops = first_stops(self.scene(), &self.model);
         self.restart();
         let hinted = self.scene().app.as_ref().and_then(|hints| hints.speed);
-        self.player.speed = hinted.unwrap_or_else(|| fitting_speed(self.model.pace()));
+        self.player.speed = hinted.unwrap_or_else(|| fitting_speed(self.model.characteristic_time()));
         self.player.set_playing(true);
     }
 
@@ -275,7 +275,7 @@ impl Session {
         }
         let now = self.player.watch().now().x;
         let (left, right) = self.model.stop_positions();
-        let is_far = (now - before).abs() > CARRIED * self.model.scales.length;
+        let is_far = (now - before).abs() > CARRIED * self.model.scales().length;
         self.carried = is_far && [left, right].contains(&Some(now));
         (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, false);
         self.ask_settled();
@@ -284,13 +284,13 @@ impl Session {
     /// Whether the motion goes on for a moment at least from its present state.
     fn can_go_on(&self) -> bool {
         let Some(model) = self.player.watch().from_here() else { return false };
-        study::lasts(&model, MOMENT * model.pace())
+        study::lasts(&model, MOMENT * model.characteristic_time())
     }
 
     /// Whether the last change carried the mass to a stop, and it has not moved on for long.
     pub fn was_set_on_stop(&self) -> bool {
         let gone = self.player.watch().time() - self.changed_at;
-        self.carried && (self.settling().is_some() || gone < self.model.pace())
+        self.carried && (self.settling().is_some() || gone < self.model.characteristic_time())
     }
 
     /// The scales of the scene as it was opened.
@@ -327,7 +327,7 @@ impl Session {
     /// or after the start where the shaking is a function of the time since then.
     pub fn end_of_run(&self) -> f64 {
         let begins_here = self.player.watch().from_here().is_some();
-        self.model.duration + if begins_here { self.changed_at } else { 0.0 }
+        self.model.duration() + if begins_here { self.changed_at } else { 0.0 }
     }
 
     /// Whether something was changed on the motion's way, so that it is no run of the scene from its start.

@@ -28,7 +28,7 @@ impl Session {
 pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
     let hinted = || scene.app.as_ref().and_then(|hints| hints.stops_when_on);
     let suiting = || {
-        let well = model.mechanism.landscape.right_stable().map(|well| well.x.abs() * 1e3);
+        let well = model.mechanism().landscape.right_stable().map(|well| well.x.abs() * 1e3);
         Stops::Rigid { travel_limit_mm: suiting_limit(well), restitution: RESTITUTION }
     };
     match scene.stops {

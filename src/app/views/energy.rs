@@ -85,9 +85,9 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let (model, watch, now) = (session.shown(), session.player.watch(), session.player.time());
     let whole = watch.ledger_at(now);
     let period = watch.last_period(now);
-    let (unit, name) = unit_of(model.mass * model.scales.speed.powi(2));
+    let (unit, name) = unit_of(model.mass() * model.scales().speed.powi(2));
     let row = (area.height() / COUNT).clamp(ROWS.0, ROWS.1);
-    let shaken = model.forcing_period.is_some();
+    let shaken = model.forcing_period().is_some();
     let columns = if shaken { 2.0 } else { 1.0 };
     let column = (area.width() - NAMES) / columns;
     let heads: [(Option<LiveLedger>, &str, &str); 2] = [
@@ -189,14 +189,14 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     let (session, state) = (&context.session, context.session.player.state());
     let model = session.shown();
     let (kinetic, potential) = model.energies(state.x, state.v);
-    let landscape = &model.mechanism.landscape;
+    let landscape = &model.mechanism().landscape;
     let wells = landscape.equilibria.iter().filter(|own| own.stable);
-    let wells = wells.map(|own| model.mechanism.curve.potential(own.x)).reduce(f64::min);
+    let wells = wells.map(|own| model.mechanism().curve.potential(own.x)).reduce(f64::min);
     // without a well the lower stop is the bottom
     let bottom = wells.or(floor(model)).unwrap_or(potential.min(0.0));
     let (potential, barrier) = (
         (potential - bottom).max(0.0),
-        landscape.barrier.map(|barrier| model.mechanism.curve.potential(barrier.x) - bottom),
+        landscape.barrier.map(|barrier| model.mechanism().curve.potential(barrier.x) - bottom),
     );
     let most = axis_end((kinetic_room).max(1.3 * barrier.unwrap_or(0.0)).max(1e-300));
     if rect.height() < 34.0 {

@@ -127,7 +127,7 @@ impl DrawingScale {
 
 /// The flexures held where the mass is; the last ones that were known, should these not be.
 pub(super) fn state_at(context: &mut ViewContext<'_>, x: f64) -> Option<State> {
-    let mechanism = &context.session.shown().mechanism;
+    let mechanism = &context.session.shown().mechanism();
     let flexures = mechanism.flexures.as_ref()?;
     let (low, high) = mechanism.curve.domain();
     if let Ok(state) = flexures.state(x.clamp(low, high)) {

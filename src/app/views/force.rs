@@ -49,7 +49,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let changed = stops_beside_ui(ui, context, chart.rect, edges, 0.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
     let model = context.session.shown();
-    let (landscape, own) = (&model.mechanism.landscape, &model.mechanism.curve);
+    let (landscape, own) = (&model.mechanism().landscape, &model.mechanism().curve);
     chart.equilibria(&painter, &style, landscape);
     for kink in &landscape.kinks {
         let at = chart.screen_from_world(kink.x, own.force(kink.x));
@@ -58,7 +58,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         painter.add(Shape::closed_line(diamond, Stroke::new(1.5, style.ink())));
     }
     let state = context.session.player.state();
-    let push = -model.mass * state.base_accel;
+    let push = -model.mass() * state.base_accel;
     let mut legend = vec![(Sign::Line(style.tray_stroke()), "holds the mass there")];
     if model.is_shaken() {
         legend.push((Sign::Line(style.arrow_stroke()), "push of the base"));
@@ -74,7 +74,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     chart.legend(ui, &style, area.right(), &legend);
     if let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) {
         let (x, _) = chart.world_from_screen(pointer);
-        let force = context.session.shown().mechanism.curve.force(x);
+        let force = context.session.shown().mechanism().curve.force(x);
         if force.is_finite() {
             let way = if force < 0.0 { " to the left" } else { " to the right" };
             let text = format!("{} N{way} holds it at {} mm", three(force.abs()), three(x * 1e3));
@@ -87,7 +87,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
 /// As far up as the forces between the wells and the pushes that the scene may have.
 fn end_of_axis(context: &ViewContext<'_>) -> f64 {
     let model = context.session.shown();
-    let landscape = &model.mechanism.landscape;
+    let landscape = &model.mechanism().landscape;
     let wells = landscape.barrier.map(|barrier| (barrier.left_well, barrier.right_well));
     let between = |x: f64| wells.is_some_and(|(left, right)| x > left && x < right);
     let mut most = landscape
@@ -98,15 +98,15 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
         .fold(0.0, f64::max);
     if wells.is_none() {
         // without a pair of wells the whole axis is of interest
-        let (domain, curve) = (model.mechanism.curve.domain(), &model.mechanism.curve);
+        let (domain, curve) = (model.mechanism().curve.domain(), &model.mechanism().curve);
         for x in [context.span.low, context.span.high] {
             most = most.max(curve.force(x.clamp(domain.0, domain.1)).abs());
         }
     }
     let push = if model.is_shaken() {
-        model.mass
-            * room_for_push(context.session.shown().largest_push())
-                .min(1.1 * context.session.shown().largest_push())
+        model.mass()
+            * room_for_push(context.session.shown().largest_base_acceleration())
+                .min(1.1 * context.session.shown().largest_base_acceleration())
     } else {
         0.0
     };
@@ -116,7 +116,7 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
 /// The curve: thick where the mass can be, faint beyond the stops.
 fn curve(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let (style, model) = (context.style, context.session.shown());
-    let own = &model.mechanism.curve;
+    let own = &model.mechanism().curve;
     let (left, right) = model.stop_positions();
     let domain = own.domain();
     let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
@@ -135,7 +135,7 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let (left, right) = model.stop_positions();
     for (stop, way) in [(left, -1.0), (right, 1.0)] {
         let Some(x) = stop else { continue };
-        let force = model.mechanism.curve.force(x);
+        let force = model.mechanism().curve.force(x);
         // only where the mechanism presses the mass outwards
         if !(force * way < 0.0) {
             continue;
@@ -145,7 +145,7 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
         let inwards = -MARK * way as f32;
         painter.line_segment([at, at + vec2(LINE * inwards, 0.0)], stroke);
         // beyond the wall, out of the way of the mass; on the inner side where the picture ends
-        let text = format!("frees at {} g", three(force.abs() / (model.mass * STANDARD_GRAVITY)));
+        let text = format!("frees at {} g", three(force.abs() / (model.mass() * STANDARD_GRAVITY)));
         let room = if way > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };
         let outwards = if room > LABEL { -inwards.signum() } else { inwards.signum() };
         let align = if outwards > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_BOTTOM };

@@ -123,11 +123,11 @@ fn names(
         haloed(painter, &style, (at, align), name, (style.small(), style.faint()));
     };
     let (at_clamp, at_mass) = leaves_right(context);
-    let barrier = model.mechanism.landscape.barrier.map_or(0.0, |barrier| barrier.x);
-    if model.mechanism.flexures.is_some() {
+    let barrier = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
+    if model.mechanism().flexures.is_some() {
         let zero = context.span.screen_from_world(0.0, rect);
         put(!at_clamp, (zero + 8.0, zero - 8.0), top + 5.0, true, "flexure");
-    } else if Schematic::of(&model.mechanism.curve, context.span) == Schematic::Spring {
+    } else if Schematic::of(&model.mechanism().curve, context.span) == Schematic::Spring {
         let foot = context.span.screen_from_world(barrier, rect);
         put(body.center().x < foot, (foot + 10.0, foot - 10.0), top + 5.0, true, "spring");
     }
@@ -148,9 +148,9 @@ fn names(
 /// mass to the side of the barrier.
 fn leaves_right(context: &ViewContext<'_>) -> (bool, bool) {
     let model = context.session.shown();
-    let bent = context.memory.bent.as_ref().filter(|_| model.mechanism.flexures.is_some());
+    let bent = context.memory.bent.as_ref().filter(|_| model.mechanism().flexures.is_some());
     let Some(line) = bent.and_then(|bent| bent.lines.get(1)).filter(|line| line.points.len() > 8) else {
-        let barrier = model.mechanism.landscape.barrier.map_or(0.0, |barrier| barrier.x);
+        let barrier = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
         let left_of_it = context.session.player.state().x < barrier;
         return (!left_of_it, left_of_it);
     };
@@ -179,7 +179,7 @@ fn bent_ui(
 ) -> Option<(f32, String)> {
     let bent = state_at(context, x)?;
     let style = context.style;
-    let mechanism = &context.session.shown().mechanism;
+    let mechanism = &context.session.shown().mechanism();
     let geometry = mechanism.flexures.as_ref()?.geometry();
     let scale = DrawingScale::of(geometry, place);
     let reach = mechanism.landscape.right_stable().map_or(0.0, |well| well.x.abs());
@@ -243,13 +243,13 @@ fn schematic(
     top: f32,
 ) -> String {
     let style = context.style;
-    let curve = &context.session.shown().mechanism.curve;
+    let curve = &context.session.shown().mechanism().curve;
     let own = Schematic::of(curve, context.span);
     painter.hline(rect.x_range().shrink(6.0), middle + half.y + 3.0, Stroke::new(2.0, style.faint()));
     if own == Schematic::Spring {
         let clamp_at = Rect::from_x_y_ranges(rect.x_range().shrink(6.0), top - CLAMP..=top);
         clamp(painter, &style, clamp_at, true);
-        let barrier = context.session.shown().mechanism.landscape.barrier;
+        let barrier = context.session.shown().mechanism().landscape.barrier;
         let foot = context.span.screen_from_world(barrier.map_or(0.0, |barrier| barrier.x), rect);
         let (from, to) = (pos2(foot, top), pos2(x, middle - half.y));
         painter.add(Shape::line(coil(from, to), style.flexure_stroke()));
@@ -277,7 +277,7 @@ fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, ba
     }
     let style = context.style;
     let full = f64::from(rect.width()) * 0.16;
-    let room = context.session.shown().largest_push().max(1e-9);
+    let room = context.session.shown().largest_base_acceleration().max(1e-9);
     let push = (-base_accel / room * full) as f32;
     let inner = if body.center().x > rect.center().x { -1.0 } else { 1.0 };
     let near = body.center().x + inner * (body.width() * 0.5 + 6.0);
@@ -311,7 +311,7 @@ fn words_ui(
     }
     if context.session.shown().is_shaken() {
         // hundredths, and more only where these say nothing
-        let most = context.session.shown().largest_push() / STANDARD_GRAVITY;
+        let most = context.session.shown().largest_base_acceleration() / STANDARD_GRAVITY;
         let decimals = if most < 0.1 { decimals_for(most) } else { 2 };
         let push = (base_accel / STANDARD_GRAVITY).abs();
         all.push((format!("push {push:.decimals$} g"), style.base(), 3));
@@ -362,12 +362,12 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
     if to > from && !context.reduce_motion {
         let watch = context.session.player.watch();
         let first = watch.events().partition_point(|event| event.t <= from);
-        let scale = model.scales.speed * model.scales.speed;
+        let scale = model.scales().speed * model.scales().speed;
         for event in watch.events().range(first..).take_while(|event| event.t <= to) {
             let side = usize::from(event.side == Side::Right);
             let busy = context.memory.rings[side].is_some_and(|ring| now - ring.began < RING_SECONDS);
             // A compliant stop takes its share over the contact that begins here.
-            let kept = match &model.compliant {
+            let kept = match &model.compliant() {
                 Some(stop) => stop.restitution(event.v_in.abs()) * event.v_in,
                 None => event.v_out,
             };
@@ -407,7 +407,7 @@ mod tests {
     fn only_a_force_that_depends_on_the_place_has_a_spring() {
         let words = |preset: &str| {
             let session = Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap();
-            let curve = &session.model().mechanism.curve;
+            let curve = &session.model().mechanism().curve;
             Schematic::of(curve, Span::of(&session, (0.0, 0.0))).words(curve.force(0.0))
         };
         assert_eq!(words("bouncing-ball"), "a steady force of 9.81 N to the left");

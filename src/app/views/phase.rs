@@ -61,11 +61,11 @@ pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     if separatrix(&painter, context, &chart) {
         legend.push((Sign::Dashed(style.ghost_stroke()), "separatrix"));
     }
-    chart.equilibria(&painter, &style, &context.session.shown().mechanism.landscape);
+    chart.equilibria(&painter, &style, &context.session.shown().mechanism().landscape);
     let edges = (chart.rect.top(), chart.rect.bottom());
     let changed = stops_beside_ui(ui, context, chart.rect, edges, 0.0);
     let painter = ui.painter().with_clip_rect(chart.rect.expand(STATE));
-    let is_periodic = context.session.shown().forcing_period.is_some();
+    let is_periodic = context.session.shown().forcing_period().is_some();
     let points_only = context.memory.points_only && is_periodic;
     if !points_only {
         trail(&painter, context, &chart);
@@ -131,15 +131,15 @@ fn start_ui(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, c
 /// Whether the mass can be at `x` in m.
 fn within(context: &ViewContext<'_>, x: f64) -> bool {
     let model = context.session.shown();
-    let ((left, right), domain) = (model.stop_positions(), model.mechanism.curve.domain());
+    let ((left, right), domain) = (model.stop_positions(), model.mechanism().curve.domain());
     x >= left.unwrap_or(domain.0).max(domain.0) && x <= right.unwrap_or(domain.1).min(domain.1)
 }
 
 /// The states with the energy of the barrier's top. Whether there is one.
 fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bool {
     let model = context.session.shown();
-    let Some(barrier) = model.mechanism.landscape.barrier else { return false };
-    let curve = &model.mechanism.curve;
+    let Some(barrier) = model.mechanism().landscape.barrier else { return false };
+    let curve = &model.mechanism().curve;
     let top = curve.potential(barrier.x);
     let domain = curve.domain();
     let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
@@ -147,7 +147,7 @@ fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bo
     // from the barrier outwards, up to where the potential is as high again
     for end in [low, high] {
         let place = |i: usize| barrier.x + (end - barrier.x) * i as f64 / 400.0;
-        let square = |x: f64| 2.0 * (top - curve.potential(x)) / model.mass;
+        let square = |x: f64| 2.0 * (top - curve.potential(x)) / model.mass();
         let mut path: Vec<(f64, f64)> = vec![(barrier.x, 0.0)];
         for i in 1..=400 {
             let square = square(place(i));
@@ -180,7 +180,8 @@ fn turning(height: &impl Fn(f64) -> f64, above: f64, below: f64) -> f64 {
 fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let (session, style) = (&context.session, context.style);
     let model = session.shown();
-    let length = model.forcing_period.map_or(TRAIL_SWINGS * model.swing(), |period| TRAIL_PERIODS * period);
+    let length =
+        model.forcing_period().map_or(TRAIL_SWINGS * model.natural_time(), |period| TRAIL_PERIODS * period);
     let state = session.player.state();
     let watch = session.player.watch();
     let path = recent(watch.samples(), state, length);
@@ -264,7 +265,7 @@ fn recent(samples: &VecDeque<Sample>, state: Sample, length: f64) -> Vec<Sample>
 /// The state once a forcing period, always at the same phase of it, since the last change.
 fn strobes(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let session = &context.session;
-    let Some(period) = session.shown().forcing_period else { return };
+    let Some(period) = session.shown().forcing_period() else { return };
     let (watch, now) = (session.player.watch(), session.player.time());
     // since it goes as it does, and since the mass was last put elsewhere
     let placed = if session.player.is_past() { 0.0 } else { session.changed_at() };

@@ -34,10 +34,10 @@ pub fn axis_end(value: f64) -> f64 {
 pub fn floor(model: &Model) -> Option<f64> {
     let (left, right) = model.stop_positions();
     let inside = |x: &f64| left.is_none_or(|stop| *x >= stop) && right.is_none_or(|stop| *x <= stop);
-    let landscape = &model.mechanism.landscape;
+    let landscape = &model.mechanism().landscape;
     let wells = landscape.equilibria.iter().filter(|own| own.stable).map(|own| own.x).filter(inside);
     let places = wells.chain(left).chain(right);
-    places.map(|x| model.mechanism.curve.potential(x)).reduce(f64::min)
+    places.map(|x| model.mechanism().curve.potential(x)).reduce(f64::min)
 }
 
 /// The largest speed in m/s, power in W and energy in J that have been seen since the last change, and the
@@ -100,27 +100,27 @@ impl Ranges {
         for sample in watch.samples().range(first..) {
             self.seen = self.seen.or(Extremes {
                 speed: sample.v.abs(),
-                power: sample.work_rate(model.mass).abs(),
+                power: sample.work_rate(model.mass()).abs(),
                 kinetic: model.energies(sample.x, sample.v).0,
                 low: sample.x,
                 high: sample.x,
             });
         }
         self.looked_to = watch.time();
-        let falls = match model.mechanism.landscape.barrier {
+        let falls = match model.mechanism().landscape.barrier {
             Some(barrier) => barrier.from_left_j.max(barrier.from_right_j),
             None if !model.is_shaken() => {
-                let (kinetic, potential) = model.energies(model.start.0, model.start.1);
+                let (kinetic, potential) = model.energies(model.start().0, model.start().1);
                 kinetic + potential - floor(model).unwrap_or(potential)
             }
             None => 0.0,
         };
         let speed = match falls > 0.0 {
-            true => (2.0 * falls / model.mass).sqrt(),
-            false => SHARE * model.scales.speed,
+            true => (2.0 * falls / model.mass()).sqrt(),
+            false => SHARE * model.scales().speed,
         };
-        let power = SHARE * speed * model.mass * room_for_push(model.largest_push());
-        let kinetic = 0.5 * model.mass * speed * speed;
+        let power = SHARE * speed * model.mass() * room_for_push(model.largest_base_acceleration());
+        let kinetic = 0.5 * model.mass() * speed * speed;
         self.expected = Extremes { speed, power, kinetic, ..Extremes::default() };
         self.ever = self.ever.or(self.seen);
         self

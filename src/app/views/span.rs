@@ -39,7 +39,7 @@ impl Span {
         };
         let settled = session.settled().and_then(|settled| settled.range).unwrap_or((0.0, 0.0));
         let reach = [settled.0.min(seen.0), settled.1.max(seen.1)];
-        if let Some(barrier) = &model.mechanism.landscape.barrier {
+        if let Some(barrier) = &model.mechanism().landscape.barrier {
             show(barrier.left_well * ROOM);
             show(barrier.right_well * ROOM);
             let size = barrier.left_well.abs().max(barrier.right_well.abs());

@@ -76,7 +76,7 @@ impl TraceQuantity {
 
     /// Its value in a motion that was seen, with the mass of then.
     fn seen(self, watch: &Watch, sample: &Sample) -> f64 {
-        let mass = if self == Self::Power { watch.model_at(sample.t).mass } else { 0.0 };
+        let mass = if self == Self::Power { watch.model_at(sample.t).mass() } else { 0.0 };
         self.value(sample, mass)
     }
 
@@ -104,9 +104,9 @@ impl TraceQuantity {
         match self {
             Self::Displacement => (context.span.low * 1e3, context.span.high * 1e3),
             Self::Velocity => both(context.memory.ranges.follow(context.session).speed() * 1e3),
-            Self::BaseAcceleration => {
-                both(1.12 * room_for_push(context.session.shown().largest_push()) / STANDARD_GRAVITY)
-            }
+            Self::BaseAcceleration => both(
+                1.12 * room_for_push(context.session.shown().largest_base_acceleration()) / STANDARD_GRAVITY,
+            ),
             Self::Power => both(context.memory.ranges.follow(context.session).power() * 1e3),
         }
     }
@@ -259,8 +259,8 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
 
 /// How many seconds are shown of a motion by a model.
 fn stretch(model: &Model) -> f64 {
-    let most = MOST_SWINGS * model.swing();
-    model.forcing_period.map_or(SWINGS * model.pace(), |period| (PERIODS * period).min(most))
+    let most = MOST_SWINGS * model.natural_time();
+    model.forcing_period().map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(most))
 }
 
 fn watch_begin(context: &ViewContext<'_>) -> f64 {

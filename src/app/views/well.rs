@@ -35,7 +35,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
 
     let state = context.session.player.state();
     let model = context.session.shown();
-    let (curve, mass) = (&model.mechanism.curve, model.mass);
+    let (curve, mass) = (&model.mechanism().curve, model.mass());
     let tilt = mass * state.base_accel;
     let (left, right) = model.stop_positions();
     let domain = curve.domain();
@@ -75,7 +75,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
 /// beside a stop is left out.
 fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
     let (style, model) = (context.style, context.session.shown());
-    let Some(barrier) = model.mechanism.landscape.barrier else { return };
+    let Some(barrier) = model.mechanism().landscape.barrier else { return };
     let (left, right) = model.stop_positions();
     let screen = |x: f64| context.span.screen_from_world(x, rect);
     let wall = |stop: f64, way: f32| {
@@ -158,11 +158,11 @@ struct Heights {
 impl Heights {
     /// From a little below the deepest to a little above the highest place that the mass gets to.
     fn of(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect) -> Self {
-        let room = room_for_push(context.session.shown().largest_push());
+        let room = room_for_push(context.session.shown().largest_base_acceleration());
         let model = context.session.shown();
-        let curve = &model.mechanism.curve;
-        let landscape = &model.mechanism.landscape;
-        let tilt = model.mass * room;
+        let curve = &model.mechanism().curve;
+        let landscape = &model.mechanism().landscape;
+        let tilt = model.mass() * room;
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut show = |x: f64, tilted: bool| {
             let (v, side) = (curve.potential(x), if tilted { tilt * x.abs() } else { 0.0 });

@@ -91,7 +91,7 @@ fn is_enabled(command: &Command, session: &Session, tiling: &Tiling) -> bool {
         Command::Redo => session.editor.can_redo(),
         Command::KeepOwn => tiling.room() != Room::Compact,
         Command::NextRelease => model.stop_positions() != (None, None),
-        Command::NextCrossing => model.mechanism.landscape.barrier.is_some(),
+        Command::NextCrossing => model.mechanism().landscape.barrier.is_some(),
         Command::Notes => !session.scene().notes.trim().is_empty(),
         _ => true,
     }

@@ -157,14 +157,14 @@ impl Window {
     fn go_to_first(&mut self, kind: EventKind) {
         let model = self.session.model();
         let (name, can_be) = match kind {
-            EventKind::Crossing => ("crossing", model.mechanism.landscape.barrier.is_some()),
+            EventKind::Crossing => ("crossing", model.mechanism().landscape.barrier.is_some()),
             _ => ("release", model.stop_positions() != (None, None)),
         };
         if !can_be {
             let why = if name == "crossing" { "there is no barrier" } else { "there are no stops" };
             return self.tell(format!("No {name} can come: {why}"));
         }
-        let ahead = model.duration.max(PERIODS_AHEAD * model.pace());
+        let ahead = model.duration().max(PERIODS_AHEAD * model.characteristic_time());
         let until = self.session.player.watch().time() + ahead;
         self.session.player.go_to(Goal::First(kind, until));
     }

@@ -13,8 +13,8 @@ const NOISE_ROOM: f64 = 2.5;
 impl Model {
     /// Characteristic time of the motion in s: the forcing period; without one the period of the excitation's
     /// middle frequency; without an excitation the [`natural_time`](Self::natural_time).
-    pub fn pace(&self) -> f64 {
-        self.forcing_period.or_else(|| self.rhythm()).unwrap_or_else(|| self.swing())
+    pub fn characteristic_time(&self) -> f64 {
+        self.forcing_period.or_else(|| self.rhythm()).unwrap_or_else(|| self.natural_time())
     }
 
     /// Characteristic period in s of an excitation that has none: of the middle of a noise's band, of the
@@ -31,7 +31,7 @@ impl Model {
 
     /// Characteristic time of the mechanism in s: the period of small oscillations in the stiffest well;
     /// without a stiffness twice the time of flight to a stop; without both the scene's time scale.
-    pub fn swing(&self) -> f64 {
+    pub fn natural_time(&self) -> f64 {
         let landscape = &self.mechanism.landscape;
         let wells = landscape.equilibria.iter().filter(|own| own.stable);
         let stiffness = wells.map(|own| landscape.inner_stiffness(own)).fold(0.0, f64::max);
@@ -58,7 +58,7 @@ impl Model {
     }
 
     /// Range of the base acceleration in m/s^2.
-    pub fn largest_push(&self) -> f64 {
+    pub fn largest_base_acceleration(&self) -> f64 {
         let drive = &self.excitation;
         let tones = drive.tones.iter().filter(|tone| !tone.noise);
         let tones = tones.map(|tone| tone.amplitude.abs().max(tone.ramp.map_or(0.0, |ramp| ramp.0.abs())));
@@ -124,31 +124,31 @@ mod tests {
 
     #[test]
     fn the_pace_is_that_of_what_happens() {
-        near(model("paper", &[]).pace(), 1.0 / 3.0);
+        near(model("paper", &[]).characteristic_time(), 1.0 / 3.0);
         // 2 pi sqrt(m/k), k = 40 N/m
         let unshaken = model("monostable", &["excitation=None"]);
-        near(unshaken.pace(), TAU * (15.2e-3_f64 / 40.0).sqrt());
+        near(unshaken.characteristic_time(), TAU * (15.2e-3_f64 / 40.0).sqrt());
         // down and up again: twice sqrt(2 h/g)
-        near(model("bouncing-ball", &[]).pace(), 2.0 * (2.0_f64 / 9.81).sqrt());
+        near(model("bouncing-ball", &[]).characteristic_time(), 2.0 * (2.0_f64 / 9.81).sqrt());
         // 10 mm at 50 mm/s, and back
-        near(model("elastic-box", &[]).pace(), 0.4);
+        near(model("elastic-box", &[]).characteristic_time(), 0.4);
         // noise from 1 to 6 Hz
-        near(model("random-shaking", &[]).pace(), 1.0 / 3.5);
+        near(model("random-shaking", &[]).characteristic_time(), 1.0 / 3.5);
         let wave: Vec<f64> = (0..1000).map(|i| (0.05 * f64::from(i)).sin()).collect();
         let times: Vec<f64> = (0..1000).map(f64::from).collect();
         assert!((between_passages(&times, &wave) / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.1);
-        let walking = model("walking", &[]).pace();
+        let walking = model("walking", &[]).characteristic_time();
         assert!((0.05..1.0).contains(&walking), "{walking}");
         let nothing = model("elastic-box", &["stops=None", "start=At(x_mm: 0, v_m_per_s: 0)"]);
-        assert!(nothing.pace().is_finite() && nothing.pace() > 0.0);
+        assert!(nothing.characteristic_time().is_finite() && nothing.characteristic_time() > 0.0);
     }
 
     #[test]
     fn the_push_is_what_the_parts_add_up_to() {
         let g = super::super::excitation::STANDARD_GRAVITY;
-        near(model("paper", &["excitation.amplitude_g=1.25"]).largest_push(), 1.25 * g);
-        near(model("paper", &["excitation=None"]).largest_push(), g);
-        assert_eq!(model("paper", &["excitation.amplitude_g=0"]).largest_push(), 0.0);
+        near(model("paper", &["excitation.amplitude_g=1.25"]).largest_base_acceleration(), 1.25 * g);
+        near(model("paper", &["excitation=None"]).largest_base_acceleration(), g);
+        assert_eq!(model("paper", &["excitation.amplitude_g=0"]).largest_base_acceleration(), 0.0);
         let (amplitude, rate) = model("paper", &["excitation.amplitude_g=-0.5"]).single_sine().unwrap();
         near(amplitude, 0.5 * g);
         near(rate, 3.0 * TAU);

@@ -31,10 +31,14 @@ pub(crate) enum Rhythm {
 
 /// Base acceleration in SI: a constant, tones, chirps and records; its parts add up.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct ExcitationParts {
+pub struct ExcitationParts {
+    /// Constant acceleration in m/s^2.
     pub constant: f64,
+    /// Sines, the lines of each noise among them.
     pub tones: Vec<TonePart>,
+    /// Chirps.
     pub chirps: Vec<ChirpPart>,
+    /// Recorded accelerations.
     pub records: Vec<Arc<Record>>,
     /// What each noise among the tones is.
     pub noises: Vec<NoisePart>,
@@ -42,8 +46,10 @@ pub(crate) struct ExcitationParts {
 
 /// amplitude sin(2 pi frequency t + phase). SI.
 #[derive(Debug, Clone)]
-pub(crate) struct TonePart {
+pub struct TonePart {
+    /// Amplitude in m/s^2, that after the ramp where there is one; any sign.
     pub amplitude: f64,
+    /// Frequency in Hz.
     pub frequency: f64,
     /// Phase in turns beyond the quarter, 0 <= phase < 1.
     pub phase: f64,
@@ -57,26 +63,35 @@ pub(crate) struct TonePart {
 
 /// amplitude sin(2 pi (from t + (to - from) t^2/(2 over))), then holding `to`. SI.
 #[derive(Debug, Clone)]
-pub(crate) struct ChirpPart {
+pub struct ChirpPart {
+    /// Amplitude in m/s^2.
     pub amplitude: f64,
+    /// Frequency in Hz at time 0.
     pub from: f64,
+    /// Frequency in Hz from the chirp's end on.
     pub to: f64,
+    /// Length of the chirp in s.
     pub over: f64,
 }
 
 /// What a noise was made from. SI.
 #[derive(Debug, Clone)]
-pub(crate) struct NoisePart {
+pub struct NoisePart {
+    /// Root mean square in m/s^2.
     pub rms: f64,
+    /// Lower end of its band in Hz.
     pub low: f64,
+    /// Upper end of its band in Hz.
     pub high: f64,
+    /// Seed of its random numbers.
     pub seed: u64,
+    /// Number of its lines.
     pub lines: u64,
 }
 
 impl ExcitationParts {
     /// Fails where a record has not been read.
-    pub fn new(excitation: &Excitation) -> Result<Self, Fault> {
+    pub(crate) fn new(excitation: &Excitation) -> Result<Self, Fault> {
         let mut motion = Self::default();
         motion.add(excitation, "excitation")?;
         Ok(motion)
@@ -165,7 +180,7 @@ impl ExcitationParts {
     }
 
     /// Whether it never accelerates.
-    pub fn is_still(&self) -> bool {
+    pub(crate) fn is_still(&self) -> bool {
         self.constant == 0.0
             && self.tones.iter().all(|t| t.amplitude == 0.0 && t.ramp.is_none_or(|r| r.0 == 0.0))
             && self.chirps.iter().all(|c| c.amplitude == 0.0)
@@ -173,7 +188,7 @@ impl ExcitationParts {
     }
 
     /// Whether it repeats; `common` are its [`common_cycles`](Self::common_cycles).
-    pub fn rhythm(&self, common: Option<u64>) -> Rhythm {
+    pub(crate) fn rhythm(&self, common: Option<u64>) -> Rhythm {
         let empty = self.tones.is_empty() && self.chirps.is_empty() && self.records.is_empty();
         match common {
             _ if empty => Rhythm::Absent,
@@ -183,7 +198,7 @@ impl ExcitationParts {
     }
 
     /// Size of the amplitude in m/s^2 at a time in s, where it is one ramp.
-    pub fn ramped_amplitude(&self, t: f64) -> Option<f64> {
+    pub(crate) fn ramped_amplitude(&self, t: f64) -> Option<f64> {
         let alone = self.constant == 0.0 && self.chirps.is_empty() && self.records.is_empty();
         match self.tones.as_slice() {
             [TonePart { amplitude, ramp: Some((from, over)), .. }] if alone => {
@@ -195,7 +210,7 @@ impl ExcitationParts {
 
     /// Amplitude in m/s^2 and angular frequency in 1/s of each part, for the scales; a constant and a record
     /// have the rate 0.
-    pub fn parts(&self) -> Vec<(f64, f64)> {
+    pub(crate) fn parts(&self) -> Vec<(f64, f64)> {
         let mut parts = vec![(self.constant.abs(), 0.0)];
         for tone in self.tones.iter().filter(|t| !t.noise) {
             let largest = tone.amplitude.abs().max(tone.ramp.map_or(0.0, |r| r.0.abs()));
@@ -213,7 +228,7 @@ impl ExcitationParts {
     }
 
     /// Periods of the fastest tone in the common period of all parts, where there is one within reach.
-    pub fn common_cycles(&self) -> Option<u64> {
+    pub(crate) fn common_cycles(&self) -> Option<u64> {
         if !(self.chirps.is_empty() && self.records.is_empty() && self.noises.is_empty()) {
             return None;
         }

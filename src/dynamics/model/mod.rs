@@ -3,6 +3,7 @@
 mod characteristic;
 mod describe;
 pub(crate) mod excitation;
+mod read;
 pub(crate) mod scales;
 mod start;
 pub(crate) mod stops;
@@ -22,36 +23,28 @@ const MOST_PERIODS: f64 = 9e15;
 /// A scene as run.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// Proof mass in kg.
-    pub mass: f64,
-    /// Damping coefficient in N s/m.
-    pub damping: f64,
-    /// The mechanism, shared between the cells of a sweep.
-    pub mechanism: Arc<Mechanism>,
-    /// Duration in s.
-    pub duration: f64,
-    /// Period of the drive in s, where it has one.
-    pub forcing_period: Option<f64>,
-    /// Length, speed and time that the tolerance is relative to.
-    pub scales: Scales,
-    /// Local error allowed, relative to the scales.
-    pub tolerance: f64,
-    /// Whether a run may be completed from a cycle that comes back exactly.
-    pub recurrence: bool,
-    pub(crate) settle: f64,
-    pub(crate) stops: Option<StopPair>,
-    /// What the stops are made of, where they are compliant.
-    pub compliant: Option<Hertz>,
-    pub(crate) excitation: ExcitationParts,
-    pub(crate) start: (f64, f64),
+    pub(in crate::dynamics) mass: f64,
+    pub(in crate::dynamics) damping: f64,
+    /// Shared between the cells of a sweep.
+    pub(in crate::dynamics) mechanism: Arc<Mechanism>,
+    pub(in crate::dynamics) duration: f64,
+    pub(in crate::dynamics) forcing_period: Option<f64>,
+    pub(in crate::dynamics) scales: Scales,
+    pub(in crate::dynamics) tolerance: f64,
+    pub(in crate::dynamics) recurrence: bool,
+    pub(in crate::dynamics) settle: f64,
+    pub(in crate::dynamics) stops: Option<StopPair>,
+    pub(in crate::dynamics) compliant: Option<Hertz>,
+    pub(in crate::dynamics) excitation: ExcitationParts,
+    pub(in crate::dynamics) start: (f64, f64),
     /// At rest in an equilibrium with nothing to move it.
-    pub(crate) motionless: bool,
+    pub(in crate::dynamics) motionless: bool,
     /// Where a crossing is counted.
-    pub(crate) crossing_level: Option<f64>,
-    pub(crate) one_well: bool,
+    pub(in crate::dynamics) crossing_level: Option<f64>,
+    pub(in crate::dynamics) one_well: bool,
     /// Cycles of the clock in a forcing period.
     cycles_per_period: i64,
-    pub(crate) rhythm: Rhythm,
+    pub(in crate::dynamics) rhythm: Rhythm,
 }
 
 impl Model {
@@ -181,11 +174,6 @@ impl Model {
     /// Whether the base moves at all.
     pub fn is_shaken(&self) -> bool {
         !self.excitation.is_still()
-    }
-
-    /// Begin of the settled window in s.
-    pub fn settle(&self) -> f64 {
-        self.settle
     }
 
     /// Whole forcing periods in the settled window, and the clock's cycles in one.

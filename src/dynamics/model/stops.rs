@@ -4,21 +4,25 @@ use crate::scene::Stops;
 
 /// The stops of a scene; a side without one is open.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct StopPair {
+pub struct StopPair {
+    /// On the side of negative x.
     pub left: Option<StopAt>,
+    /// On the side of positive x.
     pub right: Option<StopAt>,
 }
 
 /// One stop. SI. A compliant one takes energy by its own law and has the restitution 1 here.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct StopAt {
+pub struct StopAt {
+    /// Where it is, in m.
     pub x: f64,
+    /// Speed after an impact over the speed before it.
     pub restitution: f64,
 }
 
 impl StopPair {
     /// The stops of a scene; none where it has none.
-    pub fn of(stops: &Stops) -> Option<Self> {
+    pub(crate) fn of(stops: &Stops) -> Option<Self> {
         let at = |mm: f64, sign: f64, restitution: f64| Some(StopAt { x: sign * (mm / 1e3), restitution });
         match *stops {
             Stops::None => None,

@@ -21,6 +21,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// Coefficients may vanish one after the other without the next one vanishing (a high power from its flat
     /// middle, tones that cancel), and then the last ones promise too long a step. So each step is checked
     /// against the equation of motion at its end, and halved until it holds.
+    #[inline]
     pub fn choose_step(&mut self, state: &MotionState<T>, flight: Option<T>, left: T) -> Option<Step<T>> {
         let length = match flight {
             Some(flight) if self.expand_for(state, flight) => flight,
@@ -33,6 +34,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         self.shorten(state, length, left)
     }
 
+    #[inline]
     fn natural_step(&self) -> T {
         let s = &self.settings;
         T::of(self.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest))
@@ -75,6 +77,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     }
 
     /// Extends the series to the full order.
+    #[inline]
     fn expand(&mut self, state: &MotionState<T>) {
         if let (2, Some(Touch { order: BY_JERK.., .. })) = (self.series.known, state.touch) {
             self.push(state);
@@ -84,6 +87,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         self.series.extend(order, &mode.force, self.equation.damping, self.drive, &mut self.cursor);
     }
 
+    #[inline]
     fn push(&mut self, state: &MotionState<T>) {
         let mode = self.mode(state);
         let next = self.series.known;
@@ -126,6 +130,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
 
     /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and
     /// rounding ask: the residual is what the first neglected terms leave.
+    #[inline]
     pub fn step_holds(
         &mut self,
         state: &MotionState<T>,

@@ -75,6 +75,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     }
 
     /// Acceleration of the base in m/s^2 at instants within a segment of the drive.
+    #[inline]
     pub fn base(&self, segment: usize) -> impl Fn(&Instant<T>) -> f64 + use<'a, T, D> {
         let (drive, clock, unit) = (self.drive, self.clock, self.equation.unit);
         move |at| base_at(drive, &clock, segment, at, unit)
@@ -92,6 +93,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     }
 
     /// The end of the drive's segment or of the run, whichever comes first.
+    #[inline]
     pub fn segment_limit(&self, state: &MotionState<T>) -> Instant<T> {
         match self.drive.segment_end(state.segment) {
             Some(border) if self.clock.between(&border, &self.end) > T::zero() => border,
@@ -100,6 +102,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     }
 
     /// Enters the drive's next segment where the present one has ended.
+    #[inline]
     pub fn pass_segment_end(&self, state: &mut MotionState<T>) -> bool {
         let end = self.drive.segment_end(state.segment);
         let ended = end.is_some_and(|border| self.clock.between(&state.at, &border) <= T::zero());
@@ -114,6 +117,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     }
 
     /// The same, where the drive has been seeded.
+    #[inline]
     pub fn seeded_contact_acceleration(&self, end: End) -> [T; 3] {
         let (a, sign) = (&self.series.a, end.sign::<T>());
         let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.acceleration);
@@ -121,6 +125,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     }
 
     /// What rounding may make of it.
+    #[inline]
     pub fn contact_acceleration_rounding(&self, end: End) -> T {
         let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.acceleration_rounding);
         stop + self.series.a[0].abs() * T::of(4.0 * T::EPSILON)

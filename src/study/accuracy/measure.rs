@@ -223,7 +223,7 @@ impl<'a> Bench<'a> {
     /// data in every step, of which there are `steps` in the run; a change of a datum acts once a time scale,
     /// so that shorter steps count for more.
     pub fn allowed(model: &Model, steps: u64, sensitivities: &[f64]) -> Vec<f64> {
-        let per_scale = steps as f64 * model.scales.time / model.duration;
+        let per_scale = steps as f64 * model.scales().time / model.duration();
         let error = STEP_ERROR * per_scale.max(1.0);
         sensitivities.iter().map(|own| own * error).collect()
     }

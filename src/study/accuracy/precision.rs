@@ -151,9 +151,7 @@ impl Problem {
         };
         for tolerance in tolerances() {
             cancelled()?;
-            let mut model = model.clone();
-            model.tolerance = tolerance;
-            let run = model.run(&request);
+            let run = model.with_tolerance(tolerance).run(&request);
             let Outcome::Done = run.summary.outcome else { return Err(Stopped::Cancelled) };
             let summary = run.summary;
             let statistics = Statistics {
@@ -205,7 +203,7 @@ impl Problem {
         match self.measure {
             Error::FinalDisplacement(length) => (own.final_x - exact.final_x).abs() / length,
             Error::ImpactsAndRms => {
-                let period = model.forcing_period.unwrap_or(model.duration);
+                let period = model.forcing_period().unwrap_or(model.duration());
                 let hard = exact.impacts.iter().filter(|impact| impact.v_in.abs() > HARD);
                 let late = hard.map(|impact| nearest(&own.impacts, impact) / period).fold(0.0, f64::max);
                 if rms.is_nan() { rms } else { late.max(rms) }

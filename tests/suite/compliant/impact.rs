@@ -25,7 +25,7 @@ fn an_elastic_contact_has_the_time_depth_and_force_of_hertz() {
         let model = flight(speed, 0.0, 1e-12);
         let run = run(&model);
         let (touch, leave, v_in, v_out) = contact(&run);
-        let mass = model.mass;
+        let mass = model.mass();
         let depth = (1.25 * mass * speed * speed / STIFFNESS).powf(0.4);
         near_relative(leave - touch, HERTZ_TIME * depth / speed, 1e-9);
         near_relative(touch, 1e-3 / speed, 1e-14);
@@ -36,7 +36,7 @@ fn an_elastic_contact_has_the_time_depth_and_force_of_hertz() {
         assert_eq!(run.summary.total_impacts, 1);
         near(run.summary.ledger.unwrap().energy_residual, 0.0, 1e-12);
         // the share of the run in contact
-        let share = (leave - touch) / model.duration;
+        let share = (leave - touch) / model.duration();
         near_relative(run.summary.rested_share.unwrap(), share, 1e-9);
     }
 }
@@ -50,14 +50,14 @@ fn rebound_and_time_with_loss_are_those_of_hunt_and_crossley() {
         let (touch, leave, _, v_out) = contact(&run);
         let e = restitution(p);
         near_relative(-v_out / speed, e, 1e-9 * (1.0 + 1e-2 / p));
-        let stop = model.compliant.unwrap();
+        let stop = model.compliant().unwrap();
         near_relative(stop.restitution(speed), e, 1e-11 / p.min(1.0));
-        near_relative(leave - touch, stop.contact_time(model.mass, speed), 1e-9);
-        near_relative(run.summary.max_abs_x.unwrap() - 1e-3, stop.depth(model.mass, speed), 1e-9);
-        near_relative(run.summary.peak_contact_force.unwrap(), stop.peak_force(model.mass, speed), 1e-9);
+        near_relative(leave - touch, stop.contact_time(model.mass(), speed), 1e-9);
+        near_relative(run.summary.max_abs_x.unwrap() - 1e-3, stop.depth(model.mass(), speed), 1e-9);
+        near_relative(run.summary.peak_contact_force.unwrap(), stop.peak_force(model.mass(), speed), 1e-9);
         // the ledger holds what the stop took
         let ledger = run.summary.ledger.unwrap();
-        let taken = 0.5 * model.mass * speed * speed * (1.0 - (v_out / speed).powi(2));
+        let taken = 0.5 * model.mass() * speed * speed * (1.0 - (v_out / speed).powi(2));
         near_relative(ledger.impact_j, taken, 1e-11);
         near(ledger.energy_residual, 0.0, 1e-12);
     }

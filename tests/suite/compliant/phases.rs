@@ -19,10 +19,10 @@ fn a_start_at_rest_is_pressed_in_as_deep_as_the_forces_balance() {
         let changes: Vec<&str> =
             [well, "excitation=None"].into_iter().filter(|own| !own.is_empty()).collect();
         let model = prototype(&changes);
-        let stop = model.compliant.unwrap();
+        let stop = model.compliant().unwrap();
         let run = run_at(&model, &[0.0, 1.0, 10.0]);
         let depth = run.summary.final_x - 1.5e-3;
-        let press = -model.mechanism.curve.force(run.summary.final_x);
+        let press = -model.mechanism().curve.force(run.summary.final_x);
         near_relative(stop.stiffness * depth.powf(1.5), press, 1e-10);
         assert!(depth > 1e-8 && depth < 1e-6);
         assert!(run.summary.outcome == Outcome::Done && run.summary.steps < 10);
@@ -63,9 +63,9 @@ fn trembling_on_a_stop_has_the_frequency_of_its_stiffness() {
         "run.duration_s=0.02",
         "run.settle_s=0",
     ]);
-    let stop = model.compliant.unwrap();
+    let stop = model.compliant().unwrap();
     let depth = run(&prototype(&["excitation=None"])).summary.final_x - 1.5e-3;
-    let omega = (1.5 * stop.stiffness * depth.sqrt() / model.mass).sqrt();
+    let omega = (1.5 * stop.stiffness * depth.sqrt() / model.mass()).sqrt();
     let swing = 2.0 * 9.80665e-4 / omega.powi(2);
     let times: Vec<f64> = (1..=40).map(|i| std::f64::consts::PI * f64::from(i) / omega).collect();
     for (i, own) in run_at(&model, &times).samples.iter().enumerate() {
@@ -121,7 +121,7 @@ fn a_break_of_the_curve_deep_in_a_stop_is_passed_and_passed_back() {
             "run.tolerance=1e-11",
         ],
     );
-    let kink = model.mechanism.landscape.kinks.last().unwrap().x;
+    let kink = model.mechanism().landscape.kinks.last().unwrap().x;
     let run = run(&model);
     assert!(
         kink > 7.17e-3 && run.summary.max_abs_x.unwrap() > kink + 1e-5,
@@ -130,8 +130,8 @@ fn a_break_of_the_curve_deep_in_a_stop_is_passed_and_passed_back() {
     );
     near(run.summary.ledger.unwrap().energy_residual, 0.0, 1e-9);
     let tighter = model.run_reference(&Request::default(), 1e-20).summary;
-    near(run.summary.final_x, tighter.final_x, 1e-8 * model.scales.length);
-    near(run.summary.final_v, tighter.final_v, 1e-8 * model.scales.speed);
+    near(run.summary.final_x, tighter.final_x, 1e-8 * model.scales().length);
+    near(run.summary.final_v, tighter.final_v, 1e-8 * model.scales().speed);
 }
 
 #[test]

@@ -50,18 +50,18 @@ fn fast_rebounds_are_those_of_one_contact_alone() {
     // Other forces are a thousandth of the contact's.
     let model = prototype(&[]);
     let run = run(&model);
-    let stop = model.compliant.unwrap();
+    let stop = model.compliant().unwrap();
     let mut seen = 0;
     for pair in
         run.events.windows(2).filter(|pair| pair[0].kind == EventKind::Contact && pair[0].v_in.abs() > 0.1)
     {
         near_relative(pair[1].v_out.abs(), stop.restitution(pair[0].v_in.abs()) * pair[0].v_in.abs(), 2e-2);
-        near_relative(pair[1].t - pair[0].t, stop.contact_time(model.mass, pair[0].v_in.abs()), 2e-2);
+        near_relative(pair[1].t - pair[0].t, stop.contact_time(model.mass(), pair[0].v_in.abs()), 2e-2);
         seen += 1;
     }
     assert!(seen > 30, "{seen}");
     let fastest = of_kind(&run, EventKind::Contact).iter().map(|own| own.v_in.abs()).fold(0.0, f64::max);
-    near_relative(run.summary.peak_contact_force.unwrap(), stop.peak_force(model.mass, fastest), 1e-2);
+    near_relative(run.summary.peak_contact_force.unwrap(), stop.peak_force(model.mass(), fastest), 1e-2);
 }
 
 #[test]
@@ -81,8 +81,8 @@ fn a_drive_as_fast_as_the_contact_acts_in_it() {
     let exact = model.run_reference(&Request { events: true, ..Request::default() }, 1e-22);
     assert_eq!(run.events.len(), exact.events.len());
     for (own, exact) in run.events.iter().zip(&exact.events) {
-        near(own.t, exact.t, 1e-9 * model.scales.time);
-        near(own.v_in, exact.v_in, 1e-8 * model.scales.speed);
+        near(own.t, exact.t, 1e-9 * model.scales().time);
+        near(own.v_in, exact.v_in, 1e-8 * model.scales().speed);
     }
     near(run.summary.ledger.unwrap().energy_residual, 0.0, 1e-9);
 }

@@ -81,7 +81,7 @@ fn a_stiff_spring_under_a_slow_drive() {
         let amplitude = STANDARD_GRAVITY / re.hypot(im);
         let angle = w * s.t - im.atan2(re);
         near(s.x, -amplitude * angle.sin(), 1e-12 * amplitude);
-        near(s.v, -amplitude * w * angle.cos(), 1e-12 * model.scales.speed);
+        near(s.v, -amplitude * w * angle.cos(), 1e-12 * model.scales().speed);
     }
     assert_eq!(run.samples.len(), 5);
     assert!(run.summary.steps < 5000, "{}", run.summary.steps); // 3755: stability bounds the step, not accuracy

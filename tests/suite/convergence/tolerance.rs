@@ -20,9 +20,7 @@ fn chattering() -> Model {
 }
 
 fn at(model: &Model, tolerance: f64) -> Run {
-    let mut model = model.clone();
-    model.tolerance = tolerance;
-    run(&model)
+    run(&model.with_tolerance(tolerance))
 }
 
 fn reference(model: &Model) -> Run {
@@ -36,8 +34,8 @@ fn rms_error(run: &Run, reference: &Run) -> f64 {
 
 /// P1's error: of the final state, in the scales of the scene, or of the RMS velocity.
 fn smooth_error(model: &Model, run: &Run, reference: &Run) -> f64 {
-    let x = (run.summary.final_x - reference.summary.final_x).abs() / model.scales.length;
-    let v = (run.summary.final_v - reference.summary.final_v).abs() / model.scales.speed;
+    let x = (run.summary.final_x - reference.summary.final_x).abs() / model.scales().length;
+    let v = (run.summary.final_v - reference.summary.final_v).abs() / model.scales().speed;
     x.max(v).max(rms_error(run, reference))
 }
 

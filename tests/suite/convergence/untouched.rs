@@ -88,7 +88,7 @@ fn watching_changes_no_bit() {
     // Samples, events and ledger on or off: the motion is the same to the last bit, and so is each record.
     for model in scenes() {
         let plain = model.run(&Request::default());
-        let times = every(model.duration / 997.0, 997);
+        let times = every(model.duration() / 997.0, 997);
         let few: Vec<f64> = times.iter().step_by(83).copied().collect();
         let full = run_at(&model, &times);
         for (sample_times, events, ledger) in [

@@ -15,7 +15,7 @@ fn a_sample_at_an_events_instant_is_the_state_after_it() {
     let m = model(&s);
     let events = m.run(&full(&[])).events;
     // the last impact before a closed-form sum: its rebound is not resolved any more
-    let unresolved = 1e-6 * m.scales.speed;
+    let unresolved = 1e-6 * m.scales().speed;
     let times: Vec<f64> = events.iter().map(|e| e.t).collect();
     let r = m.run(&full(&times));
     assert_eq!(r.samples.len(), times.len());

@@ -40,7 +40,7 @@ fn a_chatter_on_a_curve_rests_when_the_reference_does() {
         s.run.tolerance = 1e-12;
         let truth = model(&s).run_reference(&full(&[]), 1e-27);
         let rest = times(&truth, EventKind::Rest)[0];
-        let speed = model(&s).scales.speed;
+        let speed = model(&s).scales().speed;
         for tolerance in [1e-3, 1e-6, 1e-9, 1e-12, 1e-14] {
             s.run.tolerance = tolerance;
             let r = run(&s);

@@ -14,7 +14,7 @@ fn a_stiffness_that_is_nearly_0_does_not_loosen_the_tolerance() {
         let m = model(&s);
         let truth = m.run_reference(&full(&[]), 1e-26).summary.final_x;
         let error = (m.run(&full(&[])).summary.final_x - truth).abs();
-        assert!(error < 1e-5, "{error:e}, {:?}", m.scales);
+        assert!(error < 1e-5, "{error:e}, {:?}", m.scales());
     }
 }
 

@@ -25,7 +25,7 @@ fn pressed(press: f64, drive: Excitation, duration: f64) -> Scene {
 /// halving.
 fn first_fall(m: &Model, press: f64, n: usize) -> Option<f64> {
     let net = |t: f64| press - m.base_acceleration(t);
-    let step = m.duration / n as f64;
+    let step = m.duration() / n as f64;
     let i = (0..n).find(|i| net(*i as f64 * step) > 0.0 && net((*i + 1) as f64 * step) <= 0.0)?;
     let (mut low, mut high) = (i as f64 * step, (i + 1) as f64 * step);
     for _ in 0..100 {
@@ -99,7 +99,7 @@ fn just_after_a_release_the_gap_is_a_cube_of_time() {
     let w = 3.0 * TAU;
     let (jerk, half_snap) =
         (w * amplitude * (w * released).cos(), -w * w * amplitude * (w * released).sin() / 2.0);
-    let g = m.damping / m.mass;
+    let g = m.damping() / m.mass();
     let y3 = -jerk / 6.0;
     let y4 = -(3.0 * g * y3 + half_snap) / 12.0;
     for after in [3e-5, 1e-4, 3e-4] {

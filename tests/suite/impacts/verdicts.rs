@@ -40,10 +40,10 @@ fn a_motion_far_smaller_than_the_wells_is_no_noise() {
         ];
         let own = preset("nominal-cubic", &changes);
         let summary = run(&own).summary;
-        let stiffness = own.mechanism.damping_stiffness().unwrap();
-        let push = 1e-8 * interwell::dynamics::STANDARD_GRAVITY * own.mass;
+        let stiffness = own.mechanism().damping_stiffness().unwrap();
+        let push = 1e-8 * interwell::dynamics::STANDARD_GRAVITY * own.mass();
         let rate = std::f64::consts::TAU * 0.1;
-        let factor = 1.0 / (1.0 - rate * rate * own.mass / stiffness);
+        let factor = 1.0 / (1.0 - rate * rate * own.mass() / stiffness);
         let exact = push / stiffness * factor * rate * std::f64::consts::FRAC_1_SQRT_2;
         near_relative(summary.rms_velocity.unwrap(), exact, bound);
         assert_eq!(summary.outcome, Outcome::Done, "{tolerance}");
@@ -62,16 +62,14 @@ fn stops_far_inside_the_wells_set_the_scale() {
         start: At(x_mm: 0.3, v_m_per_s: 0.05), run: (duration_s: 10, tolerance: 1e-6)";
     for (text, room) in [(rattles, 0.155), (wells, 1e-3)] {
         let own = model(text);
-        near_relative(own.scales.length, room, 1e-12);
+        near_relative(own.scales().length, room, 1e-12);
         let coarse = run(&own).summary;
         assert_eq!(coarse.outcome, Outcome::Done);
         assert!(coarse.ledger.unwrap().energy_residual < 1e-7, "{coarse:?}");
-        let mut fine = own.clone();
-        fine.tolerance = 1e-13;
-        let fine = run(&fine).summary;
+        let fine = run(&own.with_tolerance(1e-13)).summary;
         near_relative(coarse.rms_velocity.unwrap(), fine.rms_velocity.unwrap(), 1e-5);
         // of the way that it has gone
-        let way = fine.rms_velocity.unwrap() * own.duration;
+        let way = fine.rms_velocity.unwrap() * own.duration();
         near(coarse.final_x, fine.final_x, 1e-5 * way);
     }
 }
@@ -79,7 +77,7 @@ fn stops_far_inside_the_wells_set_the_scale() {
 #[test]
 fn the_scales_of_a_room_go_over_into_those_of_the_wells() {
     // From where the room is a hundredth of the length, without a jump; a side that is open leaves them as they are.
-    let with = |stops: &str| preset("nominal-cubic", &[&format!("stops={stops}")]).scales;
+    let with = |stops: &str| preset("nominal-cubic", &[&format!("stops={stops}")]).scales();
     let open = with("None");
     let at = |mm: f64| with(&format!("Rigid(travel_limit_mm: {mm:?}, restitution: 0.36)"));
     let reach = open.length * 1e3; // in mm
@@ -140,7 +138,7 @@ fn a_run_that_is_done_has_numbers() {
          start: At(x_mm: 0, v_m_per_s: 1), run: (duration_s: 1)",
     ] {
         let own: Model = model(text);
-        let times: Vec<f64> = (0..=50).map(|i| own.duration * f64::from(i) / 50.0).collect();
+        let times: Vec<f64> = (0..=50).map(|i| own.duration() * f64::from(i) / 50.0).collect();
         let run = run_at(&own, &times);
         let (outcome, bare) = (run.summary.outcome, own.run(&Request::default()).summary);
         assert!(outcome != Outcome::Done || finite(&run), "{text}\n{:?}", run.summary);

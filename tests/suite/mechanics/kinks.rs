@@ -146,8 +146,9 @@ fn the_scales_do_not_jump_while_a_well_crosses_its_kink() {
     let text = "(title: \"t\", mass_g: 15.2, mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1), \
                 damping: Ratio(0.023), run: (duration_s: 1))";
     let scene = Document::from_text("t", text, Files::default()).unwrap().scene;
-    let scales =
-        |past: f64| -> Scales { Model::build(&scene, Arc::new(kinked(137.0, 4000.0, past))).unwrap().scales };
+    let scales = |past: f64| -> Scales {
+        Model::build(&scene, Arc::new(kinked(137.0, 4000.0, past))).unwrap().scales()
+    };
     let at = scales(0.0);
     for past in [-1e-6, -1e-9, 1e-9, 1e-6] {
         let own = scales(past);

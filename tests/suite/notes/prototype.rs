@@ -79,7 +79,7 @@ pub fn paper(text: &mut Text) {
     text.says(&format!("it is higher than without stops, at most {:.2} g at 4.6 mm", further[4]));
     // A softer preload
     let softer = ["mechanism.preload_mm=2.5"];
-    let [stiff, soft] = [&[][..], &softer[..]].map(|changes| barrier(&preset("paper", changes).mechanism));
+    let [stiff, soft] = [&[][..], &softer[..]].map(|changes| barrier(&preset("paper", changes).mechanism()));
     let crosses_from = from(&softer, 0.5..1.0);
     text.says(&format!("lowers the barrier from {stiff:.3} to {soft:.3} mJ"));
     text.says(&format!("with the same stops the mass then crosses from {crosses_from:.2} g on"));
@@ -87,7 +87,8 @@ pub fn paper(text: &mut Text) {
 }
 
 pub fn paper_table(text: &mut Text) {
-    let (beams, solid) = (preset("paper", &[]).mechanism, preset("paper-table", &[]).mechanism);
+    let (beams, solid) =
+        (preset("paper", &[]).mechanism().clone(), preset("paper-table", &[]).mechanism().clone());
     let header = TABLES.iter().find(|table| table.name == "force_dl2.7.csv").unwrap().text;
     assert!(header.contains("good to 0.003 N for |x| < 7.1 mm"));
     text.says("good to 3 mN between -7.1 and 7.1 mm");
@@ -130,7 +131,7 @@ pub fn paper_unconstrained(text: &mut Text) {
     let own = settled(NAME, &[]);
     assert_eq!((own.regime, own.period), (Regime::Intrawell, Some(1)));
     let (low, high) = own.range.unwrap();
-    let kink = preset(NAME, &[]).mechanism.landscape.kinks.last().unwrap().x;
+    let kink = preset(NAME, &[]).mechanism().landscape.kinks.last().unwrap().x;
     near(high, kink, 1e-4);
     text.says(&format!("between {:.1} and {:.1} mm, where the flexures are taut", 1e3 * low, 1e3 * high));
     text.says(&format!("of {:.0} mm/s", rms(&own)));

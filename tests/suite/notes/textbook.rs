@@ -13,7 +13,7 @@ fn drive(amplitude: f64) -> (String, String) {
 
 pub fn nominal_cubic(text: &mut Text) {
     let own = preset("nominal-cubic", &[]);
-    let well = own.mechanism.landscape.right_stable().unwrap().x;
+    let well = own.mechanism().landscape.right_stable().unwrap().x;
     text.says(&format!("Its wells lie at {:.0} mm", 1e3 * well));
     let own = run(&own);
     crosses(&own.summary);

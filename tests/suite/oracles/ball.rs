@@ -29,7 +29,8 @@ fn a_dropped_ball_bounces_by_a_geometric_series_and_rests_at_its_sum() {
         let impacts = of_kind(&run, EventKind::Impact);
         let speed = (2.0 * 9.81f64).sqrt();
         // every impact above 1e-6 of the speed scale is listed
-        let located = if e == 0.0 { 1 } else { ((1e-6 * model.scales.speed / speed).ln() / e.ln()) as usize };
+        let located =
+            if e == 0.0 { 1 } else { ((1e-6 * model.scales().speed / speed).ln() / e.ln()) as usize };
         assert!(impacts.len() >= located, "{} of {located} at e = {e}", impacts.len());
         let mut sum = 0.0;
         let mut power = 1.0;

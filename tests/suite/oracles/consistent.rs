@@ -167,7 +167,7 @@ fn every_record_tells_one_story() {
         let taken: f64 =
             of_kind(&run, EventKind::Impact).iter().map(|e| e.v_in * e.v_in - e.v_out * e.v_out).sum();
         let ledger = summary.ledger.unwrap();
-        let slowest = 1e-6 * model.scales.speed;
+        let slowest = 1e-6 * model.scales().speed;
         let sums = summary.chatter_sums as f64 * slowest * slowest;
         near(ledger.impact_j, 0.5 * 0.0152 * taken, 0.5 * 0.0152 * (sums + 1e-13 * taken));
         // the largest as measured is 23 tolerances, where the drive is the fastest rate

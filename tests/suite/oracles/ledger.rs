@@ -144,7 +144,7 @@ fn a_run_without_stops_agrees_with_twice_the_digits() {
     let request = interwell::dynamics::Request::default();
     let (own, reference) = (model.run(&request).summary, model.run_reference(&request, 1e-27).summary);
     near(own.final_x, reference.final_x, 1e-12 * 7e-3);
-    near(own.final_v, reference.final_v, 1e-12 * model.scales.speed);
+    near(own.final_v, reference.final_v, 1e-12 * model.scales().speed);
     near_relative(own.rms_velocity.unwrap(), reference.rms_velocity.unwrap(), 1e-13);
     assert_eq!((own.crossings, own.regime), (reference.crossings, Regime::Interwell));
 }

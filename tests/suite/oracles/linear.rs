@@ -15,8 +15,8 @@ fn tone((a, growth): (f64, f64), frequency: f64, degrees: f64) -> Forcing {
 
 #[track_caller]
 fn compare(model: &Model, sample: &Sample, exact: (f64, f64), bound: f64) {
-    near(sample.x, exact.0, bound * model.scales.length);
-    near(sample.v, exact.1, bound * model.scales.speed);
+    near(sample.x, exact.0, bound * model.scales().length);
+    near(sample.v, exact.1, bound * model.scales().speed);
 }
 
 /// 20 g on a spring of 50 N/m (7.96 Hz), damping c.
@@ -134,7 +134,7 @@ fn sums_of_sines_superpose() {
                  ]), run: (duration_s: 9, tolerance: 1e-12)"
             ),
         );
-        match (model.forcing_period, common) {
+        match (model.forcing_period(), common) {
             (Some(period), Some(exact)) => near_relative(period, exact, 4e-16),
             (a, b) => assert_eq!(a, b),
         }

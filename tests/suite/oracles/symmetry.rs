@@ -31,7 +31,7 @@ fn assert_mirror(a: &Run, b: &Run) {
 /// Runs both, sampled 200 times, and asserts that one mirrors the other and that something moved.
 #[track_caller]
 fn mirror(a: &Model, b: &Model) -> Run {
-    let times = every(a.duration / 200.0, 199);
+    let times = every(a.duration() / 200.0, 199);
     let (a, b) = (run_at(a, &times), run_at(b, &times));
     assert_mirror(&a, &b);
     assert!(a.summary.travel().unwrap() > 0.0);

@@ -38,11 +38,11 @@ const WORST: f64 = 1.0;
 /// error of 1.
 /// The RMS velocity is the last: another drive may have another settled window.
 fn numbers(model: &Model, run: &Run, struck: bool) -> Vec<f64> {
-    let mut all: Vec<f64> = run.samples.iter().map(|s| s.x / model.scales.length).collect();
+    let mut all: Vec<f64> = run.samples.iter().map(|s| s.x / model.scales().length).collect();
     if !struck {
-        all.extend(run.samples.iter().map(|s| s.v / model.scales.speed));
+        all.extend(run.samples.iter().map(|s| s.v / model.scales().speed));
     }
-    all.push(run.summary.rms_velocity.unwrap_or(0.0) / model.scales.speed);
+    all.push(run.summary.rms_velocity.unwrap_or(0.0) / model.scales().speed);
     all
 }
 
@@ -67,7 +67,7 @@ fn shake(excitation: &mut Excitation, by: f64) {
 /// A slow shaking so weak that it moves the mass by a share of the length: what errors on the way do and no change of
 /// the other data does. An undamped mass that left a stop at rest comes back to it at rest, whatever mass it has.
 fn wobble(model: &Model, share: f64) -> Excitation {
-    let Scales { length, time, .. } = model.scales;
+    let Scales { length, time, .. } = model.scales();
     Excitation::Sine {
         frequency_hz: 0.0617 / time,
         amplitude_g: share * length / (time * time) / STANDARD_GRAVITY,
@@ -102,7 +102,7 @@ fn moved(scene: &Scene, model: &Model, share: f64) -> Vec<Scene> {
     with(&|own| own.excitation = Excitation::Sum(vec![own.excitation.clone(), wobble(model, share)]));
     let [left, right] = distances(&scene.stops).map(|own| own.0 * 1e3);
     if let Start::At { x_mm: x, v_m_per_s: v } = scene.start {
-        let (dx, dv) = (share * model.scales.length * 1e3, share * model.scales.speed);
+        let (dx, dv) = (share * model.scales().length * 1e3, share * model.scales().speed);
         // A mass beside a stop is moved inward for either sign: what that moves is then no smooth answer.
         let inward = |stop: f64| (x - stop).abs() <= dx.abs();
         let (dx, dv) = match () {
@@ -121,11 +121,10 @@ fn conditioning(scene: &Scene, times: &[f64], share: f64, struck: bool) -> Optio
     let request = Request { sample_times: times, ..Request::default() };
     let base = model(scene)?;
     let answer = |scene: &Scene| {
-        let mut own = model(scene)?;
-        own.tolerance = TIGHT;
+        let own = model(scene)?.with_tolerance(TIGHT);
         let run = own.run(&request);
         let mut numbers = numbers(&base, &run, struck);
-        if own.forcing_period != base.forcing_period {
+        if own.forcing_period() != base.forcing_period() {
             numbers.pop();
         }
         (run.summary.outcome == Outcome::Done).then_some(numbers)
@@ -154,7 +153,7 @@ fn the_error_is_bounded_by_conditioning_and_tolerance() {
     let coarse = RefCell::new(Vec::new());
     let name = "the_error_is_bounded_by_conditioning_and_tolerance";
     hold(name, 1000, 0.6, scene_with(stops, excitation()), |scene| {
-        let Some(mut own) = model(scene) else { return Ok(false) };
+        let Some(own) = model(scene) else { return Ok(false) };
         let end = scene.run.duration_s;
         let times: Vec<f64> = (1..=16).map(|i| (end * f64::from(i) / 16.0).min(end)).collect();
         let request = Request { sample_times: &times, ..Request::default() };
@@ -163,17 +162,17 @@ fn the_error_is_bounded_by_conditioning_and_tolerance() {
         if run.summary.outcome != Outcome::Done || run.summary.steps > 2000 {
             return Ok(false);
         }
-        let tolerance = own.tolerance;
+        let tolerance = own.tolerance();
         let Some(k) = conditioning(scene, &times, tolerance.max(1e-9), struck) else { return Ok(false) };
         if k * tolerance > LINEAR {
             return Ok(false);
         }
         let exact = numbers(&own, &own.run_reference(&request, REFERENCE), struck);
-        let per_scale = (run.summary.steps as f64 * own.scales.time / end).max(1.0);
+        let per_scale = (run.summary.steps as f64 * own.scales().time / end).max(1.0);
         let bound = k * (tolerance + STEP_ERROR * per_scale);
         let ratio = far(&numbers(&own, &run, struck), &exact) / bound;
         found.borrow_mut().push((ratio, text(scene)));
-        own.tolerance = 100.0 * tolerance;
+        let own = own.with_tolerance(100.0 * tolerance);
         let ratio = far(&numbers(&own, &own.run(&request), struck), &exact) / bound;
         coarse.borrow_mut().push((ratio, text(scene)));
         Ok(true)

@@ -138,7 +138,7 @@ fn model(scene: &Scene) -> Option<Model> {
     let build =
         |own: &Scene| check(own).faults.is_empty().then(|| Model::build(own, built(&own.mechanism)).ok())?;
     own.run.duration_s = 1e-15;
-    let time = build(&own)?.scales.time;
+    let time = build(&own)?.scales().time;
     own.run.duration_s = (scene.run.duration_s * time).clamp(1e-15, 1e9);
     build(&own)
 }
@@ -161,7 +161,7 @@ fn nothing_panics_hangs_or_is_silently_not_finite() {
     let outcomes = RefCell::new(BTreeMap::new());
     hold("nothing_panics_hangs_or_is_silently_not_finite", 1000, 0.3, scene(), |scene| {
         let Some(model) = model(scene) else { return Ok(false) };
-        let share = |i| (model.duration * f64::from(i) / 50.0).min(model.duration);
+        let share = |i| (model.duration() * f64::from(i) / 50.0).min(model.duration());
         let times: Vec<f64> = (0..=50).map(share).collect();
         let run = begin(&model, &times);
         let summary = &run.summary;

@@ -79,7 +79,7 @@ fn a_stop_that_is_never_reached_changes_no_bit() {
         }
         // The reach is that of the settled window, which is all of the run where the drive has no period.
         let seen = run.samples.iter().fold(run.summary.max_abs_x.unwrap(), |most, s| most.max(s.x.abs()));
-        let beyond = if own.forcing_period.is_none() { 1.0 + 1e-9 } else { 1.5 };
+        let beyond = if own.forcing_period().is_none() { 1.0 + 1e-9 } else { 1.5 };
         let just = (seen * 1e3 * beyond).max(1e-12);
         let hertz = Stops::Hertz {
             travel_limit_mm: just * 1.5,
@@ -107,7 +107,7 @@ fn a_stop_that_is_never_reached_changes_no_bit() {
             let Some(stopped_model) = model(&stopped) else { continue };
             // Stops far inside all that the mass could do otherwise set the scale: it is soon at one of them, unless the
             // run is shorter.
-            if stopped_model.scales != own.scales {
+            if stopped_model.scales() != own.scales() {
                 continue;
             }
             let mut watched = stopped_model.run(&request);

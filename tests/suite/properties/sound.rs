@@ -62,7 +62,7 @@ pub fn finite(model: &Model, run: &Run) -> Verdict {
     let optional =
         optional.into_iter().chain([peak_contact_force, peak_contact_pressure, outcome.ended_at()]);
     let places = run.samples.iter().map(|s| (s.x, s.v)).chain([(final_x, final_v)]);
-    let largest = |(x, v)| (model.mechanism.curve.potential(x), model.mass * v * v);
+    let largest = |(x, v)| (model.mechanism().curve.potential(x), model.mass() * v * v);
     let written = places.map(largest).all(|(potential, kinetic)| potential.abs() + kinetic < 1e290);
     let ledger = ledger.filter(|_| written);
     let ledger =
@@ -98,9 +98,9 @@ pub fn within_stops(scene: &Scene, run: &Run) -> Verdict {
 /// No sample of the settled window lies beyond the extremes that are told of it, nor does it move further.
 fn extremes_hold(model: &Model, run: &Run) -> Verdict {
     let (Some(reach), Some(travel)) = (run.summary.max_abs_x, run.summary.travel()) else { return Ok(()) };
-    let periods = |period: f64| ((model.duration - model.settle()) / period + 1e-9).floor() * period;
-    let length = model.forcing_period.map(periods).filter(|own| *own > 0.0);
-    let end = length.map_or(model.duration, |length| model.settle() + length) * (1.0 - 1e-9);
+    let periods = |period: f64| ((model.duration() - model.settle()) / period + 1e-9).floor() * period;
+    let length = model.forcing_period().map(periods).filter(|own| *own > 0.0);
+    let end = length.map_or(model.duration(), |length| model.settle() + length) * (1.0 - 1e-9);
     let inside = run.samples.iter().filter(|s| s.t >= model.settle() && s.t <= end);
     let (low, high) =
         inside.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (low.min(s.x), high.max(s.x)));
@@ -154,11 +154,11 @@ fn events_follow(scene: &Scene, model: &Model, run: &Run) -> Verdict {
             }
         }
         let rigid = !matches!(e.kind, EventKind::Contact | EventKind::Separate);
-        prop_assert!(e.kind == EventKind::Crossing || rigid == model.compliant.is_none(), "{:?}", e);
+        prop_assert!(e.kind == EventKind::Crossing || rigid == model.compliant().is_none(), "{:?}", e);
     }
     let first = run.events.iter().find(|e| e.kind == EventKind::Crossing);
     if let (Some(first), Start::At { x_mm, .. }) = (first, scene.start) {
-        let level = model.mechanism.landscape.crossing_position().unwrap();
+        let level = model.mechanism().landscape.crossing_position().unwrap();
         let from = x_mm / 1e3;
         prop_assert!(
             (from - level) * sign(first.side) <= 0.0,
@@ -200,16 +200,16 @@ fn counted(model: &Model, run: &Run) -> Verdict {
 /// moves by some billionths of its distance from x = 0, and a thousand steps at a time.
 pub fn ledger_in_tolerances(model: &Model, run: &Run) -> f64 {
     let ledger = run.summary.ledger.expect("a ledger");
-    let curve = &model.mechanism.curve;
+    let curve = &model.mechanism().curve;
     let places = || run.samples.iter().map(|sample| sample.x).chain([run.summary.final_x]);
     let (low, high) = (places().fold(f64::INFINITY, f64::min), places().fold(f64::NEG_INFINITY, f64::max));
     let force = places().map(|x| (curve.stiffness(x) * x).abs()).fold(0.0, f64::max);
     let residual = (ledger.residual_j.abs() - PLACES * f64::EPSILON * force * (high - low)).max(0.0);
-    let scale = model.mass * model.scales.speed * model.scales.speed;
+    let scale = model.mass() * model.scales().speed * model.scales().speed;
     let share = residual / ledger.residual_j.abs();
     let relative = if share > 0.0 { share * ledger.energy_residual } else { 0.0 };
     let many = (run.summary.steps as f64 / MANY_STEPS).max(1.0);
-    relative.min(residual / scale) / (model.tolerance.max(FINEST) * many)
+    relative.min(residual / scale) / (model.tolerance().max(FINEST) * many)
 }
 
 fn ledger_closes(model: &Model, run: &Run, factor: f64) -> Verdict {
@@ -220,7 +220,7 @@ fn ledger_closes(model: &Model, run: &Run, factor: f64) -> Verdict {
         gone || own <= factor,
         "{} tolerances of {:e}: {:?}",
         own,
-        model.tolerance,
+        model.tolerance(),
         run.summary.ledger
     );
     Ok(())

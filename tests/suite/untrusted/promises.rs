@@ -266,7 +266,7 @@ fn runs(document: &Document, mechanism: Mechanism) -> Option<Model> {
     };
     model.describe().iter().for_each(|line| in_words(line, ""));
     let cancel = AtomicBool::new(false);
-    let times = [0.0, 0.5 * model.duration, model.duration];
+    let times = [0.0, 0.5 * model.duration(), model.duration()];
     let run = std::thread::scope(|scope| {
         let watch = scope.spawn(|| {
             std::thread::park_timeout(RUN);
@@ -282,7 +282,7 @@ fn runs(document: &Document, mechanism: Mechanism) -> Option<Model> {
         watch.thread().unpark();
         run
     });
-    let within = |t: f64| (0.0..=model.duration).contains(&t);
+    let within = |t: f64| (0.0..=model.duration()).contains(&t);
     assert!(run.events.is_sorted_by(|a, b| a.t <= b.t) && run.events.iter().all(|event| within(event.t)));
     assert!(run.samples.len() <= times.len());
     if run.summary.outcome == Outcome::Done {

@@ -84,7 +84,7 @@ impl Player {
     /// One frame's share of the way.
     pub(super) fn follow(&mut self, goal: Goal) {
         let (begun, until) = (Instant::now(), goal.until());
-        let stretch = STRETCH * self.watch.model_at(self.watch.time()).pace();
+        let stretch = STRETCH * self.watch.model_at(self.watch.time()).characteristic_time();
         loop {
             let before = self.watch.time();
             let arrived = self.watch.advance((before + stretch).min(until));

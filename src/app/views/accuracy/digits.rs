@@ -25,7 +25,7 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         waiting_ui(ui, context);
         return;
     };
-    let (own, known) = (model.tolerance, known.clone());
+    let (own, known) = (model.tolerance(), known.clone());
     let stepped = accuracy.stepped(model).and_then(|(stepped, _)| stepped.as_ref().ok().cloned());
     ui.scope(|ui| {
         if !current {

@@ -35,7 +35,7 @@ impl Told<'_> {
     /// Live time in s from which on the motion has been seen to do what is told of.
     pub fn seen_from(&self) -> f64 {
         let summary = self.summary;
-        let Some(period) = self.model.forcing_period.filter(|_| self.model.repeats()) else {
+        let Some(period) = self.model.forcing_period().filter(|_| self.model.repeats()) else {
             return self.origin + summary.window.1;
         };
         let periods = match (summary.regime, summary.settles_at) {
@@ -52,7 +52,7 @@ impl Told<'_> {
 
     /// Since when the motion settles, in words, where that is worth a word and still to come.
     fn from(&self) -> String {
-        let period = self.model.forcing_period.unwrap_or(0.0);
+        let period = self.model.forcing_period().unwrap_or(0.0);
         let late = |at: &f64| *at > AT_ONCE * period && self.now < self.origin + *at;
         match self.summary.settles_at.filter(late) {
             Some(at) => format!(" from {} on", seconds(self.origin + at)),
@@ -130,7 +130,7 @@ pub fn driven(told: &Told) -> Sentence {
     let per_period = |count: u64| count as f64 / periods.max(1.0);
     let from = told.from();
     let (kind, text) = match summary.regime {
-        Regime::OneWell if model.mechanism.landscape.right_stable().is_none() => {
+        Regime::OneWell if model.mechanism().landscape.right_stable().is_none() => {
             (Kind::Other, format!("No barrier: {} {range}; {rms}.", words.moves))
         }
         Regime::OneWell => {

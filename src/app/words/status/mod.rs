@@ -79,10 +79,10 @@ const NO_PULL: f64 = 2e-3;
 
 /// The mass held by hand.
 pub fn held(model: &Model, state: &Sample) -> Sentence {
-    let force = model.mechanism.curve.force(state.x);
-    let middle = model.mechanism.landscape.barrier.map_or(0.0, |barrier| barrier.x);
+    let force = model.mechanism().curve.force(state.x);
+    let middle = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
     let outward = (state.x - middle) * force < 0.0;
-    let largest = model.mechanism.landscape.extrema.iter().map(|own| own.force.abs()).fold(0.0, f64::max);
+    let largest = model.mechanism().landscape.extrema.iter().map(|own| own.force.abs()).fold(0.0, f64::max);
     let (place, size) = (mm(state.x), force.abs());
     let text = if size <= NO_PULL * largest || size == 0.0 {
         format!("Held at {place} mm: nothing pulls.")
@@ -96,11 +96,11 @@ pub fn held(model: &Model, state: &Sample) -> Sentence {
 /// A run that has ended by itself.
 pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
     let at = outcome.ended_at().unwrap_or(0.0);
-    let domain = model.mechanism.curve.domain();
+    let domain = model.mechanism().curve.domain();
     let why = match outcome {
         Outcome::LeftTable { .. } => {
             let end = mm(domain.0.abs().min(domain.1));
-            if model.mechanism.flexures.is_some() {
+            if model.mechanism().flexures.is_some() {
                 return Sentence::new(
                     Kind::Fault,
                     format!(
@@ -133,9 +133,9 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
 /// Nothing shakes the base.
 pub fn unshaken(model: &Model, state: &Sample) -> Sentence {
     let base = model.base_acceleration(state.t);
-    let pull = model.acceleration(state.x, state.v, base).abs() * model.scales.time / model.scales.speed;
+    let pull = model.acceleration(state.x, state.v, base).abs() * model.scales().time / model.scales().speed;
     let rests = state.phase != Phase::Free || pull < STILL_PULL;
-    let still = state.v.abs() < 1e-4 * model.scales.speed && rests;
+    let still = state.v.abs() < 1e-4 * model.scales().speed && rests;
     let Some(Standing { side, pressed_n, energy_j, needed_j }) = standing(model, state) else {
         let text = if still {
             "At rest; nothing shakes it.".to_owned()

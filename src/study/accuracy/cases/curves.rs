@@ -35,7 +35,7 @@ fn straight(bench: &Bench) -> Result<Variant, Stopped> {
     let model = setup.model()?;
     let run = bench.run(&model, &[])?;
     let summary = &run.summary;
-    let scales = model.scales;
+    let scales = model.scales();
     let steps = summary.steps as f64;
     let energy_step = STEP_ERROR * (corner.largest_force(v) * scales.length + v * scales.speed);
     let slope = (corner.period(v + 1e-6) - corner.period(v - 1e-6)).abs() / 2e-6 / v;
@@ -44,7 +44,7 @@ fn straight(bench: &Bench) -> Result<Variant, Stopped> {
         + steps * STEP_ERROR * scales.time
         // the period itself, in doubles
         + PERIODS * period * 2.0 * f64::EPSILON;
-    let energy = |x: f64, v: f64| 0.5 * v * v + model.mechanism.curve.potential(x);
+    let energy = |x: f64, v: f64| 0.5 * v * v + model.mechanism().curve.potential(x);
     let drift = off(energy(summary.final_x, summary.final_v), energy(0.0, v), 0.5 * v * v);
     Ok(Variant::of("corner 1e4 times", &run)
         .number(
@@ -58,8 +58,8 @@ fn straight(bench: &Bench) -> Result<Variant, Stopped> {
 fn flexures(bench: &Bench) -> Result<Variant, Stopped> {
     let mut setup = Setup::preset("paper", &["stops=None", "excitation=None", "damping=None"])?;
     let probe = setup.clone().start(0.0, 0.0).model()?;
-    let breaks = probe.mechanism.curve.breaks();
-    let kinks: Vec<f64> = probe.mechanism.landscape.kinks.iter().map(|kink| kink.x).collect();
+    let breaks = probe.mechanism().curve.breaks();
+    let kinks: Vec<f64> = probe.mechanism().landscape.kinks.iter().map(|kink| kink.x).collect();
     let outermost = kinks.iter().copied().fold(0.0_f64, f64::max).max(*breaks.first().unwrap_or(&0.0));
     let x0 = outermost + 0.8e-3;
     setup = setup.start(x0, 0.0);
@@ -81,16 +81,16 @@ fn flexures(bench: &Bench) -> Result<Variant, Stopped> {
     };
     let depth = model.energies(x0, 0.0).1
         - model
-            .mechanism
+            .mechanism()
             .landscape
             .equilibria
             .iter()
             .map(|e| model.energies(e.x, 0.0).1)
             .fold(f64::INFINITY, f64::min);
-    let fastest = (2.0 * depth / model.mass).sqrt();
-    let force = model.mechanism.curve.force(x0).abs();
-    let scales = model.scales;
-    let energy_step = STEP_ERROR * (force * scales.length + model.mass * fastest * scales.speed);
+    let fastest = (2.0 * depth / model.mass()).sqrt();
+    let force = model.mechanism().curve.force(x0).abs();
+    let scales = model.scales();
+    let energy_step = STEP_ERROR * (force * scales.length + model.mass() * fastest * scales.speed);
     Ok(Variant::of("flexures 1e4 times", &run)
         .number(
             "energy",
@@ -122,7 +122,7 @@ fn stop_on_a_break(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let exact = b.hypot(0.25) * (2.0 + 0.25_f64.atan2(b)).cos();
     let allowed = run.summary.steps as f64 * STEP_ERROR;
     let impact = Variant::of("impact", &run)
-        .number("displacement at 2 s", off(run.summary.final_x, exact, model.scales.length), allowed)
+        .number("displacement at 2 s", off(run.summary.final_x, exact, model.scales().length), allowed)
         .fact("one impact at 0", times(&run, EventKind::Impact) == [0.0]);
     let run = bench.run(&setup(0.0).drive(sine(0.25, 1.0, 270.0)).model()?, &[])?;
     let angle = b.acos();

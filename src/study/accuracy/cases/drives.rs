@@ -35,7 +35,7 @@ fn tones(model: &Model) -> Vec<Forcing> {
         let phase = tone.phase + if tone.quarter { 0.25 } else { 0.0 };
         Forcing::Tone { amplitude, growth, frequency: tone.frequency, phase }
     };
-    model.excitation.tones.iter().map(tone).collect()
+    model.excitation().tones.iter().map(tone).collect()
 }
 
 /// Even times within a run.
@@ -45,13 +45,13 @@ fn even(duration: f64, count: usize) -> Vec<f64> {
 
 /// Errors of all samples in the scene's scales, each with what is allowed at its time.
 fn against(model: &Model, run: &Run, fastest: f64, exact: impl Fn(f64) -> (f64, f64)) -> Vec<(f64, f64)> {
-    let scales = model.scales;
+    let scales = model.scales();
     let share = run.summary.steps as f64 * STEP_ERROR;
     let error = |sample: &crate::dynamics::Sample| {
         let (x, v) = exact(sample.t);
         let error = off(sample.x, x, scales.length).max(off(sample.v, v, scales.speed));
         // at least one step, and the drive's phase
-        let progress = (sample.t / model.duration).max(1.0 / run.summary.steps as f64);
+        let progress = (sample.t / model.duration()).max(1.0 / run.summary.steps as f64);
         (error, share * progress + TAU * fastest * sample.t * f64::EPSILON)
     };
     run.samples.iter().map(error).collect()
@@ -65,10 +65,10 @@ fn superposed(
     oscillator: Oscillator,
 ) -> Result<Variant, Stopped> {
     let model = setup.model()?;
-    let run = bench.run(&model, &even(model.duration, 97))?;
+    let run = bench.run(&model, &even(model.duration(), 97))?;
     let forcings = tones(&model);
-    let fastest = model.excitation.fastest().unwrap_or(0.0);
-    let errors = against(&model, &run, fastest, |t| oscillator.nearest(model.start, 0.0, t, &forcings));
+    let fastest = model.excitation().fastest().unwrap_or(0.0);
+    let errors = against(&model, &run, fastest, |t| oscillator.nearest(model.start(), 0.0, t, &forcings));
     Ok(Variant::of(name, &run).worst("state at 97 samples", errors))
 }
 
@@ -97,16 +97,16 @@ fn ramp(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     const OVER: f64 = 300.0;
     let drive = Excitation::AmplitudeRamp { frequency_hz: 3.0, from_g: 0.0, to_g: 2.0, over_s: OVER };
     let model = sprung(0.05, drive, OVER + 10.0).model()?;
-    let run = bench.run(&model, &even(model.duration, 97))?;
+    let run = bench.run(&model, &even(model.duration(), 97))?;
     let oscillator = Oscillator::new(MASS, 0.05, STIFFNESS);
     let ramp = tones(&model);
     let hold = [Forcing::Tone {
-        amplitude: model.excitation.tones[0].amplitude,
+        amplitude: model.excitation().tones[0].amplitude,
         growth: dd(0.0),
         frequency: 3.0,
         phase: 0.0,
     }];
-    let start = (dd(model.start.0), dd(model.start.1));
+    let start = (dd(model.start().0), dd(model.start().1));
     let at_end = oscillator.state(start, dd(0.0), dd(OVER), &ramp);
     let errors = against(&model, &run, 3.0, |t| {
         use crate::numeric::Scalar;
@@ -181,7 +181,7 @@ fn recorded(bench: &Bench, name: &'static str, record: Record, duration: f64) ->
     let run = bench.run(&model, &even(duration, 97))?;
     let oscillator = Oscillator::new(MASS, 0.05, STIFFNESS);
     // the state at the begin of each line, and the line
-    let mut joints = vec![(0.0, (dd(model.start.0), dd(model.start.1)), None)];
+    let mut joints = vec![(0.0, (dd(model.start().0), dd(model.start().1)), None)];
     let line = |i: usize| {
         let (t0, t1) = (dd(record.times[i]), dd(record.times[i + 1]));
         let (a0, a1) = (dd(record.accelerations[i]), dd(record.accelerations[i + 1]));

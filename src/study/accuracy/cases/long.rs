@@ -66,7 +66,7 @@ fn chaos(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
             run.summary.steps,
             &bench.sensitivity_by(SMALL_CHANGE, &setup, &[], state)?,
         );
-        let (own, scales) = (state(&run), [model.scales.length, model.scales.speed]);
+        let (own, scales) = (state(&run), [model.scales().length, model.scales().speed]);
         let pairs = (0..2).map(|i| (off(own[i], exact[i], scales[i]), allowed[i] / scales[i]));
         variants.push(Variant::of(name, &run).worst("final state", pairs));
     }
@@ -89,8 +89,9 @@ fn chaos(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 fn averages(bench: &Bench, model: &Model) -> Result<(Run, Vec<f64>), Stopped> {
     const BATCHES: usize = 30;
     const PER_BATCH: usize = 30 * 64;
-    let step = (model.duration - model.settle) / (BATCHES * PER_BATCH) as f64;
-    let times: Vec<f64> = (0..BATCHES * PER_BATCH).map(|i| model.settle + (i as f64 + 0.5) * step).collect();
+    let step = (model.duration() - model.settle()) / (BATCHES * PER_BATCH) as f64;
+    let times: Vec<f64> =
+        (0..BATCHES * PER_BATCH).map(|i| model.settle() + (i as f64 + 0.5) * step).collect();
     let run = bench.run(model, &times)?;
     let batches = run
         .samples

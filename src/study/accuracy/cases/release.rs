@@ -41,7 +41,7 @@ fn threshold(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         let released = times(&run, EventKind::Release);
         let variant = Variant::of(name, &run);
         variants.push(if over > 0.0 {
-            let amplitude = dd(model.excitation.tones[0].amplitude);
+            let amplitude = dd(model.excitation().tones[0].amplitude);
             let exact = (sine_turns(threshold_acceleration() / amplitude) / dd(3.0)).to_f64();
             let angle = exact * 3.0 * std::f64::consts::TAU;
             let error = released.first().map_or(f64::NAN, |t| off(*t, exact, exact));
@@ -150,7 +150,7 @@ fn plastic(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         pairs
     };
     let released = STEP_ERROR * angle.tan();
-    let landed = released + per_flight * STEP_ERROR * model.scales.length / speed;
+    let landed = released + per_flight * STEP_ERROR * model.scales().length / speed;
     let releases = in_time(times(&run, EventKind::Release), first, released);
     let impacts = in_time(times(&run, EventKind::Impact), landing, landed);
     let rests = times(&run, EventKind::Rest);

@@ -146,7 +146,7 @@ fn coincident(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         let late = impacts.first().map_or(f64::NAN, |t| off(*t, leaves.to_f64(), leaves.to_f64()));
         let landing = pressed.flight((dd(gap), exact), dd(0.0), leaves).1.to_f64().abs();
         let n = run.summary.steps as f64;
-        let scales = model.scales;
+        let scales = model.scales();
         let moved = n * STEP_ERROR + 8.0 * f64::EPSILON;
         variants.push(
             Variant::of(name, &run)

@@ -41,13 +41,13 @@ fn separatrix(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 fn beside(bench: &Bench, name: &'static str, distance: f64) -> Result<Variant, Stopped> {
     let mut setup = Setup::new(unit_well(), (SQRT_2 + distance, 0.0), 1.0);
     // the double that the scene's millimetres become is the one that the answer is for
-    let orbit = UnitWell { x0: setup.model()?.start.0 };
+    let orbit = UnitWell { x0: setup.model()?.start().0 };
     let period = orbit.period().to_f64();
     setup.scene.run.duration_s = PERIODS * period;
     let model = setup.model()?;
-    let times = [period, PERIODS * period].map(|t| t.min(model.duration));
+    let times = [period, PERIODS * period].map(|t| t.min(model.duration()));
     let run = bench.run(&model, &times)?;
-    let scales = model.scales;
+    let scales = model.scales();
     let steps = run.summary.steps as f64;
     let fastest = (2.0 * (0.25 + orbit.above_barrier())).sqrt();
     let energy_step = STEP_ERROR * (orbit.force().abs() * scales.length + fastest * scales.speed);

@@ -71,7 +71,7 @@ impl Step {
             }
             k[stage + 1] = [end[1], problem.acceleration(t + node * h, end[0], end[1])];
         }
-        let scales = problem.model.scales;
+        let scales = problem.model.scales();
         let combine = |weights: &[f64; 7], i: usize| -> f64 {
             weights.iter().zip(&k).map(|(weight, k)| weight * k[i]).sum::<f64>() * h
         };
@@ -140,8 +140,8 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
     let watch = ThreadClock::start();
     let problem = Problem::new(model);
     let mut tally = Tally::new(&problem, keep);
-    let scales = model.scales;
-    let end = model.duration;
+    let scales = model.scales();
+    let end = model.duration();
     let mut now = State { t: 0.0, x: problem.start.0, v: problem.start.1 };
     let (mut steps, mut evaluations, mut attempts) = (0, 0, 0_u64);
     let mut h = 1e-2 * scales.time;
@@ -169,7 +169,7 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
             if press(now.t) > 0.0 {
                 now.v = 0.0;
                 let at_rest = if side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
-                let release = release(press, now.t, end, model.forcing_period.unwrap_or(end) / SEARCHES);
+                let release = release(press, now.t, end, model.forcing_period().unwrap_or(end) / SEARCHES);
                 let next = State { t: release, ..now };
                 tally.step(&problem, now, next, at_rest, 0.0);
                 phase = if release < end { Phase::Free } else { at_rest };

@@ -22,9 +22,9 @@ const MOST_STEPS: f64 = 1e8;
 pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> MethodRun {
     let watch = ThreadClock::start();
     let problem = Problem::new(model);
-    let wanted = (model.duration / step).ceil();
+    let wanted = (model.duration() / step).ceil();
     let count = if wanted >= 1.0 { wanted.min(MOST_STEPS) } else { MOST_STEPS } as u64;
-    let h = model.duration / count as f64;
+    let h = model.duration() / count as f64;
     let mut tally = Tally::new(&problem, keep);
     let mut now = State { t: 0.0, x: problem.start.0, v: problem.start.1 };
     let mut last_acceleration = problem.acceleration(0.0, now.x, now.v);
@@ -34,7 +34,7 @@ pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> Meth
         if i % CANCEL_STRIDE == 0 && keep.is_cancelled() {
             break;
         }
-        let t = if i == count { model.duration } else { h * i as f64 };
+        let t = if i == count { model.duration() } else { h * i as f64 };
         let mut next = match scheme {
             Scheme::SemiImplicitEuler => {
                 evaluations += 1;

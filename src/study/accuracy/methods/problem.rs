@@ -16,18 +16,18 @@ pub(super) struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     pub fn new(model: &'a Model) -> Self {
-        let stops = model.stops;
+        let stops = model.stops();
         let at = |stop: Option<crate::dynamics::StopAt>, open: f64| {
             stop.map_or((open, 1.0), |stop| (stop.x, stop.restitution))
         };
-        let curve = &model.mechanism.curve;
+        let curve = &model.mechanism().curve;
         Self {
             model,
             stops: [
                 at(stops.and_then(|pair| pair.left), f64::NEG_INFINITY),
                 at(stops.and_then(|pair| pair.right), f64::INFINITY),
             ],
-            start: model.start,
+            start: model.start(),
             domain: curve.domain(),
             single: match curve.pieces() {
                 [piece] if piece.origin == 0.0 => Some(&piece.coefficients),
@@ -38,7 +38,7 @@ impl<'a> Problem<'a> {
 
     /// Base acceleration in m/s^2 at `t` in s.
     pub fn base(&self, t: f64) -> f64 {
-        let drive = &self.model.excitation;
+        let drive = &self.model.excitation();
         let mut sum = drive.constant;
         for tone in &drive.tones {
             let turns = tone.frequency * t + tone.phase;
@@ -73,9 +73,9 @@ impl<'a> Problem<'a> {
         let force = match self.single {
             Some(coefficients) => coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c),
             // a stage may look beyond the known curve, where a run does not go
-            None => self.model.mechanism.curve.force(x.clamp(self.domain.0, self.domain.1)),
+            None => self.model.mechanism().curve.force(x.clamp(self.domain.0, self.domain.1)),
         };
-        -(force + self.model.damping * v) / self.model.mass - self.base(t)
+        -(force + self.model.damping() * v) / self.model.mass() - self.base(t)
     }
 
     /// Whether the run may go on from here.

@@ -25,13 +25,13 @@ pub(super) struct Tally<'a> {
 
 impl<'a> Tally<'a> {
     pub fn new(problem: &Problem, keep: &'a Keep<'a>) -> Self {
-        let barrier = problem.model.crossing_level;
+        let barrier = problem.model.crossing_level();
         Self {
             keep,
             run: MethodRun::default(),
             next: 0,
             squares: 0.0,
-            settle: problem.model.settle,
+            settle: problem.model.settle(),
             barrier,
             side: barrier.is_some_and(|top| problem.start.0 > top),
         }
@@ -75,7 +75,7 @@ impl<'a> Tally<'a> {
 
     /// The run as it stands at its last state.
     pub fn finish(mut self, problem: &Problem, last: State, phase: Phase, counts: (u64, u64)) -> MethodRun {
-        let duration = problem.model.duration;
+        let duration = problem.model.duration();
         let ended = last.t < duration;
         while let Some(t) = self.keep.sample_times.get(self.next).copied().filter(|t| *t <= last.t) {
             self.sample(problem, t, last.x, last.v, phase);

@@ -44,13 +44,13 @@ impl Lateness {
 /// is looked for among the impacts of the other run on the same stop, within half the time to its neighbours.
 /// Where one is not found the other run has taken another course, and what follows is not compared.
 pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<Lateness> {
-    let arrivals = arrivals(exact, SLOWEST * model.scales.speed);
+    let arrivals = arrivals(exact, SLOWEST * model.scales().speed);
     let mut late: Vec<f64> = Vec::new();
     for (i, arrival) in arrivals.iter().enumerate() {
         let same = |other: &&Event| other.side == arrival.side;
         let gaps = [arrivals[..i].iter().rfind(same), arrivals[i + 1..].iter().find(same)];
         let gap = gaps.into_iter().flatten().map(|other| (other.t - arrival.t).abs()).reduce(f64::min);
-        let room = 0.5 * gap.unwrap_or(model.pace());
+        let room = 0.5 * gap.unwrap_or(model.characteristic_time());
         let Some(found) = nearest(own, arrival, room) else { break };
         late.push(found.t - arrival.t);
     }

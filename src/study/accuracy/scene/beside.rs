@@ -17,10 +17,10 @@ const END: f64 = 0.1;
 
 /// Even times in s at which two runs of `model` are compared, ascending from 0 to its duration.
 pub(super) fn times(model: &Model) -> Vec<f64> {
-    let swing = model.swing();
-    let fastest = model.forcing_period.map_or(swing, |period| period.min(swing));
-    let count = (model.duration / fastest * PER_PERIOD).clamp(SAMPLES.0, SAMPLES.1).floor();
-    (0..=count as u32).map(|i| (model.duration * (f64::from(i) / count)).min(model.duration)).collect()
+    let swing = model.natural_time();
+    let fastest = model.forcing_period().map_or(swing, |period| period.min(swing));
+    let count = (model.duration() / fastest * PER_PERIOD).clamp(SAMPLES.0, SAMPLES.1).floor();
+    (0..=count as u32).map(|i| (model.duration() * (f64::from(i) / count)).min(model.duration())).collect()
 }
 
 /// How two runs differ.
@@ -56,7 +56,7 @@ impl Beside {
             }
         }
         found.travel = (high - low).max(0.0);
-        found.limit = TRUSTED_SHARE * found.travel.max(LEAST_TRAVEL * model.scales.length);
+        found.limit = TRUSTED_SHARE * found.travel.max(LEAST_TRAVEL * model.scales().length);
         found
     }
 

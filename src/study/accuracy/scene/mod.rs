@@ -20,14 +20,5 @@ pub use tolerances::{AtTolerance, TOLERANCES, Tolerances, tolerances};
 pub use trust::{Course, Trust, lasting, trust};
 pub use words::{duration, length_mm, moment, small_length, step_name};
 
-use crate::dynamics::Model;
-
 /// A path is trusted until it is off by this share of the motion's travel: less than is seen in a plot.
 pub const TRUSTED_SHARE: f64 = 0.01;
-
-/// The model run at another tolerance.
-fn at_tolerance(model: &Model, tolerance: f64) -> Model {
-    let mut model = model.clone();
-    model.tolerance = tolerance;
-    model
-}

@@ -3,7 +3,6 @@
 use std::sync::atomic::AtomicBool;
 
 use super::arrivals::{Lateness, hops, lateness};
-use super::at_tolerance;
 use super::beside::{Beside, times};
 use super::trust::finished;
 use crate::dynamics::{Event, EventKind, Model, Outcome, Request, Sample, Side};
@@ -92,11 +91,11 @@ impl StepSize {
 /// chaos it is one of many true ones, and beyond the time `trusted` the numbers tell two of them apart and no
 /// more.
 pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) -> Result<StepSize, Unfit> {
-    if model.compliant.is_some() {
+    if model.compliant().is_some() {
         return Err(Unfit::Compliant);
     }
-    let model = &at_tolerance(&within_reach(model, step), model.tolerance.min(TRUE_TOLERANCE));
-    let drawn = model.duration.min(DRAWN_PERIODS * model.pace());
+    let model = &within_reach(model, step).with_tolerance(model.tolerance().min(TRUE_TOLERANCE));
+    let drawn = model.duration().min(DRAWN_PERIODS * model.characteristic_time());
     let (even, fine, steps) = (times(model), spread(drawn, MOST_POINTS), step_times(drawn, step));
 
     let request =
@@ -110,8 +109,7 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     let keep = |sample_times| Keep { sample_times, impacts: true, cancel: Some(cancel) };
     let own = fixed_step(model, scheme, step, &keep(&even));
     // the same run up to where it is drawn
-    let mut start = model.clone();
-    (start.duration, start.settle) = (drawn, 0.0);
+    let start = model.with_duration(drawn, 0.0);
     let ghost = fixed_step(&start, scheme, step, &keep(&steps)).samples;
     let statistics = own.statistics;
     let bare = Keep { impacts: false, ..keep(&[]) };
@@ -128,7 +126,7 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     Ok(StepSize {
         scheme,
         step,
-        span: model.duration,
+        span: model.duration(),
         drawn,
         truth: with_impacts(model, &path, &impacts),
         ghost: ghost.iter().map(|sample| (sample.t, sample.x)).collect(),
@@ -150,13 +148,11 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
 /// The model with its run cut to what so small a step reaches in reasonable time, and its settled window to
 /// the second half of that where it would begin later.
 fn within_reach(model: &Model, step: f64) -> Model {
-    let mut model = model.clone();
-    let reach = step * MOST_STEPS / (1.0 + model.excitation.tones.len() as f64 / SINES);
-    if model.duration > reach {
-        model.duration = reach;
-        model.settle = model.settle.min(0.5 * reach);
+    let reach = step * MOST_STEPS / (1.0 + model.excitation().tones.len() as f64 / SINES);
+    match model.duration() > reach {
+        true => model.with_duration(reach, model.settle().min(0.5 * reach)),
+        false => model.clone(),
     }
-    model
 }
 
 /// Even times in s from 0 to `end`.

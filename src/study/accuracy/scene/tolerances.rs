@@ -2,7 +2,6 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::at_tolerance;
 use super::beside::{Beside, times};
 use super::trust::{better, finished};
 use crate::dynamics::{Model, Outcome, Request};
@@ -54,12 +53,12 @@ pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
     let times = times(model);
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
     let bare = Request { sample_times: &[], ..request };
-    let all = with_own(model.tolerance);
-    let tightest = all.last().copied().unwrap_or(model.tolerance);
+    let all = with_own(model.tolerance());
+    let tightest = all.last().copied().unwrap_or(model.tolerance());
     let (_, exact) = better(model, tightest, &request)?;
     let mut found = Tolerances::default();
     for tolerance in all {
-        let own = at_tolerance(model, tolerance);
+        let own = model.with_tolerance(tolerance);
         let run = finished(own.run(&request))?;
         let summary = run.summary;
         let beside = Beside::new(model, &run.samples, &exact.samples);

@@ -2,7 +2,6 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::at_tolerance;
 use super::beside::{Beside, times};
 use crate::dynamics::{Model, Outcome, Regime, Request, Run};
 
@@ -97,7 +96,7 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
     let times = times(model);
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
     let own = finished(model.run(&request))?;
-    let (finer, better) = better(model, model.tolerance, &request)?;
+    let (finer, better) = better(model, model.tolerance(), &request)?;
     let beside = Beside::new(model, &own.samples, &better.samples);
     let course = match beside.parted() {
         None => Course::Kept,
@@ -108,7 +107,7 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
         }
     };
     Some(Trust {
-        tolerances: (model.tolerance, finer),
+        tolerances: (model.tolerance(), finer),
         span: beside.span(),
         error: beside.error(),
         travel: beside.travel,
@@ -121,9 +120,7 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
 /// The model with a run of another length in s: what follows the run that a scene asks for is as near or far
 /// from the truth.
 pub fn lasting(model: &Model, duration: f64) -> Model {
-    let mut model = model.clone();
-    model.duration = duration;
-    model
+    model.with_duration(duration, model.settle())
 }
 
 /// A run of `model` that is more accurate than one at `tolerance`, and its own tolerance. None where it was
@@ -133,7 +130,7 @@ pub(super) fn better(model: &Model, tolerance: f64, request: &Request) -> Option
     let run = if finer < TIGHTEST {
         model.run_reference(request, finer)
     } else {
-        at_tolerance(model, finer).run(request)
+        model.with_tolerance(finer).run(request)
     };
     finished(run).map(|run| (finer, run))
 }
@@ -154,7 +151,7 @@ fn parted(model: &Model, beside: &Beside, better: &Run, times: (f64, Option<f64>
         return Course::Sensitive { until };
     }
     // over the decades that were seen, or from one pair of runs to the next
-    let start = ABOVE_START * model.tolerance * model.scales.length;
+    let start = ABOVE_START * model.tolerance() * model.scales().length;
     let decades = (beside.limit / start).log10();
     let decade = match beside.reaches(start) {
         Some(t) if decades > 1.0 => (until - t) / decades,
