@@ -7,8 +7,8 @@ use std::sync::Arc;
 use interwell::dynamics::{Model, Scales};
 use interwell::mechanics::flexure::{Geometry, Group};
 use interwell::mechanics::{
-    BuildError, Equilibrium, ForceCurve, Kink, Landscape, Mechanism, Piece, Table, TableError, fit,
-    force_scale,
+    BuildError, Equilibrium, ForceCurve, ForceTable as Table, Kink, Landscape, Mechanism, Piece, TableError,
+    fit, force_scale,
 };
 use interwell::scene::{self, ColumnsError, Document, Files};
 use proptest::prelude::*;
