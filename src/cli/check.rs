@@ -1,4 +1,4 @@
-//! `check`: is this scene right, and what does it model?
+//! `check`: faults and warnings of scenes, and what each models.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Which exit status does an error have, and what is printed of it?
+//! Errors of the command line, with their exit statuses and messages.
 
 use std::fmt;
 use std::process::ExitCode;

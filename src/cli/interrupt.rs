@@ -1,4 +1,4 @@
-//! How does Ctrl-C end a command without leaving half a file?
+//! Ctrl-C, which ends a command and leaves no half file.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

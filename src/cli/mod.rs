@@ -1,4 +1,4 @@
-//! The command line: arguments in, a study asked, its table written. Nothing is computed here.
+//! The command line: reads arguments, runs a study, writes its table. Nothing is computed here.
 
 mod accuracy;
 mod check;

@@ -1,4 +1,4 @@
-//! What the commands that draw share: the picture's place and kind, checked before any work is done.
+//! Options of pictures: place, kind and size, checked before any work is done.
 
 use std::path::Path;
 

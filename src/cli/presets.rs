@@ -1,4 +1,4 @@
-//! `presets`: which scenes are built in, and where can one have them as files?
+//! `presets`: list of the built-in scenes, and their copies as files.
 
 use std::path::{Path, PathBuf};
 

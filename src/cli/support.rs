@@ -1,11 +1,11 @@
-//! What several commands need: the scene as arguments changed it, its mechanism, lists of numbers, outputs.
+//! Steps that several commands share: loading a scene, building its mechanism, opening and writing outputs.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use interwell::dynamics::Model;
 use interwell::mechanics::{BuildError, Mechanism};
-use interwell::output::{Origin, Sink, header, rows, same_target};
+use interwell::output::{Provenance, Sink, header, rows, same_target};
 use interwell::scene::{Document, SceneError, is_manifest, is_scene_file};
 use interwell::study::Table;
 use interwell::system::clock::{ProcessClock, WallClock};
@@ -34,8 +34,8 @@ impl Watch {
     }
 
     /// What this call of the program was, and how long it has worked on `jobs` threads.
-    pub fn origin(&self, jobs: usize) -> Origin {
-        Origin {
+    pub fn origin(&self, jobs: usize) -> Provenance {
+        Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             arguments: std::env::args_os().skip(1).map(|own| own.to_string_lossy().into_owned()).collect(),
             wall_s: self.wall_s(),

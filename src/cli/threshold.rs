@@ -1,5 +1,4 @@
-//! `threshold`: the least value of a field from which on a motion does something, a row for each cell of a
-//! grid.
+//! `threshold`: thresholds of a field, a row for each cell of a grid.
 
 use clap::Args;
 use interwell::scene::{Axis, Document};

@@ -1,4 +1,4 @@
-//! Which force does the mechanism exert at x? One representation for every mechanism.
+//! Restoring force as a piecewise polynomial, the one representation for every mechanism.
 //!
 //! The force is a piecewise polynomial: breaks where smoothness ends, between them one polynomial
 //! each, written about its own origin. Potential and stiffness follow exactly, by integration and

@@ -1,4 +1,4 @@
-//! Which smooth curve do the points of a table mean, in how few pieces?
+//! Smooth piecewise polynomial through the points of a table.
 //!
 //! The curve is a chain of least-squares polynomials that interpolate the samples at their ends (so it
 //! is continuous whatever the data), found from left to right, or for odd data from the middle outwards: each
@@ -24,7 +24,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::curve::{FitReport, ForceCurve, Piece};
 use super::local::{between, corners, roughness, slopes};
-use super::table::Table;
+use super::table::ForceTable;
 use crate::numeric::fit::lowest_degree;
 
 /// The limits of the degree that are tried. Above 13 the monomial form begins to lose digits and a
@@ -55,18 +55,22 @@ const MANY_PIECES: usize = 24;
 /// to rounding where that is larger. Breaks lie on samples; the domain is the first to the last sample. Data
 /// that are odd within half the tolerance give a curve that is odd bit for bit.
 ///
-/// Preconditions: a table as [`Table::parse`] guarantees it, `tolerance` above 0.
+/// Preconditions: a table as [`ForceTable::parse`] guarantees it, `tolerance` above 0.
 ///
 /// Fails only where the magnitudes leave the range of double precision; says so in a sentence.
 ///
 /// `tolerance` trades pieces (and so the speed of every run) for closeness; below the roughness of the
 /// data it makes the curve follow the roughness.
-pub fn fit(table: &Table, tolerance: f64) -> Result<ForceCurve, String> {
+pub fn fit(table: &ForceTable, tolerance: f64) -> Result<ForceCurve, String> {
     fit_unless(table, tolerance, None)
 }
 
 /// As [`fit`]; once `cancel` is set, it soon fails with any sentence.
-pub fn fit_unless(table: &Table, tolerance: f64, cancel: Option<&AtomicBool>) -> Result<ForceCurve, String> {
+pub fn fit_unless(
+    table: &ForceTable,
+    tolerance: f64,
+    cancel: Option<&AtomicBool>,
+) -> Result<ForceCurve, String> {
     let scale = force_scale(table);
     let largest = largest(&table.force);
     let allowed = tolerance * scale + 8.0 * f64::EPSILON * largest;
@@ -106,7 +110,7 @@ pub fn fit_unless(table: &Table, tolerance: f64, cancel: Option<&AtomicBool>) ->
 /// to above 0), which a wall outside the wells does not touch. Where there are not two of them, or the force
 /// between them does not stand out ten-fold from the roughness of the data (noise about 0 makes "wells" of
 /// its own): the largest |F| of all.
-pub fn force_scale(table: &Table) -> f64 {
+pub fn force_scale(table: &ForceTable) -> f64 {
     let force = &table.force;
     let rising = |i: &usize| force[*i] < 0.0 && force[*i + 1] >= 0.0;
     let wells = 0..force.len() - 1;
@@ -126,7 +130,7 @@ fn largest(values: &[f64]) -> f64 {
 }
 
 /// Largest distance of a curve from the samples in N, and where.
-fn worst(curve: &ForceCurve, table: &Table) -> (f64, f64) {
+fn worst(curve: &ForceCurve, table: &ForceTable) -> (f64, f64) {
     let (low, high) = curve.domain();
     let mut worst = (0.0, table.x[0]);
     for (x, force) in table.x.iter().zip(&table.force) {
@@ -171,7 +175,7 @@ struct Samples<'a> {
 }
 
 impl Samples<'_> {
-    fn new(table: &Table, allowed: f64) -> Self {
+    fn new(table: &ForceTable, allowed: f64) -> Self {
         let n = table.x.len();
         let mirror = |i: usize| n - 1 - i;
         let reach = largest(&table.x);

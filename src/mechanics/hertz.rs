@@ -1,4 +1,4 @@
-//! The impact of a mass on a compliant stop, and nothing else.
+//! Impact of a mass on a compliant stop, without other forces.
 //!
 //! A point contact by Hertz with the loss of Hunt and Crossley (1975, "Coefficient of restitution interpreted
 //! as damping in vibroimpact", eq. 9): the stop pushes back with k d^1.5 (1 + a d'), d the depth by which the

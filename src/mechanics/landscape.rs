@@ -1,4 +1,4 @@
-//! Where does the mechanism rest, and what stands between its resting places?
+//! Potential landscape: equilibria, barrier, force extrema and kinks of a force curve.
 //!
 //! Everything follows from the real roots of each piece's force and of its derivative
 //! ([`real_roots`](crate::numeric::real_roots)). What a root is (stable or not, an extremum or a mere

@@ -1,9 +1,8 @@
-//! What do a few neighbouring samples say: is there a corner, which slope, what lies between, how rough is
-//! it?
+//! Local properties of samples: corners, slopes, interpolation and roughness.
 
 use std::ops::Range;
 
-use super::table::Table;
+use super::table::ForceTable;
 
 /// A corner is a jump of the slope that is this many times the uncertainty of the two one-sided slopes.
 /// Smooth data stay below 1 (the jump is of second order in the spacing, the uncertainty of first); a corner
@@ -15,7 +14,7 @@ const CORNER_OVER_UNCERTAINTY: f64 = 4.0;
 const BETWEEN_SAMPLES: f64 = 3.0;
 
 /// Typical distance in N of a sample from the cubic through its four neighbours: the median over the table.
-pub(super) fn roughness(table: &Table) -> f64 {
+pub(super) fn roughness(table: &ForceTable) -> f64 {
     let mut misses: Vec<f64> = (2..table.x.len().saturating_sub(2))
         .map(|i| {
             let near = [i - 2, i - 1, i + 1, i + 2];

@@ -1,4 +1,4 @@
-//! Statics: where the restoring force comes from, and its landscape.
+//! Statics: restoring forces and their potential landscapes.
 
 mod curve;
 mod fit;
@@ -13,7 +13,7 @@ pub use fit::{fit, force_scale};
 pub use flexure::{FlexureError, Flexures};
 pub use hertz::{ContactMaterial, Hertz};
 pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Landscape};
-pub use table::{FEWEST_POINTS, MOST_POINTS, Table, TableError};
+pub use table::{FEWEST_POINTS, ForceTable, MOST_POINTS, TableError};
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -137,18 +137,18 @@ impl Mechanism {
                 let fault =
                     |problem: String| Fault { field: "mechanism.path".into(), value: path.clone(), problem };
                 let text = files.read(path).map_err(|e| fault(e.to_string()))?;
-                let table = Table::parse(&text).map_err(|e| fault(e.to_string()))?;
+                let table = ForceTable::parse(&text).map_err(|e| fault(e.to_string()))?;
                 Ok(Self::new(fit_unless(&table, *tolerance, cancel).map_err(fault)?))
             }
         }
     }
 
-    /// Reads and fits the text of a table: CSV with the columns `x_m,force_n`. See [`Table::parse`] and
+    /// Reads and fits the text of a table: CSV with the columns `x_m,force_n`. See [`ForceTable::parse`] and
     /// [`fit()`].
     ///
     /// Fails with a sentence that continues "the table ...".
     pub fn from_table(text: &str, tolerance: f64) -> Result<Self, String> {
-        let table = Table::parse(text).map_err(|e| e.to_string())?;
+        let table = ForceTable::parse(text).map_err(|e| e.to_string())?;
         fit(&table, tolerance).map(Self::new)
     }
 

@@ -1,4 +1,4 @@
-//! Which points does a CSV file of a force curve hold?
+//! Points of a force curve, read from CSV.
 //!
 //! Nothing is repaired silently: what cannot be meant is refused with its line and value; a table from right
 //! to left is read as the same curve from left to right.
@@ -16,7 +16,7 @@ const FORCE: &str = "force_n";
 
 /// The points of a force curve.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
+pub struct ForceTable {
     /// Positions in m, strictly increasing.
     pub x: Vec<f64>,
     /// Forces dV/dx in N, one for each position.
@@ -55,7 +55,7 @@ pub enum TableError {
     },
 }
 
-impl Table {
+impl ForceTable {
     /// Reads the text of a CSV table; rows from right to left are reversed.
     ///
     /// Guarantee: at least [`FEWEST_POINTS`] finite points with strictly increasing `x`.

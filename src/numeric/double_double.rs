@@ -1,4 +1,4 @@
-//! What does a trajectory look like with twice the digits?
+//! Double-double arithmetic, some 31 digits.
 //!
 //! A number as the unevaluated sum of two doubles, some 31 decimal digits (Dekker 1971, "A
 //! floating-point technique for extending the available precision"; Knuth's two-sum). No fused

@@ -1,4 +1,4 @@
-//! Which polynomial follows these points closely enough, at the lowest degree?
+//! Polynomial of the lowest degree that follows given points closely enough.
 //!
 //! Least squares through polynomials orthogonal over the points themselves (Forsythe 1957, "Generation
 //! and use of orthogonal polynomials for data-fitting with a digital computer"): each further degree

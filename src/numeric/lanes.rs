@@ -1,4 +1,4 @@
-//! How do several trajectories go through the same arithmetic at once?
+//! Several numbers side by side, for the same arithmetic at once.
 //!
 //! A bundle of numbers, each with its own value and all with the same operations. The loops are over a fixed
 //! width and without a branch, so that the compiler makes them instructions on whole registers, as wide as

@@ -1,4 +1,4 @@
-//! Mathematics that knows no mechanics: number types, root isolation, fits, sums, decimals.
+//! Mathematics without mechanics: number types, roots, fits, sums, decimals.
 
 mod bisect;
 mod decimal;

@@ -1,4 +1,4 @@
-//! At which points is a smooth function sampled to integrate it over a step?
+//! Gauss-Legendre quadrature.
 
 use std::sync::OnceLock;
 

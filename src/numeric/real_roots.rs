@@ -1,4 +1,4 @@
-//! Where does a polynomial vanish? All real roots in an interval, or on the whole line.
+//! All real roots of a polynomial, in an interval or on the whole line.
 //!
 //! For building things, not for the loop of a run: it allocates. The roots of the derivative, found
 //! first, cut the interval into pieces on which the polynomial is monotone; on each a change of sign is

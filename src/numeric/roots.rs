@@ -1,4 +1,4 @@
-//! Where does a step's polynomial first reach a surface, with none missed?
+//! Sign changes of a polynomial between 0 and 1, in order, with none missed.
 //!
 //! Contacts are roots of a polynomial on (0, 1]. Comparing signs at the ends of a step misses pairs of
 //! roots inside it, so the search bounds the polynomial instead: first by nested bounds of its

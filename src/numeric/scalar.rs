@@ -1,4 +1,4 @@
-//! Which operations must a number offer so that the integrator can run on it?
+//! Number types of the integrator, as traits.
 //!
 //! Two levels. [`Number`] is what a power series needs: arithmetic without a branch, so that a
 //! bundle of several trajectories can be one. [`Scalar`] adds order and a few functions, for the

@@ -1,4 +1,4 @@
-//! How is a number written in a sentence?
+//! Short numbers for sentences.
 
 /// `value` rounded to four significant digits, for sentences.
 pub fn short(value: f64) -> String {

@@ -1,4 +1,4 @@
-//! How is a long sum kept exact to rounding?
+//! Compensated summation.
 
 use super::scalar::Scalar;
 

@@ -1,4 +1,4 @@
-//! How is a table written as CSV? A header row, then a row a line, comma separated, `\n` ended.
+//! CSV: a header row, then a line for each row of a table, comma separated, `\n` ended.
 //!
 //! Names and words come from fixed lists and field paths, which hold neither commas nor quotes, so
 //! nothing is ever quoted.

@@ -1,9 +1,9 @@
-//! How are a summary and a landscape written as JSON? One flat object each, numbers in SI with the
-//! unit in the key, `null` for what is missing.
+//! JSON of a summary and of a landscape: flat objects, numbers in SI with the unit in the key, `null` for
+//! what is missing.
 
 use serde_json::{Value, json};
 
-use super::manifest::{Origin, seed};
+use super::manifest::{Provenance, seed};
 use crate::dynamics::{Ledger, Outcome, Summary};
 use crate::mechanics::{Landscape, Mechanism};
 use crate::scene::Scene;
@@ -12,7 +12,7 @@ use crate::study::{Read, SUMMARY_FIELDS, SummaryField, small_amplitude_frequency
 /// The summary of a run of `scene`, as text. Compliant stops add two keys, their peak force and pressure. A
 /// run that ended early has two keys more, `ended_at_s` and, where a budget ran out, `ended_after`, the
 /// impacts or steps made.
-pub fn summary(summary: &Summary, scene: &Scene, origin: &Origin) -> String {
+pub fn summary(summary: &Summary, scene: &Scene, origin: &Provenance) -> String {
     let mut object = Value::Object(SUMMARY_FIELDS.iter().filter_map(|field| entry(field, summary)).collect());
     let mut add = |key: &str, value: Value| {
         if let Value::Object(map) = &mut object {

@@ -1,4 +1,4 @@
-//! The manifest beside a sweep's rows, and what a summary says of its origin.
+//! Manifest of a sweep, and the origin of a result.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::study::{Grid, Tally};
 
 /// Where a result came from, besides its scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Origin {
+pub struct Provenance {
     /// Version of the program.
     pub version: String,
     /// The arguments that it was called with.
@@ -29,7 +29,7 @@ pub struct Origin {
 /// scene reads, by their paths in it.
 ///
 /// `document` has its files held; `data` is the name of the file with the rows.
-pub fn manifest(document: &Document, grid: &Grid, tally: &Tally, origin: &Origin, data: &str) -> String {
+pub fn manifest(document: &Document, grid: &Grid, tally: &Tally, origin: &Provenance, data: &str) -> String {
     let axes: Vec<Value> = grid
         .axes()
         .iter()

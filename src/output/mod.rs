@@ -1,4 +1,4 @@
-//! A table in, bytes out: CSV, JSON, text for a terminal, pictures, and the files and pipes that they go to.
+//! Tables as bytes: CSV, JSON, text for a terminal, pictures.
 //!
 //! Nothing here computes: a number is written in the shortest form that parses back to the same
 //! double, a missing one as an empty cell (CSV) or `null` (JSON).
@@ -12,10 +12,10 @@ mod text;
 
 pub use csv::{header, rows};
 pub use json::{landscape, summary};
-pub use manifest::{Origin, manifest};
+pub use manifest::{Provenance, manifest};
 pub use number::push_number;
 pub use plot::{
-    Axis, Caption, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, RMS, Ranges,
+    Caption, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, PlotAxis, RMS, Ranges,
     SweepPicture, Theme, UnknownFormat, accuracy_figure, can_show, contact_figure, curve_figure, quantities,
     run_figure, speed_unit, sweep_about, sweep_figure, viridis,
 };

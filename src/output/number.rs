@@ -1,4 +1,4 @@
-//! How is a double written so that it is short and parses back to the same double?
+//! Shortest text of a double that parses back to the same double.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! How is a table shown on a terminal? Columns in line, numbers short.
+//! Table as text for a terminal, columns aligned and numbers short.
 
 use crate::study::{Table, Values};
 

@@ -1,4 +1,4 @@
-//! Which `--set` arguments make one scene of another?
+//! `--set` arguments that turn one scene into another.
 
 use serde::Serialize;
 

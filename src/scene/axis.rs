@@ -1,4 +1,4 @@
-//! The axes of a sweep: their values, and the names of their columns.
+//! Axes of a sweep: their values, and the names of their columns.
 
 use std::collections::HashSet;
 

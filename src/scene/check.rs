@@ -1,4 +1,4 @@
-//! Can this scene be run as it is written?
+//! Validation of a scene.
 //!
 //! All that can be said from the scene's own numbers is said here, all at once. What needs the
 //! mechanism (an equilibrium to rest at, a stiffness for a damping ratio) is said where the model is
@@ -164,7 +164,7 @@ fn relations(scene: &Scene, checked: &mut Checked) {
             );
         }
     }
-    let Run { duration_s, settle_s, .. } = scene.run;
+    let RunSettings { duration_s, settle_s, .. } = scene.run;
     if let Some(settle) = settle_s
         && settle > duration_s
         && !known_bad("run.settle_s", checked)
@@ -227,7 +227,7 @@ fn hints(scene: &Scene, checked: &mut Checked) {
         return;
     }
     shape::hints(&scene.mechanism, &mut checked.warnings);
-    let Run { duration_s, settle_s, .. } = scene.run;
+    let RunSettings { duration_s, settle_s, .. } = scene.run;
     if let Damping::Ratio(xi) = scene.damping
         && xi > 1.0
     {

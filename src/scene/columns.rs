@@ -1,4 +1,4 @@
-//! The numbers of two named columns of a CSV text.
+//! Numbers of two named columns of a CSV text.
 //!
 //! Comma separated, a header row with the wanted columns in any order among others, lines that begin with
 //! `#` are comments. Nothing is repaired silently: what cannot be meant is refused with its line and value.

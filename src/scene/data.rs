@@ -1,4 +1,4 @@
-//! What a person writes: the fields of a scene file, with their units.
+//! Fields of a scene file, with their units.
 //!
 //! Every field carries its unit in its name and the units are those a person sets on a slider
 //! (mm, g, Hz, degrees). Nothing here is checked: [`check`](super::check()) does that, and
@@ -44,7 +44,7 @@ pub struct Scene {
     #[serde(default)]
     pub start: Start,
     /// Duration, settled window and tolerance.
-    pub run: Run,
+    pub run: RunSettings,
     /// The grid that `sweep` runs over, slowest field first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sweep: Vec<SweepAxis>,
@@ -239,8 +239,8 @@ pub enum Start {
 
 /// Duration, settled window and tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Run {
+#[serde(rename = "Run", deny_unknown_fields)]
+pub struct RunSettings {
     /// Duration in s, 1e-15 to 1e9.
     pub duration_s: f64,
     /// Begin of the settled window in s, 0 to 1e9 and at most the duration; left out, half of it.

@@ -1,4 +1,4 @@
-//! A scene with where it came from, so that everything said about it can name file and line.
+//! Scene together with its source, so that every message about it names file and line.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a scene, in words.
+//! Errors of scenes.
 
 use std::fmt;
 

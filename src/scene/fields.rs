@@ -1,4 +1,4 @@
-//! Which fields does a scene have, and what may stand in them?
+//! Traversal of a scene's fields, and access to them by path.
 //!
 //! One walk over the typed scene names every field by its dotted path (variant names left out:
 //! `stops.travel_limit_mm`) and hands it out mutably. Checking, `--set`, `--over`, a sweep's cells and
@@ -319,16 +319,16 @@ pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
 /// The dotted path of a field, split once so that it can be followed many times.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldPath {
-    steps: Vec<Step>,
+    steps: Vec<PathPart>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
-enum Step {
+enum PathPart {
     Name(String),
     Index(usize),
 }
 
-impl Step {
+impl PathPart {
     fn is(&self, segment: Segment) -> bool {
         match (self, segment) {
             (Self::Name(own), Segment::Name(name)) => own == name,
@@ -343,8 +343,8 @@ impl FieldPath {
     /// field shows when the path is followed.
     pub fn new(path: &str) -> Self {
         let step = |part: &str| match part.parse::<usize>() {
-            Ok(index) if index.to_string() == part => Step::Index(index),
-            _ => Step::Name(part.to_owned()),
+            Ok(index) if index.to_string() == part => PathPart::Index(index),
+            _ => PathPart::Name(part.to_owned()),
         };
         Self { steps: path.split('.').map(step).collect() }
     }
@@ -376,7 +376,7 @@ impl FieldPath {
     /// Hands the field at this path to `found`, once; `None` where the scene has no such field.
     pub(super) fn follow<R>(&self, scene: &mut Scene, found: impl FnOnce(Field<'_>) -> R) -> Option<R> {
         struct Seek<'p, F, R> {
-            steps: &'p [Step],
+            steps: &'p [PathPart],
             depth: usize,
             found: Option<F>,
             result: Option<R>,

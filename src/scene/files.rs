@@ -1,4 +1,4 @@
-//! The files that a scene names, and what is said where they cannot be read.
+//! Files that a scene names.
 
 use std::collections::BTreeMap;
 use std::io::Read;

@@ -1,4 +1,4 @@
-//! The fields of a scene's text and the places where they stand.
+//! Places of the fields in a scene's text.
 //!
 //! serde keeps no positions, and a second parser would be a second truth: this scanner only follows
 //! brackets, strings, comments and `name:`, and never fails. On text that RON accepts it names every

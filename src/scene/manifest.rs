@@ -1,5 +1,4 @@
-//! The manifest of a sweep as input: the scene that ran, with its grid as `sweep`, and the files that it
-//! read.
+//! Manifest of a sweep as a scene: what ran, with its grid as `sweep`, and the files that it read.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What a person writes: scenes, their checks, their files, the presets.
+//! Scenes: their fields, checks and files, and the presets.
 //!
 //! A scene is read by [`Document::load`], changed by [`Document::set`], checked by [`Document::check`];
 //! what passes is turned into a `dynamics::Model`, which cannot be wrong. Faults that only show there go
@@ -48,7 +48,7 @@ pub use fields::{FieldPath, all_fields, numeric_fields};
 pub use files::{FileError, Files, LARGEST_TABLE};
 pub use locate::{Place, Places};
 pub use manifest::{PROGRAM, is_manifest};
-pub use presets::{PRESETS, Preset, TABLES, Table, export};
+pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
 pub use ranges::MAX_COEFFICIENTS;
 pub use record::{Record, RecordError};
 pub use stops::Stops;

@@ -1,4 +1,4 @@
-//! Which scenes come with the program?
+//! Built-in scenes and their tables.
 //!
 //! Each is a file in `presets/` and embedded, with the tables that it names, so that every command works
 //! from any folder. The first is what the program opens with.
@@ -16,7 +16,7 @@ pub struct Preset {
 
 /// An embedded table or record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Table {
+pub struct EmbeddedTable {
     /// The name by which a scene calls it.
     pub name: &'static str,
     /// CSV.
@@ -53,9 +53,9 @@ presets! {
 }
 
 /// The embedded tables and records.
-pub static TABLES: &[Table] = &[
-    Table { name: "force_dl2.7.csv", text: include_str!("../../assets/force_dl2.7.csv") },
-    Table { name: "walking.csv", text: include_str!("../../assets/walking.csv") },
+pub static TABLES: &[EmbeddedTable] = &[
+    EmbeddedTable { name: "force_dl2.7.csv", text: include_str!("../../assets/force_dl2.7.csv") },
+    EmbeddedTable { name: "walking.csv", text: include_str!("../../assets/walking.csv") },
 ];
 
 /// Names of all presets, with commas.

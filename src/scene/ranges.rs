@@ -1,4 +1,4 @@
-//! Which values may a number in a scene have, and what helps where it has another?
+//! Valid ranges of the numbers in a scene, with a remedy for each.
 //!
 //! One row a field. `data.rs` repeats the range in the field's documentation; a test compares them.
 

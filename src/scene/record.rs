@@ -1,4 +1,4 @@
-//! Which base acceleration does a recorded file hold?
+//! Recorded base acceleration.
 //!
 //! A record is read once, when a document is read or changed, and then travels with its scene, so that the
 //! cells of a sweep share it.

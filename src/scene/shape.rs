@@ -1,4 +1,4 @@
-//! Can flexures of these sizes be built, and does a beam model them?
+//! Limits on the sizes of flexures.
 //!
 //! Every limit is linear in the fields that it joins, as the check of a sweep's corners needs, and none is an
 //! absolute size: a drawing that is scaled stays valid.

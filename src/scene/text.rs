@@ -1,4 +1,4 @@
-//! Reading a scene from its text, and writing it back.
+//! Scenes as RON text, read and written.
 //!
 //! RON with `implicit_some` on, so that `settle_s: 5` needs no `Some`. What the parser refuses is
 //! reported with its place, the field it stood in and, where a name is unknown, the known ones.

@@ -1,4 +1,4 @@
-//! Compliant stops: one impact over the impact speed, yielding, and the speeds that a scene's impacts have.
+//! Compliant stops: impacts over the impact speed, yielding, and the impact speeds of a scene.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;

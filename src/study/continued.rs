@@ -1,4 +1,4 @@
-//! The scene whose run from its own start is a motion that is under way.
+//! Scene that begins in the present state of a motion.
 
 use crate::dynamics::Model;
 use crate::scene::{Excitation, Scene, Start};

@@ -1,4 +1,4 @@
-//! Which force, potential and stiffness does the mechanism have at x?
+//! Force, potential and stiffness of a mechanism over the displacement.
 
 use super::table::{Table, Values};
 use crate::mechanics::{Equilibrium, Mechanism};

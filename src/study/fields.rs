@@ -1,4 +1,4 @@
-//! Fields of a summary by name: what `simulate` writes as JSON and a sweep can have as columns.
+//! Fields of a summary by name: the keys of `simulate`'s JSON and the columns of a sweep.
 
 use super::table::Values;
 use crate::dynamics::{First, Firsts, STANDARD_GRAVITY, Summary};

@@ -1,4 +1,4 @@
-//! What do the flexures look like, and how hard are they pressed and bent, with the shuttle at x?
+//! Shapes, compression and stress of the flexures over the displacement.
 //!
 //! Unlike the force curve, which is a polynomial, every position here is a solution of its own.
 

@@ -1,4 +1,4 @@
-//! Which cells does a sweep have? The product of its axes, the first one slowest.
+//! Cells of a sweep: the product of its axes, the first one slowest.
 
 use crate::scene::{Axis, Scene, column_names};
 

@@ -1,4 +1,4 @@
-//! A scene in words: what it models and leaves out, how good its force curve is, where it rests, how fast its
+//! Scene in words: what it models and leaves out, how good its force curve is, where it rests, how fast its
 //! stops are struck.
 
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! In which order is a map made, so that the whole of it can be seen early?
+//! Order of the cells of a map, coarse to fine.
 //!
 //! Every eighth value of each axis first, then every fourth, every second, every one. The cells of a level
 //! are among those of the next, so nothing is run twice, and the last level is the grid itself.

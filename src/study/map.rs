@@ -1,4 +1,4 @@
-//! Lines that tell where motions begin to cross on a map of runs.
+//! Lines of a map at which motions begin to cross.
 
 use super::grid::Grid;
 use super::table::{Table, Values};

@@ -1,4 +1,4 @@
-//! Questions: a study in, a table out.
+//! Studies: questions about a scene, answered by tables.
 //!
 //! A study takes models and plain numbers, tells its progress and lets itself be cancelled through a
 //! [`Task`], and answers with a [`Table`]. It reads no arguments and writes no files: the window and
@@ -8,6 +8,7 @@ pub mod accuracy;
 mod contact;
 mod continued;
 mod curve;
+mod dense_output;
 mod edges;
 mod fields;
 mod flexures;
@@ -16,7 +17,6 @@ mod inspect;
 mod levels;
 mod map;
 mod models;
-mod passage;
 mod settled;
 mod simulate;
 mod sweep;
@@ -34,6 +34,7 @@ pub use curve::{
     CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency,
     stop_positions,
 };
+pub use dense_output::between;
 pub use edges::{Edges, first_crossing_edge};
 pub use fields::{Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
@@ -42,7 +43,6 @@ pub use inspect::inspect;
 pub use levels::{Levels, STRIDES};
 pub use map::{first_crossing, release_line};
 pub use models::Held;
-pub use passage::between;
 pub use settled::{Standing, lasts, settled, standing};
 pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};
 pub use sweep::{Cell, CellFaults, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally};
@@ -50,7 +50,7 @@ pub use table::{Column, Table, Values};
 pub use thresholds::{
     Found, Onset, Scan, Thresholds, stops_that_cross, threshold, threshold_table, thresholds,
 };
-pub use times::{MAX_SAMPLES, Step, TimesError, even_times, listed_times};
+pub use times::{MAX_SAMPLES, SamplingStep, TimesError, even_times, listed_times};
 pub use trace::{Trace, simulate_with_trace};
 pub use watch::Watch;
 

@@ -1,4 +1,4 @@
-//! Which model held when? The models by which a motion went, so that its past is looked at as it was.
+//! History of the models by which a motion went.
 //!
 //! While a slider is dragged there is another model with every frame. One that held too briefly to be seen
 //! gives way to the next, and of too many the one that held the shortest time is forgotten, so that memory

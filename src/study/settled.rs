@@ -1,4 +1,4 @@
-//! The settled motion of a scene, and the place in the landscape of a mass that nothing shakes.
+//! Settled motion of a scene, and the place in the landscape of a mass that nothing shakes.
 
 use std::sync::atomic::AtomicBool;
 

@@ -1,9 +1,9 @@
-//! What does one run do? Its samples, its events and its summary.
+//! One run: its samples, events and summary.
 
 use std::sync::atomic::AtomicBool;
 
 use super::table::{Table, Values};
-use super::times::{Step, TimesError, even_times, listed_times};
+use super::times::{SamplingStep, TimesError, even_times, listed_times};
 use crate::dynamics::{Event, Model, Request, Sample, Summary};
 use crate::scene::{Excitation, Scene};
 
@@ -50,13 +50,13 @@ pub fn sample_times(
     let duration = until_settled.unwrap_or(model.duration());
     let step = match sampling {
         Sampling::At(times) => return listed_times(times, duration),
-        Sampling::Every(dt) => Step::Seconds(*dt),
+        Sampling::Every(dt) => SamplingStep::Seconds(*dt),
         Sampling::Default => match (&scene.excitation, model.forcing_period()) {
             (Excitation::Sine { frequency_hz, .. } | Excitation::AmplitudeRamp { frequency_hz, .. }, _) => {
-                Step::PeriodOf(*frequency_hz)
+                SamplingStep::PeriodOf(*frequency_hz)
             }
-            (_, Some(period)) => Step::Period(period),
-            _ => Step::Thousandth,
+            (_, Some(period)) => SamplingStep::Period(period),
+            _ => SamplingStep::Thousandth,
         },
     };
     even_times(step, duration)

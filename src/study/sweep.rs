@@ -1,4 +1,4 @@
-//! What does the mass do in every cell of a grid? One row a cell, in order, made in parallel.
+//! Sweep: a run for each cell of a grid, in parallel, a row a cell.
 //!
 //! Rows leave in chunks as soon as a chunk is whole, so memory does not grow with the cells already
 //! written, and what a cell gives depends on its own scene alone, so the bytes are the same for any

@@ -1,4 +1,4 @@
-//! What does a result look like? Named columns of one length, each with a unit and one type of value.
+//! Table: named columns of one length, each with a unit and one type of value.
 //!
 //! Every study answers in this form and every writer and plot reads it, so that each is written once.
 

@@ -1,5 +1,4 @@
-//! Thresholds: the least value of a field from which on a motion, from rest, is released, crosses or is
-//! interwell.
+//! Thresholds: least values of a field from which on a motion from rest is released, crosses or is interwell.
 //!
 //! The values that do are no interval: without stops, and near a resonance, they come in windows. So nothing
 //! is bisected before every step of a scan from below has been run; then the first step that changes the

@@ -1,4 +1,4 @@
-//! At which instants is a run sampled? Evenly, exact in the decimals that a person wrote, or at a list.
+//! Times of samples: even, exact in the decimals that a person wrote, or listed.
 //!
 //! `--dt 0.1` means 0.1, 0.2, 0.3, not 0.30000000000000004: a time is the double nearest to k times
 //! the *decimal* step, and a 60th of a forcing period of 1/3 s is the double nearest to k/180.
@@ -13,7 +13,7 @@ pub const MAX_SAMPLES: u64 = 10_000_000;
 pub enum TimesError {
     /// The step is not a number above 0.
     #[error("the sampling step is {0} s: it must be a finite number above 0")]
-    Step(f64),
+    SamplingStep(f64),
     /// More samples than [`MAX_SAMPLES`].
     #[error(
         "a step of {step} s over {duration} s makes {count} samples; at most {MAX_SAMPLES} fit: \
@@ -100,7 +100,7 @@ impl Fraction {
 
 /// The step between even samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Step {
+pub enum SamplingStep {
     /// A number of seconds.
     Seconds(f64),
     /// A 60th of the period of this frequency in Hz.
@@ -111,7 +111,7 @@ pub enum Step {
     Thousandth,
 }
 
-impl Step {
+impl SamplingStep {
     fn seconds(self, duration: f64) -> f64 {
         match self {
             Self::Seconds(dt) => dt,
@@ -134,10 +134,10 @@ impl Step {
 /// The times 0, dt, 2 dt, .. up to `duration` in s, which is among them where the step reaches it.
 ///
 /// Each is the double nearest to its exact value, so they ascend and none exceeds `duration`.
-pub fn even_times(step: Step, duration: f64) -> Result<Vec<f64>, TimesError> {
+pub fn even_times(step: SamplingStep, duration: f64) -> Result<Vec<f64>, TimesError> {
     let dt = step.seconds(duration);
     if !(dt.is_finite() && dt > 0.0) {
-        return Err(TimesError::Step(dt));
+        return Err(TimesError::SamplingStep(dt));
     }
     let exact = step.ratio(duration);
     let count = exact
@@ -166,25 +166,25 @@ mod tests {
 
     #[test]
     fn steps_are_exact_in_decimals() {
-        let times = even_times(Step::Seconds(0.1), 1.0).unwrap();
+        let times = even_times(SamplingStep::Seconds(0.1), 1.0).unwrap();
         assert_eq!(times, [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]);
-        let times = even_times(Step::PeriodOf(3.0), 10.0).unwrap();
+        let times = even_times(SamplingStep::PeriodOf(3.0), 10.0).unwrap();
         assert_eq!(times.len(), 1801);
         assert!(times.iter().enumerate().all(|(k, t)| *t == k as f64 / 180.0));
         assert_eq!(times[1800], 10.0);
-        let times = even_times(Step::PeriodOf(2.7), 10.0).unwrap();
+        let times = even_times(SamplingStep::PeriodOf(2.7), 10.0).unwrap();
         assert!(times.iter().enumerate().all(|(k, t)| *t == (k * 10) as f64 / 1620.0));
-        assert_eq!(even_times(Step::Thousandth, 0.3).unwrap()[999], 0.2997);
-        assert_eq!(even_times(Step::Seconds(1e-9), 1e-9).unwrap(), [0.0, 1e-9]);
-        assert_eq!(even_times(Step::Seconds(2.0), 1.0).unwrap(), [0.0]);
-        let times = even_times(Step::Seconds(0.3), 1.0).unwrap();
+        assert_eq!(even_times(SamplingStep::Thousandth, 0.3).unwrap()[999], 0.2997);
+        assert_eq!(even_times(SamplingStep::Seconds(1e-9), 1e-9).unwrap(), [0.0, 1e-9]);
+        assert_eq!(even_times(SamplingStep::Seconds(2.0), 1.0).unwrap(), [0.0]);
+        let times = even_times(SamplingStep::Seconds(0.3), 1.0).unwrap();
         assert_eq!(times, [0.0, 0.3, 0.6, 0.9]);
     }
 
     #[test]
     fn times_ascend_and_stay_within_the_run() {
         for (dt, duration) in [(1.0 / 3.0, 1.0), (1e-300, 5e-299), (0.123456789012345, 1e3), (7e290, 1e300)] {
-            let times = even_times(Step::Seconds(dt), duration);
+            let times = even_times(SamplingStep::Seconds(dt), duration);
             let Ok(times) = times else { continue };
             assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{dt} {duration}");
             assert!(times.last().is_some_and(|t| *t <= duration));
@@ -193,12 +193,12 @@ mod tests {
 
     #[test]
     fn too_many_samples_are_counted_not_made() {
-        let error = even_times(Step::PeriodOf(3.0), 1e9).unwrap_err();
+        let error = even_times(SamplingStep::PeriodOf(3.0), 1e9).unwrap_err();
         assert!(error.to_string().contains("180000000001"), "{error}");
-        let error = even_times(Step::Seconds(1e-300), 1e9).unwrap_err();
+        let error = even_times(SamplingStep::Seconds(1e-300), 1e9).unwrap_err();
         assert!(matches!(error, TimesError::TooMany { .. }), "{error}");
         for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(even_times(Step::Seconds(dt), 1.0), Err(TimesError::Step(_))));
+            assert!(matches!(even_times(SamplingStep::Seconds(dt), 1.0), Err(TimesError::SamplingStep(_))));
         }
     }
 

@@ -1,5 +1,4 @@
-//! What a picture shows of one run: its path sampled for the eye, with every jump of the velocity, and the
-//! spans at rest.
+//! Samples of a run for a picture: its path, every jump of the velocity, and the spans at rest.
 //!
 //! A picture must be right however sparse the samples are that were asked for, so it has its own:
 //! the run is asked for both at once, and each gets its own back.

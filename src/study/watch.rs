@@ -1,4 +1,4 @@
-//! What has been seen of a motion that goes on? A live run with a memory.
+//! Live run with a memory of its path.
 //!
 //! The path is sampled for the eye: some eighty times a swing, and at every event, so that rebounds are
 //! corners and rests are flat. The energy ledger is kept at the end of every forcing period while somebody

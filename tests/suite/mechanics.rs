@@ -8,7 +8,7 @@ mod prototype_table;
 mod reading;
 mod tables;
 
-use interwell::mechanics::{BuildError, ForceCurve, Mechanism, Piece, Table, fit, force_scale};
+use interwell::mechanics::{BuildError, ForceCurve, ForceTable, Mechanism, Piece, fit, force_scale};
 use interwell::scene::{self, Files};
 
 const PROTOTYPE: &str = include_str!("../../assets/force_dl2.7.csv");
@@ -33,15 +33,15 @@ fn close(a: f64, b: f64, relative: f64) {
 }
 
 /// A table of `force` at even steps; the positions of a symmetric range are symmetric bit for bit.
-fn sampled(from: f64, to: f64, points: usize, force: impl Fn(f64) -> f64) -> Table {
+fn sampled(from: f64, to: f64, points: usize, force: impl Fn(f64) -> f64) -> ForceTable {
     let (middle, half, last) = (0.5 * (from + to), 0.5 * (to - from), points as f64 - 1.0);
     let x: Vec<f64> = (0..points).map(|i| middle + half * ((2.0 * i as f64 - last) / last)).collect();
     let force = x.iter().map(|x| force(*x)).collect();
-    Table { x, force }
+    ForceTable { x, force }
 }
 
 /// What every fitted curve promises.
-fn keeps_its_promises(table: &Table, tolerance: f64) -> ForceCurve {
+fn keeps_its_promises(table: &ForceTable, tolerance: f64) -> ForceCurve {
     let curve = fit(table, tolerance).unwrap();
     let largest = table.force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
     let allowed = tolerance * force_scale(table) + 1e-14 * largest;

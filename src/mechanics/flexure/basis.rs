@@ -1,4 +1,4 @@
-//! In which functions is a flexure's rotation written?
+//! Basis functions of a flexure's rotation.
 //!
 //! Integrated Legendre polynomials: each vanishes at both clamps and their slopes are orthonormal, so that
 //! the bending stiffness is a multiple of the identity. A flexure's rotation has an even part about its

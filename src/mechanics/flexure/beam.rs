@@ -1,5 +1,5 @@
-//! What holds along one flexure? The geometrically exact beam (Reissner 1972, "On one-dimensional
-//! finite-strain beam theory: the plane problem"), in weak form.
+//! Geometrically exact beam (Reissner 1972, "On one-dimensional finite-strain beam theory: the plane
+//! problem"), in weak form.
 //!
 //! With theta the rotation of the cross-section, (H, Q) the constant force on the cut (axial, lateral; H
 //! positive in tension), N = H cos theta + Q sin theta, V = -H sin theta + Q cos theta, axial strain N/EA and

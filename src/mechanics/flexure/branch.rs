@@ -1,4 +1,4 @@
-//! Which stable shapes does the mechanism pass through as x grows from 0?
+//! Equilibrium branch: the stable states of the mechanism as x grows from 0.
 //!
 //! A chain of segments in x. Within a segment the same flexures carry a bump and everything is analytic in x;
 //! it ends where a bump vanishes (or, in a soft mechanism, appears): a pitchfork, at which the slope of the

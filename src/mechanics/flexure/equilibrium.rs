@@ -1,4 +1,4 @@
-//! In which shape do all flexures together balance, and is it stable?
+//! Joint equilibrium of all flexures, and its stability.
 //!
 //! The shuttle does not rotate and is free axially: both groups share the lateral displacement x, their
 //! shortenings add up to the preload and their axial forces are equal. Unknown are the rotations, the two

@@ -1,4 +1,4 @@
-//! What force does a buckled flexure mechanism exert?
+//! Force of a buckled flexure mechanism.
 //!
 //! `count` parallel flexures hold the shuttle on one side, one or more buckling flexures on the other; all
 //! are clamped at both ends, the shuttle does not rotate and is free axially. A preload pushes the two groups

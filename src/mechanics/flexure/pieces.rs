@@ -1,4 +1,4 @@
-//! Which few polynomials are the force curve?
+//! Piecewise polynomial through the states of a branch.
 //!
 //! Every solved state gives force and slope, so each piece is Hermite's interpolant at Chebyshev-Lobatto
 //! points: neighbouring pieces share value and slope, and nothing is smoothed across a kink. Inside the kink

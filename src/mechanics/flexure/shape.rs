@@ -1,4 +1,4 @@
-//! How do the flexures look, and how hard are they bent?
+//! Centre lines and curvatures of the flexures.
 
 use std::f64::consts::PI;
 

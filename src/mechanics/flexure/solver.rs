@@ -1,4 +1,4 @@
-//! How many functions does a state need?
+//! Equilibria with as many basis functions as each needs.
 //!
 //! As many as make the last coefficients vanish beside the largest: eight of each parity in the wells, ten
 //! times as many far up the taut branch. The answer is found for each state anew, beginning with what its

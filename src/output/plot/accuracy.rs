@@ -1,6 +1,6 @@
-//! The picture of work against precision: error over CPU time, both logarithmic, a frame for each problem.
+//! Picture of work against precision: error over CPU time, both logarithmic, a frame for each problem.
 
-use super::axis::Axis;
+use super::axis::PlotAxis;
 use super::figure::{Area, Figure, Point, Text};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
@@ -36,8 +36,8 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
     let (shown, named) = (distinct(problems), distinct(methods));
     let floored = |error: f64| if error == 0.0 { LEAST } else { error };
     let told = times.iter().zip(errors).filter(|(_, error)| error.is_finite()).map(|(time, _)| *time);
-    let across = Axis::decades(told, 4, "CPU time, s");
-    let up = Axis::decades(errors.iter().map(|error| floored(*error).min(10.0)), 9, "error");
+    let across = PlotAxis::decades(told, 4, "CPU time, s");
+    let up = PlotAxis::decades(errors.iter().map(|error| floored(*error).min(10.0)), 9, "error");
     let width = (RIGHT - LEFT - BETWEEN * (shown.len().max(1) - 1) as f64) / shown.len().max(1) as f64;
     for (i, problem) in shown.iter().enumerate() {
         let left = LEFT + i as f64 * (width + BETWEEN);

@@ -1,10 +1,10 @@
-//! Axes: where one begins and ends, and the numbers at it.
+//! Axes with their ticks and labels.
 
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_up};
 
 /// A range of values with its ticks.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub struct PlotAxis {
     /// Value at the left or lower end.
     pub low: f64,
     /// Value at the other end; above `low`.
@@ -28,7 +28,7 @@ pub struct Ranges {
 /// Values beyond this are drawn at it: no difference of two overflows.
 const LARGEST: f64 = 1e300;
 
-impl Axis {
+impl PlotAxis {
     /// An axis from the least to the greatest of `values`, with `margin` of that range added at both ends
     /// and some `count` ticks. Values that are not finite do not count; a range of no length is widened.
     pub fn around(values: impl IntoIterator<Item = f64>, margin: f64, count: usize, label: &str) -> Self {
@@ -135,28 +135,28 @@ fn raised(power: i32) -> String {
 mod tests {
     use super::*;
 
-    fn numbers(axis: &Axis) -> String {
+    fn numbers(axis: &PlotAxis) -> String {
         axis.ticks.iter().map(|tick| tick.1.as_str()).collect::<Vec<_>>().join(" ")
     }
 
     #[test]
     fn decades_cover_what_they_show() {
-        let axis = Axis::decades([3e-5, f64::NAN, 0.0, 2.0], 3, "error");
+        let axis = PlotAxis::decades([3e-5, f64::NAN, 0.0, 2.0], 3, "error");
         assert_eq!((axis.low, axis.high), (-5.0, 1.0));
         assert_eq!(numbers(&axis), "10\u{207b}\u{2074} 10\u{207b}\u{b2} 10\u{2070}");
-        let one = Axis::decades([1e-3], 5, "");
+        let one = PlotAxis::decades([1e-3], 5, "");
         assert_eq!((one.low, one.high), (-3.0, -2.0));
-        let none = Axis::decades([], 5, "");
+        let none = PlotAxis::decades([], 5, "");
         assert_eq!((none.low, none.high), (0.0, 1.0));
     }
 
     #[test]
     fn ticks_are_short_numbers() {
-        assert_eq!(numbers(&Axis::between(0.0, 2.0, 5, "")), "0.0 0.5 1.0 1.5 2.0");
-        assert_eq!(numbers(&Axis::between(-1.7, 1.7, 4, "")), "\u{2212}1 0 1");
-        assert_eq!(numbers(&Axis::between(0.0, 10.0, 5, "")), "0 2 4 6 8 10");
-        assert_eq!(numbers(&Axis::between(0.0, 1570.8, 5, "")), "0 500 1000 1500");
-        let small = Axis::between(0.0, 2e-9, 4, "x, m");
+        assert_eq!(numbers(&PlotAxis::between(0.0, 2.0, 5, "")), "0.0 0.5 1.0 1.5 2.0");
+        assert_eq!(numbers(&PlotAxis::between(-1.7, 1.7, 4, "")), "\u{2212}1 0 1");
+        assert_eq!(numbers(&PlotAxis::between(0.0, 10.0, 5, "")), "0 2 4 6 8 10");
+        assert_eq!(numbers(&PlotAxis::between(0.0, 1570.8, 5, "")), "0 500 1000 1500");
+        let small = PlotAxis::between(0.0, 2e-9, 4, "x, m");
         assert_eq!(
             (numbers(&small), small.label.as_str()),
             ("0.0 0.5 1.0 1.5 2.0".into(), "x, m (\u{d7}10\u{207b}\u{2079})")
@@ -170,7 +170,7 @@ mod tests {
         for low in ends {
             for high in ends.into_iter().chain([low * (1.0 + 1e-15), low + 1.0]) {
                 for count in [0, 1, 5, 12] {
-                    let axis = Axis::between(low, high, count, "x");
+                    let axis = PlotAxis::between(low, high, count, "x");
                     assert!(axis.low < axis.high, "{low} {high}");
                     assert!(!axis.ticks.is_empty() && axis.ticks.len() < 42, "{low} {high}: {axis:?}");
                     let shares = axis.ticks.iter().map(|tick| axis.share(tick.0));
@@ -178,7 +178,7 @@ mod tests {
                 }
             }
         }
-        assert_eq!(Axis::around([nan, nan], 0.1, 5, "").low, 0.0);
-        assert_eq!(Axis::around([3.0], 0.1, 5, "").ticks.len(), 3);
+        assert_eq!(PlotAxis::around([nan, nan], 0.1, 5, "").low, 0.0);
+        assert_eq!(PlotAxis::around([3.0], 0.1, 5, "").ticks.len(), 3);
     }
 }

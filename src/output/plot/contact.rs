@@ -1,6 +1,6 @@
-//! The picture of a compliant stop: restitution over impact speed, beside a rigid stop's constant.
+//! Picture of a compliant stop: restitution over impact speed, beside a rigid stop's constant.
 
-use super::axis::Axis;
+use super::axis::PlotAxis;
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Sample, legend};
@@ -19,8 +19,8 @@ pub fn contact_figure(table: &Table, stop: &Hertz, mass: f64, caption: &Caption,
     let top = speeds.last().copied().unwrap_or(1.0);
     let frame = Frame::new(
         AREA,
-        Axis::between(0.0, top, 8, "impact speed, m/s"),
-        Axis::between(0.0, 1.05, 6, "restitution"),
+        PlotAxis::between(0.0, top, 8, "impact speed, m/s"),
+        PlotAxis::between(0.0, 1.05, 6, "restitution"),
     );
     let pairs =
         |name: &str| -> Vec<Point> { speeds.iter().copied().zip(column(name).iter().copied()).collect() };

@@ -1,6 +1,6 @@
-//! The picture of a mechanism: force and potential over displacement, with equilibria, kinks and stops.
+//! Picture of a mechanism: force and potential over displacement, with equilibria, kinks and stops.
 
-use super::axis::{Axis, Ranges};
+use super::axis::{PlotAxis, Ranges};
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
@@ -35,11 +35,11 @@ pub fn curve_figure(
     let (force, force_unit) = scaled(force_range, &[(1.0, "N"), (1e-3, "mN")]);
     let (potential, potential_unit) = scaled(potential_range, &[(1.0, "J"), (1e-3, "mJ"), (1e-6, "\u{b5}J")]);
     let label = "displacement, mm";
-    let across = Axis::around(x.iter().copied(), 0.0, 9, label).or_given(ranges.x, 9, label);
+    let across = PlotAxis::around(x.iter().copied(), 0.0, 9, label).or_given(ranges.x, 9, label);
     let inside = |at: f64| at * 1e3 >= across.low && at * 1e3 <= across.high;
 
     let height = |(low, high): (f64, f64), scale: f64, least: f64, label: &str| {
-        Axis::around([low * scale, high * scale, least], 0.08, TICKS, label)
+        PlotAxis::around([low * scale, high * scale, least], 0.08, TICKS, label)
     };
     let upper = Area::new(LEFT, 175.0, RIGHT, 520.0);
     let lower = Area::new(LEFT, 550.0, RIGHT, 860.0);
@@ -127,7 +127,7 @@ fn subtitle(landscape: &Landscape) -> String {
 
 /// What the picture does not show, where the force leaves it: how large it becomes, and where. `scale` is
 /// that of the axis `up`.
-fn wall(x: &[f64], force: &[f64], up: &Axis, scale: f64) -> Option<String> {
+fn wall(x: &[f64], force: &[f64], up: &PlotAxis, scale: f64) -> Option<String> {
     let beyond = |force: f64| force * scale < up.low || force * scale > up.high;
     let outside = x.iter().zip(force).filter(|(_, force)| force.is_finite() && beyond(**force));
     let (x, force) = outside.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;

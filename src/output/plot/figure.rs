@@ -1,4 +1,4 @@
-//! A picture as a list of plain shapes, in the order in which they are painted.
+//! Picture as a list of plain shapes, in the order in which they are painted.
 //!
 //! The plots write down what they show; [`paint`](super::paint) turns that into pixels or SVG. So
 //! each plot is written once for both, and a test can read what a picture says.

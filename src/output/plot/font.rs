@@ -1,4 +1,4 @@
-//! Which letters do the pictures have, and how wide is a text?
+//! Font of the pictures, and the width of a text.
 //!
 //! Inter (The Inter Project Authors, SIL Open Font License 1.1, text in `assets/fonts`), cut down to
 //! Latin, Greek and the signs that a formula needs. It is part of the program: no font of the machine is

@@ -1,6 +1,6 @@
-//! How do data come onto the canvas? Through a frame with two axes.
+//! Frame with two axes, which places data on the canvas.
 
-use super::axis::Axis;
+use super::axis::PlotAxis;
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
 use super::style::{self, Ink, Theme};
@@ -11,9 +11,9 @@ pub struct Frame {
     /// Where it is.
     pub area: Area,
     /// The axis to the right.
-    pub x: Axis,
+    pub x: PlotAxis,
     /// The axis upward.
-    pub y: Axis,
+    pub y: PlotAxis,
     /// How far left of the frame the label of the axis upward stands at least, so that labels of several
     /// frames are in line; the numbers may push it further.
     pub gutter: Option<f64>,
@@ -21,7 +21,7 @@ pub struct Frame {
 
 impl Frame {
     /// A frame at `area` with these axes.
-    pub fn new(area: Area, x: Axis, y: Axis) -> Self {
+    pub fn new(area: Area, x: PlotAxis, y: PlotAxis) -> Self {
         Self { area, x, y, gutter: None }
     }
 

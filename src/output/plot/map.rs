@@ -1,6 +1,6 @@
-//! The picture of a sweep over two fields: a quantity as colour, and where motion begins as lines.
+//! Picture of a sweep over two fields: a quantity as colour, and where motion begins as lines.
 
-use super::axis::Axis;
+use super::axis::PlotAxis;
 use super::figure::{Align, Area, Figure, Text};
 use super::font;
 use super::frame::Frame;
@@ -47,7 +47,7 @@ pub(super) fn map(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &s
     }
     let axis = |ends: (f64, f64), given, count, name| {
         let label = label(rows, name);
-        Axis::between(ends.0, ends.1, count, &label).or_given(given, count, &label)
+        PlotAxis::between(ends.0, ends.1, count, &label).or_given(given, count, &label)
     };
     let frame = Frame::new(
         Area::new(LEFT, TOP, RIGHT, BOTTOM),
@@ -129,7 +129,7 @@ fn over(
     entries
 }
 
-fn colour_bar(figure: &mut Figure, axis: Axis, theme: &Theme) {
+fn colour_bar(figure: &mut Figure, axis: PlotAxis, theme: &Theme) {
     const STEPS: usize = 256;
     let area = Area::new(1370.0, TOP, 1410.0, BOTTOM);
     let height = (area.bottom - area.top) / STEPS as f64;

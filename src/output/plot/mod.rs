@@ -1,4 +1,4 @@
-//! Pictures: a table in, a PNG or an SVG out.
+//! Pictures as PNG or SVG.
 //!
 //! A plot writes a [`Figure`], a list of plain shapes; [`Format::bytes`] paints it. Light or dark, the data
 //! and their places are the same, and the same data give the same bytes.
@@ -21,7 +21,7 @@ mod sweep;
 use std::path::Path;
 
 pub use accuracy::accuracy_figure;
-pub use axis::{Axis, Ranges};
+pub use axis::{PlotAxis, Ranges};
 pub use contact::contact_figure;
 pub use curve::curve_figure;
 pub use figure::Figure;

@@ -1,4 +1,4 @@
-//! A list of shapes as PNG or SVG.
+//! Painting of a list of shapes as PNG or SVG.
 //!
 //! plotters draws both. Its bitmaps have whole pixels and hardly smooth an edge, so the picture is
 //! drawn three times as large and averaged down; its SVG has whole coordinates too, so they are made

@@ -1,6 +1,6 @@
-//! What the picture of a sweep shows: one column of its rows, in units for the eye.
+//! Column of a sweep that a picture shows, in units that suit it.
 
-use super::axis::Axis;
+use super::axis::PlotAxis;
 use super::mark::REGIMES;
 use crate::study::{Grid, Table, Values};
 
@@ -64,12 +64,17 @@ impl Quantity {
 
     /// Its axis: from 0, or from below where there are negative values, with `margin` of the range as room;
     /// the names of the regimes where it has those.
-    pub fn axis(&self, margin: f64, count: usize) -> Axis {
+    pub fn axis(&self, margin: f64, count: usize) -> PlotAxis {
         if self.regimes {
             let ticks =
                 REGIMES.iter().enumerate().map(|(i, (name, _))| (i as f64, (*name).to_owned())).collect();
-            return Axis { low: -0.5, high: REGIMES.len() as f64 - 0.5, ticks, label: self.label.clone() };
+            return PlotAxis {
+                low: -0.5,
+                high: REGIMES.len() as f64 - 0.5,
+                ticks,
+                label: self.label.clone(),
+            };
         }
-        Axis::around(self.values.iter().copied().chain([0.0]), margin, count, &self.label)
+        PlotAxis::around(self.values.iter().copied().chain([0.0]), margin, count, &self.label)
     }
 }

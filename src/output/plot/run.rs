@@ -1,8 +1,8 @@
-//! The picture of one run: displacement, velocity and base acceleration over time, and the phase portrait.
+//! Picture of one run: displacement, velocity and base acceleration over time, and the phase portrait.
 
 use std::ops::Range;
 
-use super::axis::{Axis, Ranges};
+use super::axis::{PlotAxis, Ranges};
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
 use super::frame::Frame;
@@ -91,7 +91,7 @@ impl Seen<'_> {
 
     /// The axis for these displacements. Stops count where the mass comes near them, so that a far one
     /// does not press the motion flat.
-    fn displacement(&self, x: &[f64]) -> Axis {
+    fn displacement(&self, x: &[f64]) -> PlotAxis {
         const NEAR: f64 = 0.4;
         let finite = x.iter().filter(|x| x.is_finite());
         let (low, high) =
@@ -101,22 +101,22 @@ impl Seen<'_> {
         let stops = [self.trace.stops.0, self.trace.stops.1];
         let near = stops.into_iter().filter(|stop| (low - room..=high + room).contains(stop));
         let label = "displacement, mm";
-        let own = Axis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, 6, label);
+        let own = PlotAxis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, 6, label);
         own.or_given(self.displacements, 6, label)
     }
 
-    fn velocity(&self, v: &[f64], count: usize) -> Axis {
+    fn velocity(&self, v: &[f64], count: usize) -> PlotAxis {
         let (scale, unit) = self.speed;
-        Axis::around(v.iter().map(|v| v * scale), 0.08, count, &format!("velocity, {unit}"))
+        PlotAxis::around(v.iter().map(|v| v * scale), 0.08, count, &format!("velocity, {unit}"))
     }
 
     /// Displacement, velocity and base acceleration over time; the axis of displacement.
-    fn panels(&self, figure: &mut Figure) -> Axis {
+    fn panels(&self, figure: &mut Figure) -> PlotAxis {
         let Self { trace, theme, .. } = *self;
-        let time = Axis::between(trace.shown_from, trace.shown_to, 6, "time, s");
+        let time = PlotAxis::between(trace.shown_from, trace.shown_to, 6, "time, s");
         let shown = self.rows(trace.shown_from);
         let in_g = self.accel[shown.clone()].iter().map(|a| a / STANDARD_GRAVITY);
-        let g_axis = Axis::around(in_g.chain([0.0]), 0.1, 4, "base accel., g");
+        let g_axis = PlotAxis::around(in_g.chain([0.0]), 0.1, 4, "base accel., g");
         let framed = |(top, bottom): (f64, f64), x, y| {
             let frame = Frame::new(Area::new(LEFT, top, MIDDLE, bottom), x, y);
             Frame { gutter: Some(GUTTER), ..frame }

@@ -1,4 +1,4 @@
-//! Colours, widths and sizes of the pictures: all of them, and nothing else.
+//! Colours, widths and sizes of the pictures.
 //!
 //! Colours are those of Okabe and Ito (2008, "Color Universal Design"), one meaning each; what differs by
 //! colour also differs by shape, hatching or dashes. Sizes are in units of a canvas of 1600 by 1000, chosen

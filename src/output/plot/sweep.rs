@@ -1,6 +1,6 @@
-//! The picture of a sweep: lines over one field, drawn here; over two a [`map`](super::map).
+//! Picture of a sweep: lines over one field, drawn here; over two a [`map`](super::map).
 
-use super::axis::{Axis, Ranges};
+use super::axis::{PlotAxis, Ranges};
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::map::{Overlay, map};
@@ -194,7 +194,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     let top = TOP.max(legend(figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
 
     let x_label = label(rows, x);
-    let across = Axis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
+    let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     // Most quantities are never negative; the little room below 0 is for the markers.
     let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
     let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);

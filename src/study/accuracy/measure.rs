@@ -1,4 +1,4 @@
-//! How many digits can an answer have, and how many has it?
+//! Digits that the conditioning of a problem allows, and digits reached.
 //!
 //! The digits allowed follow from the problem, not from the result: an error bound is the sum, over the steps
 //! of a run, of what one step may do wrong ([`STEP_ERROR`]) times how much the answer reacts to it. The

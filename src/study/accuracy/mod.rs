@@ -1,4 +1,4 @@
-//! How accurate are the runs, and what does accuracy cost?
+//! Accuracy of runs, and its cost.
 //!
 //! Of any scene: the error of its run, up to when its path is to be trusted, and what a fixed step would make
 //! of it ([`scene`]). Of the program, in two halves: [`PROBLEMS`]: work against precision on three problems,

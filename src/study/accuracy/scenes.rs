@@ -1,11 +1,13 @@
-//! Short ways to write the scenes of the cases.
+//! Builders of the scenes of the cases.
 
 use std::sync::Arc;
 
 use super::Stopped;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::mechanics::{ForceCurve, Mechanism as Built};
-use crate::scene::{Damping, Document, Excitation, Files, Mechanism, Run, Scene, Start, Stops, check};
+use crate::scene::{
+    Damping, Document, Excitation, Files, Mechanism, RunSettings, Scene, Start, Stops, check,
+};
 
 /// Every case runs at the tightest tolerance, so that what is left is rounding.
 pub(super) const TOLERANCE: f64 = 1e-14;
@@ -30,7 +32,7 @@ impl Setup {
                 stops: Stops::None,
                 excitation: Excitation::None,
                 start: Start::At { x_mm: x * 1e3, v_m_per_s: v },
-                run: Run { duration_s, settle_s: Some(0.0), tolerance: TOLERANCE, recurrence: false },
+                run: RunSettings { duration_s, settle_s: Some(0.0), tolerance: TOLERANCE, recurrence: false },
                 sweep: Vec::new(),
                 app: None,
             },

@@ -1,4 +1,4 @@
-//! What the study found, as tables.
+//! Accuracy of the program as tables.
 
 use super::measure::Check;
 use super::precision::{Point, Setting};

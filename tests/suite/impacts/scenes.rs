@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use interwell::dynamics::{Model, Request, Run, STANDARD_GRAVITY};
 use interwell::mechanics::{ForceCurve, Mechanism as Built};
-use interwell::scene::{
-    Damping, Excitation, Files, Mechanism, Run as RunSettings, Scene, Start, Stops, check,
-};
+use interwell::scene::{Damping, Excitation, Files, Mechanism, RunSettings, Scene, Start, Stops, check};
 
 /// A scene of 1 kg without damping, stops and drive.
 pub fn scene(mechanism: Mechanism, start: Start, duration_s: f64) -> Scene {

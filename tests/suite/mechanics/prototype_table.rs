@@ -1,13 +1,13 @@
 //! The curve fitted to the prototype's table: its pieces, landscape, potential and smoothness.
 
-use interwell::mechanics::{Mechanism, Table};
+use interwell::mechanics::{ForceTable, Mechanism};
 use interwell::scene;
 
 use super::{PROTOTYPE, build, close, fault_of, integral, keeps_its_promises};
 
 #[test]
 fn the_prototype_is_few_pieces() {
-    let table = Table::parse(PROTOTYPE).unwrap();
+    let table = ForceTable::parse(PROTOTYPE).unwrap();
     assert_eq!(table.x.len(), 325);
     for (tolerance, most) in [(1e-2, 3), (1e-3, 11), (1e-4, 9), (1e-5, 13)] {
         let curve = keeps_its_promises(&table, tolerance);
@@ -73,7 +73,7 @@ fn potential_and_stiffness_belong_to_the_force() {
 /// Between samples the fit stays near the parabolas through three neighbours on either side.
 #[test]
 fn the_prototype_does_not_wiggle() {
-    let table = Table::parse(PROTOTYPE).unwrap();
+    let table = ForceTable::parse(PROTOTYPE).unwrap();
     for tolerance in [1e-3, 1e-4, 1e-5] {
         let curve = keeps_its_promises(&table, tolerance);
         for i in 0..table.x.len() - 3 {

@@ -1,13 +1,13 @@
 //! The text of a force table: accepted layouts, and refusals with the line at fault.
 
-use interwell::mechanics::{Mechanism, Table, TableError};
+use interwell::mechanics::{ForceTable, Mechanism, TableError};
 use interwell::scene::ColumnsError;
 use proptest::prelude::*;
 
 #[test]
 fn the_layout_of_the_text_does_not_matter() {
     let plain = "x_m,force_n\n-1,2\n0,0\n1,-2\n2,1\n";
-    let expected = Table::parse(plain).unwrap();
+    let expected = ForceTable::parse(plain).unwrap();
     for text in [
         "\u{feff}x_m,force_n\n-1,2\n0,0\n1,-2\n2,1\n",
         "x_m,force_n\r\n-1,2\r\n0,0\r\n1,-2\r\n2,1",
@@ -16,13 +16,13 @@ fn the_layout_of_the_text_does_not_matter() {
         "x_m,force_n\n-1.0e0, +2.000\n  0 ,0\n1,-2,9,9\n2,1\n",
         "x_m,force_n\r-1,2\r\r# a comment\r0,0\r1,-2\r2,1\r",
     ] {
-        assert_eq!(Table::parse(text).as_ref(), Ok(&expected), "{text}");
+        assert_eq!(ForceTable::parse(text).as_ref(), Ok(&expected), "{text}");
     }
 }
 
 #[test]
 fn what_is_wrong_with_a_table_is_said_with_its_line() {
-    let error = |text: &str| Table::parse(text).unwrap_err();
+    let error = |text: &str| ForceTable::parse(text).unwrap_err();
     assert!(matches!(error(""), TableError::Columns(ColumnsError::Empty { .. })));
     assert!(matches!(error("# nothing\n"), TableError::Columns(ColumnsError::Empty { .. })));
     assert_eq!(error("x_m,force_n\n0,0\n1,1\n"), TableError::TooFew(2));

@@ -1,6 +1,6 @@
 //! Curves fitted to synthetic tables: recovered polynomials, symmetry, corners, noise and extreme numbers.
 
-use interwell::mechanics::{Landscape, Mechanism, Table, fit, force_scale};
+use interwell::mechanics::{ForceTable, Landscape, Mechanism, fit, force_scale};
 use proptest::prelude::*;
 
 use super::{PROTOTYPE, close, keeps_its_promises, sampled};
@@ -121,10 +121,10 @@ fn no_force_at_all_is_a_table_too() {
 
 #[test]
 fn the_unit_of_the_table_does_not_matter() {
-    let table = Table::parse(PROTOTYPE).unwrap();
+    let table = ForceTable::parse(PROTOTYPE).unwrap();
     let pieces = fit(&table, 1e-4).unwrap().breaks().to_vec();
     for (length, force) in [(1e-9, 1.0), (1e9, 1e-6), (1e3, 1e12)] {
-        let scaled = Table {
+        let scaled = ForceTable {
             x: table.x.iter().map(|x| x * length).collect(),
             force: table.force.iter().map(|f| f * force).collect(),
         };
@@ -170,13 +170,13 @@ fn a_position_far_off_is_met_as_well() {
     for far in [1e3, 1e9, 1e17, 1e61, 1e150] {
         for force in [4.0, -0.5] {
             let text = format!("x_m,force_n\n2,1\n4,2\n5,4\n{far},{force}\n");
-            let curve = fit(&Table::parse(&text).unwrap(), 1e-4).unwrap();
+            let curve = fit(&ForceTable::parse(&text).unwrap(), 1e-4).unwrap();
             assert!(curve.fit().unwrap().worst_n <= 1e-4 * 4.0, "{:?} at {far}", curve.fit());
         }
     }
 }
 
-fn text_of(table: &Table) -> String {
+fn text_of(table: &ForceTable) -> String {
     let rows = table.x.iter().zip(&table.force).map(|(x, f)| format!("{x},{f}\n"));
     "x_m,force_n\n".chars().chain(rows.collect::<String>().chars()).collect()
 }
@@ -192,14 +192,14 @@ proptest! {
         digits in 1..8_i32,
     ) {
         let mut x = -0.3 * steps.iter().sum::<f64>();
-        let mut table = Table { x: Vec::new(), force: Vec::new() };
+        let mut table = ForceTable { x: Vec::new(), force: Vec::new() };
         for (step, r) in steps.iter().zip(&rough) {
             x += step;
             table.x.push(x);
             table.force.push((1.3 * x).sin() + 0.02 * x * x + roughness * r);
         }
         let curve = keeps_its_promises(&table, 10.0_f64.powi(-digits));
-        let read = Table::parse(&text_of(&table));
+        let read = ForceTable::parse(&text_of(&table));
         prop_assert_eq!(read.as_ref(), Ok(&table));
         let own = Landscape::of(&curve);
         let mut last = (curve.domain().0, curve.force(curve.domain().0));

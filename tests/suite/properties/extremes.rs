@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{Model, Outcome, Request, Run as Ran};
-use interwell::scene::{Damping, Excitation, FieldPath, Mechanism, Run, Scene, Start, Stops, check};
+use interwell::scene::{Damping, Excitation, FieldPath, Mechanism, RunSettings, Scene, Start, Stops, check};
 use proptest::prelude::*;
 
 use super::harness::hold;
@@ -117,7 +117,7 @@ fn scene() -> impl Strategy<Value = Scene> {
             stops,
             excitation,
             start,
-            run: Run { duration_s, settle_s: Some(0.0), tolerance, recurrence: false },
+            run: RunSettings { duration_s, settle_s: Some(0.0), tolerance, recurrence: false },
             sweep: vec![],
             app: None,
         },
@@ -181,7 +181,7 @@ fn a_damping_ratio_without_a_finite_coefficient_is_refused() {
     let mut coefficients_si = vec![1.0; 13];
     coefficients_si.push(1e-30);
     let mechanism = Mechanism::Polynomial { coefficients_si };
-    let run = Run { duration_s: 1e-3, settle_s: None, tolerance: 1e-9, recurrence: false };
+    let run = RunSettings { duration_s: 1e-3, settle_s: None, tolerance: 1e-9, recurrence: false };
     let scene = Scene {
         title: "stiff".into(),
         notes: String::new(),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use interwell::dynamics::Model;
-use interwell::scene::{Damping, Excitation, Mechanism, Record, Run, Scene, Start, Stops, check};
+use interwell::scene::{Damping, Excitation, Mechanism, Record, RunSettings, Scene, Start, Stops, check};
 use proptest::prelude::*;
 use proptest::strategy::Union;
 
@@ -195,10 +195,10 @@ pub fn tolerance() -> impl Strategy<Value = f64> {
     prop::sample::select(vec![1e-3, 1e-4, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12, 1e-14])
 }
 
-fn run() -> impl Strategy<Value = Run> {
+fn run() -> impl Strategy<Value = RunSettings> {
     let settle = prop_oneof![3 => Just(None), 1 => Just(Some(0.0)), 2 => (0.0..1.0f64).prop_map(Some), 1 => Just(Some(1.0))];
     (prop_oneof![3 => 3.0..12.0f64, 1 => 1e-3..3.0f64], settle, tolerance(), any::<bool>()).prop_map(
-        |(duration_s, settle, tolerance, recurrence)| Run {
+        |(duration_s, settle, tolerance, recurrence)| RunSettings {
             duration_s,
             settle_s: settle.map(|share| share * duration_s),
             tolerance,
@@ -230,7 +230,7 @@ pub fn scene_with(
                 damping: units.damping(damping),
                 stops: units.stops(natural_stops),
                 excitation: units.excitation(&excitation),
-                run: Run {
+                run: RunSettings {
                     duration_s: units.seconds(run.duration_s),
                     settle_s: run.settle_s.map(|settle| units.seconds(settle)),
                     ..run

@@ -129,7 +129,7 @@ fn scene() -> impl Strategy<Value = Scene> {
                 stops,
                 excitation,
                 start: Start::At { x_mm: mass_g, v_m_per_s: tolerance },
-                run: Run { duration_s, settle_s, tolerance, recurrence },
+                run: RunSettings { duration_s, settle_s, tolerance, recurrence },
                 sweep,
                 app,
             }

@@ -16,7 +16,7 @@ fn the_smallest_scene_has_the_documented_defaults() {
         stops: Stops::None,
         excitation: Excitation::None,
         start: Start::Rest,
-        run: Run { duration_s: 10.0, settle_s: None, tolerance: 1e-9, recurrence: true },
+        run: RunSettings { duration_s: 10.0, settle_s: None, tolerance: 1e-9, recurrence: true },
         sweep: vec![],
         app: None,
     };
@@ -139,7 +139,7 @@ fn run_sweep_and_window_hints_read_and_write() {
     assert_eq!(scene.notes, "One line.\n\nA \"second\" one.");
     assert_eq!(
         scene.run,
-        Run { duration_s: 10.0, settle_s: Some(10.0), tolerance: 1e-14, recurrence: false }
+        RunSettings { duration_s: 10.0, settle_s: Some(10.0), tolerance: 1e-14, recurrence: false }
     );
     assert_eq!(scene.sweep[0].to, 7.0);
     let app = scene.app.as_ref().unwrap();

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use interwell::dynamics::{Model, Outcome, Request};
-use interwell::mechanics::{BuildError, Mechanism, Table, fit, force_scale};
+use interwell::mechanics::{BuildError, ForceTable, Mechanism, fit, force_scale};
 use interwell::scene::{
     self, Document, Excitation, FieldPath, Files, LARGEST_AXIS, MOST_ROWS, Record, Start, arguments,
     read_columns, write,
@@ -53,13 +53,13 @@ pub fn scene(bytes: &[u8]) {
 /// The text of a table of forces: points, then a curve through them.
 pub fn table(bytes: &[u8]) {
     let Some(text) = harmless(bytes) else { return };
-    let table = match Table::parse(text) {
+    let table = match ForceTable::parse(text) {
         Ok(table) => table,
         Err(error) => return in_words(error, ""),
     };
     let rows = table.x.iter().zip(&table.force).map(|(x, force)| format!("{x:?},{force:?}\n"));
     let written = format!("x_m,force_n\n{}", rows.collect::<String>());
-    assert_eq!(Table::parse(&written).as_ref(), Ok(&table));
+    assert_eq!(ForceTable::parse(&written).as_ref(), Ok(&table));
     table.warnings().iter().for_each(|warning| in_words(warning, ""));
     rows_stand_on_lines(text, ["x_m", "force_n"]);
     for tolerance in [1e-2, 1e-8] {

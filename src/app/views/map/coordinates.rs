@@ -6,7 +6,7 @@ use eframe::egui::{
 
 use crate::app::session::map::{Map, label};
 use crate::app::ui::style::Style;
-use crate::output::Axis;
+use crate::output::PlotAxis;
 
 /// Room for numbers and names beside the map, in points.
 const LEFT: f32 = 52.0;
@@ -26,9 +26,9 @@ pub struct Coordinates {
     /// The colour bar, where there is one.
     pub bar: Option<Rect>,
     /// Across.
-    pub x: Axis,
+    pub x: PlotAxis,
     /// Up.
-    pub y: Axis,
+    pub y: PlotAxis,
 }
 
 impl Coordinates {
@@ -44,8 +44,8 @@ impl Coordinates {
         let ends = map.edges.each_ref().map(|edges| edges.ends());
         let count = |points: f32, each: f32| (points / each).clamp(2.0, 12.0) as usize;
         Self {
-            x: Axis::between(ends[0].0, ends[0].1, count(rect.width(), 70.0), &label(&names[0])),
-            y: Axis::between(ends[1].0, ends[1].1, count(rect.height(), 42.0), &label(&names[1])),
+            x: PlotAxis::between(ends[0].0, ends[0].1, count(rect.width(), 70.0), &label(&names[0])),
+            y: PlotAxis::between(ends[1].0, ends[1].1, count(rect.height(), 42.0), &label(&names[1])),
             rect,
             bar,
         }
@@ -60,7 +60,7 @@ impl Coordinates {
     /// The values at a place.
     pub fn world_from_screen(&self, at: Pos2) -> (f64, f64) {
         let share = (at - self.rect.min) / self.rect.size();
-        let between = |axis: &Axis, share: f32| axis.low + f64::from(share) * (axis.high - axis.low);
+        let between = |axis: &PlotAxis, share: f32| axis.low + f64::from(share) * (axis.high - axis.low);
         (between(&self.x, share.x), between(&self.y, 1.0 - share.y))
     }
 

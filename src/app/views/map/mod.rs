@@ -150,7 +150,7 @@ fn named(column: &str, value: f64) -> String {
 fn marker(painter: &egui::Painter, frame: &Coordinates, style: &Style, place: [Option<f64>; 2]) -> Pos2 {
     // without a stop the mass goes as far as it would with one far out
     let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));
-    let inside = |axis: &crate::output::Axis, value: f64| (axis.low..=axis.high).contains(&value);
+    let inside = |axis: &crate::output::PlotAxis, value: f64| (axis.low..=axis.high).contains(&value);
     let at =
         frame.screen_from_world((x.clamp(frame.x.low, frame.x.high), y.clamp(frame.y.low, frame.y.high)));
     let [halo, line] = style.marker_strokes();

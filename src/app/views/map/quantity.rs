@@ -3,7 +3,7 @@
 use crate::app::session::map::Map;
 use crate::app::words::status::Kind;
 use crate::dynamics::Regime;
-use crate::output::{Axis, speed_unit};
+use crate::output::{PlotAxis, speed_unit};
 use crate::study::Cell;
 
 /// What the colour of a map says.
@@ -72,7 +72,7 @@ pub struct ColourScale {
     quantity: MapQuantity,
     per_speed: f64,
     /// The bar beside the map; none for regimes.
-    pub bar: Option<Axis>,
+    pub bar: Option<PlotAxis>,
     /// Whether equal ratios are equal steps of colour.
     log: bool,
 }
@@ -87,10 +87,10 @@ impl ColourScale {
         let window = map.window_s();
         let bar = match quantity {
             MapQuantity::Regime => None,
-            MapQuantity::Speed => Some(Axis::between(0.0, most, 5, &format!("RMS velocity ({unit})"))),
-            MapQuantity::Reach => Some(Axis::between(0.0, most, 5, "reach (mm)")),
+            MapQuantity::Speed => Some(PlotAxis::between(0.0, most, 5, &format!("RMS velocity ({unit})"))),
+            MapQuantity::Reach => Some(PlotAxis::between(0.0, most, 5, "reach (mm)")),
             MapQuantity::Impacts => Some(counts(most, &format!("impacts in {window} s"))),
-            MapQuantity::Period => Some(Axis {
+            MapQuantity::Period => Some(PlotAxis {
                 low: 0.5,
                 high: 12.5,
                 ticks: (1..=12).map(|n| (f64::from(n), n.to_string())).collect(),
@@ -114,7 +114,7 @@ impl ColourScale {
     }
 
     /// Where a value stands on the bar, 0 to 1.
-    pub fn share(&self, value: f64, bar: &Axis) -> f64 {
+    pub fn share(&self, value: f64, bar: &PlotAxis) -> f64 {
         if self.log { (1.0 + value).ln() / (1.0 + bar.high).ln() } else { bar.share(value) }
     }
 
@@ -125,11 +125,11 @@ impl ColourScale {
 }
 
 /// A scale of counts, which go from two to a thousand: ticks at 1 and 3 times powers of ten.
-fn counts(most: f64, label: &str) -> Axis {
+fn counts(most: f64, label: &str) -> PlotAxis {
     let high = most.max(1.0);
     let powers = (0..9).flat_map(|power| [1, 3].map(|digit| digit * 10_u64.pow(power)));
     let ticks = std::iter::once(0).chain(powers).map(|n| (n as f64, n.to_string()));
-    Axis { low: 0.0, high, ticks: ticks.filter(|tick| tick.0 <= high).collect(), label: label.to_owned() }
+    PlotAxis { low: 0.0, high, ticks: ticks.filter(|tick| tick.0 <= high).collect(), label: label.to_owned() }
 }
 
 /// The kind of motion that a regime is.

@@ -1,4 +1,4 @@
-//! The hard cases: problems that break integrators of impacts, each with its answer and what its conditioning
+//! Hard cases: problems that break integrators of impacts, each with its answer and what its conditioning
 //! allows.
 //!
 //! The texts of a case say what stands behind its code: the problem, where the answer comes from, and the

@@ -1,4 +1,4 @@
-//! The same problem in other units.
+//! One problem in several systems of units.
 
 use super::HardCase;
 use crate::dynamics::{EventKind, Run};

@@ -1,4 +1,4 @@
-//! Which motions are known without integrating, and what are they?
+//! Motions with a closed form.
 //!
 //! In double-double arithmetic, some 31 digits, from the very doubles that a model holds, so that an answer's
 //! own rounding is no part of any error measured against it; only the corner's is in doubles.

@@ -7,7 +7,7 @@
 //! not seen.
 
 use super::problem::Problem;
-use super::tally::{State, Tally};
+use super::tally::{Tally, TimedState};
 use super::{Keep, MethodRun};
 use crate::dynamics::{Model, Phase, Side};
 use crate::numeric::bisect;
@@ -142,7 +142,7 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
     let mut tally = Tally::new(&problem, keep);
     let scales = model.scales();
     let end = model.duration();
-    let mut now = State { t: 0.0, x: problem.start.0, v: problem.start.1 };
+    let mut now = TimedState { t: 0.0, x: problem.start.0, v: problem.start.1 };
     let (mut steps, mut evaluations, mut attempts) = (0, 0, 0_u64);
     let mut h = 1e-2 * scales.time;
     let mut phase = Phase::Free;
@@ -170,7 +170,7 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
                 now.v = 0.0;
                 let at_rest = if side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
                 let release = release(press, now.t, end, model.forcing_period().unwrap_or(end) / SEARCHES);
-                let next = State { t: release, ..now };
+                let next = TimedState { t: release, ..now };
                 tally.step(&problem, now, next, at_rest, 0.0);
                 phase = if release < end { Phase::Free } else { at_rest };
                 now = next;
@@ -209,8 +209,8 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
             Some((share, side)) => {
                 let (place, restitution) = stop(side);
                 let v_in = step.at(share)[1];
-                let next = State { t: now.t + share * step.h, x: place, v: -restitution * v_in };
-                tally.step(&problem, now, State { v: v_in, ..next }, Phase::Free, step.squares(share));
+                let next = TimedState { t: now.t + share * step.h, x: place, v: -restitution * v_in };
+                tally.step(&problem, now, TimedState { v: v_in, ..next }, Phase::Free, step.squares(share));
                 if v_in * sign(side) > 0.0 {
                     tally.impact(next.t, side, v_in, next.v);
                 }
@@ -226,7 +226,7 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
             }
             None => {
                 let t = if last { end } else { now.t + length };
-                let next = State { t, x: step.end[0], v: step.end[1] };
+                let next = TimedState { t, x: step.end[0], v: step.end[1] };
                 tally.step(&problem, now, next, Phase::Free, step.squares(1.0));
                 touching = None;
                 slope = Some(step.slope);

@@ -1,7 +1,7 @@
 //! Fixed steps with clamp and bounce.
 
 use super::problem::Problem;
-use super::tally::{State, Tally};
+use super::tally::{Tally, TimedState};
 use super::{Keep, MethodRun, Scheme};
 use crate::dynamics::{Model, Phase, Side};
 use crate::system::clock::ThreadClock;
@@ -26,7 +26,7 @@ pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> Meth
     let count = if wanted >= 1.0 { wanted.min(MOST_STEPS) } else { MOST_STEPS } as u64;
     let h = model.duration() / count as f64;
     let mut tally = Tally::new(&problem, keep);
-    let mut now = State { t: 0.0, x: problem.start.0, v: problem.start.1 };
+    let mut now = TimedState { t: 0.0, x: problem.start.0, v: problem.start.1 };
     let mut last_acceleration = problem.acceleration(0.0, now.x, now.v);
     let mut evaluations = 1;
     let mut taken = 0;
@@ -39,7 +39,7 @@ pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> Meth
             Scheme::SemiImplicitEuler => {
                 evaluations += 1;
                 let v = now.v + h * problem.acceleration(now.t, now.x, now.v);
-                State { t, x: now.x + h * v, v }
+                TimedState { t, x: now.x + h * v, v }
             }
             Scheme::VelocityVerlet => {
                 evaluations += 1;
@@ -47,7 +47,7 @@ pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> Meth
                 let new = problem.acceleration(t, x, now.v + h * last_acceleration);
                 let v = now.v + 0.5 * h * (last_acceleration + new);
                 last_acceleration = new;
-                State { t, x, v }
+                TimedState { t, x, v }
             }
             Scheme::RungeKutta4 => {
                 evaluations += 4;
@@ -86,7 +86,7 @@ pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> Meth
     run
 }
 
-fn runge_kutta(problem: &Problem, State { t, x, v }: State, h: f64, end: f64) -> State {
+fn runge_kutta(problem: &Problem, TimedState { t, x, v }: TimedState, h: f64, end: f64) -> TimedState {
     let half = 0.5 * h;
     let a1 = problem.acceleration(t, x, v);
     let (x2, v2) = (x + half * v, v + half * a1);
@@ -95,7 +95,7 @@ fn runge_kutta(problem: &Problem, State { t, x, v }: State, h: f64, end: f64) ->
     let a3 = problem.acceleration(t + half, x3, v3);
     let (x4, v4) = (x + h * v3, v + h * a3);
     let a4 = problem.acceleration(end, x4, v4);
-    State {
+    TimedState {
         t: end,
         x: x + h / 6.0 * (v + 2.0 * (v2 + v3) + v4),
         v: v + h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4),

@@ -1,4 +1,4 @@
-//! What do people use instead? Four common methods, on any scene, for comparison with the program's own.
+//! Four common methods, on any scene, for comparison with the program's own.
 //!
 //! Built for that alone: no run of the program takes them. Fixed steps *clamp and bounce*, as in games and
 //! small teaching applets: a step that ends beyond a stop is put onto it and its velocity reversed. Contact

@@ -1,4 +1,4 @@
-//! What of such a run is kept.
+//! Events, samples and statistics of a run by another method.
 
 use super::problem::Problem;
 use super::{Keep, MethodRun};
@@ -6,7 +6,7 @@ use crate::dynamics::{Event, EventKind, Phase, Sample, Side};
 
 /// Time, displacement and velocity in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct State {
+pub(super) struct TimedState {
     pub t: f64,
     pub x: f64,
     pub v: f64,
@@ -39,7 +39,7 @@ impl<'a> Tally<'a> {
 
     /// Takes in a step from `a` to `b`; `phase` is what the mass did in it, `squares` the integral of v^2
     /// over it.
-    pub fn step(&mut self, problem: &Problem, a: State, b: State, phase: Phase, squares: f64) {
+    pub fn step(&mut self, problem: &Problem, a: TimedState, b: TimedState, phase: Phase, squares: f64) {
         let h = b.t - a.t;
         while let Some(t) = self.keep.sample_times.get(self.next).copied().filter(|t| *t < b.t) {
             let share = if h > 0.0 { (t - a.t) / h } else { 0.0 };
@@ -74,7 +74,13 @@ impl<'a> Tally<'a> {
     }
 
     /// The run as it stands at its last state.
-    pub fn finish(mut self, problem: &Problem, last: State, phase: Phase, counts: (u64, u64)) -> MethodRun {
+    pub fn finish(
+        mut self,
+        problem: &Problem,
+        last: TimedState,
+        phase: Phase,
+        counts: (u64, u64),
+    ) -> MethodRun {
         let duration = problem.model.duration();
         let ended = last.t < duration;
         while let Some(t) = self.keep.sample_times.get(self.next).copied().filter(|t| *t <= last.t) {

@@ -1,4 +1,4 @@
-//! How late does another run arrive at a stop?
+//! Lateness of another run's impacts.
 
 use crate::dynamics::{Event, EventKind, Model};
 

@@ -1,4 +1,4 @@
-//! Two runs of the same scene beside each other: how far are they apart, and from when on?
+//! Distance between two runs of the same scene.
 
 use super::TRUSTED_SHARE;
 use crate::dynamics::{Model, Sample};

@@ -1,4 +1,4 @@
-//! How accurate is the run of one scene, and what does its accuracy cost?
+//! Accuracy of the run of one scene, and its cost.
 //!
 //! Three questions, each a function of a model: what the error of its run is and up to when its path can be
 //! trusted ([`trust`]); what every digit costs ([`tolerances`]); and what a fixed step makes of it, as a game

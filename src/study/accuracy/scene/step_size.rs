@@ -1,4 +1,4 @@
-//! What does the size of a fixed step make of a scene?
+//! Effect of the size of a fixed step on a scene.
 
 use std::sync::atomic::AtomicBool;
 

@@ -1,4 +1,4 @@
-//! What was found of a scene, as one table.
+//! Accuracy of a scene as one table.
 
 use super::{StepSize, Tolerances};
 use crate::study::accuracy::OWN;

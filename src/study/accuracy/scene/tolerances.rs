@@ -1,4 +1,4 @@
-//! What does each digit of a scene's run cost?
+//! Cost of each digit of a scene's run.
 
 use std::sync::atomic::AtomicBool;
 

@@ -1,4 +1,4 @@
-//! What is the error of a run, and up to when can its path be trusted?
+//! Error of a run, and the time up to which its path can be trusted.
 
 use std::sync::atomic::AtomicBool;
 

@@ -1,4 +1,4 @@
-//! What was found of a scene, in plain words: the window and the command line say the same.
+//! Accuracy of a scene in sentences, the same for window and command line.
 
 use super::{Course, Lateness, StepSize, TRUSTED_SHARE, Trust};
 use crate::dynamics::Outcome;

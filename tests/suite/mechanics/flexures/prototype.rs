@@ -1,6 +1,6 @@
 //! The prototype's numbers: established with other codes, in `check` to the printed digits, and beside the table of a solid model.
 
-use interwell::mechanics::{Landscape, Table, fit};
+use interwell::mechanics::{ForceTable, Landscape, fit};
 
 use super::*;
 
@@ -98,7 +98,7 @@ fn a_vanishing_bow_changes_nothing_but_the_corner() {
 /// them the force between 5 mm and there.
 #[test]
 fn a_solid_model_is_near() {
-    let table = Table::parse(super::super::PROTOTYPE).unwrap();
+    let table = ForceTable::parse(super::super::PROTOTYPE).unwrap();
     let solid = fit(&table, 1e-4).unwrap();
     let (curve, own) = landscape(&prototype());
     for i in 0..=50 {

@@ -1,5 +1,4 @@
-//! How did the mass get from one sample to the next? The equation of motion, integrated between two that are
-//! known.
+//! Path of the mass between two known samples, by the equation of motion.
 //!
 //! For pictures: samples that are dense enough for a swing are too few where taut flexures turn the mass
 //! round in a hundredth of it. The classical Runge-Kutta method goes from one sample towards the next, the
