@@ -5,7 +5,8 @@
 
 use eframe::egui::{self, Id, Role, Ui, accesskit::Live};
 
-use super::status::{Kind, Sentence};
+use super::kind::Kind;
+use super::status::Sentence;
 
 /// Seconds for which a sentence stands still before it is spoken.
 const STILL: f64 = 0.5;
