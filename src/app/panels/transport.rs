@@ -130,7 +130,7 @@ fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
     };
     match kind {
         EventKind::Crossing => {
-            let color = style.kind(crate::app::words::kind::Kind::Interwell);
+            let color = style.kind(crate::app::words::status::Kind::Interwell);
             convex(&[(0.0, -10.0), (3.5, -6.0), (0.0, -2.0), (-3.5, -6.0)], color)
         }
         EventKind::Release | EventKind::Separate => {

@@ -5,11 +5,10 @@ use eframe::egui::{self, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
 use crate::app::session::Card;
 use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::fields::name_and_unit;
-use crate::app::words::kind::Kind;
 use crate::app::words::meanings::explained;
 use crate::app::words::numbers::{decimals_for, exact, shown};
-use crate::app::words::status::{grams, mm, speed};
-use crate::dynamics::Outcome;
+use crate::app::words::status::{Kind, grams, mm, speed};
+use crate::dynamics::{Outcome, Regime};
 use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};
 use crate::study::Settled;
 
@@ -246,11 +245,15 @@ fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Settled>) 
         ui.label("the run ended early");
         return;
     }
-    let kind = Kind::from(settled.summary.regime);
-    let name = match kind {
-        Kind::Resting => "resting",
-        Kind::Intrawell if settled.summary.releases > 0 => "hopping",
-        kind => kind.name(),
+    let (kind, name) = match settled.summary.regime {
+        Regime::Rest => (Kind::Resting, "resting"),
+        Regime::Intrawell if settled.summary.releases > 0 => (Kind::Intrawell, "hopping"),
+        Regime::Intrawell => (Kind::Intrawell, "intrawell"),
+        Regime::Interwell => (Kind::Interwell, "interwell"),
+        Regime::Irregular => (Kind::Irregular, "irregular"),
+        Regime::Crossing => (Kind::Crossing, "crossing"),
+        // no wells or one: there is nothing to cross
+        Regime::OneWell => (Kind::Other, "no barrier"),
     };
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(16.0), Sense::hover());

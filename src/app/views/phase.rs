@@ -9,8 +9,8 @@ use std::collections::VecDeque;
 use eframe::egui::{self, Color32, Painter, Pos2, Sense, Shape, Stroke, Ui};
 
 use crate::app::ui::widgets::kind_shapes;
-use crate::app::words::kind::Kind;
 use crate::app::words::numbers::three;
+use crate::app::words::status::Kind;
 use crate::dynamics::{Model, Phase, Sample};
 use crate::study::between;
 
@@ -149,13 +149,13 @@ fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bo
         let square = |x: f64| 2.0 * (top - curve.potential(x)) / model.mass;
         let mut path: Vec<(f64, f64)> = vec![(barrier.x, 0.0)];
         for i in 1..=400 {
-            let own = square(place(i));
-            if !(own > 0.0) {
-                let turn = turning(square, place(i - 1), place(i));
+            let square = square(place(i));
+            if !(square > 0.0) {
+                let turn = turning(&square_at(curve, top), place(i - 1), place(i));
                 path.push((turn, 0.0));
                 break;
             }
-            path.push((place(i), own.sqrt()));
+            path.push((place(i), square.sqrt()));
         }
         for sign in [1.0, -1.0] {
             let points: Vec<Pos2> = path.iter().map(|(x, v)| chart.screen_from_world(*x, sign * v)).collect();
@@ -165,8 +165,12 @@ fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bo
     true
 }
 
+fn square_at(curve: &crate::mechanics::ForceCurve, top: f64) -> impl Fn(f64) -> f64 {
+    move |x| top - curve.potential(x)
+}
+
 /// Where `height` comes to 0 between a place where it is above and one where it is not, as near as is seen.
-fn turning(height: impl Fn(f64) -> f64, mut above: f64, mut below: f64) -> f64 {
+fn turning(height: &impl Fn(f64) -> f64, mut above: f64, mut below: f64) -> f64 {
     for _ in 0..20 {
         let middle = 0.5 * (above + below);
         if height(middle) > 0.0 { above = middle } else { below = middle }
@@ -293,6 +297,6 @@ mod tests {
 
     #[test]
     fn a_turning_point_is_found() {
-        assert!((turning(|x| 1.0 - x, 0.0, 4.0) - 1.0).abs() < 1e-5);
+        assert!((turning(&|x| 1.0 - x, 0.0, 4.0) - 1.0).abs() < 1e-5);
     }
 }

@@ -1,14 +1,13 @@
 //! Sentence about a shaken mass.
 
 use crate::app::words::fields::stop_distances;
-use crate::app::words::kind::Kind;
 use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, Summary};
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
 use super::numbers::{between, grams, limit_mm, mm, seconds, speed, times};
 use super::remedy::{amplitude, remedy};
-use super::{Sentence, ended};
+use super::{Kind, Sentence, ended};
 
 /// Forcing periods of a motion without a period that are seen before it is told of in the present tense.
 const SEEN_PERIODS: f64 = 5.0;

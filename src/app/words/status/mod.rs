@@ -7,10 +7,10 @@ mod driven;
 mod numbers;
 mod remedy;
 
-use crate::app::words::kind::Kind;
 use crate::dynamics::{Model, Outcome, Phase, Sample, Side};
 use crate::study::{Standing, standing};
 
+pub use super::kind::Kind;
 pub use driven::{Told, driven};
 use numbers::{energy, newtons};
 pub use numbers::{grams, mm, speed};
