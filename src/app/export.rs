@@ -141,7 +141,8 @@ mod tests {
         session.edit_once(|scene| scene.stops = scene.app.as_ref().unwrap().stops_when_on.unwrap());
         session.poll();
         session.restart();
-        let own = "interwell --headless simulate first-look --set 'stops=Rigid(travel_limit_mm:1.5,restitution:0.36)'";
+        let own = "interwell --headless simulate first-look --set \
+                   'stops=Rigid(travel_limit_mm:1.5,restitution:0.36)'";
         assert_eq!(command_line(&session).unwrap(), (own.to_owned(), Runs::Whole));
         assert_eq!(quoted("it's"), r"'it'\''s'");
         assert_eq!(quoted("excitation.amplitude_g=0:2:0.02"), "excitation.amplitude_g=0:2:0.02");

@@ -49,7 +49,7 @@ impl Announcer {
         self.count += 1;
     }
 
-    /// What was spoken last, and the how manieth it was.
+    /// What was spoken last, with its sequence number.
     pub fn said(&self) -> Option<(u64, &str)> {
         self.said.as_ref().map(|(_, text)| (self.count, text.as_str()))
     }
