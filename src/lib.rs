@@ -83,6 +83,7 @@
 //! ([`dynamics::Model::run_reference`]) to see what its error was.
 
 #[cfg(feature = "app")]
+#[doc(hidden)]
 pub mod app;
 pub mod dynamics;
 pub mod mechanics;

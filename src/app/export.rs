@@ -12,15 +12,14 @@ use crate::dynamics::Model;
 use crate::output::{header, rows};
 use crate::scene::{FieldPath, Scene, arguments};
 use crate::study::{
-    CURVE_POINTS, Keep, OutsideCurve, Sampling, continued_scene, curve, default_positions, events_table,
-    sample_times, samples_table, simulate,
+    CURVE_POINTS, Keep, OutsideCurve, Sampling, Table, continued_scene, curve, default_positions,
+    events_table, sample_times, samples_table, simulate,
 };
 
 /// The motion that is remembered, in the columns of the command line's `simulate`.
 pub fn motion_csv(player: &Player) -> String {
     let samples: Vec<_> = player.watch().samples().iter().copied().collect();
-    let table = samples_table(&samples);
-    header(&table) + &rows(&table, 0..table.rows())
+    csv(&samples_table(&samples))
 }
 
 /// The run of a scene from its start to its end, as `simulate` writes it; none where it was cancelled.
@@ -31,14 +30,13 @@ pub fn run_csv(scene: &Scene, model: &Model, cancel: &AtomicBool) -> Option<Resu
     };
     let table = simulate(model, &Keep { times, events: false, until_settled: None }, Some(cancel)).samples;
     let whole = !cancel.load(Ordering::Relaxed);
-    whole.then(|| Ok(header(&table) + &rows(&table, 0..table.rows())))
+    whole.then(|| Ok(csv(&table)))
 }
 
 /// The events that are remembered, in the columns of `simulate --events`.
 pub fn events_csv(player: &Player) -> String {
     let events: Vec<_> = player.watch().events().iter().copied().collect();
-    let table = events_table(&events);
-    header(&table) + &rows(&table, 0..table.rows())
+    csv(&events_table(&events))
 }
 
 /// Force, potential and stiffness of the mechanism in the columns and at the positions of the command line's
@@ -46,7 +44,11 @@ pub fn events_csv(player: &Player) -> String {
 pub fn curve_csv(session: &Session) -> Result<String, OutsideCurve> {
     let mechanism = &session.model().mechanism();
     let table = curve(mechanism, default_positions(session.scene(), mechanism, CURVE_POINTS as usize))?;
-    Ok(header(&table) + &rows(&table, 0..table.rows()))
+    Ok(csv(&table))
+}
+
+fn csv(table: &Table) -> String {
+    header(table) + &rows(table, 0..table.rows())
 }
 
 /// A picture as PNG.
@@ -139,7 +141,8 @@ mod tests {
         session.edit_once(|scene| scene.stops = scene.app.as_ref().unwrap().stops_when_on.unwrap());
         session.poll();
         session.restart();
-        let own = "interwell --headless simulate first-look --set 'stops=Rigid(travel_limit_mm:1.5,restitution:0.36)'";
+        let own = "interwell --headless simulate first-look --set \
+                   'stops=Rigid(travel_limit_mm:1.5,restitution:0.36)'";
         assert_eq!(command_line(&session).unwrap(), (own.to_owned(), Runs::Whole));
         assert_eq!(quoted("it's"), r"'it'\''s'");
         assert_eq!(quoted("excitation.amplitude_g=0:2:0.02"), "excitation.amplitude_g=0:2:0.02");

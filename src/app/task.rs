@@ -28,66 +28,17 @@ pub fn wait_while(most: Duration, mut take: impl FnMut() -> bool) {
 /// Wakes the window when an answer is there.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// A computation on a thread of its own.
-#[derive(Debug)]
-pub struct Job<T> {
-    answer: Receiver<T>,
-    cancel: Arc<AtomicBool>,
-}
-
-impl<T: Send + 'static> Job<T> {
-    /// Starts `job`, which looks at the flag that it is given; none where the system has no thread to give.
-    pub fn start(wake: &Wake, job: impl FnOnce(&AtomicBool) -> T + Send + 'static) -> Option<Self> {
-        let (sender, answer) = channel();
-        let cancel = Arc::new(AtomicBool::new(false));
-        let (flag, wake) = (Arc::clone(&cancel), Arc::clone(wake));
-        let thread = std::thread::Builder::new().name("study".into());
-        let run = move || {
-            let answer = job(&flag);
-            // nobody listens where the job was dropped
-            if sender.send(answer).is_ok() {
-                wake();
-            }
-        };
-        thread.spawn(run).ok().map(|_| Self { answer, cancel })
-    }
-
-    /// The answer, once; `Err` where none will come any more.
-    pub fn poll(&self) -> Option<Result<T, ()>> {
-        match self.answer.try_recv() {
-            Ok(answer) => Some(Ok(answer)),
-            Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some(Err(())),
-        }
-    }
-
-    /// Waits for the answer, at most so long.
-    pub fn wait(&self, most: Duration) -> Option<Result<T, ()>> {
-        match self.answer.recv_timeout(most) {
-            Ok(answer) => Some(Ok(answer)),
-            Err(RecvTimeoutError::Timeout) => None,
-            Err(RecvTimeoutError::Disconnected) => Some(Err(())),
-        }
-    }
-}
-
-impl<T> Drop for Job<T> {
-    fn drop(&mut self) {
-        self.cancel.store(true, Ordering::Relaxed);
-    }
-}
-
-/// How often at most a stream wakes the window while it runs.
+/// How often at most a job wakes the window while it runs.
 const WAKE_EVERY: Duration = Duration::from_millis(40);
 
 /// A computation on a thread of its own whose answer comes in parts, from any thread that it uses.
 #[derive(Debug)]
-pub struct Stream<T> {
+pub struct Job<T> {
     parts: Receiver<T>,
     cancel: Arc<AtomicBool>,
 }
 
-impl<T: Send + 'static> Stream<T> {
+impl<T: Send + 'static> Job<T> {
     /// Starts `job`, which looks at the flag that it is given and hands its parts over one by one; none where
     /// the system has no thread to give.
     pub fn start(
@@ -100,7 +51,7 @@ impl<T: Send + 'static> Stream<T> {
         let last = Mutex::new(Instant::now());
         let run = move || {
             let each = |part: T| {
-                // nobody listens where the stream was dropped
+                // nobody listens where the job was dropped
                 if sender.send(part).is_err() {
                     return;
                 }
@@ -113,10 +64,21 @@ impl<T: Send + 'static> Stream<T> {
             };
             job(&flag, &each);
             drop(sender);
-            wake();
+            if !flag.load(Ordering::Relaxed) {
+                wake();
+            }
         };
         let thread = std::thread::Builder::new().name("study".into());
         thread.spawn(run).ok().map(|_| Self { parts, cancel })
+    }
+
+    /// Waits for the next part, at most so long; `Err` where none will come any more.
+    fn wait(&self, most: Duration) -> Result<Option<T>, ()> {
+        match self.parts.recv_timeout(most) {
+            Ok(part) => Ok(Some(part)),
+            Err(RecvTimeoutError::Timeout) => Ok(None),
+            Err(RecvTimeoutError::Disconnected) => Err(()),
+        }
     }
 
     /// Takes what has come, and says whether more may come.
@@ -131,7 +93,7 @@ impl<T: Send + 'static> Stream<T> {
     }
 }
 
-impl<T> Drop for Stream<T> {
+impl<T> Drop for Job<T> {
     fn drop(&mut self) {
         self.cancel.store(true, Ordering::Relaxed);
     }
@@ -141,7 +103,7 @@ impl<T> Drop for Stream<T> {
 #[derive(Debug)]
 pub struct Latest<T> {
     generation: u64,
-    job: Option<Job<Option<T>>>,
+    job: Option<Job<T>>,
     /// When the question under way was asked.
     since: Option<Instant>,
     /// The answer and the generation of its question.
@@ -158,7 +120,11 @@ impl<T: Send + 'static> Latest<T> {
     /// Asks anew; a question under way is dropped.
     pub fn ask(&mut self, wake: &Wake, job: impl FnOnce(&AtomicBool) -> Option<T> + Send + 'static) {
         self.generation += 1;
-        self.job = Job::start(wake, job);
+        self.job = Job::start(wake, move |cancel, each| {
+            if let Some(answer) = job(cancel) {
+                each(answer);
+            }
+        });
         self.since = Some(Instant::now());
     }
 
@@ -175,25 +141,29 @@ impl<T: Send + 'static> Latest<T> {
 
     /// Takes in an answer that has come. Whether one has.
     pub fn poll(&mut self) -> bool {
-        let Some(came) = self.job.as_ref().and_then(Job::poll) else { return false };
-        self.take(came);
+        let Some(job) = &self.job else { return false };
+        let mut answer = None;
+        let more = job.take(|own| answer = Some(own));
+        if answer.is_none() && more {
+            return false;
+        }
+        self.finish(answer);
         true
     }
 
-    fn take(&mut self, came: Result<Option<T>, ()>) {
+    fn finish(&mut self, answer: Option<T>) {
         self.job = None;
-        if let Ok(Some(answer)) = came {
+        if let Some(answer) = answer {
             self.answer = Some((self.generation, answer));
         }
     }
 
     /// Waits for the answer to the present question, at most so long. Whether it is there.
     pub fn wait(&mut self, most: Duration) -> bool {
-        let until = Instant::now() + most;
-        if let Some(job) = &self.job
-            && let Some(came) = job.wait(until.saturating_duration_since(Instant::now()))
-        {
-            self.take(came);
+        match self.job.as_ref().map(|job| job.wait(most)) {
+            Some(Ok(Some(answer))) => self.finish(Some(answer)),
+            Some(Err(())) => self.finish(None),
+            Some(Ok(None)) | None => {}
         }
         self.current().is_some()
     }
@@ -232,7 +202,7 @@ mod tests {
     #[test]
     fn dropped_it_is_cancelled() {
         let (sender, seen) = channel();
-        let job = Job::start(&wake(), move |cancel: &AtomicBool| {
+        let job = Job::<()>::start(&wake(), move |cancel, _| {
             while !cancel.load(Ordering::Relaxed) {
                 std::thread::sleep(Duration::from_millis(1));
             }
@@ -262,7 +232,7 @@ mod tests {
     #[test]
     fn parts_come_until_nobody_listens() {
         let (sender, seen) = channel();
-        let stream = Stream::start(&wake(), move |cancel: &AtomicBool, each: &(dyn Fn(u32) + Sync)| {
+        let job = Job::start(&wake(), move |cancel: &AtomicBool, each: &(dyn Fn(u32) + Sync)| {
             each(1);
             each(2);
             while !cancel.load(Ordering::Relaxed) {
@@ -274,12 +244,12 @@ mod tests {
         .unwrap();
         let mut parts = Vec::new();
         while parts.len() < 2 {
-            assert!(stream.take(|part| parts.push(part)));
+            assert!(job.take(|part| parts.push(part)));
         }
         assert_eq!(parts, [1, 2]);
-        drop(stream);
+        drop(job);
         assert!(seen.recv_timeout(LONG).is_ok());
-        let short = Stream::start(&wake(), |_: &AtomicBool, each: &(dyn Fn(u32) + Sync)| each(4)).unwrap();
+        let short = Job::start(&wake(), |_: &AtomicBool, each: &(dyn Fn(u32) + Sync)| each(4)).unwrap();
         let mut last = 0;
         while short.take(|part| last = part) {}
         assert_eq!(last, 4);

@@ -144,8 +144,8 @@ fn without_the_window_nothing_of_it_is_built() {
 const WINDOW_ORDER: [&str; 10] =
     ["clock", "disk", "task", "words", "session", "export", "ui", "panels", "views", "window"];
 
-/// The folders of `src/app` that a file uses, by `crate::app::`, with lines. A `super` that leads out of the folder is
-/// an empty name: another folder is named in full.
+/// The folders of `src/app` that a file uses, by `crate::app::`, with lines. A `super` that leads out of the
+/// folder is an empty name: another folder is named in full.
 fn folders_used(path: &Path, text: &str) -> Vec<(usize, String)> {
     let depth = path.components().count() - usize::from(path.ends_with("mod.rs"));
     let leaving = "super::".repeat(depth);

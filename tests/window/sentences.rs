@@ -1,7 +1,7 @@
 //! Does the status line say what the run says?
 
 use interwell::app::session::Session;
-use interwell::app::words::status::Kind;
+use interwell::app::words::kind::Kind;
 use interwell::scene::{Excitation, Stops};
 
 use crate::support::{LONG, session};

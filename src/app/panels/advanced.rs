@@ -7,7 +7,7 @@ use eframe::egui::{self, ComboBox, Ui};
 use crate::app::session::Session;
 use crate::scene::{Excitation, Stops};
 
-use super::controls::field_ui;
+use super::controls::{field_ui, fields_ui};
 
 /// Draws it. Whether something changed.
 pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
@@ -94,7 +94,7 @@ fn excitation_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
         Excitation::Noise { .. } => &["excitation.low_hz", "excitation.high_hz"],
         _ => &[],
     };
-    paths.iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))
+    fields_ui(ui, session, paths, width)
 }
 
 fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
@@ -129,10 +129,7 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
             });
         }
     }
-    for path in ["stops.restitution_left", "stops.restitution_right"] {
-        changed |= field_ui(ui, session, path, width);
-    }
-    changed
+    changed | fields_ui(ui, session, &["stops.restitution_left", "stops.restitution_right"], width)
 }
 
 /// Equal stops as stops that may differ, and back; back, both are as the right one, where it is there.

@@ -103,12 +103,16 @@ pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &'static str, w
     changed
 }
 
+/// The same for several numbers below each other.
+pub(super) fn fields_ui(ui: &mut Ui, session: &mut Session, paths: &[&'static str], width: f32) -> bool {
+    paths.iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))
+}
+
 fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let text = match &session.scene().excitation {
-        Excitation::Sine { .. } | Excitation::Chirp { .. } => {
-            return field_ui(ui, session, "excitation.amplitude_g", width);
+        Excitation::Sine { .. } | Excitation::Chirp { .. } | Excitation::Noise { .. } => {
+            return fields_ui(ui, session, &["excitation.amplitude_g", "excitation.rms_g"], width);
         }
-        Excitation::Noise { .. } => return field_ui(ui, session, "excitation.rms_g", width),
         Excitation::None => {
             let own = session.suiting_sine();
             let Excitation::Sine { frequency_hz, amplitude_g, .. } = own else { return false };
@@ -138,8 +142,7 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) -> bool {
 /// The distance of the stops, or of each of them; while they are off, of those that come: moving it switches
 /// them on.
 fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    let paths = ["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"];
-    paths.into_iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))
+    fields_ui(ui, session, &["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"], width)
 }
 
 fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
@@ -176,13 +179,9 @@ fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
 }
 
 fn damping_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    match session.scene().damping {
-        Damping::Ratio(_) => field_ui(ui, session, "damping.xi", width),
-        Damping::Coefficient { .. } => field_ui(ui, session, "damping.c_n_s_per_m", width),
-        Damping::None => {
-            ui.add_enabled(false, egui::Label::new("no damping"))
-                .on_disabled_hover_text("The scene has none.");
-            false
-        }
+    if session.scene().damping == Damping::None {
+        let label = ui.add_enabled(false, egui::Label::new("no damping"));
+        label.on_disabled_hover_text("The scene has none.");
     }
+    fields_ui(ui, session, &["damping.xi", "damping.c_n_s_per_m"], width)
 }

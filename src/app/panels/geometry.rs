@@ -5,7 +5,7 @@ use eframe::egui::{self, Ui};
 use crate::app::session::Session;
 use crate::scene::Mechanism;
 
-use super::controls::field_ui;
+use super::controls::{field_ui, fields_ui};
 
 /// The slider of the preload; for a mechanism without one greyed, with the reason. Whether something changed.
 pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
@@ -31,7 +31,7 @@ pub fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
         "mechanism.buckling.length_mm",
         "mechanism.buckling.width_mm",
     ];
-    sizes.into_iter().fold(false, |changed, path| changed | field_ui(ui, session, path, width))
+    fields_ui(ui, session, &sizes, width)
 }
 
 fn absent_ui(ui: &mut Ui, name: &str, why: &str) -> bool {

@@ -93,8 +93,8 @@ fn stop_ui(ui: &mut Ui, session: &mut Session) {
         ui.ctx().request_repaint_after(OFFER_TO_STOP - worked);
         return;
     }
-    let hover = "The background has worked for so long on what this settles to, what it would take to cross and how accurate \
-                 the motion is. The motion goes on without it; the next change asks anew.";
+    let hover = "The background has worked for so long on what this settles to, what it would take to cross \
+                 and how accurate the motion is. The motion goes on without it; the next change asks anew.";
     let text = format!("Stop ({} s)", worked.as_secs());
     ui.ctx().request_repaint_after_secs(1.0);
     if ui.button(text).on_hover_text(hover).clicked() {

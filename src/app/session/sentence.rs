@@ -1,5 +1,6 @@
 //! Choice of the sentence about the open scene.
 
+use crate::app::words::kind::Kind;
 use crate::app::words::status::{self, Sentence, Told};
 
 use super::Session;
@@ -44,5 +45,5 @@ impl Session {
 /// While it is not known what the motion settles to, because a person has stopped that.
 fn stopped() -> Sentence {
     let text = "Stopped before it was known what this settles to: a shorter run length is known sooner.";
-    Sentence { kind: status::Kind::Other, text: text.to_owned(), remedy: String::new() }
+    Sentence { kind: Kind::Other, text: text.to_owned(), remedy: String::new() }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId, Stroke, TextStyle, Theme};
 
-use crate::app::words::status::Kind;
+use crate::app::words::kind::Kind;
 use crate::output::{Ink, viridis};
 
 /// Zoom of the projector mode.

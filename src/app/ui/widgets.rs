@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
 
-use crate::app::words::status::Kind;
+use crate::app::words::kind::Kind;
 
 use super::style::COMPACT_BELOW;
 

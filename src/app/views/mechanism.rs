@@ -17,8 +17,7 @@ use crate::mechanics::ForceCurve;
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
 use super::labels::{ago, haloed, plated};
 use super::stops::{WALL, stops_beside_ui};
-use super::well::mass_ui;
-use super::{Span, ViewContext, too_small_ui};
+use super::{Span, ViewContext, mass::mass_ui, too_small_ui};
 
 /// Half turns of a drawn spring, and half its width in points.
 const COILS: usize = 12;

@@ -13,11 +13,13 @@ mod force;
 mod labels;
 mod legend;
 mod map;
+mod mass;
 mod mechanism;
 mod phase;
 mod ranges;
 mod span;
 mod stops;
+mod timeline;
 mod trace;
 mod well;
 
@@ -29,7 +31,8 @@ use crate::mechanics::flexure::State;
 
 pub use map::MapQuantity;
 pub use span::Span;
-pub use trace::{Timeline, TraceQuantity};
+pub use timeline::Timeline;
+pub use trace::TraceQuantity;
 
 /// What can be seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]

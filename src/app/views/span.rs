@@ -1,6 +1,6 @@
 //! The x axis that the drawn mechanism and the well share.
 
-use eframe::egui::{Rangef, Rect};
+use eframe::egui::Rect;
 
 use crate::app::session::Session;
 use crate::numeric::round::{ONE_TWO_FIVE, round_up};
@@ -90,11 +90,6 @@ impl Span {
     /// Round displacements in m for ticks, some `count` of them, and the decimals of their mm.
     pub fn ticks(&self, count: f64) -> (Vec<f64>, usize) {
         ticks(self.low * 1e3, self.high * 1e3, count)
-    }
-
-    /// The part of the screen that is drawn on.
-    pub fn screen(&self, rect: Rect) -> Rangef {
-        rect.x_range()
     }
 }
 

@@ -5,9 +5,7 @@
 //! come from the scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
 
 use eframe::egui::{self, Align2, TextStyle, Ui, UiBuilder, vec2};
-use egui_plot::{
-    GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span, VLine,
-};
+use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
 
 use crate::app::words::numbers::decimals_for;
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
@@ -18,6 +16,7 @@ use super::labels::haloed;
 use super::legend::{LEGEND, Sign, legend};
 use super::ranges::room_for_push;
 use super::span::ticks;
+use super::timeline::{zoom, zoom_up};
 
 /// Forcing periods that are shown; without a period multiples of the motion's pace. No more swings of the
 /// mechanism than are told apart.
@@ -30,10 +29,6 @@ const PRESENT: f64 = 0.94;
 
 /// Share of the stretch at its end where a number would be cut off.
 const NO_NUMBER: f64 = 0.05;
-
-/// How much longer or shorter than its own a stretch of time may be chosen.
-const LONGEST: f64 = 10.0;
-const SHORTEST: f64 = 1e-3;
 
 /// The most points of a line; a longer path is drawn from fewer.
 const MOST_POINTS: usize = 20_000;
@@ -110,17 +105,6 @@ impl TraceQuantity {
             Self::Power => both(context.memory.ranges.follow(context.session).power() * 1e3),
         }
     }
-}
-
-/// What traces share.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Timeline {
-    /// The stretch of time in s that a person has chosen.
-    pub window: Option<f64>,
-    /// The ends of the vertical axes that a person has chosen, in the order of the quantities.
-    pub vertical: [Option<(f64, f64)>; 4],
-    /// The time in s under the pointer, and the pass in which it was there.
-    cursor: Option<(f64, u64)>,
 }
 
 /// Draws it. Whether something changed.
@@ -265,56 +249,6 @@ fn stretch(model: &Model) -> f64 {
 
 fn watch_begin(context: &ViewContext<'_>) -> f64 {
     context.session.player.watch().begin()
-}
-
-/// The wheel chooses the stretch of time, for all traces; a double click leaves it to the scene.
-fn zoom(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, own: f64) {
-    let window = &mut context.memory.timeline.window;
-    if response.double_clicked() {
-        (context.memory.timeline.window, context.memory.timeline.vertical) = (None, [None; 4]);
-        return;
-    }
-    if !response.hovered() || ui.input(|input| input.modifiers.shift) {
-        return;
-    }
-    let by = ui.input(|input| {
-        (-f64::from(input.smooth_scroll_delta().y) / 200.0).exp() / f64::from(input.zoom_delta())
-    });
-    if by != 1.0 && by.is_finite() && by > 0.0 {
-        *window = Some((window.unwrap_or(own) * by).clamp(SHORTEST * own, LONGEST * own));
-    }
-}
-
-/// The wheel over the numbers of the vertical axis, or with Shift anywhere, chooses the part of it that is
-/// shown, about the pointer; a double click leaves it to the scene.
-fn zoom_up(
-    ui: &Ui,
-    transform: &PlotTransform,
-    area: egui::Rect,
-    context: &mut ViewContext<'_>,
-    (quantity, ends): (TraceQuantity, (f64, f64)),
-) {
-    let Some(at) = ui.input(|input| input.pointer.hover_pos()).filter(|at| area.contains(*at)) else {
-        return;
-    };
-    let over_axis = at.x < transform.frame().left();
-    if !ui.rect_contains_pointer(area) || !(over_axis || ui.input(|input| input.modifiers.shift)) {
-        return;
-    }
-    // with Shift a wheel goes sideways
-    let turned = ui.input(|input| input.smooth_scroll_delta().x + input.smooth_scroll_delta().y);
-    let by = (-f64::from(turned) / 200.0).exp();
-    if by == 1.0 || !by.is_finite() {
-        return;
-    }
-    let own = &mut context.memory.timeline.vertical[quantity as usize];
-    let (low, high) = own.unwrap_or(ends);
-    let y = transform.value_from_position(at).y.clamp(low, high);
-    let least = SHORTEST * (ends.1 - ends.0);
-    let by = by.max(least / (high - low));
-    let new = (y - (y - low) * by, y + (high - y) * by);
-    // all that there is, is as good as nothing chosen
-    *own = (new.1 - new.0 < ends.1 - ends.0).then_some(new);
 }
 
 /// The path as lines. A line that turns on the spot is drawn with a tip that reaches beyond it: between stops

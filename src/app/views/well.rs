@@ -5,15 +5,15 @@
 //! a thin ghost that stays. The vertical range follows the largest push in a few coarse steps, so that the
 //! tray tips and does not rescale.
 
-use eframe::egui::{self, Align2, CursorIcon, Pos2, Rangef, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Pos2, Rangef, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::ui::style::{BALL, GRAB};
-use crate::app::ui::widgets::arrows;
+use crate::app::ui::style::BALL;
 
 use super::labels::{ago, free_place, haloed};
 use super::legend::{LEGEND, Sign};
+use super::mass::mass_ui;
 use super::ranges::room_for_push;
-use super::stops::{WALL, key_step, stops_ui};
+use super::stops::{WALL, stops_ui};
 use super::{ViewContext, too_small_ui};
 
 /// Points between two points of a curve.
@@ -96,56 +96,6 @@ fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
         haloed(painter, &style, at, name, (style.small(), style.faint()));
         taken.push(Rangef::new(place, place + width));
     }
-}
-
-/// Steps of a stop's slider that an arrow key moves the mass by; with Shift ten times as many.
-const KEY_STEPS: f64 = 2.0;
-
-/// Lets the mass be grabbed: it is held where the hand is, and the clock stands. With the keyboard's focus on
-/// it the arrow keys take hold of it and move it, and Enter lets go.
-pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect) -> bool {
-    let grab = Rect::from_center_size(at, egui::Vec2::splat(2.0 * GRAB));
-    let response = ui
-        .interact(grab.intersect(rect.expand(GRAB)), ui.scope_id().with("mass"), Sense::drag())
-        .on_hover_and_drag_cursor(CursorIcon::Grab);
-    let mm = context.session.player.state().x * 1e3;
-    response.widget_info(|| egui::WidgetInfo::slider(true, mm, "proof mass"));
-    if std::mem::take(&mut context.memory.grab) {
-        response.request_focus();
-        context.session.player.hold(mm / 1e3);
-    }
-    if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-        context.session.player.hold(context.span.world_from_screen(pointer.x, rect));
-    }
-    if response.drag_stopped() {
-        context.session.player.let_go();
-        context.session.moved_by_hand();
-        return true;
-    }
-    if !response.dragged() && response.has_focus() {
-        focus_ring(ui, at, context.style.focus_stroke());
-        let moved = arrows(ui, response.id);
-        if moved != 0.0 {
-            // on the grid of the step
-            let step = KEY_STEPS * key_step(context.session);
-            let place = (mm / step).round() + moved;
-            context.session.player.hold(place * step / 1e3);
-        }
-        if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
-            response.surrender_focus();
-        }
-        return moved != 0.0;
-    }
-    if response.lost_focus() && context.session.player.is_held() && !response.dragged() {
-        context.session.player.let_go();
-        context.session.moved_by_hand();
-        return true;
-    }
-    response.dragged()
-}
-
-fn focus_ring(ui: &Ui, at: Pos2, stroke: Stroke) {
-    ui.painter().circle_stroke(at, BALL + 5.0, stroke);
 }
 
 /// The vertical axis in J, upwards.

@@ -5,7 +5,8 @@
 
 use eframe::egui::{self, Id, Role, Ui, accesskit::Live};
 
-use super::status::{Kind, Sentence};
+use super::kind::Kind;
+use super::status::Sentence;
 
 /// Seconds for which a sentence stands still before it is spoken.
 const STILL: f64 = 0.5;
@@ -48,7 +49,7 @@ impl Announcer {
         self.count += 1;
     }
 
-    /// What was spoken last, and the how manieth it was.
+    /// What was spoken last, with its sequence number.
     pub fn said(&self) -> Option<(u64, &str)> {
         self.said.as_ref().map(|(_, text)| (self.count, text.as_str()))
     }

@@ -2,6 +2,7 @@
 
 pub(super) mod announce;
 pub mod fields;
+pub mod kind;
 pub(super) mod meanings;
 pub mod numbers;
 pub mod status;

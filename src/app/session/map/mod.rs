@@ -12,14 +12,14 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::clock::Instant;
-use crate::app::task::{Stream, Wake, pool};
+use crate::app::task::{Job, Wake, pool};
 use crate::scene::{Scene, SweepAxis};
 use crate::study::{self, Cell};
 
 use super::editor::Editor;
 
 pub use crate::numeric::short;
-pub use axes::{axis, fields, label, name_and_unit, over, part};
+pub use axes::{label, name_and_unit, over, part};
 pub use cells::Map;
 
 /// Seconds for which a hand has to be still before a map is begun in the middle of a gesture.
@@ -47,7 +47,7 @@ pub struct Mapping {
     map: Option<Map>,
     /// The map before, shown until the new one covers its ground.
     before: Option<Map>,
-    task: Option<Stream<(u64, u64, Cell)>>,
+    task: Option<Job<(u64, u64, Cell)>>,
     /// Which question the cells under way belong to.
     generation: u64,
     /// Counts what has changed in the picture.
@@ -82,11 +82,6 @@ impl Mapping {
     /// Whether cells are being run.
     pub fn is_running(&self) -> bool {
         self.task.is_some()
-    }
-
-    /// Whether a person has stopped it.
-    pub fn is_stopped(&self) -> bool {
-        self.stopped
     }
 
     /// Why there is no map.
@@ -228,7 +223,7 @@ impl Mapping {
         let known: Vec<bool> = map.cells.iter().map(Option::is_some).collect();
         let generation = self.generation;
         self.begun = Some(Instant::now());
-        self.task = Stream::start(wake, move |cancel, each| {
+        self.task = Job::start(wake, move |cancel, each| {
             let Some(pool) = pool() else { return };
             let task = study::Task { tick: &|| (), cancel };
             let mut begin = 0;

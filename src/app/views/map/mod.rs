@@ -10,6 +10,7 @@ use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, 
 
 use crate::app::session::map::{Map, name_and_unit};
 use crate::app::ui::style::Style;
+use crate::app::words::kind::Kind;
 use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
 use crate::output::sweep_about;
@@ -19,8 +20,8 @@ use super::{ViewContext, too_small_ui};
 use coordinates::Coordinates;
 use picture::{Picture, bar, lines};
 pub use pointer::PointerState;
+use quantity::ColourScale;
 pub use quantity::MapQuantity;
-use quantity::{ColourScale, kind, kind_name};
 
 /// Draws it. Whether something changed.
 pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
@@ -108,7 +109,7 @@ fn reading(map: &Map, column: usize, row: usize) -> String {
                 lines.push(format!("the run ended early: {}", cell.outcome.replace('_', " ")));
             }
             if let Some(settled) = cell.settled() {
-                lines.push(kind_name(kind(settled.regime)).to_owned());
+                lines.push(Kind::from(settled.regime).name().to_owned());
             }
             let moves = |summary: &&Summary| summary.regime != Regime::Rest;
             if let Some(settled) = cell.settled().filter(moves) {

@@ -10,7 +10,7 @@ use eframe::egui::{
 use crate::app::session::map::Map;
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::kind_shapes;
-use crate::app::words::status::Kind;
+use crate::app::words::kind::Kind;
 
 use super::coordinates::{Coordinates, upright};
 use super::quantity::{ColourScale, Look, MapQuantity};

@@ -1,7 +1,7 @@
 //! Quantities that a map can show, and their colours.
 
 use crate::app::session::map::Map;
-use crate::app::words::status::Kind;
+use crate::app::words::kind::Kind;
 use crate::dynamics::Regime;
 use crate::output::{PlotAxis, speed_unit};
 use crate::study::Cell;
@@ -105,7 +105,7 @@ impl ColourScale {
         let Some(summary) = cell.settled() else { return Look::Missing };
         match (summary.regime, self.quantity) {
             (Regime::Rest, _) => Look::Rest,
-            (regime, MapQuantity::Regime) => Look::Kind(kind(regime)),
+            (regime, MapQuantity::Regime) => Look::Kind(Kind::from(regime)),
             _ => match (self.quantity.value(cell, self.per_speed), &self.bar) {
                 (Some(value), Some(bar)) => Look::Share(self.share(value, bar) as f32),
                 _ => Look::None,
@@ -130,28 +130,4 @@ fn counts(most: f64, label: &str) -> PlotAxis {
     let powers = (0..9).flat_map(|power| [1, 3].map(|digit| digit * 10_u64.pow(power)));
     let ticks = std::iter::once(0).chain(powers).map(|n| (n as f64, n.to_string()));
     PlotAxis { low: 0.0, high, ticks: ticks.filter(|tick| tick.0 <= high).collect(), label: label.to_owned() }
-}
-
-/// The kind of motion that a regime is.
-pub fn kind(regime: Regime) -> Kind {
-    match regime {
-        Regime::Rest => Kind::Resting,
-        Regime::Intrawell => Kind::Intrawell,
-        Regime::Irregular => Kind::Irregular,
-        Regime::Interwell => Kind::Interwell,
-        Regime::Crossing => Kind::Crossing,
-        Regime::OneWell => Kind::Other,
-    }
-}
-
-/// What a kind of motion is called in a legend.
-pub fn kind_name(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Resting => "at rest",
-        Kind::Intrawell => "intrawell",
-        Kind::Irregular => "irregular",
-        Kind::Interwell => "interwell",
-        Kind::Crossing => "crossing",
-        Kind::Other | Kind::Fault => "no barrier",
-    }
 }

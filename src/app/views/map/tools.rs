@@ -12,7 +12,7 @@ use crate::scene::{SweepAxis, column_names};
 
 use super::super::ViewContext;
 use super::picture::{self, Picture, kinds};
-use super::quantity::{Look, MapQuantity, kind_name};
+use super::quantity::{Look, MapQuantity};
 
 /// Width in points below which the choices take two rows.
 const NARROW: f32 = 740.0;
@@ -225,7 +225,7 @@ pub fn legend(
         entry("at rest", &|rect| patch(rect, style.rest_shade(), &[(1.0, style.hatch_stroke())]));
     }
     for kind in kinds(picture) {
-        entry(kind_name(kind), &|rect| {
+        entry(kind.name(), &|rect| {
             painter.rect_filled(rect, 0.0, style.kind(kind));
             painter.extend(kind_shapes(kind, rect.center(), 4.5, style.over_kind()));
         });

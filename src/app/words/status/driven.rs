@@ -157,7 +157,8 @@ pub fn driven(told: &Told) -> Sentence {
                 some => format!("in {some} of {periods:.0} periods"),
             };
             let text = format!(
-                "Hopping{from}: {} the {side} stop {every} and {} back, never crossing; {rms}, {:.0} impacts a period.",
+                "Hopping{from}: {} the {side} stop {every} and {} back, never crossing; {rms}, {:.0} impacts \
+                 a period.",
                 words.leaves,
                 words.falls,
                 per_period(summary.impacts)
@@ -218,7 +219,8 @@ fn interwell(told: &Told, words: &Words, rms: &str, range: &str) -> String {
     let from = told.from();
     match (equal, share) {
         (Some((_, limit)), Some(share)) => format!(
-            "Interwell{from}: {how}, from stop to stop at ±{} mm; {rms}, impacts take {share:.0} % of the work.",
+            "Interwell{from}: {how}, from stop to stop at ±{} mm; {rms}, impacts take {share:.0} % of the \
+             work.",
             limit_mm(limit * 1e3)
         ),
         (None, Some(share)) => {

@@ -10,29 +10,11 @@ mod remedy;
 use crate::dynamics::{Model, Outcome, Phase, Sample, Side};
 use crate::study::{Standing, standing};
 
+pub use super::kind::Kind;
 pub use driven::{Told, driven};
 use numbers::{energy, mm, newtons};
 pub use numbers::{grams, mm_beside, seconds, speed};
 pub use remedy::ways;
-
-/// What kind of motion a sentence is about: its colour and its shape.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// At rest, or pressed on a stop.
-    Resting,
-    /// Stays in a well.
-    Intrawell,
-    /// Crosses without rhythm.
-    Irregular,
-    /// Crosses and repeats.
-    Interwell,
-    /// Crosses under a drive that has no period.
-    Crossing,
-    /// Anything that has no such name.
-    Other,
-    /// The scene cannot be run, or the run has ended.
-    Fault,
-}
 
 /// What the status line says.
 #[derive(Debug, Clone, PartialEq, Eq)]

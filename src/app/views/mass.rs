@@ -1,0 +1,55 @@
+//! The mass as something that a hand or the arrow keys take hold of.
+
+use eframe::egui::{self, CursorIcon, Pos2, Rect, Sense, Ui};
+
+use crate::app::ui::style::{BALL, GRAB};
+use crate::app::ui::widgets::arrows;
+
+use super::ViewContext;
+use super::stops::key_step;
+
+/// Steps of a stop's slider that an arrow key moves the mass by; with Shift ten times as many.
+const KEY_STEPS: f64 = 2.0;
+
+/// Lets the mass be grabbed: it is held where the hand is, and the clock stands. With the keyboard's focus on
+/// it the arrow keys take hold of it and move it, and Enter lets go.
+pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect) -> bool {
+    let grab = Rect::from_center_size(at, egui::Vec2::splat(2.0 * GRAB));
+    let response = ui
+        .interact(grab.intersect(rect.expand(GRAB)), ui.scope_id().with("mass"), Sense::drag())
+        .on_hover_and_drag_cursor(CursorIcon::Grab);
+    let mm = context.session.player.state().x * 1e3;
+    response.widget_info(|| egui::WidgetInfo::slider(true, mm, "proof mass"));
+    if std::mem::take(&mut context.memory.grab) {
+        response.request_focus();
+        context.session.player.hold(mm / 1e3);
+    }
+    if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+        context.session.player.hold(context.span.world_from_screen(pointer.x, rect));
+    }
+    if response.drag_stopped() {
+        context.session.player.let_go();
+        context.session.moved_by_hand();
+        return true;
+    }
+    if !response.dragged() && response.has_focus() {
+        ui.painter().circle_stroke(at, BALL + 5.0, context.style.focus_stroke());
+        let moved = arrows(ui, response.id);
+        if moved != 0.0 {
+            // on the grid of the step
+            let step = KEY_STEPS * key_step(context.session);
+            let place = (mm / step).round() + moved;
+            context.session.player.hold(place * step / 1e3);
+        }
+        if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
+            response.surrender_focus();
+        }
+        return moved != 0.0;
+    }
+    if response.lost_focus() && context.session.player.is_held() && !response.dragged() {
+        context.session.player.let_go();
+        context.session.moved_by_hand();
+        return true;
+    }
+    response.dragged()
+}
