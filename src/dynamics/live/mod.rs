@@ -27,6 +27,7 @@ const MOST_PERIODS: f64 = 9e15;
 
 /// Samples and events of a stretch of time, each ascending. The caller may drain them as it likes.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
 pub struct LiveOutput {
     /// The state at the times asked for, and right after every change.
     pub samples: Vec<Sample>,
@@ -37,6 +38,7 @@ pub struct LiveOutput {
 /// Energy balance of a live run since it began, in J. `stored` is what is there now less what was there at
 /// the start: work + by hand - damping - impact = stored.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct LiveLedger {
     /// Work of the base on the mass.
     pub work_j: f64,

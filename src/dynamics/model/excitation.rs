@@ -31,6 +31,7 @@ pub(crate) enum Rhythm {
 
 /// Base acceleration in SI: a constant, tones, chirps and records; its parts add up.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct ExcitationParts {
     /// Constant acceleration in m/s^2.
     pub constant: f64,
@@ -46,6 +47,7 @@ pub struct ExcitationParts {
 
 /// amplitude sin(2 pi frequency t + phase). SI.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct TonePart {
     /// Amplitude in m/s^2, that after the ramp where there is one; any sign.
     pub amplitude: f64,
@@ -63,6 +65,7 @@ pub struct TonePart {
 
 /// amplitude sin(2 pi (from t + (to - from) t^2/(2 over))), then holding `to`. SI.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct ChirpPart {
     /// Amplitude in m/s^2.
     pub amplitude: f64,
@@ -76,6 +79,7 @@ pub struct ChirpPart {
 
 /// What a noise was made from. SI.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct NoisePart {
     /// Root mean square in m/s^2.
     pub rms: f64,

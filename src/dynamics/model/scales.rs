@@ -26,6 +26,7 @@ use crate::scene::Scene;
 
 /// Length in m, speed in m/s, time in s; all above 0 and finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Scales {
     /// Length in m.
     pub length: f64,

@@ -4,6 +4,7 @@ use crate::scene::Stops;
 
 /// The stops of a scene; a side without one is open.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct StopPair {
     /// On the side of negative x.
     pub left: Option<StopAt>,
@@ -13,6 +14,7 @@ pub struct StopPair {
 
 /// One stop. SI. A compliant one takes energy by its own law and has the restitution 1 here.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct StopAt {
     /// Where it is, in m.
     pub x: f64,

@@ -24,6 +24,7 @@ impl Phase {
 
 /// The state at a requested time; at an event's instant, the state after it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Sample {
     /// Time in s, as requested.
     pub t: f64,
@@ -105,6 +106,7 @@ impl EventKind {
 
 /// One event of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Event {
     /// Time in s.
     pub t: f64,

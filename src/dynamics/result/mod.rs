@@ -12,6 +12,7 @@ pub use summary::{First, Firsts, Ledger, Summary};
 
 /// Everything a run returns.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Run {
     /// The state at the requested times, up to the end of the run.
     pub samples: Vec<Sample>,

@@ -2,6 +2,7 @@
 
 /// What the motion is over the settled window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Regime {
     /// Never left the stop or the equilibrium.
     Rest,

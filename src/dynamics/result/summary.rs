@@ -4,6 +4,7 @@ use super::outcome::{Outcome, Place, Regime};
 
 /// Where the energy went over the whole run, each term integrated on its own.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Ledger {
     /// Work of the base on the mass in J.
     pub work_j: f64,
@@ -21,6 +22,7 @@ pub struct Ledger {
 
 /// When something happened first.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct First {
     /// Time in s.
     pub t: f64,
@@ -31,6 +33,7 @@ pub struct First {
 /// What happened first in a run under a drive that changes: an amplitude ramp, a chirp, noise, a record,
 /// tones without a common period.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Firsts {
     /// The mass left a stop on which it rested.
     pub release: Option<First>,
@@ -43,6 +46,7 @@ pub struct Firsts {
 
 /// Statistics of a run; those of the settled window come first.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Summary {
     /// Displacement at the end in m.
     pub final_x: f64,
