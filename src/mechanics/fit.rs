@@ -19,13 +19,14 @@
 //! alone, every piece is compared half-way between its samples with the local interpolant through six
 //! neighbours; it may be off by a few times the tolerance and by what six neighbours say that four do not.
 
-use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
+mod chain;
+mod piece;
+
+use std::sync::atomic::AtomicBool;
 
 use super::curve::{FitReport, ForceCurve, Piece};
 use super::local::{between, corners, roughness, slopes};
 use super::table::ForceTable;
-use crate::numeric::fit::lowest_degree;
 
 /// The limits of the degree that are tried. Above 13 the monomial form begins to lose digits and a
 /// step costs more than the restart that a longer piece saves.
@@ -41,10 +42,6 @@ const OTHER_PRODUCTS: f64 = 3.0;
 
 /// Share of the tolerance that the two halves of odd data may differ by; the rest is left to the fit.
 const ODD_SHARE: f64 = 0.5;
-
-/// Least squares use at most this many samples of a piece, evenly picked; all are checked. More would
-/// average noise better, at a cost that grows with the table.
-const MOST_SAMPLES_OF_A_FIT: usize = 256;
 
 /// More breaks than this draw a warning: a run pays for each.
 const MANY_PIECES: usize = 24;
@@ -220,193 +217,6 @@ impl Samples<'_> {
         half
     }
 
-    /// The whole chain with pieces of at most `degree`, and the sample at which each ends.
-    fn chain(&self, degree: usize) -> Option<(Vec<Piece>, Vec<usize>)> {
-        let last = self.x.len() - 1;
-        let mut links: Vec<Link> = Vec::new();
-        let mut from = 0;
-        while from < last {
-            if self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
-                return None;
-            }
-            let limit = (from + 1..last).find(|i| self.corner[*i]).unwrap_or(last);
-            let link = if links.is_empty() {
-                self.reach(from, limit, if self.odd { Left::Mirror } else { Left::Free }, degree)?
-            } else if self.corner[from] {
-                self.reach(from, limit, Left::Free, degree)?
-            } else {
-                self.continued(&mut links, from, limit, degree)?
-            };
-            from = link.end;
-            links.push(link);
-        }
-        Some(links.into_iter().map(|link| (link.piece, link.end)).unzip())
-    }
-
-    /// The piece after the last of `links`, with the same slope at the break if at all possible.
-    ///
-    /// The end of a least-squares piece has the least certain slope of all. Where keeping it stops the next
-    /// piece from reaching half as far as it could, both are asked to meet at a better one: the free piece's,
-    /// the neighbouring samples', their mean. Where none suits both sides the slope is kept, whatever that
-    /// costs in pieces: data that are merely coarse or rough have no corners.
-    fn continued(&self, links: &mut [Link], from: usize, limit: usize, degree: usize) -> Option<Link> {
-        let before = links.last_mut()?;
-        let slope = before.piece.stiffness(self.x[from]);
-        let kept = self.reach(from, limit, Left::Slope(slope), degree);
-        if kept.as_ref().is_some_and(|link| link.end == limit) {
-            return kept;
-        }
-        let free = self.reach(from, limit, Left::Free, degree)?;
-        let far_enough = |link: &Link| 2 * (link.end - from) >= free.end - from;
-        if kept.as_ref().is_some_and(far_enough) {
-            return kept;
-        }
-        let own = free.piece.stiffness(self.x[from]);
-        let local = self.slope[from];
-        for slope in [own, 0.5 * (own + slope), local, 0.5 * (own + local)] {
-            // The condition takes up a term (two degrees of an odd piece); it may have it back.
-            let room = degree + if matches!(before.left, Left::Mirror) { 2 } else { 1 };
-            let Some(piece) = self.piece(before.start..from, before.left, Some(slope), room) else {
-                continue;
-            };
-            // As it came out, not as it was asked for: the break must be smooth to rounding.
-            let slope = piece.stiffness(self.x[from]);
-            if let Some(link) = self.reach(from, limit, Left::Slope(slope), degree).filter(far_enough) {
-                before.piece = piece;
-                return Some(link);
-            }
-        }
-        kept.or(Some(free))
-    }
-
-    /// The longest piece from sample `from` that ends at or before sample `limit`.
-    ///
-    /// Long pieces may succeed where short ones fail (they may have a higher degree), so the search comes
-    /// from above, in steps of a seventh, and then refines between the last failure and the success.
-    fn reach(&self, from: usize, limit: usize, left: Left, degree: usize) -> Option<Link> {
-        let shortest = from + 1;
-        let (mut end, mut failed) = (limit, limit + 1);
-        let mut piece = loop {
-            if let Some(piece) = self.piece(from..end, left, None, degree) {
-                break piece;
-            }
-            if end <= shortest {
-                return None;
-            }
-            failed = end;
-            end = (from + (end - from) * 6 / 7).clamp(shortest, end - 1);
-        };
-        while failed - end > 1 {
-            let middle = end + (failed - end) / 2;
-            match self.piece(from..middle, left, None, degree) {
-                Some(longer) => (end, piece) = (middle, longer),
-                None => failed = middle,
-            }
-        }
-        // The shortest piece, where it is all that the data allow, ends with the slope that the neighbouring
-        // samples have. Left to end as it likes, a chain of such pieces would swing about the data: a
-        // parabola that takes over a slope error hands it on with the sign changed.
-        if end == shortest && limit > shortest {
-            piece = self.piece(from..end, left, Some(self.slope[end]), degree).unwrap_or(piece);
-        }
-        Some(Link { start: from, end, left, piece })
-    }
-
-    /// The piece of lowest degree from sample `span.start` to sample `span.end`, both interpolated, that
-    /// meets all between (and ends with the slope `right`); none where the limit of the degree is too low or
-    /// something overflows.
-    fn piece(&self, span: Range<usize>, left: Left, right: Option<f64>, degree: usize) -> Option<Piece> {
-        let odd = matches!(left, Left::Mirror);
-        let Frame { origin, half, base, shape } = self.frame(&span, left, right);
-        let intervals = span.len() * if odd { 2 } else { 1 };
-        let inner = span.start + 1..span.end;
-        let room = degree.min(1 + (3.0 * (intervals as f64).sqrt()) as usize);
-        let room = (room + 1).saturating_sub(base.len()).min(ForceCurve::MAX_COEFFICIENTS - base.len());
-        let terms = (room / if odd { 2 } else { 1 }).min(inner.len());
-        let stride = inner.len().div_ceil(MOST_SAMPLES_OF_A_FIT).max(1);
-        let (mut points, mut weights, mut values) = (Vec::new(), Vec::new(), Vec::new());
-        for i in inner.clone().step_by(stride) {
-            let t = (self.x[i] - origin) / half;
-            points.push(if odd { 2.0 * t * t - 1.0 } else { t });
-            weights.push(value(&shape, t));
-            values.push(self.force[i] - value(&base, t));
-        }
-        let meets =
-            |piece: &Piece, i: usize| (piece.force(self.x[i]) - self.force[i]).abs() <= self.allowed[i];
-        let follows = |piece: &Piece, i: usize| {
-            let (force, allowed) = self.between[i];
-            (piece.force(0.5 * (self.x[i] + self.x[i + 1])) - force).abs() <= allowed
-        };
-        let mut accepted = None;
-        lowest_degree(&points, &weights, &values, terms, |q| {
-            let local = combine(&base, &shape, q, odd);
-            let piece = self.in_metres(&local, origin, half, &span, left);
-            // The picked samples first: most trials end there. A single interval is accepted whatever the
-            // curve does between its ends, so that there is a chain; but over an interval a million times
-            // longer than the one before it, a slope that is kept drowns the ends themselves in rounding.
-            let good = inner.clone().step_by(stride).all(|i| meets(&piece, i))
-                && [span.start, span.end].iter().all(|i| meets(&piece, *i))
-                && (stride == 1 || inner.clone().all(|i| meets(&piece, i)))
-                && (span.len() == 1 || span.clone().all(|i| follows(&piece, i)))
-                && piece.coefficients.iter().all(|c| c.is_finite());
-            if good {
-                accepted = Some(piece);
-            }
-            good
-        });
-        accepted
-    }
-
-    fn frame(&self, span: &Range<usize>, left: Left, right: Option<f64>) -> Frame {
-        let (a, b) = (self.x[span.start], self.x[span.end]);
-        let (force_a, force_b) = (self.force[span.start], self.force[span.end]);
-        let (origin, half) = match left {
-            Left::Mirror => (0.0, b),
-            _ => (0.5 * a + 0.5 * b, 0.5 * (b - a)),
-        };
-        let (mean, difference) = (0.5 * (force_a + force_b), 0.5 * (force_b - force_a));
-        let (mut base, mut shape) = match left {
-            Left::Free => (vec![mean, difference], vec![1.0, 0.0, -1.0]),
-            Left::Slope(slope) => {
-                let bend = 0.5 * (difference - slope * half);
-                (vec![mean - bend, difference, bend], vec![1.0, 1.0, -1.0, -1.0])
-            }
-            Left::Mirror => (vec![0.0, force_b], vec![0.0, 1.0, 0.0, -1.0]),
-        };
-        if let Some(slope) = right {
-            let at_end = |c: &[f64]| c.iter().enumerate().map(|(i, c)| i as f64 * c).sum::<f64>();
-            let share = (slope * half - at_end(&base)) / at_end(&shape);
-            let odd = matches!(left, Left::Mirror);
-            base = combine(&base, &shape, &[share], odd);
-            shape = product(&shape, if odd { &[1.0, 0.0, -1.0] } else { &[1.0, -1.0] });
-        }
-        Frame { origin, half, base, shape }
-    }
-
-    /// From the local variable to metres, with the ends met to rounding.
-    fn in_metres(&self, local: &[f64], origin: f64, half: f64, span: &Range<usize>, left: Left) -> Piece {
-        let mut coefficients = Vec::with_capacity(local.len());
-        let mut unit = 1.0;
-        for c in local {
-            coefficients.push(c / unit);
-            unit *= half;
-        }
-        let mut piece = Piece { origin, coefficients, potential_at_origin: 0.0 };
-        let (a, b) = (self.x[span.start], self.x[span.end]);
-        for _ in 0..2 {
-            let at_b = self.force[span.end] - piece.force(b);
-            match left {
-                Left::Mirror => piece.coefficients[1] += at_b / b,
-                _ => {
-                    let at_a = self.force[span.start] - piece.force(a);
-                    piece.coefficients[0] += 0.5 * (at_a + at_b);
-                    piece.coefficients[1] += (at_b - at_a) / (b - a);
-                }
-            }
-        }
-        piece
-    }
-
     /// The curve of the chain's pieces, mirrored bit for bit where the data are odd.
     fn assemble(&self, pieces: Vec<Piece>, ends: &[usize]) -> ForceCurve {
         let last = self.x[self.x.len() - 1];
@@ -419,72 +229,4 @@ impl Samples<'_> {
         let breaks = right.iter().rev().map(|b| -b).chain(right.iter().copied()).collect();
         ForceCurve::from_pieces(all, breaks, (-last, last), true, None)
     }
-}
-
-/// A piece as base + shape q in t = (x - origin)/half: base meets the samples at the ends (and the slope),
-/// shape vanishes there. For odd data q is a polynomial in 2 t^2 - 1.
-struct Frame {
-    origin: f64,
-    half: f64,
-    base: Vec<f64>,
-    shape: Vec<f64>,
-}
-
-/// A piece of the chain and how it was made.
-struct Link {
-    start: usize,
-    end: usize,
-    left: Left,
-    piece: Piece,
-}
-
-/// How a piece begins.
-#[derive(Debug, Clone, Copy)]
-enum Left {
-    /// With the slope that suits it.
-    Free,
-    /// With this slope in N/m.
-    Slope(f64),
-    /// It is the middle of an odd curve: it begins at its mirror image.
-    Mirror,
-}
-
-fn value(coefficients: &[f64], t: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c)
-}
-
-/// base + shape q in monomials of t; q is one in t, or for odd data in 2 t^2 - 1.
-fn combine(base: &[f64], shape: &[f64], q: &[f64], in_squares: bool) -> Vec<f64> {
-    // Horner's scheme on polynomials.
-    let mut in_t: Vec<f64> = Vec::new();
-    for c in q.iter().rev() {
-        let factor: &[f64] = if in_squares { &[-1.0, 0.0, 2.0] } else { &[0.0, 1.0] };
-        in_t = product(&in_t, factor);
-        if in_t.is_empty() {
-            in_t.push(0.0);
-        }
-        in_t[0] += c;
-    }
-    let mut sum = product(&in_t, shape);
-    sum.resize(sum.len().max(base.len()), 0.0);
-    for (s, b) in sum.iter_mut().zip(base) {
-        *s += b;
-    }
-    if in_squares {
-        sum.iter_mut().step_by(2).for_each(|even| *even = 0.0);
-    }
-    sum
-}
-
-fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
-    if a.is_empty() || b.is_empty() {
-        return Vec::new();
-    }
-    let mut out = vec![0.0; a.len() + b.len() - 1];
-    for (i, x) in a.iter().enumerate() {
-        for (j, y) in b.iter().enumerate() {
-            out[i + j] += x * y;
-        }
-    }
-    out
 }

@@ -35,6 +35,7 @@ mod shape;
 mod steps;
 mod stops;
 mod text;
+mod walk;
 
 pub use arguments::arguments;
 pub use axis::{Axis, LARGEST_AXIS, MOST_AXES, column_names};

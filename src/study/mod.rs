@@ -5,6 +5,7 @@
 //! the command line ask the same studies and show the same tables.
 
 pub mod accuracy;
+mod amplitudes;
 mod contact;
 mod continued;
 mod curve;
@@ -17,6 +18,7 @@ mod inspect;
 mod levels;
 mod map;
 mod models;
+mod push;
 mod settled;
 mod simulate;
 mod sweep;
@@ -28,6 +30,7 @@ mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+pub use amplitudes::{Thresholds, stops_that_cross, thresholds};
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
 pub use continued::continued_scene;
 pub use curve::{
@@ -47,9 +50,7 @@ pub use settled::{Standing, lasts, settled, standing};
 pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};
 pub use sweep::{Cell, CellFaults, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally};
 pub use table::{Column, Table, Values};
-pub use thresholds::{
-    Found, Onset, Scan, Thresholds, stops_that_cross, threshold, threshold_table, thresholds,
-};
+pub use thresholds::{Found, Onset, Scan, threshold, threshold_table};
 pub use times::{MAX_SAMPLES, SamplingStep, TimesError, even_times, listed_times};
 pub use trace::{Trace, simulate_with_trace};
 pub use watch::Watch;

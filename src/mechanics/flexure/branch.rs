@@ -7,8 +7,10 @@
 //! the S-shaped branch that continues the taut one inwards is never taken.
 
 use super::beam::Shape;
-use super::equilibrium::{Point, Prescribed, stays_straight};
+use super::equilibrium::Prescribed;
+use super::point::Point;
 use super::solver::{Lost, Solver};
+use super::stability::stays_straight;
 
 /// The march gives up when its step has been halved this often.
 const MOST_HALVINGS: u32 = 40;

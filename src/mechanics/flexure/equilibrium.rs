@@ -1,4 +1,4 @@
-//! Joint equilibrium of all flexures, and its stability.
+//! Joint equilibrium of all flexures.
 //!
 //! The shuttle does not rotate and is free axially: both groups share the lateral displacement x, their
 //! shortenings add up to the preload and their axial forces are equal. Unknown are the rotations, the two
@@ -6,10 +6,11 @@
 //! what makes it converge where other solvers fail is the form of the bump's equations (see
 //! [`beam`](super::beam)).
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, LU};
+use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use super::basis::Basis;
-use super::beam::{Beam, Rotation, Shape, Terms};
+use super::beam::{Beam, Shape, Terms};
+use super::point::Point;
 
 /// A step smaller than this part of the unknowns ends the iteration: the next one would be its square.
 const SMALL_STEP: f64 = 1e-9;
@@ -37,25 +38,6 @@ pub(super) struct System {
     pub basis: Basis,
 }
 
-/// An equilibrium of the whole mechanism at one x, in scaled units.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Point {
-    pub x: f64,
-    pub shapes: [Shape; 2],
-    pub even: [Vec<f64>; 2],
-    /// Coefficients of psi with a leading 1 (a bump), of the odd part (bowed), or nothing.
-    pub odd: [Vec<f64>; 2],
-    pub q: [f64; 2],
-    /// Lateral force of one flexure of each group.
-    pub lateral: [f64; 2],
-    /// Compression that the groups exchange.
-    pub compression: f64,
-    /// dV/dx, its derivative, and the strain energy.
-    pub force: f64,
-    pub stiffness: f64,
-    pub energy: f64,
-}
-
 /// What is prescribed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Prescribed {
@@ -69,138 +51,6 @@ pub(super) enum Prescribed {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stalled {
     pub residual: f64,
-}
-
-impl Point {
-    fn rotation(&self, group: usize, count: f64) -> Rotation<'_> {
-        Rotation {
-            shape: self.shapes[group],
-            even: &self.even[group],
-            odd: &self.odd[group],
-            q: self.q[group],
-            axial: -self.compression / count,
-            lateral: self.lateral[group],
-        }
-    }
-
-    /// The unknowns in a row: for each group the even coefficients and, where there are any, the odd ones (of
-    /// a bump, q stands in place of the leading 1); then the lateral forces and the compression.
-    fn unknowns(&self) -> Vec<f64> {
-        let mut all = Vec::new();
-        for group in 0..2 {
-            all.extend(&self.even[group]);
-            all.extend(&self.odd[group]);
-            if self.shapes[group] == Shape::Bump {
-                let leading = all.len() - self.odd[group].len();
-                all[leading] = self.q[group];
-            }
-        }
-        all.extend(self.lateral);
-        all.push(self.compression);
-        all
-    }
-
-    /// Takes the unknowns back; the inverse of [`Self::unknowns`].
-    fn take(&mut self, all: &[f64]) {
-        let mut at = 0;
-        for group in 0..2 {
-            for part in [&mut self.even[group], &mut self.odd[group]] {
-                let end = at + part.len();
-                part.copy_from_slice(&all[at..end]);
-                at = end;
-            }
-            if self.shapes[group] == Shape::Bump {
-                self.q[group] = std::mem::replace(&mut self.odd[group][0], 1.0);
-            }
-        }
-        self.lateral = [all[at], all[at + 1]];
-        self.compression = all[at + 2];
-    }
-
-    /// The same state with other shapes: a bump that appears has vanishing size and the form of the first
-    /// buckling mode, one that goes leaves nothing.
-    pub fn reshaped(&self, shapes: [Shape; 2], basis: &Basis) -> Self {
-        let mut own = Self { shapes, ..self.clone() };
-        for (group, shape) in shapes.into_iter().enumerate() {
-            match shape {
-                Shape::Straight => {
-                    own.odd[group] = Vec::new();
-                    own.q[group] = 0.0;
-                }
-                Shape::Bump if self.shapes[group] != Shape::Bump => {
-                    own.odd[group] = basis.first_buckling_mode();
-                    let leading = own.odd[group][0];
-                    own.odd[group].iter_mut().for_each(|c| *c /= leading);
-                    own.q[group] = 0.0;
-                }
-                _ => {}
-            }
-        }
-        own
-    }
-
-    /// The same state with more functions, whose coefficients are 0.
-    pub fn padded(&self, modes: usize) -> Self {
-        let mut own = self.clone();
-        for group in 0..2 {
-            own.even[group].resize(modes, 0.0);
-            if own.shapes[group] != Shape::Straight {
-                own.odd[group].resize(modes, 0.0);
-            }
-        }
-        own
-    }
-
-    /// How large the last coefficients of the rotations are beside the largest: what further functions would
-    /// add.
-    pub fn tail(&self) -> f64 {
-        let all = (0..2).flat_map(|g| {
-            let size = self.q[g].abs().sqrt();
-            let bowed = self.shapes[g] == Shape::Bowed;
-            let odd: Vec<f64> = self.odd[g].iter().map(|a| if bowed { *a } else { a * size }).collect();
-            [self.even[g].clone(), odd]
-        });
-        let parts: Vec<Vec<f64>> = all.collect();
-        let largest = parts.iter().flatten().fold(0.0_f64, |most, a| most.max(a.abs()));
-        let last = parts
-            .iter()
-            .flat_map(|part| part.iter().rev().take(2))
-            .fold(0.0_f64, |most, a| most.max(a.abs()));
-        if largest > 0.0 { last / largest } else { 0.0 }
-    }
-
-    /// A guess at `x` from solved points of the same shapes: Lagrange's interpolation of the unknowns. Points
-    /// at x >= 0 stand for their mirror images too where `mirrored`: rotation and lateral force of the sway
-    /// are odd in x, everything else is even.
-    pub fn between(points: &[&Self], x: f64, mirrored: bool) -> Self {
-        let modes = points.iter().map(|p| p.even[0].len()).max().unwrap_or(0);
-        let points: Vec<Self> = points.iter().map(|p| p.padded(modes)).collect();
-        let nodes: Vec<f64> = points
-            .iter()
-            .flat_map(|p| if mirrored && p.x > 0.0 { vec![p.x, -p.x] } else { vec![p.x] })
-            .collect();
-        let weight = |node: f64| -> f64 {
-            nodes.iter().filter(|other| **other != node).map(|other| (x - other) / (node - other)).product()
-        };
-        let mut own = points[0].clone();
-        let mut odd_in_x = Vec::new();
-        for group in 0..2 {
-            odd_in_x.extend(vec![true; own.even[group].len()]);
-            odd_in_x.extend(vec![false; own.odd[group].len()]);
-        }
-        odd_in_x.extend([true, true, false]);
-        let mut sum = vec![0.0; odd_in_x.len()];
-        for point in &points {
-            let right = weight(point.x);
-            let left = if mirrored && point.x > 0.0 { weight(-point.x) } else { 0.0 };
-            for ((s, value), odd) in sum.iter_mut().zip(point.unknowns()).zip(&odd_in_x) {
-                *s += value * if *odd { right - left } else { right + left };
-            }
-        }
-        own.take(&sum);
-        own.x = x;
-        own
-    }
 }
 
 impl System {
@@ -388,90 +238,4 @@ impl System {
         };
         point
     }
-
-    /// Whether the equilibrium is stable with x held: the second variation of the strain energy is positive,
-    /// for all flexures together and for each flexure of a group against its neighbours.
-    ///
-    /// Method: the forces eliminated from the second variation leave one symmetric matrix of the coefficients
-    /// alone, which has a Cholesky factor where no eigenvalue is negative. At a bump that just vanishes it is
-    /// singular and the answer is left to rounding.
-    pub fn is_stable(&self, point: &Point) -> bool {
-        let terms = self.terms(point);
-        let parts: [Variation; 2] = std::array::from_fn(|g| Variation::of(&terms[g], point.q[g]));
-        let counts = self.beams.each_ref().map(|b| b.count);
-        let straight = |g: usize| point.shapes[g] == Shape::Straight;
-        (0..2).all(|g| !straight(g) || stays_straight(&terms[g]))
-            && (0..2).all(|g| counts[g] == 1.0 || is_positive(parts[g].alone(&terms[g])))
-            && is_positive(Variation::together(&parts, &terms, counts))
-    }
-}
-
-/// The second variation of one flexure by its coefficients and by its two forces. Of a straight one the odd
-/// coefficients stand apart, see [`stays_straight`].
-struct Variation {
-    stiffness: DMatrix<f64>,
-    by_axial: DVector<f64>,
-    by_lateral: DVector<f64>,
-}
-
-impl Variation {
-    fn of(t: &Terms, q: f64) -> Self {
-        // The odd rows were divided by this.
-        let size = q.max(0.0).sqrt();
-        let n = t.modes;
-        let all = n + t.odd.len();
-        let stiffness = DMatrix::from_fn(all, all, |i, j| match (i < n, j < n) {
-            (true, true) => t.even_even[i * n + j],
-            (false, true) => size * t.odd_even[(i - n) * n + j],
-            (true, false) => size * t.odd_even[(j - n) * n + i],
-            (false, false) => t.odd_odd[(i - n) * n + j - n],
-        });
-        let by = |k: usize| {
-            let odd = t.odd_by[k].iter().map(|b| size * b);
-            DVector::from_iterator(all, t.even_by[k].iter().copied().chain(odd))
-        };
-        Self { stiffness, by_axial: by(0), by_lateral: by(1) }
-    }
-
-    /// With both ends of this flexure held.
-    fn alone(&self, t: &Terms) -> DMatrix<f64> {
-        let (a, b, c) = (-t.shortening_by_axial, -t.shortening_by_lateral, t.deflection_by_lateral);
-        let determinant = a * c - b * b;
-        let (u, v) = (&self.by_axial, &self.by_lateral);
-        &self.stiffness
-            + (c * u * u.transpose() - b * (u * v.transpose() + v * u.transpose()) + a * v * v.transpose())
-                / determinant
-    }
-
-    /// With x held and the shuttle free axially.
-    fn together(parts: &[Self; 2], terms: &[Terms; 2], counts: [f64; 2]) -> DMatrix<f64> {
-        let sizes = parts.each_ref().map(|p| p.stiffness.nrows());
-        let mut all = DMatrix::zeros(sizes[0] + sizes[1], sizes[0] + sizes[1]);
-        // Columns: by the compression, by the two lateral forces.
-        let mut by = DMatrix::zeros(sizes[0] + sizes[1], 3);
-        let mut compliance = DMatrix::zeros(3, 3);
-        for g in 0..2 {
-            let (row, size) = (g * sizes[0], sizes[g]);
-            all.view_mut((row, row), (size, size)).copy_from(&(&parts[g].stiffness * counts[g]));
-            by.view_mut((row, 0), (size, 1)).copy_from(&-&parts[g].by_axial);
-            by.view_mut((row, 1 + g), (size, 1)).copy_from(&(&parts[g].by_lateral * counts[g]));
-            compliance[(0, 0)] -= terms[g].shortening_by_axial / counts[g];
-            compliance[(0, 1 + g)] = terms[g].shortening_by_lateral;
-            compliance[(1 + g, 0)] = terms[g].shortening_by_lateral;
-            compliance[(1 + g, 1 + g)] = counts[g] * terms[g].deflection_by_lateral;
-        }
-        match compliance.try_inverse() {
-            Some(stiffness) => all + &by * stiffness * by.transpose(),
-            None => all,
-        }
-    }
-}
-
-/// Whether a straight flexure keeps its shape: no bump lowers its energy.
-pub(super) fn stays_straight(t: &Terms) -> bool {
-    is_positive(DMatrix::from_row_slice(t.modes, t.modes, &t.odd_odd))
-}
-
-fn is_positive(matrix: DMatrix<f64>) -> bool {
-    Cholesky::new(matrix).is_some()
 }

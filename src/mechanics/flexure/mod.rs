@@ -14,15 +14,18 @@ mod beam;
 mod branch;
 mod equilibrium;
 mod pieces;
+mod point;
 mod shape;
 mod solver;
+mod stability;
 
 use std::sync::atomic::AtomicBool;
 
 use beam::{Beam, Shape};
 use branch::Segment;
-use equilibrium::{Point, Prescribed};
+use equilibrium::Prescribed;
 use pieces::{Scale, Stretch};
+use point::Point;
 use shape::Bent;
 use solver::{Lost, Solver};
 

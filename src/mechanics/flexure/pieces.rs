@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, DVector};
 
 use super::branch::Segment;
-use super::equilibrium::Point;
+use super::point::Point;
 use super::solver::{Lost, Solver};
 
 /// Points of a piece; its degree is twice this less one.

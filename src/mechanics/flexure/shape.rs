@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::basis::{functions, slopes};
 use super::beam::{Beam, Shape};
-use super::equilibrium::Point;
+use super::point::Point;
 use crate::numeric::GaussLegendre;
 
 /// Points of a centre line; an odd number, so that the middle is one.

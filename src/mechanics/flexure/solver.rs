@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::basis::Basis;
 use super::beam::{Beam, Shape, Terms};
-use super::equilibrium::{Point, Prescribed, System};
+use super::equilibrium::{Prescribed, System};
+use super::point::Point;
 
 /// Functions of each parity: what a state begins with, and the most that it is given.
 const FEWEST_MODES: usize = 8;
