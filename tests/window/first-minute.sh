@@ -45,7 +45,7 @@ minute() {
     local shaking="190 142" stops="19 184" limit="196 232"
     case $name in
         1920*-light | 1920*-dark) shaking="240 142" limit="240 232" ;;
-        1280*-projector) shaking="507 129" stops="592 129" limit="1027 130" ;;
+        1280*-projector) shaking="481 140" stops="565 140" limit="1050 140" ;;
         1920*-projector) shaking="282 213" stops="28 276" limit="294 348" ;;
     esac
     local kept display

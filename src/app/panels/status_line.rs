@@ -20,19 +20,20 @@ const SMALL_LINE: f32 = 13.0;
 /// Width in points of a window that has no room beside the sentence: what stands there is under the pointer.
 const NARROW: f32 = 640.0;
 
-/// Room in points that the line leaves around its text, and beside its icon.
+/// Least height in points of the line; the room that it leaves around its text, and beside its icon.
+const LEAST: f32 = 44.0;
 const MARGIN: f32 = 10.0;
 const ICON: f32 = 14.0;
 
 /// Height in points of the line: more where the sentence, as small as it may be, takes more than two rows.
 pub fn height(ui: &Ui, session: &Session, compact: bool) -> f32 {
-    let (least, size) = if compact { (40.0, STATUS_COMPACT) } else { (44.0, STATUS) };
+    let size = if compact { STATUS_COMPACT } else { STATUS };
     let width = ui.available_width() - 24.0 - size - ICON;
     let beside = if is_narrow(ui) { 0.0 } else { BESIDE + 16.0 };
     let font = egui::FontId::proportional(BODY);
     let text = session.sentence().whole();
     let galley = ui.painter().layout(text, font, egui::Color32::PLACEHOLDER, width - beside);
-    (galley.size().y + MARGIN).max(least)
+    (galley.size().y + MARGIN).max(LEAST)
 }
 
 fn is_narrow(ui: &Ui) -> bool {
