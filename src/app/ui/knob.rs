@@ -211,7 +211,7 @@ impl Knob<'_> {
 fn with_point(number: &str) -> String {
     let Some((whole, part)) = number.split_once(',') else { return number.to_owned() };
     let digits = part.chars().take_while(char::is_ascii_digit).count();
-    let is_thousands = digits == 3 && whole.trim_matches(['-', '+', '0']) != "";
+    let is_thousands = digits == 3 && !whole.trim_matches(['-', '+', '0']).is_empty();
     let is_plain = digits > 0 && !part.contains([',', '.']) && !whole.contains('.');
     if is_plain && !is_thousands { format!("{whole}.{part}") } else { number.to_owned() }
 }

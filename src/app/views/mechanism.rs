@@ -15,7 +15,7 @@ use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 use crate::mechanics::ForceCurve;
 
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
-use super::labels::{ago, haloed, plated};
+use super::labels::{ago, plated};
 use super::stops::{WALL, stops_beside_ui};
 use super::{Span, ViewContext, mass::mass_ui, too_small_ui};
 
@@ -26,8 +26,8 @@ const COIL: f32 = 9.0;
 /// The least size in points of a drawing whose parts are named.
 const NAMED: egui::Vec2 = vec2(280.0, 140.0);
 
-/// Room in points between a name and a flexure below it.
-const CLEAR: f32 = 10.0;
+/// Height in points of the name of a stop above its foot, clear of the rail.
+const CLEAR: f32 = 6.0;
 
 /// Length in points of an arrow's head.
 const ARROW_HEAD: f32 = 12.0;
@@ -110,8 +110,7 @@ fn names(
             true => x_right + width(name) < rect.right(),
             false => x_left - width(name) > rect.left(),
         };
-        // on the other side it stands clear of the flexure
-        let (right, y) = if fits(right) { (right, y) } else { (!right, if below { y } else { y - CLEAR }) };
+        let right = if fits(right) { right } else { !right };
         let align = match (right, below) {
             (true, true) => Align2::LEFT_TOP,
             (true, false) => Align2::LEFT_BOTTOM,
@@ -119,7 +118,8 @@ fn names(
             (false, false) => Align2::RIGHT_BOTTOM,
         };
         let at = pos2(if right { x_right } else { x_left }, y);
-        haloed(painter, &style, (at, align), name, (style.small(), style.faint()));
+        // over a flexure, where there is room on its side alone
+        plated(painter, &style, (at, align), name, (style.small(), style.faint()));
     };
     let (at_clamp, at_mass) = leaves_right(context);
     let barrier = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
@@ -139,7 +139,7 @@ fn names(
         let face = context.span.screen_from_world(x, rect) + way * BALL;
         let sides = [face, face + way * WALL];
         let (low, high) = (sides[0].min(sides[1]), sides[0].max(sides[1]));
-        put(way > 0.0, (high + 5.0, low - 5.0), walls.1, false, "stop");
+        put(way > 0.0, (high + 5.0, low - 5.0), walls.1 - CLEAR, false, "stop");
     }
 }
 
