@@ -1,8 +1,8 @@
 //! Laws of the stops.
 //!
-//! A rigid stop returns the mass with its restitution times the speed (Newton). A compliant one pushes with
-//! k d^1.5 (1 + a d'), d the depth: contact by Hertz, loss by Hunt and Crossley (1975). The contact is clipped where that
-//! would pull.
+//! A rigid stop returns the mass with its restitution times the speed (Newton). A compliant one pushes with k
+//! d^1.5 (1 + a d'), d the depth: contact by Hertz, loss by Hunt and Crossley (1975). The contact is clipped
+//! where that would pull.
 
 use crate::numeric::Scalar;
 
@@ -33,7 +33,8 @@ pub(crate) struct Compliant<T> {
 }
 
 impl<T: Scalar> Compliant<T> {
-    /// Force over mass at the root `u` of the depth and the inward speed `w`, where the contact is not clipped.
+    /// Force over mass at the root `u` of the depth and the inward speed `w`, where the contact is not
+    /// clipped.
     pub fn force(&self, u: T, w: T) -> T {
         self.stiffness * (u * u * u) * (T::of(1.0) + self.loss * w)
     }

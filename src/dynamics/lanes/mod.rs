@@ -24,7 +24,6 @@ use crate::dynamics::result::{Outcome, Request, Run};
 use crate::dynamics::run::ending::Begun;
 use crate::dynamics::series::{SEEDED, Series};
 use crate::dynamics::state::Contact;
-use crate::dynamics::step::path::StepView;
 use crate::dynamics::step::stepper::Step;
 use crate::numeric::{GaussLegendre, Lanes, Scalar};
 use crate::system::clock::ThreadClock;
@@ -275,18 +274,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         copy_lane(&self.series, lane, self.order, &mut motion.stepper.series);
         let mode = motion.stepper.mode(&motion.state);
         let (length, end) = (trial.length.0[lane], trial.end(lane));
-        let view = StepView {
-            path: &motion.stepper.series,
-            origin: mode.origin,
-            at: motion.state.at,
-            whole: length,
-            length,
-            duration: length,
-            bound: end.bound,
-            limits: (mode.low, mode.high),
-            x: end.y + mode.origin,
-            v: end.v,
-        };
+        let state = (end.y + mode.origin, end.v);
+        let view = motion.stepper.view(&motion.state, (length, length), end.bound, state);
         if let Some(log) = &mut motion.log {
             log.add_step(&view);
         }

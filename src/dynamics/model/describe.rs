@@ -149,8 +149,8 @@ fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
         let stiffness = 1.5 * stop.stiffness * depth.sqrt();
         let frequency = (stiffness / model.mass).sqrt() / std::f64::consts::TAU;
         lines.push(format!(
-            "resting on one is an oscillation of {} Hz about a depth of {} um, and it is followed: each second \
-             of it takes some {} steps where it is quiet and up to {} where it trembles",
+            "resting on one is an oscillation of {} Hz about a depth of {} um, and it is followed: each \
+             second of it takes some {} steps where it is quiet and up to {} where it trembles",
             short(frequency),
             short(depth * 1e6),
             short((frequency * STEPS_PER_PERIOD.0).round()),

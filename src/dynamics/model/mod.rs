@@ -62,8 +62,8 @@ impl Model {
                     let c = 2.0 * xi * (k * mass).sqrt();
                     if !c.is_finite() {
                         let problem = format!(
-                            "makes no finite damping coefficient with the stiffness {k:e} N/m of the equilibrium; \
-                             use Coefficient(c_n_s_per_m: ..) instead"
+                            "makes no finite damping coefficient with the stiffness {k:e} N/m of the \
+                             equilibrium; use Coefficient(c_n_s_per_m: ..) instead"
                         );
                         faults.push(fault("damping.xi", xi, problem));
                     }

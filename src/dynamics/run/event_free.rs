@@ -20,13 +20,13 @@ use crate::numeric::Scalar;
 /// How a row of event-free steps has ended.
 pub(crate) enum FastPath<T> {
     /// It has not: budgets and the cancel flag are due.
-    On,
+    Paused,
     /// With this step, on which an event is possible; the series holds it.
-    To(Step<T>),
+    EventPossible(Step<T>),
     /// Before a step of up to this length, which must be chosen with more care; the series holds it.
-    Before(T),
+    TooLong(T),
     /// It has not begun.
-    Not,
+    NotTaken,
 }
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
@@ -35,15 +35,15 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     pub fn event_free_steps(&mut self) -> FastPath<T> {
         let free = self.state.contact == Contact::Free && self.state.touch.is_none();
         if LEDGER || !free || self.log.is_some() || !self.record.needs_no_samples() {
-            return FastPath::Not;
+            return FastPath::NotTaken;
         }
         let most = self.stepper.work.pieces_until_look(self.stepper.costs.step);
-        if self.has_budget_for(most) { self.take_event_free_steps(most) } else { FastPath::Not }
+        if self.has_budget_for(most) { self.take_event_free_steps(most) } else { FastPath::NotTaken }
     }
 
     fn take_event_free_steps(&mut self, most: u64) -> FastPath<T> {
         if self.stepper.pass_segment_end(&mut self.state) {
-            return FastPath::On;
+            return FastPath::Paused;
         }
         let mut now = self.record.begin_event_free(&self.state.at, &self.stepper.segment_limit(&self.state));
         let mode = self.stepper.mode(&self.state);
@@ -56,7 +56,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let margin = T::of(MARGIN) * clock.period();
         let rule = record.rule_of_steps();
         let (mut at, mut x, mut v) = (state.at, state.x, state.v);
-        let mut ended = FastPath::On;
+        let mut ended = FastPath::Paused;
         let (mut steps, mut crossed) = (0, 0);
         for _ in 0..most {
             drive.seed(clock, &at, segment, &mut series.a, cursor);
@@ -66,7 +66,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 T::of(series.natural_step(settings.speed_log2, settings.tolerance_log2, settings.longest));
             let left = clock.between(&at, &now.border) - margin;
             if !(length > T::zero() && length < left) {
-                ended = FastPath::Before(length);
+                ended = FastPath::TooLong(length);
                 break;
             }
             let end = series.state(length);
@@ -75,7 +75,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             let sum = (end.acceleration + damping * end.v) + base;
             let residual = (mode.force.at(end.y) + sum).abs() * length;
             if !(residual <= allowed) {
-                ended = FastPath::Before(length);
+                ended = FastPath::TooLong(length);
                 break;
             }
 
@@ -111,7 +111,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 }
             }
             if !event_free {
-                ended = FastPath::To(Step { length, arrival: None, end });
+                ended = FastPath::EventPossible(Step { length, arrival: None, end });
                 break;
             }
             (at, x, v) = (next, chord.end, end.v);
@@ -125,7 +125,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
         self.steps += steps;
         work.add(steps * costs.step);
-        *evaluations += steps + u64::from(!matches!(ended, FastPath::On));
+        *evaluations += steps + u64::from(!matches!(ended, FastPath::Paused));
         ended
     }
 }

@@ -6,7 +6,7 @@ use crate::dynamics::equation::End;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::Outcome;
 use crate::dynamics::state::Flow;
-use crate::dynamics::step::path::{Path, StepView};
+use crate::dynamics::step::path::Path;
 use crate::dynamics::step::stepper::Step;
 use crate::dynamics::step::work::ARRIVAL;
 use crate::numeric::Scalar;
@@ -76,33 +76,21 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         arrival: Option<Instant<T>>,
         touched: Option<End>,
     ) -> Flow {
-        let (mode, zero) = (self.stepper.mode(&self.state), T::zero());
         if !(x.is_finite() && v.is_finite()) {
             return Some(Outcome::NotFinite { at: self.stepper.seconds(&self.state) });
         }
         self.steps += 1;
         self.stepper.work.add(self.stepper.costs.step);
-        let view = StepView {
-            path: &self.stepper.series,
-            origin: mode.origin,
-            at: self.state.at,
-            whole: h,
-            length,
-            duration: length,
-            bound,
-            limits: (mode.low, mode.high),
-            x,
-            v,
-        };
+        let view = self.stepper.view(&self.state, (h, length), bound, (x, v));
         if let Some(log) = &mut self.log {
             log.add_step(&view);
         }
         self.record.step(&view, self.stepper.base(self.state.segment));
-        self.state.at = arrival.unwrap_or_else(|| self.stepper.clock.advance(&self.state.at, length));
-        self.state.x = x;
-        self.state.v = v;
-        self.state.touch = None;
-        self.state.turned_back &= length == zero;
-        touched.and_then(|end| self.reach(end, length == zero))
+        let at_once = length == T::zero();
+        let state = &mut self.state;
+        state.at = arrival.unwrap_or_else(|| self.stepper.clock.advance(&state.at, length));
+        (state.x, state.v, state.touch) = (x, v, None);
+        state.turned_back &= at_once;
+        touched.and_then(|end| self.reach(end, at_once))
     }
 }

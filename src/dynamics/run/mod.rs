@@ -80,14 +80,14 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 Err(outcome) => break outcome,
             };
             let flow = match self.event_free_steps() {
-                FastPath::On => None,
-                FastPath::To(step) => self.take(&step),
-                FastPath::Before(length) => {
+                FastPath::Paused => None,
+                FastPath::EventPossible(step) => self.take(&step),
+                FastPath::TooLong(length) => {
                     let left = self.stepper.left(&self.state);
                     let step = self.stepper.shorten(&self.state, length, left);
                     self.take_any(step)
                 }
-                FastPath::Not => self.proceed(left),
+                FastPath::NotTaken => self.proceed(left),
             };
             if let Some(outcome) = flow.or_else(|| self.spent()) {
                 break outcome;

@@ -1,5 +1,6 @@
 //! Stepper: equation, drive and clock, and the series of the present step.
 
+use super::path::StepView;
 use super::penetration::Penetration;
 use super::settings::Settings;
 use super::work::{Costs, Work};
@@ -79,6 +80,21 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     pub fn base(&self, segment: usize) -> impl Fn(&Instant<T>) -> f64 + use<'a, T, D> {
         let (drive, clock, unit) = (self.drive, self.clock, self.equation.unit);
         move |at| base_at(drive, &clock, segment, at, unit)
+    }
+
+    /// A step of free flight from this state as the recorder sees it: as chosen and as kept, with a bound of the way,
+    /// and the state at its end.
+    #[inline]
+    pub fn view(
+        &self,
+        state: &MotionState<T>,
+        (whole, length): (T, T),
+        bound: T,
+        (x, v): (T, T),
+    ) -> StepView<'_, T> {
+        let Mode { origin, low, high, .. } = *self.mode(state);
+        let (path, at, limits) = (&self.series, state.at, (low, high));
+        StepView { path, origin, at, whole, length, duration: length, bound, limits, x, v }
     }
 
     /// The time to the end of the run.

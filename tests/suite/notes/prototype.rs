@@ -79,7 +79,7 @@ pub fn paper(text: &mut Text) {
     text.says(&format!("it is higher than without stops, at most {:.2} g at 4.6 mm", further[4]));
     // A softer preload
     let softer = ["mechanism.preload_mm=2.5"];
-    let [stiff, soft] = [&[][..], &softer[..]].map(|changes| barrier(&preset("paper", changes).mechanism()));
+    let [stiff, soft] = [&[][..], &softer[..]].map(|changes| barrier(preset("paper", changes).mechanism()));
     let crosses_from = from(&softer, 0.5..1.0);
     text.says(&format!("lowers the barrier from {stiff:.3} to {soft:.3} mJ"));
     text.says(&format!("with the same stops the mass then crosses from {crosses_from:.2} g on"));

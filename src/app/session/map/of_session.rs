@@ -58,7 +58,7 @@ impl Session {
         let wake = Arc::clone(self.wake());
         let in_gesture = self.editor.in_gesture();
         let waits = self.map.ask(Question { scene, axes }, &self.editor, in_gesture, time, &wake);
-        let mechanism = Arc::clone(&self.model().mechanism());
+        let mechanism = Arc::clone(self.model().mechanism());
         if let Some(map) = self.map.map.as_mut().filter(|map| map.known == 0 && map.release.is_empty())
             && !map.grid().changes_mechanism()
             && let Some(line) = release_line(&map.question.scene, &mechanism, map.sweep.grid())
