@@ -168,7 +168,8 @@ pub(super) static MENUS: [(&str, &[Part]); 5] = [
     ]),
     ("Motion", &[
         Item("Play, pause", plain(Key::Space), C::PlayPause, As("Time", "play, pause")),
-        Item("A single step", plain(Key::Period), C::Step, As("Time", "a single step")),
+        Item("A single step", plain(Key::Period), C::Step, No),
+        Row("Time", ".", "a single step"),
         Item("To the event before", plain(Key::PageUp), C::PreviousEvent,
             As("Time", "to the event before, after")),
         Item("To the event after", plain(Key::PageDown), C::NextEvent, Joined),
