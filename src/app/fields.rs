@@ -1,7 +1,7 @@
 //! The numbers of a scene as the window shows them: what each is called, how far its slider goes, what may be typed.
 
 use crate::dynamics::STANDARD_GRAVITY;
-use crate::numeric::round;
+use crate::numeric::{self, round};
 use crate::scene::{FieldPath, Mechanism, Scene, Stops};
 
 use super::session::Session;
@@ -299,13 +299,12 @@ pub fn three(value: f64) -> String {
     if size == 0.0 || !size.is_finite() {
         return format!("{}", value + 0.0);
     }
-    let decimals = (2.0 - size.log10().floor()).clamp(0.0, 12.0) as usize;
-    format!("{value:.decimals$}")
+    format!("{value:.0$}", numeric::decimals(size, 3))
 }
 
 /// Decimals with which numbers up to `most` have three significant digits.
 pub fn decimals_for(most: f64) -> usize {
-    if most > 0.0 && most.is_finite() { (2.0 - most.log10().floor()).clamp(0.0, 12.0) as usize } else { 2 }
+    if most > 0.0 && most.is_finite() { numeric::decimals(most, 3) } else { 2 }
 }
 
 #[cfg(test)]
