@@ -340,7 +340,7 @@ impl Sweep {
         let mut table = Table::new();
         for (i, column) in self.grid.columns().iter().enumerate() {
             let value = |row: usize| self.grid.values(begin + row as u64).nth(i).unwrap_or(f64::NAN);
-            table = table.with(column, Values::Numbers((0..rows.len()).map(value).collect()));
+            table = table.with(column, (0..rows.len()).map(value).collect());
         }
         for name in STANDARD {
             table = table.with(name, self.column(name, rows));
