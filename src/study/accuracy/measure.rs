@@ -229,8 +229,8 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// The scene with one datum after the other changed: mass, speed, shaking, damping and restitution, each by the
-/// fields whose paths begin and end so.
+/// The scene with one datum after the other changed: mass, speed, shaking, damping and restitution, each by
+/// the fields whose paths begin and end so.
 fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
     let (more, less) = (1.0 + change, 1.0 - change);
     let data: [(&str, &[&str], f64); 5] = [
