@@ -32,9 +32,9 @@ use super::table::ForceTable;
 /// step costs more than the restart that a longer piece saves.
 const DEGREES: [usize; 5] = [5, 7, 9, 11, 13];
 
-/// Steps that a swing through the whole curve is taken to need when no break is in the way; a break adds
+/// Steps that a traversal of the whole curve is taken to need when no break is in the way; a break adds
 /// about one. An estimate, not measured.
-const STEPS_OF_A_SWING: f64 = 20.0;
+const STEPS_OF_A_TRAVERSAL: f64 = 20.0;
 
 /// What a step costs beside the force, in series products of the same order: the drive's sine, the step size,
 /// the looking for events. An estimate as well.
@@ -139,7 +139,7 @@ fn worst(curve: &ForceCurve, table: &ForceTable) -> (f64, f64) {
     worst
 }
 
-/// What a swing through the whole curve costs, in series products: see the module's head.
+/// What a traversal of the whole curve costs, in series products: see the module's head.
 fn running_cost(samples: &Samples, pieces: &[Piece], ends: &[usize]) -> f64 {
     let (from, to) = (samples.x[0], samples.x[samples.x.len() - 1]);
     let (mut left, mut products) = (if samples.odd { 0.0 } else { from }, 0.0);
@@ -150,7 +150,7 @@ fn running_cost(samples: &Samples, pieces: &[Piece], ends: &[usize]) -> f64 {
         left = samples.x[*end];
     }
     let breaks = (pieces.len() - 1) * if samples.odd { 2 } else { 1 };
-    products * (STEPS_OF_A_SWING + breaks as f64)
+    products * (STEPS_OF_A_TRAVERSAL + breaks as f64)
 }
 
 /// The samples as the chain sees them: all of them, or the right half of odd data.

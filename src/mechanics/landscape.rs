@@ -118,8 +118,8 @@ impl Landscape {
         self.equilibria.iter().rev().find(|e| e.stable)
     }
 
-    /// Where a passage counts as a crossing, in m: the top of the barrier, or the equilibrium of the only
-    /// well.
+    /// Position that the mass passes in a crossing, in m: the top of the barrier, or the equilibrium of the
+    /// only well.
     pub fn crossing_position(&self) -> Option<f64> {
         match &self.barrier {
             Some(barrier) => Some(barrier.x),

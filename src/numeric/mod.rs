@@ -25,5 +25,5 @@ pub use ratio::Ratio;
 pub(crate) use ratio::greatest_common_divisor;
 pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::{Number, Scalar};
-pub use short::short;
+pub use short::{decimals, short};
 pub use sum::CompensatedSum;

@@ -6,7 +6,7 @@
 //! bound the number of roots (Descartes' rule in the Bernstein basis, Lane and Riesenfeld 1981). An
 //! interval with one sign change holds one root, one with none holds none, any other is halved.
 //!
-//! A double root is a touch, not a passage: a pair of roots closer than 2^-36 of the step, which is below
+//! A double root touches and does not cross: a pair of roots closer than 2^-36 of the step, which is below
 //! what the rounding of the coefficients can tell, counts as none.
 
 use super::scalar::Scalar;

@@ -1,5 +1,7 @@
 //! Short numbers for sentences.
 
+use super::round::decade;
+
 /// `value` rounded to four significant digits, for sentences.
 pub fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
@@ -9,6 +11,11 @@ pub fn short(value: f64) -> String {
     } else {
         format!("{rounded:e}")
     }
+}
+
+/// Decimals with which a number of this size has so many significant digits; 12 at most.
+pub fn decimals(value: f64, digits: i32) -> usize {
+    (digits - 1 - decade(value.abs())).clamp(0, 12) as usize
 }
 
 #[cfg(test)]

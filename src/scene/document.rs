@@ -146,12 +146,8 @@ impl Document {
     }
 
     /// The files that the scene names, as it names them: its table and its records.
-    fn paths(&self) -> Vec<&str> {
-        let table = match &self.scene.mechanism {
-            Mechanism::Table { path, .. } => Some(path.as_str()),
-            _ => None,
-        };
-        table.into_iter().chain(record::paths(&self.scene.excitation)).collect()
+    fn paths(&self) -> Vec<String> {
+        named_paths(&mut self.scene.clone()).into_iter().map(|path| path.clone()).collect()
     }
 
     /// What `--set` arguments changed, `FIELD=VALUE` each; of several for one field the last one.
@@ -183,13 +179,13 @@ impl Document {
 
     /// Where the files lie that the scene names.
     pub fn named_files(&self) -> Vec<PathBuf> {
-        self.paths().into_iter().filter_map(|path| self.files.place(path)).collect()
+        self.paths().iter().filter_map(|path| self.files.place(path)).collect()
     }
 
     /// Reads the files that the scene names, so that they are at hand whatever becomes of them; none but
     /// those are held. One that cannot be read is left to whoever needs it, and has a better place to say so.
     pub fn hold_files(&mut self) {
-        let read = |path: &str| Some((path.to_owned(), self.files.read(path).ok()?));
+        let read = |path: String| Some((path.clone(), self.files.read(&path).ok()?));
         self.files.held = self.paths().into_iter().filter_map(read).collect();
     }
 

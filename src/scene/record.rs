@@ -139,15 +139,6 @@ pub(super) fn warnings(excitation: &Excitation, duration: f64) -> Vec<String> {
 }
 
 /// The paths of the records of an excitation, as written.
-pub(super) fn paths(excitation: &Excitation) -> Vec<&str> {
-    match excitation {
-        Excitation::Recorded { path, .. } => vec![path],
-        Excitation::Sum(terms) => terms.iter().flat_map(paths).collect(),
-        _ => Vec::new(),
-    }
-}
-
-/// The same, to be changed.
 pub(super) fn paths_mut(excitation: &mut Excitation) -> Vec<&mut String> {
     match excitation {
         Excitation::Recorded { path, .. } => vec![path],

@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use super::table::{Table, Values};
+use super::table::Table;
 use crate::dynamics::{EventKind, Model, Outcome, Request, Summary};
 use crate::mechanics::Hertz;
 use crate::numeric::round::{ONE_TWO_FIVE, round_up};
@@ -27,21 +27,17 @@ pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
     let top = round_up(2.0 * model.scales().speed, &ONE_TWO_FIVE);
     let last = (SPEEDS - 1) as f64;
     let speeds: Vec<f64> = (0..SPEEDS).map(|i| top * i as f64 / last).collect();
-    let column = |of: &dyn Fn(f64) -> f64| Values::Numbers(speeds.iter().map(|v| of(*v)).collect());
-    let force = |v: f64| stop.peak_force(model.mass(), v);
-    let time = |v: f64| if v > 0.0 { stop.contact_time(model.mass(), v) } else { f64::NAN };
+    let force = |v: &f64| stop.peak_force(model.mass(), *v);
+    let time = |v: &f64| if *v > 0.0 { stop.contact_time(model.mass(), *v) } else { f64::NAN };
     let table = Table::new()
-        .with("restitution", column(&|v| stop.restitution(v)))
-        .with("rigid_restitution", column(&|_| rigid))
-        .with("contact_time_s", column(&time))
-        .with("depth_m", column(&|v| stop.depth(model.mass(), v)))
-        .with("peak_force_n", column(&force))
-        .with("peak_pressure_pa", column(&|v| stop.pressure(force(v)).unwrap_or(f64::NAN)));
-    let mut whole = Table::new().with("speed_m_per_s", Values::Numbers(speeds));
-    for own in table.columns() {
-        whole = whole.with(&own.name, own.values.clone());
-    }
-    Some(whole)
+        .each("speed_m_per_s", &speeds, |v| *v)
+        .each("restitution", &speeds, |v| stop.restitution(*v))
+        .each("rigid_restitution", &speeds, |_| rigid)
+        .each("contact_time_s", &speeds, time)
+        .each("depth_m", &speeds, |v| stop.depth(model.mass(), *v))
+        .each("peak_force_n", &speeds, force)
+        .each("peak_pressure_pa", &speeds, |v| stop.pressure(force(v)).unwrap_or(f64::NAN));
+    Some(table)
 }
 
 /// The impact speed in m/s from which on the contact yields; none where its material is not known.

@@ -1,6 +1,6 @@
 //! Force, potential and stiffness of a mechanism over the displacement.
 
-use super::table::{Table, Values};
+use super::table::Table;
 use crate::mechanics::{Equilibrium, Mechanism};
 use crate::numeric::Decimal;
 use crate::numeric::round::decade;
@@ -26,15 +26,11 @@ pub struct OutsideCurve {
 pub fn curve(mechanism: &Mechanism, positions: Vec<f64>) -> Result<Table, OutsideCurve> {
     check_positions(mechanism, &positions)?;
     let curve = &mechanism.curve;
-    let column = |of: &dyn Fn(f64) -> f64| Values::Numbers(positions.iter().map(|x| of(*x)).collect());
-    let force = column(&|x| curve.force(x));
-    let potential = column(&|x| curve.potential(x));
-    let stiffness = column(&|x| curve.stiffness(x));
     Ok(Table::new()
-        .with("x_m", Values::Numbers(positions))
-        .with("force_n", force)
-        .with("potential_j", potential)
-        .with("stiffness_n_per_m", stiffness))
+        .each("x_m", &positions, |x| *x)
+        .each("force_n", &positions, |x| curve.force(*x))
+        .each("potential_j", &positions, |x| curve.potential(*x))
+        .each("stiffness_n_per_m", &positions, |x| curve.stiffness(*x)))
 }
 
 /// Whether the curve is known at all of these positions in m.

@@ -1,9 +1,9 @@
 //! Path of the mass between two known samples, by the equation of motion.
 //!
-//! For pictures: samples that are dense enough for a swing are too few where taut flexures turn the mass
-//! round in a hundredth of it. The classical Runge-Kutta method goes from one sample towards the next, the
-//! base's acceleration taken as linear between them, and what it misses the next one by is spread over the
-//! way.
+//! For pictures: samples that are dense enough for an oscillation are too few where taut flexures turn the
+//! mass round in a hundredth of it. The classical Runge-Kutta method goes from one sample towards the next,
+//! the base's acceleration taken as linear between them, and what it misses the next one by is spread over
+//! the way.
 
 use crate::dynamics::{Model, Phase, Sample};
 

@@ -4,7 +4,7 @@
 
 use super::Task;
 use super::curve::{OutsideCurve, check_positions, curve};
-use super::table::{Table, Values};
+use super::table::Table;
 use crate::mechanics::Mechanism;
 use crate::mechanics::flexure::{FlexureError, Flexures, State};
 use crate::numeric::short;
@@ -54,12 +54,12 @@ pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<V
 /// compression of all buckling flexures together, the height of their bump, and the largest bending stress of
 /// any flexure.
 pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Result<Table, OutsideCurve> {
-    let column = |of: fn(&State) -> f64| Values::Numbers(states.iter().map(of).collect());
     let table = curve(mechanism, states.iter().map(|state| state.x).collect())?;
-    Ok(table
-        .with("axial_n", column(|state| state.axial))
-        .with("bump_m", column(|state| state.bump))
-        .with("max_stress_pa", column(|state| state.max_stress)))
+    Ok(table.each("axial_n", states, |state| state.axial).each("bump_m", states, |state| state.bump).each(
+        "max_stress_pa",
+        states,
+        |state| state.max_stress,
+    ))
 }
 
 /// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point after point; `flexure` is
@@ -70,26 +70,20 @@ pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Result<Table, Outs
 /// clamped at (L_p + L_b - preload, 0) and reach the same point of the shuttle. So px runs along the flexures
 /// and py with x. s is the length along a flexure from its clamp in the frame.
 pub fn shapes(states: &[State]) -> Table {
-    let mut words = Vec::new();
-    let mut numbers = [const { Vec::new() }; 4];
+    let mut rows = Vec::new();
     for state in states {
         for line in &state.lines {
-            for [s, px, py] in &line.points {
-                words.push(line.flexure);
-                for (column, value) in numbers.iter_mut().zip([state.x, *s, *px, *py]) {
-                    // Adding 0 makes -0 a plain 0.
-                    column.push(value + 0.0);
-                }
-            }
+            // Adding 0 makes -0 a plain 0.
+            let row = |[s, px, py]: &[f64; 3]| (line.flexure, [state.x, *s, *px, *py].map(|own| own + 0.0));
+            rows.extend(line.points.iter().map(row));
         }
     }
-    let [x, s, px, py] = numbers.map(Values::Numbers);
     Table::new()
-        .with("x_m", x)
-        .with("flexure", Values::Words(words))
-        .with("s_m", s)
-        .with("px_m", px)
-        .with("py_m", py)
+        .each("x_m", &rows, |row| row.1[0])
+        .each("flexure", &rows, |row| row.0)
+        .each("s_m", &rows, |row| row.1[1])
+        .each("px_m", &rows, |row| row.1[2])
+        .each("py_m", &rows, |row| row.1[3])
 }
 
 /// One sentence where the bending stress of some of the `states` exceeds what the scene allows; it names from
@@ -118,6 +112,7 @@ mod tests {
     use super::*;
     use crate::mechanics::flexure::CentreLine;
     use crate::scene::{Document, Files};
+    use crate::study::Values;
 
     fn state(x: f64, max_stress: f64) -> State {
         let line = |flexure| CentreLine { flexure, points: vec![[0.0, 0.0, -0.0], [1.0, 2.0, x]] };

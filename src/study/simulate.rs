@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::table::{Table, Values};
+use super::table::Table;
 use super::times::{SamplingStep, TimesError, even_times, listed_times};
 use crate::dynamics::{Event, Model, Request, Sample, Summary};
 use crate::scene::{Excitation, Scene};
@@ -88,22 +88,20 @@ pub(super) fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
 
 /// Samples as the table `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`.
 pub fn samples_table(samples: &[Sample]) -> Table {
-    let numbers = |of: fn(&Sample) -> f64| Values::Numbers(samples.iter().map(of).collect());
     Table::new()
-        .with("t_s", numbers(|s| s.t))
-        .with("x_m", numbers(|s| s.x))
-        .with("v_m_per_s", numbers(|s| s.v))
-        .with("base_accel_m_per_s2", numbers(|s| s.base_accel))
-        .with("phase", Values::Words(samples.iter().map(|s| s.phase.name()).collect()))
+        .each("t_s", samples, |own| own.t)
+        .each("x_m", samples, |own| own.x)
+        .each("v_m_per_s", samples, |own| own.v)
+        .each("base_accel_m_per_s2", samples, |own| own.base_accel)
+        .each("phase", samples, |own| own.phase.name())
 }
 
 /// Events as a table: `t_s,kind,side,v_in_m_per_s,v_out_m_per_s`, a row an event, SI.
 pub fn events_table(events: &[Event]) -> Table {
-    let numbers = |of: fn(&Event) -> f64| Values::Numbers(events.iter().map(of).collect());
     Table::new()
-        .with("t_s", numbers(|e| e.t))
-        .with("kind", Values::Words(events.iter().map(|e| e.kind.name()).collect()))
-        .with("side", Values::Words(events.iter().map(|e| e.side.name()).collect()))
-        .with("v_in_m_per_s", numbers(|e| e.v_in))
-        .with("v_out_m_per_s", numbers(|e| e.v_out))
+        .each("t_s", events, |own| own.t)
+        .each("kind", events, |own| own.kind.name())
+        .each("side", events, |own| own.side.name())
+        .each("v_in_m_per_s", events, |own| own.v_in)
+        .each("v_out_m_per_s", events, |own| own.v_out)
 }

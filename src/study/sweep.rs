@@ -12,7 +12,7 @@ use super::Task;
 use super::fields::SummaryField;
 use super::grid::Grid;
 use super::table::{Table, Values};
-use crate::dynamics::{Model, Request, Summary};
+use crate::dynamics::{Model, Outcome, Request, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
 use crate::system::clock::WallClock;
@@ -49,24 +49,39 @@ type Built = Result<Arc<Mechanism>, BuildError>;
 
 /// What one cell came to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cell {
-    /// The word in the CSV; empty where the cell was not run.
-    pub outcome: &'static str,
-    /// The summary of its run; none where there was nothing to run.
-    pub summary: Option<Summary>,
+pub enum Cell {
+    /// It has not been run.
+    NotRun,
+    /// Its mechanism is right and was not solved.
+    Unsolved,
+    /// It was run.
+    Run(Summary),
 }
 
-/// The outcome of a cell whose mechanism is right and was not solved.
-const NOT_CONVERGED: &str = "not_converged";
-
 impl Cell {
-    /// A cell that has not been run.
-    pub const NOT_RUN: Self = Self { outcome: "", summary: None };
+    /// The summary of its run.
+    pub fn summary(&self) -> Option<&Summary> {
+        if let Self::Run(summary) = self { Some(summary) } else { None }
+    }
+
+    /// The word in the CSV; empty where the cell was not run.
+    pub fn outcome(&self) -> &'static str {
+        match self {
+            Self::NotRun => "",
+            Self::Unsolved => "not_converged",
+            Self::Run(summary) => summary.outcome.name(),
+        }
+    }
+
+    /// Whether its run lasted to its end.
+    pub fn is_done(&self) -> bool {
+        self.summary().is_some_and(|summary| summary.outcome == Outcome::Done)
+    }
 
     /// The summary of a run that reached its settled window. Earlier there are no numbers there, and
     /// counts of 0 would lie.
     pub fn settled(&self) -> Option<&Summary> {
-        self.summary.as_ref().filter(|summary| summary.rms_velocity.is_some())
+        self.summary().filter(|summary| summary.rms_velocity.is_some())
     }
 }
 
@@ -110,10 +125,10 @@ pub struct Tally {
 
 impl Tally {
     fn count(&mut self, cell: &Cell) {
-        self.ended_early += u64::from(cell.summary.is_some_and(|row| row.outcome.ended_at().is_some()));
-        self.not_converged += u64::from(cell.outcome == NOT_CONVERGED);
-        self.yielding += u64::from(cell.summary.is_some_and(|row| row.contact_yields));
-        *self.outcomes.entry(cell.outcome).or_default() += 1;
+        self.ended_early += u64::from(cell.summary().is_some_and(|row| row.outcome.ended_at().is_some()));
+        self.not_converged += u64::from(*cell == Cell::Unsolved);
+        self.yielding += u64::from(cell.summary().is_some_and(|row| row.contact_yields));
+        *self.outcomes.entry(cell.outcome()).or_default() += 1;
         if let Some(row) = cell.settled().filter(|row| !row.regime.name().is_empty()) {
             *self.regimes.entry(row.regime.name()).or_default() += 1;
         }
@@ -264,7 +279,7 @@ impl Sweep {
 
     /// Runs some cells on this thread, many at once where the processor can.
     fn run_batch(&self, cells: &[u64], scene: &mut Scene, task: &Task) -> Vec<Cell> {
-        let mut rows = vec![Cell::NOT_RUN; cells.len()];
+        let mut rows = vec![Cell::NotRun; cells.len()];
         let (mut models, mut places) = (Vec::with_capacity(cells.len()), Vec::with_capacity(cells.len()));
         for (place, index) in cells.iter().enumerate() {
             if task.is_cancelled() {
@@ -277,7 +292,7 @@ impl Sweep {
                 }
                 // Not after the sweep has been validated.
                 Some(Err(_)) => {}
-                None => rows[place].outcome = NOT_CONVERGED,
+                None => rows[place] = Cell::Unsolved,
             }
         }
         let until_settled = self.options.until_settled;
@@ -289,7 +304,7 @@ impl Sweep {
             Model::run_all(&models, until_settled, Some(task.cancel))
         };
         for (place, run) in places.into_iter().zip(runs) {
-            rows[place] = Cell { outcome: run.summary.outcome.name(), summary: Some(run.summary) };
+            rows[place] = Cell::Run(run.summary);
         }
         rows
     }
@@ -325,7 +340,7 @@ impl Sweep {
         let mut table = Table::new();
         for (i, column) in self.grid.columns().iter().enumerate() {
             let value = |row: usize| self.grid.values(begin + row as u64).nth(i).unwrap_or(f64::NAN);
-            table = table.with(column, Values::Numbers((0..rows.len()).map(value).collect()));
+            table = table.with(column, (0..rows.len()).map(value).collect());
         }
         for name in STANDARD {
             table = table.with(name, self.column(name, rows));
@@ -337,8 +352,8 @@ impl Sweep {
     fn column(&self, name: &str, rows: &[Cell]) -> Values {
         match SummaryField::find(name) {
             // Of a cell that has no run too.
-            _ if name == "outcome" => Values::Words(rows.iter().map(|row| row.outcome).collect()),
-            Some(field) => field.column(rows.iter().map(|row| row.summary.as_ref())),
+            _ if name == "outcome" => Values::Words(rows.iter().map(|row| row.outcome()).collect()),
+            Some(field) => field.column(rows.iter().map(Cell::summary)),
             None => Values::Words(vec![""; rows.len()]),
         }
     }

@@ -29,6 +29,24 @@ impl Values {
     }
 }
 
+impl FromIterator<f64> for Values {
+    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
+        Self::Numbers(values.into_iter().collect())
+    }
+}
+
+impl FromIterator<Option<u64>> for Values {
+    fn from_iter<I: IntoIterator<Item = Option<u64>>>(values: I) -> Self {
+        Self::Counts(values.into_iter().collect())
+    }
+}
+
+impl FromIterator<&'static str> for Values {
+    fn from_iter<I: IntoIterator<Item = &'static str>>(values: I) -> Self {
+        Self::Words(values.into_iter().collect())
+    }
+}
+
 /// One column: what it is called and what it holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
@@ -98,6 +116,15 @@ impl Table {
         debug_assert!(self.columns.is_empty() || self.rows() == values.len());
         self.columns.push(Column { name: name.into(), values });
         self
+    }
+
+    /// The table with one more column on its right: what `of` says of each row.
+    #[must_use]
+    pub fn each<R, V>(self, name: &str, rows: &[R], of: impl Fn(&R) -> V) -> Self
+    where
+        Values: FromIterator<V>,
+    {
+        self.with(name, rows.iter().map(of).collect())
     }
 
     /// The columns from left to right.

@@ -11,7 +11,7 @@ use super::Task;
 use super::grid::Grid;
 use super::push::{AMPLITUDE, frees_at};
 use super::sweep::CellFaults;
-use super::table::{Table, Values};
+use super::table::Table;
 use crate::dynamics::{Model, Regime, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{FieldPath, Files, Scene, Start};
@@ -173,13 +173,12 @@ pub fn threshold_table(
     let mut table = Table::new();
     for (place, column) in grid.iter().flat_map(|grid| grid.columns()).enumerate() {
         let value = |index: u64| grid.and_then(|grid| grid.values(index).nth(place)).unwrap_or(f64::NAN);
-        table = table.with(column, Values::Numbers((0..cells).map(value).collect()));
+        table = table.with(column, (0..cells).map(value).collect());
     }
-    let values = found.iter().map(|own| own.value.unwrap_or(f64::NAN)).collect();
     Some(Ok(table
-        .with("of", Values::Words(vec![asked.1.name(); found.len()]))
-        .with("value", Values::Numbers(values))
-        .with("windows", Values::Counts(found.iter().map(|own| own.value.map(|_| own.windows)).collect()))))
+        .each("of", &found, |_| asked.1.name())
+        .each("value", &found, |own| own.value.unwrap_or(f64::NAN))
+        .each("windows", &found, |own| own.value.map(|_| own.windows))))
 }
 
 struct Search<'a> {

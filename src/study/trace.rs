@@ -4,7 +4,7 @@
 //! the run is asked for both at once, and each gets its own back.
 
 use super::simulate::{Keep, Simulation, events_table, in_order, samples_table};
-use super::table::{Table, Values};
+use super::table::Table;
 use crate::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Sample, Side};
 
 /// One run as a picture shows it.
@@ -157,22 +157,19 @@ fn path(samples: &[Sample], events: &[Event], stops: (f64, f64)) -> Table {
         }
         rows.push([sample.t, sample.x, sample.v, sample.base_accel]);
     }
-    let column = |i: usize| Values::Numbers(rows.iter().map(|row| row[i]).collect());
     Table::new()
-        .with("t_s", column(0))
-        .with("x_m", column(1))
-        .with("v_m_per_s", column(2))
-        .with("base_accel_m_per_s2", column(3))
+        .each("t_s", &rows, |row| row[0])
+        .each("x_m", &rows, |row| row[1])
+        .each("v_m_per_s", &rows, |row| row[2])
+        .each("base_accel_m_per_s2", &rows, |row| row[3])
 }
 
 fn impacts(events: &[Event]) -> Table {
     let struck = |event: &&Event| {
         event.kind == EventKind::Impact || (event.kind == EventKind::Contact && event.v_in != 0.0)
     };
-    let impacts = || events.iter().filter(struck);
-    Table::new()
-        .with("t_s", Values::Numbers(impacts().map(|event| event.t).collect()))
-        .with("side", Values::Words(impacts().map(|event| event.side.name()).collect()))
+    let impacts: Vec<&Event> = events.iter().filter(struck).collect();
+    Table::new().each("t_s", &impacts, |own| own.t).each("side", &impacts, |own| own.side.name())
 }
 
 /// Contacts with a compliant stop that take a smaller share of the run are impacts to the eye.
@@ -200,8 +197,9 @@ fn rests(events: &[Event], first: Option<&Sample>, end: f64) -> Table {
         }
     }
     spans.extend(open.map(|(from, side)| (from, end, side)));
-    Table::new()
-        .with("from_s", Values::Numbers(spans.iter().map(|span| span.0).collect()))
-        .with("to_s", Values::Numbers(spans.iter().map(|span| span.1).collect()))
-        .with("side", Values::Words(spans.iter().map(|span| span.2.name()).collect()))
+    Table::new().each("from_s", &spans, |span| span.0).each("to_s", &spans, |span| span.1).each(
+        "side",
+        &spans,
+        |span| span.2.name(),
+    )
 }

@@ -1,6 +1,6 @@
 //! Live run with a memory of its path.
 //!
-//! The path is sampled for the eye: some eighty times a swing, and at every event, so that rebounds are
+//! The path is sampled for the eye: some eighty times a period, and at every event, so that rebounds are
 //! corners and rests are flat. The energy ledger is kept at the end of every forcing period while somebody
 //! looks at it. The oldest of it is forgotten. The models by which it went are kept with it
 //! ([`models`](super::models)).

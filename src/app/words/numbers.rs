@@ -1,6 +1,6 @@
 //! Formats of numbers in fields and on axes, and round numbers for their ends and steps.
 
-use crate::numeric::round;
+use crate::numeric::{self, round};
 
 /// The least number of one or two digits that is not below `value`.
 pub fn round_up(value: f64) -> f64 {
@@ -49,13 +49,12 @@ pub fn three(value: f64) -> String {
     if size == 0.0 || !size.is_finite() {
         return format!("{}", value + 0.0);
     }
-    let decimals = (2.0 - size.log10().floor()).clamp(0.0, 12.0) as usize;
-    format!("{value:.decimals$}")
+    format!("{value:.0$}", numeric::decimals(size, 3))
 }
 
 /// Decimals with which numbers up to `most` have three significant digits.
 pub fn decimals_for(most: f64) -> usize {
-    if most > 0.0 && most.is_finite() { (2.0 - most.log10().floor()).clamp(0.0, 12.0) as usize } else { 2 }
+    if most > 0.0 && most.is_finite() { numeric::decimals(most, 3) } else { 2 }
 }
 
 #[cfg(test)]

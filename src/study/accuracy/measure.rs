@@ -11,7 +11,7 @@ use std::sync::atomic::Ordering;
 use super::Stopped;
 use super::scenes::Setup;
 use crate::dynamics::{Model, Outcome, Request, Run};
-use crate::scene::{Damping, Excitation, Start, Stops};
+use crate::scene::{FieldPath, numeric_fields};
 use crate::study::Task;
 
 /// What one step may do to the state, relative to the scene's length and speed: four spacings of the doubles
@@ -229,69 +229,31 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// The scene with one datum after the other changed.
+/// The scene with one datum after the other changed: mass, speed, shaking, damping and restitution, each by
+/// the fields whose paths begin and end so.
 fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
-    let more = 1.0 + change;
-    let mut all = Vec::new();
-    let mut with = |change: &dyn Fn(&mut Setup)| {
+    let (more, less) = (1.0 + change, 1.0 - change);
+    let data: [(&str, &[&str], f64); 5] = [
+        ("mass_g", &[""], more),
+        ("start.v_m_per_s", &[""], more),
+        ("excitation.", &["accel_g", "amplitude_g", ".from_g", ".to_g", "rms_g"], more),
+        ("damping.", &[""], more),
+        ("stops.restitution", &[""], less),
+    ];
+    let fields = numeric_fields(&setup.scene);
+    let with = |(begin, ends, by): (&str, &[&str], f64)| {
         let mut own = setup.clone();
-        change(&mut own);
-        all.push(own);
+        let is_meant =
+            |field: &&String| field.starts_with(begin) && ends.iter().any(|end| field.ends_with(end));
+        for field in fields.iter().filter(is_meant).map(|field| FieldPath::new(field)) {
+            // a restitution of 1 stays elastic
+            if let Some(value) = field.get(&setup.scene).filter(|value| by > 1.0 || *value < 1.0) {
+                let _ = field.set(&mut own.scene, value * by);
+            }
+        }
+        (own.scene != setup.scene).then_some(own)
     };
-    with(&|own| own.scene.mass_g *= more);
-    if matches!(setup.scene.start, Start::At { v_m_per_s, .. } if v_m_per_s != 0.0) {
-        with(&|own| {
-            if let Start::At { v_m_per_s, .. } = &mut own.scene.start {
-                *v_m_per_s *= more;
-            }
-        });
-    }
-    if setup.scene.excitation != Excitation::None {
-        with(&|own| scale(&mut own.scene.excitation, more));
-    }
-    match setup.scene.damping {
-        Damping::None => {}
-        _ => with(&|own| match &mut own.scene.damping {
-            Damping::None => {}
-            Damping::Ratio(xi) => *xi *= more,
-            Damping::Coefficient { c_n_s_per_m } => *c_n_s_per_m *= more,
-        }),
-    }
-    let less = 1.0 - change;
-    match setup.scene.stops {
-        Stops::Rigid { restitution, .. } if restitution > 0.0 && restitution < 1.0 => with(&|own| {
-            if let Stops::Rigid { restitution, .. } = &mut own.scene.stops {
-                *restitution *= less;
-            }
-        }),
-        Stops::Uneven { restitution_left, restitution_right, .. }
-            if restitution_left.or(restitution_right).is_some_and(|e| e > 0.0 && e < 1.0) =>
-        {
-            with(&|own| {
-                if let Stops::Uneven { restitution_left, restitution_right, .. } = &mut own.scene.stops {
-                    for e in [restitution_left, restitution_right].into_iter().flatten() {
-                        *e *= less;
-                    }
-                }
-            });
-        }
-        _ => {}
-    }
-    all
-}
-
-fn scale(excitation: &mut Excitation, by: f64) {
-    match excitation {
-        Excitation::Constant { accel_g } => *accel_g *= by,
-        Excitation::Sine { amplitude_g, .. } | Excitation::Chirp { amplitude_g, .. } => *amplitude_g *= by,
-        Excitation::AmplitudeRamp { from_g, to_g, .. } => {
-            *from_g *= by;
-            *to_g *= by;
-        }
-        Excitation::Noise { rms_g, .. } => *rms_g *= by,
-        Excitation::Sum(terms) => terms.iter_mut().for_each(|term| scale(term, by)),
-        Excitation::None | Excitation::Recorded { .. } => {}
-    }
+    data.into_iter().filter_map(with).collect()
 }
 
 /// |value - exact| relative to `scale`.

@@ -3,7 +3,7 @@
 use super::measure::Check;
 use super::precision::{Point, Setting};
 use super::{Report, Variant};
-use crate::study::{Table, Values};
+use crate::study::Table;
 
 /// Errors that the summary of a method says the cost of.
 const LEVELS: [(&str, f64); 4] =
@@ -18,21 +18,21 @@ impl Report {
         let rows: Vec<Row> =
             self.points.iter().map(Row::of_point).chain(self.rows(|own| own.checks.clone())).collect();
         Table::new()
-            .with("part", words(&rows, |row| row.part))
-            .with("case", words(&rows, |row| row.case))
-            .with("method", words(&rows, |row| row.method))
-            .with("variant", words(&rows, |row| row.variant))
-            .with("quantity", words(&rows, |row| row.quantity))
-            .with("tolerance", numbers(&rows, |row| row.tolerance))
-            .with("step_s", numbers(&rows, |row| row.step))
-            .with("error", numbers(&rows, |row| row.error))
-            .with("allowed", numbers(&rows, |row| row.allowed))
-            .with("digits_allowed", numbers(&rows, |row| row.digits_allowed))
-            .with("digits_reached", numbers(&rows, |row| row.digits_reached))
-            .with("steps", counts(&rows, |row| row.steps))
-            .with("evaluations", counts(&rows, |row| row.evaluations))
-            .with("cpu_s", numbers(&rows, |row| row.cpu))
-            .with("verdict", words(&rows, |row| row.verdict))
+            .each("part", &rows, |row| row.part)
+            .each("case", &rows, |row| row.case)
+            .each("method", &rows, |row| row.method)
+            .each("variant", &rows, |row| row.variant)
+            .each("quantity", &rows, |row| row.quantity)
+            .each("tolerance", &rows, |row| row.tolerance)
+            .each("step_s", &rows, |row| row.step)
+            .each("error", &rows, |row| row.error)
+            .each("allowed", &rows, |row| row.allowed)
+            .each("digits_allowed", &rows, |row| row.digits_allowed)
+            .each("digits_reached", &rows, |row| row.digits_reached)
+            .each("steps", &rows, |row| Some(row.steps))
+            .each("evaluations", &rows, |row| Some(row.evaluations))
+            .each("cpu_s", &rows, |row| row.cpu)
+            .each("verdict", &rows, |row| row.verdict)
     }
 
     /// The points alone, as a plot reads them: `problem`, `method`, `tolerance`, `step_s`, `error`, `steps`,
@@ -40,13 +40,13 @@ impl Report {
     pub fn work_table(&self) -> Table {
         let rows: Vec<Row> = self.points.iter().map(Row::of_point).collect();
         Table::new()
-            .with("problem", words(&rows, |row| row.case))
-            .with("method", words(&rows, |row| row.method))
-            .with("tolerance", numbers(&rows, |row| row.tolerance))
-            .with("step_s", numbers(&rows, |row| row.step))
-            .with("error", numbers(&rows, |row| row.error))
-            .with("steps", counts(&rows, |row| row.steps))
-            .with("cpu_s", numbers(&rows, |row| row.cpu))
+            .each("problem", &rows, |row| row.case)
+            .each("method", &rows, |row| row.method)
+            .each("tolerance", &rows, |row| row.tolerance)
+            .each("step_s", &rows, |row| row.step)
+            .each("error", &rows, |row| row.error)
+            .each("steps", &rows, |row| Some(row.steps))
+            .each("cpu_s", &rows, |row| row.cpu)
     }
 
     /// What each method pays at least for an error of 1e-3, 1e-6, 1e-9 and 1e-12, and the least error that it
@@ -63,30 +63,27 @@ impl Report {
             let own = self.points.iter().filter(|point| (point.problem, point.method) == *group);
             own.map(of).fold(f64::NAN, f64::min)
         };
-        let mut table = Table::new()
-            .with("problem", Values::Words(groups.iter().map(|group| group.0).collect()))
-            .with("method", Values::Words(groups.iter().map(|group| group.1).collect()));
+        let mut table =
+            Table::new().each("problem", &groups, |group| group.0).each("method", &groups, |group| group.1);
         for (name, level) in LEVELS {
             let cost = |point: &Point| if point.error <= level { point.cpu_s } else { f64::NAN };
-            let cheapest = |group: &Group| least(group, &cost);
-            table = table.with(name, Values::Numbers(groups.iter().map(cheapest).collect()));
+            table = table.each(name, &groups, |group| least(group, &cost));
         }
-        let error = |group: &Group| least(group, &|point| point.error);
-        table.with("least_error", Values::Numbers(groups.iter().map(error).collect()))
+        table.each("least_error", &groups, |group| least(group, &|point| point.error))
     }
 
     /// The hard cases, a row for each variant with the quantity that has the smallest margin.
     pub fn case_table(&self) -> Table {
         let rows = self.rows(|variant| variant.tightest().into_iter().collect());
         Table::new()
-            .with("case", words(&rows, |row| row.case))
-            .with("variant", words(&rows, |row| row.variant))
-            .with("quantity", words(&rows, |row| row.quantity))
-            .with("digits_allowed", numbers(&rows, |row| row.digits_allowed))
-            .with("digits_reached", numbers(&rows, |row| row.digits_reached))
-            .with("steps", counts(&rows, |row| row.steps))
-            .with("cpu_s", numbers(&rows, |row| row.cpu))
-            .with("verdict", words(&rows, |row| row.verdict))
+            .each("case", &rows, |row| row.case)
+            .each("variant", &rows, |row| row.variant)
+            .each("quantity", &rows, |row| row.quantity)
+            .each("digits_allowed", &rows, |row| row.digits_allowed)
+            .each("digits_reached", &rows, |row| row.digits_reached)
+            .each("steps", &rows, |row| Some(row.steps))
+            .each("cpu_s", &rows, |row| row.cpu)
+            .each("verdict", &rows, |row| row.verdict)
     }
 
     fn rows(&self, choose: impl Fn(&Variant) -> Vec<(&'static str, Check)>) -> Vec<Row> {
@@ -171,16 +168,4 @@ impl Row {
             verdict: if check.passes() { "pass" } else { "fail" },
         }
     }
-}
-
-fn words(rows: &[Row], of: impl Fn(&Row) -> &'static str) -> Values {
-    Values::Words(rows.iter().map(of).collect())
-}
-
-fn numbers(rows: &[Row], of: impl Fn(&Row) -> f64) -> Values {
-    Values::Numbers(rows.iter().map(of).collect())
-}
-
-fn counts(rows: &[Row], of: impl Fn(&Row) -> u64) -> Values {
-    Values::Counts(rows.iter().map(|row| Some(of(row))).collect())
 }

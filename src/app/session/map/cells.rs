@@ -135,7 +135,7 @@ impl Map {
     /// The rows of the sweep, with stand-ins where they are still to come.
     fn table(&self) -> Table {
         let [columns, rows] = self.size();
-        let cell = |i: usize| self.cell(i / rows, i % rows).map_or(Cell::NOT_RUN, |found| *found.0);
+        let cell = |i: usize| self.cell(i / rows, i % rows).map_or(Cell::NotRun, |found| *found.0);
         let cells: Vec<Cell> = (0..columns * rows).map(cell).collect();
         self.sweep.table(0, &cells)
     }

@@ -105,8 +105,8 @@ fn reading(map: &Map, column: usize, row: usize) -> String {
             if !own {
                 lines.push("not run yet; its neighbour:".to_owned());
             }
-            if cell.outcome != "done" {
-                lines.push(format!("the run ended early: {}", cell.outcome.replace('_', " ")));
+            if !cell.is_done() {
+                lines.push(format!("the run ended early: {}", cell.outcome().replace('_', " ")));
             }
             if let Some(settled) = cell.settled() {
                 lines.push(Kind::from(settled.regime).name().to_owned());

@@ -80,7 +80,7 @@ pub struct ColourScale {
 impl ColourScale {
     /// From nothing to the largest value that the map has so far.
     pub fn of(quantity: MapQuantity, map: &Map) -> Self {
-        let speeds = map.own_cells().filter_map(|cell| cell.summary?.rms_velocity);
+        let speeds = map.own_cells().filter_map(|cell| cell.summary()?.rms_velocity);
         let (per_speed, unit) = speed_unit(speeds);
         let values = map.own_cells().filter_map(|cell| quantity.value(cell, per_speed));
         let most = values.fold(0.0_f64, f64::max);

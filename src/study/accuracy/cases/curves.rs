@@ -63,14 +63,14 @@ fn flexures(bench: &Bench) -> Result<Variant, Stopped> {
     let outermost = kinks.iter().copied().fold(0.0_f64, f64::max).max(*breaks.first().unwrap_or(&0.0));
     let x0 = outermost + 0.8e-3;
     setup = setup.start(x0, 0.0);
-    // some 2500 periods of four passages each: measured from a short run
+    // some 2500 periods of four crossings each: measured from a short run
     setup.scene.run.duration_s = 20.0;
     setup.scene.run.settle_s = Some(0.0);
-    let pace = bench.run_bare(&setup.model()?)?.summary.total_crossings as f64 / 20.0;
-    if !(pace > 0.0) {
+    let rate = bench.run_bare(&setup.model()?)?.summary.total_crossings as f64 / 20.0;
+    if !(rate > 0.0) {
         return Err(Stopped::Scene("the flexures' orbit does not go over the barrier".to_owned()));
     }
-    setup.scene.run.duration_s = 5100.0 / pace;
+    setup.scene.run.duration_s = 5100.0 / rate;
     let model = setup.model()?;
     let run = bench.run_bare(&model)?;
     let summary = &run.summary;

@@ -24,8 +24,8 @@ impl UnitWell {
         period(dd(self.x0))
     }
 
-    /// |dT/dE| in s/J, T the period and E the energy: by central differences a thousandth of the distance from
-    /// the separatrix wide, good to six digits.
+    /// |dT/dE| in s/J, T the period and E the energy: by central differences a thousandth of the distance
+    /// from the separatrix wide, good to six digits.
     pub fn period_slope(self) -> f64 {
         let x0 = dd(self.x0);
         let step = (x0 - dd(2.0).sqrt()) * dd(1e-3);

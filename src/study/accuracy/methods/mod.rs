@@ -75,7 +75,7 @@ pub struct Statistics {
     pub max_abs_x: f64,
     /// Impacts over the whole run.
     pub impacts: u64,
-    /// Passages of the barrier top over the whole run, as seen from step to step.
+    /// Crossings of the barrier over the whole run, as seen from step to step.
     pub crossings: u64,
     /// Accepted steps.
     pub steps: u64,

@@ -56,7 +56,7 @@ pub struct StepSize {
     pub impacts: (u64, u64),
     /// Impacts of the run in fixed steps while the true mass rests on a stop.
     pub hops: u64,
-    /// Passages of the barrier top counted.
+    /// Crossings of the barrier counted.
     pub crossings: (u64, u64),
     /// RMS velocity in m/s over the settled window; none where a run ended before it.
     pub rms_velocity: (Option<f64>, Option<f64>),

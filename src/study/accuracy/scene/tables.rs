@@ -1,8 +1,8 @@
 //! Accuracy of a scene as one table.
 
 use super::{StepSize, Tolerances};
+use crate::study::Table;
 use crate::study::accuracy::OWN;
-use crate::study::{Table, Values};
 
 /// Runs at tolerances and in fixed steps, a row each, in this order. SI; a cell without a value is empty.
 ///
@@ -32,25 +32,22 @@ pub fn scene_table(tolerances: &Tolerances, stepped: &[StepSize]) -> Table {
         })
         .chain(stepped.iter().map(Row::of_steps))
         .collect();
-    let number = |i: usize| Values::Numbers(rows.iter().map(|row| row.numbers[i]).collect());
-    let count = |i: usize| Values::Counts(rows.iter().map(|row| row.counts[i]).collect());
-    let words = |of: fn(&Row) -> &'static str| Values::Words(rows.iter().map(of).collect());
     Table::new()
-        .with("method", words(|row| row.method))
-        .with("tolerance", number(0))
-        .with("step_s", number(1))
-        .with("error_m", number(2))
-        .with("trusted_s", number(3))
-        .with("compared_s", number(4))
-        .with("steps", count(0))
-        .with("evaluations", count(1))
-        .with("cpu_s", number(5))
-        .with("rms_velocity_m_per_s", number(6))
-        .with("impacts", count(2))
-        .with("late_s", number(7))
-        .with("latest_s", number(8))
-        .with("arrivals", count(3))
-        .with("outcome", words(|row| row.outcome))
+        .each("method", &rows, |row| row.method)
+        .each("tolerance", &rows, |row| row.numbers[0])
+        .each("step_s", &rows, |row| row.numbers[1])
+        .each("error_m", &rows, |row| row.numbers[2])
+        .each("trusted_s", &rows, |row| row.numbers[3])
+        .each("compared_s", &rows, |row| row.numbers[4])
+        .each("steps", &rows, |row| row.counts[0])
+        .each("evaluations", &rows, |row| row.counts[1])
+        .each("cpu_s", &rows, |row| row.numbers[5])
+        .each("rms_velocity_m_per_s", &rows, |row| row.numbers[6])
+        .each("impacts", &rows, |row| row.counts[2])
+        .each("late_s", &rows, |row| row.numbers[7])
+        .each("latest_s", &rows, |row| row.numbers[8])
+        .each("arrivals", &rows, |row| row.counts[3])
+        .each("outcome", &rows, |row| row.outcome)
 }
 
 struct Row {

@@ -2,6 +2,7 @@
 
 use super::{Course, Lateness, StepSize, TRUSTED_SHARE, Trust};
 use crate::dynamics::Outcome;
+use crate::numeric::decimals;
 
 /// A number with two digits, written out.
 fn two(value: f64) -> String {
@@ -9,11 +10,11 @@ fn two(value: f64) -> String {
     if size < 1e-12 {
         return "0".to_owned();
     }
-    let decimals = (1.0 - size.log10().floor()).clamp(0.0, 12.0) as usize;
+    let places = decimals(size, 2);
     // what rounds up to another digit has one decimal less: 9.96 is 10
-    let decimals =
-        if format!("{size:.decimals$}").parse().is_ok_and(|shown: f64| shown >= 10.0) { 0 } else { decimals };
-    format!("{value:.decimals$}")
+    let ten = format!("{size:.places$}").parse().is_ok_and(|shown: f64| shown >= 10.0);
+    let places = if ten { 0 } else { places };
+    format!("{value:.places$}")
 }
 
 /// A short time in the unit that suits it.
