@@ -184,7 +184,14 @@ impl Model {
     /// Runs several models with nothing listed, many at once where the processor can: what [`run`](Self::run) gives for
     /// each, bit for bit, in their order; `until_settled` as in [`Request`]. The CPU time of all is shared evenly between them.
     pub fn run_all(models: &[Self], until_settled: Option<f64>, cancel: Option<&AtomicBool>) -> Vec<Run> {
-        super::lanes::run_all(models, &Request { cancel, until_settled, ..Request::default() })
+        super::lanes::run_all(models, &Request { cancel, until_settled, ..Request::default() }, usize::MAX)
+    }
+
+    /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; none where the processor has not so many.
+    #[doc(hidden)]
+    pub fn run_all_in_lanes(models: &[Self], width: usize) -> Option<Vec<Run>> {
+        let run = || super::lanes::run_all(models, &Request::default(), width);
+        super::lanes::has_lanes(width).then(run)
     }
 
     /// Runs the model once in double-double arithmetic, some 31 digits, with its own `tolerance` (1e-28 is

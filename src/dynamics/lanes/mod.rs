@@ -43,8 +43,8 @@ struct Prepared<'a> {
 
 /// Runs several models, as [`Model::run`] does, with nothing listed; the results in their order.
 ///
-/// Those that cannot share their steps with others are run alone.
-pub(crate) fn run_all(models: &[Model], request: &Request) -> Vec<Run> {
+/// Those that cannot share their steps with others are run alone. No more than `most` lanes are used.
+pub(crate) fn run_all(models: &[Model], request: &Request, most: usize) -> Vec<Run> {
     let mut runs: Vec<Option<Run>> = models.iter().map(|_| None).collect();
     let mut together = Vec::new();
     for (place, model) in models.iter().enumerate() {
@@ -60,7 +60,7 @@ pub(crate) fn run_all(models: &[Model], request: &Request) -> Vec<Run> {
     together.sort_by(|a, b| b.model.tolerance.total_cmp(&a.model.tolerance));
     for alike in together.chunk_by(|a, b| a.model.tolerance == b.model.tolerance) {
         let watch = cpu_time::ThreadTime::now();
-        fly_together(alike, request, &mut runs);
+        fly_together(alike, request, most, &mut runs);
         let share = watch.elapsed().as_secs_f64() / alike.len() as f64;
         for own in alike {
             if let Some(run) = &mut runs[own.place] {
@@ -71,17 +71,34 @@ pub(crate) fn run_all(models: &[Model], request: &Request) -> Vec<Run> {
     runs.into_iter().zip(models).map(|(run, model)| run.unwrap_or_else(|| model.run(request))).collect()
 }
 
-/// Runs models of one tolerance in as many lanes as the processor has.
-fn fly_together(prepared: &[Prepared], request: &Request, runs: &mut [Option<Run>]) {
+/// Whether the processor at hand has so many lanes.
+pub(crate) fn has_lanes(width: usize) -> bool {
+    match width {
+        4 => true,
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        8 => pulp::x86::V3::is_available(),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        WIDEST => pulp::x86::V4::is_available(),
+        _ => false,
+    }
+}
+
+/// Runs models of one tolerance in as many lanes as the processor has, at most `most`.
+fn fly_together(prepared: &[Prepared], request: &Request, most: usize, runs: &mut [Option<Run>]) {
+    debug_assert!(most >= 4, "every processor has 4 lanes");
     if prepared.len() == 1 {
         return; // alone
     }
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
-        if let Some(wide) = pulp::x86::V4::try_new() {
+        if most >= WIDEST
+            && let Some(wide) = pulp::x86::V4::try_new()
+        {
             return wide.vectorize(Wide(Bundle::<WIDEST>::new(prepared, request, runs)));
         }
-        if let Some(wide) = pulp::x86::V3::try_new() {
+        if most >= 8
+            && let Some(wide) = pulp::x86::V3::try_new()
+        {
             return wide.vectorize(Wide(Bundle::<8>::new(prepared, request, runs)));
         }
     }
