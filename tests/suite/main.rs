@@ -1,4 +1,4 @@
-//! One test binary; each module holds one kind of evidence.
+//! The tests of the library and of the command line; each module holds one kind of evidence.
 
 mod absent;
 mod accuracy;
@@ -9,6 +9,7 @@ mod cli;
 mod compliant;
 mod convergence;
 mod drives;
+mod examples;
 mod impacts;
 mod lanes;
 mod layers;
@@ -23,6 +24,7 @@ mod recurrence;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
+mod source_text;
 mod studies;
 mod support;
 mod untrusted;
