@@ -57,7 +57,7 @@ fn it_fills_and_a_click_is_one_step() {
     assert!(session.undo() && *session.scene() == before && !session.undo());
 }
 
-/// A window on a map of 80 000 cells, most of which take ten thousand steps: not all of them come within a test.
+/// A window on a map of 80 000 cells, most of which take ten thousand steps: more than come within a test.
 fn large() -> Harness<'static, Window> {
     let mut harness = window("paper", WIDE, Settings::default());
     let session = &mut harness.state_mut().session;
