@@ -1,4 +1,4 @@
-//! What does it cost to get ready? `cargo bench --bench building`: reading and checking a scene, building its curve
+//! Cost of getting ready: `cargo bench --bench building`. Reading and checking a scene, building its curve
 //! and its model, and what a sweep adds to the runs of its cells.
 
 mod shared;

@@ -1,5 +1,5 @@
-//! What does a force curve from flexures cost, and how far off is it? `cargo bench --bench flexures`: the prototype's curve
-//! at several tolerances, CPU time beside the error at fresh solutions between the points it was made of.
+//! Cost and error of a force curve from flexures: `cargo bench --bench flexures`. The prototype's curve at
+//! several tolerances, CPU time beside the error at fresh solutions between the points it was made of.
 
 mod shared;
 
@@ -13,7 +13,8 @@ const PLACES: usize = 97;
 
 fn main() {
     println!(
-        "| tolerance | CPU, ms | states | functions | pieces | error of the force inside | of the stiffness | outside |"
+        "| tolerance | CPU, ms | states | functions | pieces | error of the force inside | \
+         of the stiffness | outside |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
     let geometry = prototype();

@@ -1,6 +1,7 @@
-//! What does a frame of the window cost? `cargo bench --bench frames`: the interface is stepped without a window, 1400 by
-//! 900 points, playing in real time at 60 frames a second, with everything that the program itself does for a frame: the
-//! motion, the layout, the shapes, and their triangles. What the graphics do with these is not in it.
+//! Cost of a frame of the window: `cargo bench --bench frames`. The interface is stepped without a window,
+//! 1400 by 900 points, playing in real time at 60 frames a second, with everything that the program itself
+//! does for a frame: the motion, the layout, the shapes, and their triangles. What the graphics do with
+//! these is not in it.
 
 mod shared;
 

@@ -1,7 +1,8 @@
 //! Where the time goes, as the tables of docs/speed.md: `cargo bench --bench speed`.
 //!
-//! The flexure preset's work against precision; how time grows with jobs, duration, impacts and the size of a map; what a
-//! step costs against what the processor can do; and what each measure saves, switched off one by one.
+//! The flexure preset's work against precision; how time grows with jobs, duration, impacts and the size of a
+//! map; what a step costs against what the processor can do; and what each measure saves, switched off one by
+//! one.
 
 mod shared;
 
@@ -222,7 +223,8 @@ fn step() {
         let (alone, together) = alone_and_together(&model);
         let work = operations(order) as f64;
         println!(
-            "| {tolerance} | {order} | {:.0} ns | {:.0} ns | {work} | {:.0} % of the peak | {:.0} % of the peak |",
+            "| {tolerance} | {order} | {:.0} ns | {:.0} ns | {work} | {:.0} % of the peak | \
+             {:.0} % of the peak |",
             alone / steps * 1e9,
             together / steps * 1e9,
             100.0 * work * steps / alone / scalar,
@@ -230,7 +232,8 @@ fn step() {
         );
     }
     println!(
-        "\nPeak: {:.1} G products and sums of doubles a second one at a time, {:.0} G in the widest registers.",
+        "\nPeak: {:.1} G products and sums of doubles a second one at a time, \
+         {:.0} G in the widest registers.",
         scalar * 1e-9,
         wide * 1e-9
     );

@@ -4,13 +4,15 @@
 //!
 //! Three problems of the preset `nominal-cubic`, ten seconds each:
 //!
-//! - P1: no stops, 1.1 g. Error: final displacement over the well's distance, against the same run in some 31 digits.
-//! - P2: stops at 4 mm, 1.5 g: 780 impacts down to 1 um/s and 60 rests. Error: the worse of the times of the impacts
-//!   above 1 cm/s, in forcing periods, and the relative error of the RMS velocity, against the run in some 31 digits.
-//!   Once as it is, where the cycle comes back exactly and the rest is known, and once integrated to the end.
-//! - P3: its map, 41 travel limits by 101 amplitudes. Error: that of the RMS velocity, relative, against the same
-//!   map at a tighter tolerance; the median over the cells that move, and the 99 % quantile over those of them that
-//!   are not irregular, since the median does not see the cells near a threshold.
+//! - P1: no stops, 1.1 g. Error: final displacement over the well's distance, against the same run in some
+//!   31 digits.
+//! - P2: stops at 4 mm, 1.5 g: 780 impacts down to 1 um/s and 60 rests. Error: the worse of the times of the
+//!   impacts above 1 cm/s, in forcing periods, and the relative error of the RMS velocity, against the run in
+//!   some 31 digits. Once as it is, where the cycle comes back exactly and the rest is known, and once
+//!   integrated to the end.
+//! - P3: its map, 41 travel limits by 101 amplitudes. Error: that of the RMS velocity, relative, against the
+//!   same map at a tighter tolerance; the median over the cells that move, and the 99 % quantile over those
+//!   of them that are not irregular, since the median does not see the cells near a threshold.
 
 mod shared;
 

@@ -1,11 +1,12 @@
-//! The motion of a mass on an odd cubic, with a sine or with no drive at all, and with nothing to touch, written
-//! out by hand: what the general path of `dynamics` must come down to where a scene names nothing else.
+//! The motion of a mass on an odd cubic, with a sine or with no drive at all, and with nothing to touch,
+//! written out by hand: what the general path of `dynamics` must come down to where a scene names nothing
+//! else.
 //!
-//! The arithmetic is that of the general path, operation for operation, so the end of the run is the same bit for
-//! bit: series, step rule, the check of each step and the clock are the method. What is left out is what the scene
-//! does not name: stops and their search, breaks, segments of a drive, statistics, events, samples, budgets, the
-//! cancel flag, the order of the force, and, where it has no drive, the sine. Crossings, which every run with a
-//! well counts, can be counted here too.
+//! The arithmetic is that of the general path, operation for operation, so the end of the run is the same bit
+//! for bit: series, step rule, the check of each step and the clock are the method. What is left out is what
+//! the scene does not name: stops and their search, breaks, segments of a drive, statistics, events, samples,
+//! budgets, the cancel flag, the order of the force, and, where it has no drive, the sine. Crossings, which
+//! every run with a well counts, can be counted here too.
 
 use std::f64::consts::TAU;
 
@@ -44,8 +45,9 @@ pub struct End {
 }
 
 impl Problem {
-    /// The run of a model of an odd cubic; `sine` is amplitude in g and frequency in Hz, `start` displacement in m and
-    /// velocity in m/s. The duration must be a whole number of periods (without a sine, of 2^-16 time units).
+    /// The run of a model of an odd cubic; `sine` is amplitude in g and frequency in Hz, `start` displacement
+    /// in m and velocity in m/s. The duration must be a whole number of periods (without a sine, of 2^-16
+    /// time units).
     pub fn new(model: &Model, sine: Option<(f64, f64)>, start: (f64, f64)) -> Self {
         let unit = model.scales().time.log2().round().exp2();
         let [0.0, linear, 0.0, cubic] = model.mechanism().curve.pieces()[0].coefficients[..] else {

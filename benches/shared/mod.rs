@@ -1,8 +1,9 @@
-//! How long does it take, on a machine that others use too?
+//! CPU times of pieces of work, on a machine that others use too.
 //!
-//! Time is the CPU time of the thread, read inside the process: a wall clock counts what others do meanwhile, and
-//! the start of the process. Each figure is the median of many, and what is compared is run in turn, so that a
-//! slow second slows both. (Criterion and divan measure by the wall clock and show no error beside the time.)
+//! Time is the CPU time of the thread, read inside the process: a wall clock counts what others do meanwhile,
+//! and the start of the process. Each figure is the median of many, and what is compared is run in turn, so
+//! that a slow second slows both. (Criterion and divan measure by the wall clock and show no error beside the
+//! time.)
 
 // Each bench uses its part.
 #![allow(dead_code, unused_imports)]
@@ -43,8 +44,8 @@ pub fn quantile(values: &mut [f64], q: f64) -> f64 {
     values[((values.len() - 1) as f64 * q).round() as usize]
 }
 
-/// Median CPU time in s of each of two pieces of work, and the median of the ratio of the second to the first over
-/// pairs run one after the other, in alternating order.
+/// Median CPU time in s of each of two pieces of work, and the median of the ratio of the second to the first
+/// over pairs run one after the other, in alternating order.
 pub fn compare<A, B>(pairs: usize, mut a: impl FnMut() -> A, mut b: impl FnMut() -> B) -> (f64, f64, f64) {
     let (mut of_a, mut of_b) = (Vec::new(), Vec::new());
     for pair in 0..pairs {

@@ -61,6 +61,11 @@ mod tests {
         assert_eq!(ratio(6.0, 3.0), Some((2, 1)));
         assert_eq!(ratio(1e-3, 2e5), Some((1, 200_000_000)));
         assert_eq!(ratio(1e-9, 1e9), None);
+        // Sixteen digits are few enough, seventeen are not.
+        let digits = 3_141_592_653_589_793;
+        assert_eq!(ratio(std::f64::consts::PI, 3.0), Some((digits, 3_000_000_000_000_000)));
+        assert_eq!(ratio(1.234_567_890_123_456_7, 3.0), None);
+        assert_eq!(ratio(3.0, 1.234_567_890_123_456_7), None);
         let r = Ratio { numerator: 31, denominator: 30 };
         assert_eq!(r.fraction_of_multiple(30), 0.0);
         assert_eq!(r.fraction_of_multiple(31), 1.0 / 30.0);

@@ -29,8 +29,8 @@ pub fn build(document: &Document) -> Model {
     Model::build(&document.scene, mechanism(document)).unwrap()
 }
 
-/// The mechanism of a document that must be without faults. The prototype's flexures are solved once by a program that
-/// includes this, by whoever comes first: tests make hundreds of models of them.
+/// The mechanism of a document that must be without faults. The prototype's flexures are solved once by a
+/// program that includes this, by whoever comes first: tests make hundreds of models of them.
 pub fn mechanism(document: &Document) -> Arc<Mechanism> {
     static PROTOTYPE: OnceLock<(scene::Mechanism, Arc<Mechanism>)> = OnceLock::new();
     let solved =

@@ -1,4 +1,4 @@
-//! What a scene does not use is absent: it changes no bit, and no step allocates.
+//! Parts that a scene does not use: they change no bit, and no step allocates.
 
 use allocation_counter::{AllocationInfo, measure};
 use interwell::dynamics::{Model, Request};
@@ -99,7 +99,8 @@ fn what_is_not_kept_takes_no_room() {
 
 #[test]
 fn a_motion_that_nobody_watches_is_counted_the_same() {
-    // Starts on the top, beside it, on a stop and in a well; free, between stops, on compliant ones, over breaks of the force.
+    // Starts on the top, beside it, on a stop and in a well; free, between stops, on compliant ones, over
+    // breaks of the force.
     let times = every(0.07, 140);
     let request = Request { sample_times: &times, events: true, ledger: true, ..Request::default() };
     for start in [(0.0, 0.3), (0.0, -0.3), (1e-6, -0.1), (-4.0, 0.0), (4.0, -1.0), (3.2, 0.01)] {

@@ -1,4 +1,4 @@
-//! The accuracy study: every hard case holds, and the other methods are what they are called.
+//! The accuracy study: its hard cases, and the orders of the other methods.
 
 use std::collections::HashSet;
 use std::f64::consts::TAU;
@@ -117,7 +117,8 @@ fn smooth() -> Model {
 
 #[test]
 fn the_schemes_have_their_orders() {
-    // Error of the final displacement and of the RMS velocity by steps of 1/50 and 1/100 s: halved once, twice, four times.
+    // Error of the final displacement and of the RMS velocity by steps of 1/50 and 1/100 s: halved once,
+    // twice, four times.
     let model = smooth();
     let exact = run(&model).summary;
     for (scheme, order) in
@@ -186,7 +187,8 @@ fn the_adaptive_method_follows_its_tolerance_and_locates_impacts() {
 
 #[test]
 fn samples_lie_on_the_path_and_end_with_it() {
-    // For the view of a step's effect: as many samples as were asked for, ascending, inside the stops, at rest where it rests.
+    // For the view of a step's effect: as many samples as were asked for, ascending, inside the stops, at
+    // rest where it rests.
     let model = preset("paper", &[]);
     let times = every(0.01, 1000);
     let keep = Keep { sample_times: &times, impacts: true, ..Keep::default() };

@@ -1,4 +1,5 @@
-//! Accuracy of a scene: known figures of fixed steps, errors that are known otherwise, and chaos that is called so.
+//! Accuracy of a scene: known figures of fixed steps, errors that are known otherwise, and chaos that is
+//! called so.
 
 use std::sync::atomic::AtomicBool;
 
@@ -24,8 +25,8 @@ fn at_tolerances(model: &Model) -> Tolerances {
 
 #[test]
 fn fixed_steps_arrive_late_and_count_too_many_impacts() {
-    // The figures of a small applet on the nominal cubic between stops at 4 mm, measured elsewhere: at 1/60 s 14 ms late and
-    // an RMS velocity 38 % too high, at 1/600 s every arrival 0.55 ms late and 3120 impacts.
+    // The figures of a small applet on the nominal cubic between stops at 4 mm, measured elsewhere: at 1/60 s
+    // 14 ms late and an RMS velocity 38 % too high, at 1/600 s every arrival 0.55 ms late and 3120 impacts.
     let model = preset("nominal-cubic", &[]);
     let coarse = stepped(&model, Scheme::RungeKutta4, 1.0 / 60.0);
     let late = coarse.late.unwrap();
@@ -149,9 +150,11 @@ fn chaos_is_called_chaos_and_nothing_else_is() {
 
 #[test]
 fn on_the_hill_it_is_sensitive_and_not_chaotic() {
-    // Released with the energy of the barrier: it stands on the top for as long as its digits last, then falls to a side.
+    // Released with the energy of the barrier: it stands on the top for as long as its digits last, then
+    // falls to a side.
     let top = unit_well(
-        "start: At(x_mm: 1414.2135623730951, v_m_per_s: 0), run: (duration_s: 100, settle_s: 0, tolerance: 1e-9)",
+        "start: At(x_mm: 1414.2135623730951, v_m_per_s: 0), run: (duration_s: 100, settle_s: 0, \
+         tolerance: 1e-9)",
     );
     let own = trusted(&top);
     assert!(matches!(own.course, Course::Sensitive { until } if until > 5.0 && until < 40.0), "{own:?}");

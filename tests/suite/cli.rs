@@ -64,7 +64,7 @@ fn without_headless_it_says_what_to_write() {
         let text = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
         assert!(text.contains("--headless") && text.lines().count() == 1, "{text}");
     }
-    for command in ["presets", "check", "curve", "simulate", "sweep", "accuracy"] {
+    for command in ["presets", "check", "curve", "simulate", "sweep", "threshold", "accuracy"] {
         refused(plain(command), &["--headless", command]);
     }
     refused(plain("--headless"), &["presets, check, curve, simulate, sweep, threshold or accuracy"]);
@@ -77,8 +77,8 @@ fn without_headless_it_says_what_to_write() {
 #[test]
 fn help_and_version() {
     plain("--version").assert().success().stdout(format!("interwell {}\n", env!("CARGO_PKG_VERSION")));
-    let all = ["presets", "check", "curve", "simulate", "sweep", "accuracy", "Examples", "Exit status"];
-    for word in all {
+    let commands = ["presets", "check", "curve", "simulate", "sweep", "threshold", "accuracy"];
+    for word in commands.into_iter().chain(["Examples", "Exit status"]) {
         plain("--help").assert().success().stdout(contains(word));
     }
     for word in ["--out", "--set", "--tolerance", "--jobs", "--quiet", "--over", "--plot", "--dark"] {

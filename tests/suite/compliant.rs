@@ -12,11 +12,13 @@ use crate::support::*;
 /// Stiffness of the prototype's stops in N/m^1.5: 5 mm aluminium cylinders, crossed.
 const STIFFNESS: f64 = 3.678e9;
 
-/// A free mass of 15.2 g that flies from the middle at `speed` in m/s to a stop at 1 mm with this loss in s/m.
+/// A free mass of 15.2 g that flies from the middle at `speed` in m/s to a stop at 1 mm with this loss in
+/// s/m.
 fn flight(speed: f64, loss: f64, tolerance: f64) -> Model {
     let duration = 3e-3 / speed;
     model(&format!(
-        "mass_g: 15.2, mechanism: Polynomial(coefficients_si: [0.0]), start: At(x_mm: 0, v_m_per_s: {speed}), \
+        "mass_g: 15.2, mechanism: Polynomial(coefficients_si: [0.0]), start: At(x_mm: 0, \
+         v_m_per_s: {speed}), \
          stops: Hertz(travel_limit_mm: 1, stiffness_n_per_m1_5: {STIFFNESS}, loss_s_per_m: {loss}), \
          run: (duration_s: {duration}, settle_s: 0, tolerance: {tolerance})"
     ))

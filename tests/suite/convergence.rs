@@ -1,4 +1,4 @@
-//! How the error follows the tolerance, and what must not change an answer at all.
+//! The error against the tolerance, and changes that leave an answer as it is.
 
 mod hard;
 mod tolerance;

@@ -1,4 +1,4 @@
-//! The traps of impacts, rests, releases and breaks: each a test whose name says the trap.
+//! Traps of impacts, rests, releases and breaks, each a test with the name of the trap.
 
 mod bookkeeping;
 mod breaks;

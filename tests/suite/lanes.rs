@@ -1,20 +1,33 @@
-//! Runs that share their steps are the runs that each would be alone, to the last bit.
+//! Runs that share their steps: each is the run that it would be alone, to the last bit, in any number of
+//! lanes.
 
-use interwell::dynamics::{Model, Request, Summary};
+use std::io::Write as _;
+
+use interwell::dynamics::{Model, Request, Run, Summary};
 
 use super::support::*;
+
+/// The summaries of runs, the time that they took left out, as texts: these tell 0 from -0 and have a text
+/// for NaN.
+fn bare(runs: &[Run]) -> Vec<String> {
+    runs.iter()
+        .map(|run| {
+            let mut own: Summary = run.summary;
+            own.cpu_s = 0.0;
+            format!("{own:?}")
+        })
+        .collect()
+}
+
+fn alone(models: &[Model]) -> Vec<String> {
+    bare(&models.iter().map(|model| model.run(&Request::default())).collect::<Vec<_>>())
+}
 
 /// The summaries of models run together, and of each alone.
 fn compare(models: &[Model]) {
     let together = Model::run_all(models, None, None);
-    assert_eq!(together.len(), models.len());
-    for (model, run) in models.iter().zip(&together) {
-        let alone = model.run(&Request::default());
-        let mut alone: Summary = alone.summary;
-        alone.cpu_s = run.summary.cpu_s;
-        assert_eq!(run.summary, alone);
-        assert!(run.samples.is_empty() && run.events.is_empty());
-    }
+    assert_eq!(bare(&together), alone(models));
+    assert!(together.iter().all(|run| run.samples.is_empty() && run.events.is_empty()));
 }
 
 fn models(scene: &str, all: &[&str], each: impl IntoIterator<Item = String>) -> Vec<Model> {
@@ -41,9 +54,8 @@ fn maps_with_and_without_stops() {
     }
 }
 
-#[test]
-fn any_company_will_do() {
-    // Other tolerances, drives, stops, curves and lengths; some that cannot fly in company at all.
+/// Other tolerances, drives, stops, curves and lengths; some that cannot share their steps at all.
+fn unlike() -> Vec<Model> {
     let mut all = Vec::new();
     for (i, changes) in [
         &["stops=None"][..],
@@ -66,6 +78,12 @@ fn any_company_will_do() {
             all.push(preset("nominal-cubic", &[&["run.settle_s=0.7", length.as_str()], *changes].concat()));
         }
     }
+    all
+}
+
+#[test]
+fn models_that_have_little_in_common() {
+    let mut all = unlike();
     compare(&all);
     all.reverse();
     compare(&all);
@@ -91,4 +109,25 @@ fn stops_near_and_far_with_every_kind_of_rebound() {
         let limits = (0..37).map(|i| format!("stops.travel_limit_mm={}", 0.5 + 0.25 * i as f64));
         compare(&models("nominal-cubic", &changes, limits));
     }
+}
+
+/// Registers of four and of eight numbers, two a column where they hold eight, and those that every processor
+/// has.
+#[test]
+fn the_same_bits_in_4_8_and_16_lanes() {
+    let settings = ["run.duration_s=7", "run.settle_s=2.9", "run.tolerance=1e-6"];
+    let limits = (0..37).map(|i| format!("stops.travel_limit_mm={}", 0.5 + 0.25 * f64::from(i)));
+    let free = ["stops=None", "run.duration_s=3", "run.settle_s=1"];
+    let all = [unlike(), models("nominal-cubic", &settings, limits), models("paper", &free, amplitudes(21))]
+        .concat();
+    let alone = alone(&all);
+    for width in [4, 8, 16] {
+        match Model::run_all_in_lanes(&all, width) {
+            Some(runs) => assert_eq!(bare(&runs), alone, "{width} lanes"),
+            // past the capture of what passing tests print
+            None => writeln!(std::io::stderr(), "skipped: no {width} lanes on this processor").unwrap(),
+        }
+    }
+    assert!(Model::run_all_in_lanes(&all, 4).is_some(), "every processor has 4 lanes");
+    assert!(Model::run_all_in_lanes(&all, 5).is_none());
 }

@@ -1,4 +1,4 @@
-//! Does a run that is watched and changed while it goes on stay the run that it is?
+//! Live runs: the same run in any pieces, changes on the way, and the memory of what was seen.
 
 use interwell::dynamics::{EventKind, Live, LiveOutput, Model, Phase, Request, Sample, Side};
 use interwell::study::Watch;
@@ -61,11 +61,13 @@ fn the_present_lies_on_the_run_and_the_ledger_closes() {
         let model = preset(name, &[]);
         let mut live = Live::new(&model);
         let mut passage = LiveOutput::default();
+        let mut arrived = 0;
         for k in 1..400 {
             let to = 0.011 * f64::from(k);
             if !live.advance(to, &[to], &mut passage) {
                 continue;
             }
+            arrived += 1;
             let (state, sample) = (live.state(), passage.samples.last().unwrap());
             near(state.x, sample.x, 1e-12 * model.scales().length);
             near(state.v, sample.v, 1e-9 * model.scales().speed);
@@ -76,6 +78,7 @@ fn the_present_lies_on_the_run_and_the_ledger_closes() {
             near(left, 0.0, 1e-8 * size.max(ledger.impact_j + ledger.damping_j));
             assert_eq!(ledger.by_hand_j, 0.0);
         }
+        assert!(arrived > 350, "{name}: {arrived}");
     }
 }
 

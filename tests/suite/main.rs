@@ -1,4 +1,4 @@
-//! One test binary; each module holds one kind of evidence.
+//! The tests of the library and of the command line; each module holds one kind of evidence.
 
 mod absent;
 mod accuracy;
@@ -10,6 +10,7 @@ mod compliant;
 mod convergence;
 mod documents;
 mod drives;
+mod examples;
 mod impacts;
 mod lanes;
 mod layers;
@@ -24,6 +25,7 @@ mod recurrence;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
+mod source_text;
 mod studies;
 mod support;
 mod untrusted;

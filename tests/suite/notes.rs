@@ -1,8 +1,9 @@
-//! The text of every built-in scene, its line in the list and its notes: each number in it is measured anew.
+//! Numbers in the text of every built-in scene, in its line of the list and in its notes, each measured
+//! anew.
 //!
-//! A claim writes the words as they stand in the text with the measured number in them, with as many digits as
-//! the text has. Numbers that depend on rounding, those of irregular motion, are held within what the words
-//! allow.
+//! A claim writes the words as they stand in the text with the measured number in them, with as many digits
+//! as the text has. Numbers that depend on rounding, those of irregular motion, are held within what the
+//! words allow.
 
 mod prototype;
 mod textbook;

@@ -1,4 +1,4 @@
-//! Pictures and manifests say what was run, whatever was run.
+//! Pictures: what they show, what is refused, and their bytes.
 
 mod asked;
 mod lines;
@@ -67,7 +67,8 @@ fn says(line: &str, words: &[&str]) -> Vec<String> {
     texts
 }
 
-const SMALL_MAP: &str = "sweep paper --set run.settle_s=None --set run.duration_s=2 --over stops.travel_limit_mm=1:7:1 \
+const SMALL_MAP: &str = "sweep paper --set run.settle_s=None --set run.duration_s=2 \
+    --over stops.travel_limit_mm=1:7:1 \
                          --over excitation.amplitude_g=0:2:0.25";
 
 #[test]
@@ -104,7 +105,8 @@ fn pictures_say_what_they_show() {
         SMALL_MAP,
         &["release in closed form", "first crossing cell", "7 \u{d7} 9 runs of 2 s, each from rest"],
     );
-    let line = "sweep duffing --set run.settle_s=100 --set run.duration_s=300 --over excitation.amplitude_g=0.02,0.05";
+    let line = "sweep duffing --set run.settle_s=100 --set run.duration_s=300 \
+        --over excitation.amplitude_g=0.02,0.05";
     says(line, &["amplitude, g", "RMS velocity, mm/s", "2 runs of 300 s", "intrawell"]);
     // A long name is cut, signs of XML are not taken for XML.
     let title = format!("title=<a> & \"b\" {}", "long ".repeat(200));
@@ -134,7 +136,8 @@ fn a_wall_leaves_the_picture_and_the_picture_says_so() {
 fn lines_over_a_map_stand_only_where_they_mean_something() {
     for line in [
         // From elsewhere than rest; over other fields; without a sine.
-        "--set start=At(x_mm:0.5,v_m_per_s:0) --over stops.travel_limit_mm=1,2 --over excitation.amplitude_g=0,1",
+        "--set start=At(x_mm:0.5,v_m_per_s:0) --over stops.travel_limit_mm=1,2 \
+         --over excitation.amplitude_g=0,1",
         "--over stops.restitution=0.2,0.4 --over excitation.amplitude_g=0,1",
         "--set excitation=Constant(accel_g:1) --over stops.travel_limit_mm=1,2 --over excitation.accel_g=0,1",
         "--over stops.travel_limit_mm=7.2,8 --over excitation.amplitude_g=0,1",
@@ -143,7 +146,8 @@ fn lines_over_a_map_stand_only_where_they_mean_something() {
         assert!(!texts.iter().any(|text| text.contains("release")), "{line}: {texts:?}");
     }
     // The other way round is the same map on its side.
-    let turned = "sweep paper --set run.settle_s=None --set run.duration_s=2 --over excitation.amplitude_g=0:2:0.25 \
+    let turned = "sweep paper --set run.settle_s=None --set run.duration_s=2 \
+        --over excitation.amplitude_g=0:2:0.25 \
                   --over stops.travel_limit_mm=1:7:1";
     says(turned, &["release in closed form", "first crossing cell"]);
 }
@@ -214,21 +218,27 @@ fn odd_data_have_pictures_too() {
     for (i, line) in [
         // One cell, one row, one column, values in any order and twice.
         "sweep --set run.settle_s=None --set run.duration_s=1 --over mass_g=15",
-        "sweep --set run.settle_s=None --set run.duration_s=1 --over mass_g=15 --over stops.travel_limit_mm=1",
-        "sweep --set run.settle_s=None --set run.duration_s=1 --over mass_g=15 --over excitation.amplitude_g=2,0,1,2",
-        "sweep --set run.settle_s=None --set run.duration_s=1 --over excitation.phase_deg=-90,0 --over excitation.amplitude_g=-1,-2",
+        "sweep --set run.settle_s=None --set run.duration_s=1 --over mass_g=15 \
+         --over stops.travel_limit_mm=1",
+        "sweep --set run.settle_s=None --set run.duration_s=1 --over mass_g=15 \
+         --over excitation.amplitude_g=2,0,1,2",
+        "sweep --set run.settle_s=None --set run.duration_s=1 --over excitation.phase_deg=-90,0 \
+         --over excitation.amplitude_g=-1,-2",
         // Every cell leaves the table before its settled window.
         "sweep --set stops=None --set start=At(x_mm:7,v_m_per_s:9) --over excitation.amplitude_g=40,50",
-        "sweep --set stops=None --set start=At(x_mm:7,v_m_per_s:9) --over mass_g=15,16 --over excitation.amplitude_g=40,50",
+        "sweep --set stops=None --set start=At(x_mm:7,v_m_per_s:9) --over mass_g=15,16 \
+         --over excitation.amplitude_g=40,50",
         // All at rest; nothing moves at all.
-        "sweep --set run.settle_s=None --set run.duration_s=1 --over excitation.amplitude_g=0 --over stops.travel_limit_mm=1,2",
+        "sweep --set run.settle_s=None --set run.duration_s=1 --over excitation.amplitude_g=0 \
+         --over stops.travel_limit_mm=1,2",
         "simulate --set excitation=None",
         "simulate elastic-box --set start=At(x_mm:0,v_m_per_s:0)",
         // Ends at once; ends by its budget; lasts no time or very long.
         "simulate --set stops=None --set start=At(x_mm:7,v_m_per_s:900)",
         "simulate elastic-box --set start=At(x_mm:0,v_m_per_s:1e9)",
         "simulate elastic-box --set run.settle_s=None --set run.duration_s=1e-15",
-        "simulate elastic-box --set run.settle_s=None --set run.duration_s=1e9 --set start=At(x_mm:0,v_m_per_s:1e-9) --dt 1e8",
+        "simulate elastic-box --set run.settle_s=None --set run.duration_s=1e9 \
+         --set start=At(x_mm:0,v_m_per_s:1e-9) --dt 1e8",
         "simulate elastic-box --set start=At(x_mm:0,v_m_per_s:1e-30)",
         "simulate elastic-box --set stops=None --set start=At(x_mm:1e15,v_m_per_s:1e10)",
         "simulate bouncing-ball --set stops=None",
@@ -245,7 +255,8 @@ fn odd_data_have_pictures_too() {
     .into_iter()
     .enumerate()
     {
-        pixels(&plot(line, folder.path(), &format!("{i}.png")));
+        let small = format!("{line} --plot-size 800x500");
+        pixels(&plot(&small, folder.path(), &format!("{i}.png")));
         texts(&plot(line, folder.path(), &format!("{i}.svg")));
     }
 }

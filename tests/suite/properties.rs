@@ -1,10 +1,10 @@
-//! Any scene: what must hold of it, whatever it does.
+//! Properties of any scene, whatever it does.
 //!
 //! Scenes of every kind are drawn at random (`scenes`, `mechanisms`; at the far ends of what may be written,
 //! `extremes`), and of each is asked:
 //!
-//! - it is never beyond a rigid stop, its events are ones that a mass can follow, what is counted is what is listed, and
-//!   its ledger closes to the tolerance (`sound`, `runs`);
+//! - it is never beyond a rigid stop, its events are ones that a mass can follow, what is counted is what is
+//!   listed, and its ledger closes to the tolerance (`sound`, `runs`);
 //! - its mirror image runs as its mirror image does, bit for bit (`mirror`, `runs`);
 //! - a stop that is never reached, samples, events, a ledger and threads change no bit (`runs`, `sweep`);
 //! - its error is at most a constant times its conditioning times its tolerance, plus rounding (`bound`);
@@ -12,8 +12,8 @@
 //!
 //! The scenes are the same on every day, so that a test that was green does not turn red without a change.
 //! `INTERWELL_PROPERTY_SEED=7` draws others, `INTERWELL_PROPERTY_SEED=new` new ones each time, and
-//! `INTERWELL_PROPERTY_CASES=20` twenty times as many. One that fails is made as simple as it stays failing and printed as a
-//! scene file, with the files that it names and with the seed.
+//! `INTERWELL_PROPERTY_CASES=20` twenty times as many. One that fails is made as simple as it stays failing
+//! and printed as a scene file, with the files that it names and with the seed.
 
 mod bound;
 mod extremes;

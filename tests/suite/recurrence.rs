@@ -1,4 +1,4 @@
-//! A run that is completed from a cycle that came back is the run that is integrated to its end.
+//! Runs that are completed from a repeated cycle, against the same runs integrated to the end.
 
 use interwell::dynamics::{Ledger, Model, Outcome, Request, Run, Summary};
 
@@ -43,6 +43,7 @@ fn same_summary(model: &Model, a: &Summary, b: &Summary) {
     }
     let energy =
         |s: &Summary| s.ledger.map(|own: Ledger| [own.work_j, own.damping_j, own.impact_j, own.stored_j]);
+    assert_eq!(a.ledger.is_some(), b.ledger.is_some());
     if let (Some(a), Some(b)) = (energy(a), energy(b)) {
         let moved: f64 = a.iter().map(|term| term.abs()).sum();
         assert!(a.iter().zip(&b).all(|(a, b)| close(*a, *b, moved)), "{a:?} {b:?}");

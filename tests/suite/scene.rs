@@ -1,4 +1,4 @@
-//! Scenes: every variant reads and writes, every fault is found and placed, every field can be set.
+//! Scenes: reading and writing of every variant, checks, and fields that are set.
 
 use interwell::scene::*;
 
@@ -73,7 +73,8 @@ fn broad(variant: usize) -> Document {
             "excitation",
             pick(&[
                 "Sine(frequency_hz: 3, amplitude_g: 1)",
-                "Sum([Constant(accel_g: 1), AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 2, over_s: 10), Sum([Sine(frequency_hz: 3, amplitude_g: 1)])])",
+                "Sum([Constant(accel_g: 1), AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 2, over_s: 10), \
+                 Sum([Sine(frequency_hz: 3, amplitude_g: 1)])])",
                 "Chirp(from_hz: 1, to_hz: 9, over_s: 5, amplitude_g: 0.5)",
                 "Noise(rms_g: 0.5, low_hz: 1, high_hz: 9, seed: 7, lines: 16)",
             ]),

@@ -1,4 +1,4 @@
-//! Do the studies answer what one run answers, in order, and stop when told?
+//! Studies: cells of a sweep, order of samples, cancelling, words about damping.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -129,9 +129,11 @@ fn default_samples_follow_the_drive() {
 
 /// The prototype with its flexures.
 fn flexures() -> Document {
-    let text = "(title: \"t\", mass_g: 15.2, damping: Ratio(0.023), stops: Rigid(travel_limit_mm: 1.5, restitution: 0.36), \
+    let text = "(title: \"t\", mass_g: 15.2, damping: Ratio(0.023), stops: Rigid(travel_limit_mm: 1.5, \
+        restitution: 0.36), \
         mechanism: Flexures(preload_mm: 2.7, thickness_mm: 0.1, young_gpa: 190, \
-        parallel: (count: 2, length_mm: 26, width_mm: 20), buckling: (count: 1, length_mm: 27.7, width_mm: 6.8)), \
+        parallel: (count: 2, length_mm: 26, width_mm: 20), buckling: (count: 1, length_mm: 27.7, \
+        width_mm: 6.8)), \
         excitation: Sine(frequency_hz: 3, amplitude_g: 1), run: (duration_s: 0.2, settle_s: 0))";
     Document::from_text("t", text, Files::default()).unwrap()
 }
@@ -200,7 +202,8 @@ fn flexures_are_told_in_words() {
     let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
     let text = inspect(&document.scene, &Arc::new(mechanism)).unwrap().join("\n");
     for words in [
-        "flexures: 2 parallel, 26 mm long and 20 mm wide; 1 buckling, 27.7 mm long and 6.8 mm wide; all 0.1 mm thick",
+        "flexures: 2 parallel, 26 mm long and 20 mm wide; 1 buckling, 27.7 mm long and 6.8 mm wide; \
+         all 0.1 mm thick",
         "preload 2.7 mm",
         "geometrically exact (Reissner)",
         "E = 190 GPa, Poisson's ratio 0.34",

@@ -21,9 +21,12 @@ pub fn run(model: &Model) -> Run {
     run_at(model, &[])
 }
 
-/// A run with events, ledger, and samples at `times`, ascending.
+/// A run with events, ledger, and samples at `times`, ascending, all of which it must reach.
+#[track_caller]
 pub fn run_at(model: &Model, times: &[f64]) -> Run {
-    model.run(&Request { sample_times: times, events: true, ledger: true, ..Request::default() })
+    let run = model.run(&Request { sample_times: times, events: true, ledger: true, ..Request::default() });
+    assert_eq!(run.samples.len(), times.len(), "{:?}", run.summary.outcome);
+    run
 }
 
 /// The events of one kind.
@@ -50,7 +53,7 @@ pub fn near_relative(value: f64, exact: f64, bound: f64) {
     assert!(error <= bound, "{value:?} is {error:.2e} from {exact:?}, relatively; allowed {bound:.1e}");
 }
 
-/// Asserts that two runs are the same bit for bit in everything but the CPU time.
+/// Asserts that two runs are the same bit for bit in everything but the CPU time. Their texts tell 0 from -0.
 #[track_caller]
 pub fn same_bits(a: &Run, b: &Run) {
     let bare = |run: &Run| {
@@ -58,5 +61,7 @@ pub fn same_bits(a: &Run, b: &Run) {
         run.summary.cpu_s = 0.0;
         run
     };
-    assert_eq!(bare(a), bare(b));
+    let (a, b) = (bare(a), bare(b));
+    assert_eq!(a, b);
+    assert_eq!(format!("{a:?}"), format!("{b:?}"));
 }

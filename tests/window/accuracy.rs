@@ -1,4 +1,4 @@
-//! The view Accuracy, and what the status line says of the error of what is on the screen.
+//! The view Accuracy, and the error of the motion in the status line.
 
 use eframe::egui::{Key, Modifiers, accesskit::Role};
 use egui_kittest::Harness;

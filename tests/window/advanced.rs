@@ -1,4 +1,4 @@
-//! What is changed seldom, under More and Advanced.
+//! Controls under More and Advanced.
 
 use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -31,9 +31,8 @@ fn the_kind_of_shaking_is_chosen() {
         harness.get_by_role_and_label(Role::Slider, slider);
         assert!(harness.state().session.fault().is_none(), "{kind}");
     }
-    assert!(
-        matches!(harness.state().session.scene().excitation, Excitation::Sine { frequency_hz, .. } if frequency_hz > 0.0)
-    );
+    let shaking = &harness.state().session.scene().excitation;
+    assert!(matches!(shaking, Excitation::Sine { frequency_hz, .. } if *frequency_hz > 0.0), "{shaking:?}");
     // a frequency at the far end of the band is held off its other end
     harness.state_mut().session.edit_once(|scene| {
         scene.excitation = Excitation::Noise { rms_g: 0.3, low_hz: 2.0, high_hz: 8.0, seed: 1, lines: 64 };

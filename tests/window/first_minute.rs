@@ -1,9 +1,11 @@
-//! The first minute, and the hands on the scene.
+//! The first minute of a new user, and changes by hand.
 
 use eframe::egui::{Event, Key, Modifiers, accesskit::Role};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
-use interwell::dynamics::EventKind;
+use interwell::app::window::Window;
+use interwell::dynamics::{EventKind, Sample};
 use interwell::scene::Stops;
 
 use crate::support::{LONG, WIDE, says, window};
@@ -32,7 +34,11 @@ fn it_opens_and_plays() {
 fn shaking_harder_and_stops_both_make_it_cross() {
     for harder in [true, false] {
         let mut harness = window("first-look", WIDE, Settings::default());
-        let before = harness.state().session.player.state();
+        harness.run_steps(20);
+        let seen = |harness: &Harness<'static, Window>| -> Vec<Sample> {
+            harness.state().session.player.watch().samples().iter().copied().collect()
+        };
+        let before = seen(&harness);
         if harder {
             let slider = harness.get_by_role_and_label(Role::Slider, "amplitude");
             slider.set_value_accesskit(1.4);
@@ -40,10 +46,14 @@ fn shaking_harder_and_stops_both_make_it_cross() {
             harness.get_by_role_and_label(Role::CheckBox, "Stops").click();
         }
         harness.run_steps(2);
-        // it goes on from where it was
-        let state =
-            harness.state().session.player.watch().samples().iter().rev().find(|s| s.t <= before.t + 0.02);
-        assert!(state.is_some());
+        // it goes on from where it was: what was seen stays, and nothing jumps but by a stop that carries the
+        // mass
+        let (after, changed) = (seen(&harness), harness.state().session.changed_at());
+        assert!(before.len() > 5 && after.starts_with(&before) && changed >= before[before.len() - 1].t);
+        let then = after.iter().position(|own| own.t == changed).unwrap();
+        let (own, next) = (after[then], after[then + 1]);
+        let straight = own.x + own.v * (next.t - own.t);
+        assert!(if harder { (next.x - straight).abs() < 1e-4 } else { next.x == 1.5e-3 }, "{own:?} {next:?}");
         assert!(harness.state().session.editor.can_undo());
         harness.state_mut().session.wait(LONG);
         harness.key_press(Key::Num5);

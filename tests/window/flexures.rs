@@ -1,4 +1,4 @@
-//! The hands on the flexures: what a slider of theirs does to the curve, the motion and the way back.
+//! Sliders of the flexures: the curve, the motion, and undo.
 
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;

@@ -1,4 +1,4 @@
-//! What the window says beside its sentence: what to try, what it would take, and what a screen reader speaks.
+//! Hints, ways to cross, and the words for a screen reader.
 
 use eframe::egui::{Key, Role};
 use egui_kittest::kittest::{NodeT, Queryable};

@@ -1,4 +1,4 @@
-//! Everything by the keyboard.
+//! Hold, move and change by the keyboard alone.
 
 use eframe::egui::{Key, Modifiers, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};

@@ -1,4 +1,5 @@
-//! The window without a display: what is seen, pressed and dragged, and what that does to the scene and its motion.
+//! The window without a display: what is seen, pressed and dragged, and what that does to the scene and its
+//! motion.
 
 mod accuracy;
 mod advanced;

@@ -1,4 +1,4 @@
-//! The map: it fills, stops, is thrown away and made again; a click takes the scene there; it is the command line's sweep.
+//! The map: filled, stopped and made again; a click on a cell; agreement with the command line's sweep.
 
 use eframe::egui::{Key, Modifiers, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
@@ -8,7 +8,7 @@ use interwell::app::window::Window;
 use interwell::scene::{Layout, Start, Stops, SweepAxis};
 
 use crate::shared::axis;
-use crate::support::{LONG, WIDE, session, window};
+use crate::support::{LONG, WIDE, session, wait_for_threads, wait_until, window};
 
 /// A small map, so that a test takes no longer than it must.
 fn axes(steps: (f64, f64)) -> [SweepAxis; 2] {
@@ -57,14 +57,34 @@ fn it_fills_and_a_click_is_one_step() {
     assert!(session.undo() && *session.scene() == before && !session.undo());
 }
 
+/// A window on a map of 80 000 cells, most of which take ten thousand steps: more than come within a test.
+fn large() -> Harness<'static, Window> {
+    let mut harness = window("paper", WIDE, Settings::default());
+    let session = &mut harness.state_mut().session;
+    session.edit_once(|scene| (scene.run.duration_s, scene.run.recurrence) = (100.0, false));
+    session.map.choose(Some(axes((0.005, 0.005))));
+    harness
+}
+
+/// Shows the map, and waits for its first cells.
+fn begin(harness: &mut Harness<'static, Window>) {
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
+    wait_until("the first cells", || {
+        harness.run_steps(1);
+        harness.state().session.map.map().is_some_and(|map| map.known() > 0)
+    });
+}
+
 #[test]
 fn it_stops_and_goes_on() {
-    let mut harness = open("paper", WIDE, (0.005, 0.005));
+    let mut harness = large();
+    begin(&mut harness);
     harness.get_by_label("Stop").click();
     harness.run_steps(3);
     let known = map(harness.state()).known();
     assert!(!harness.state().session.map.is_running() && known < map(harness.state()).len());
-    std::thread::sleep(std::time::Duration::from_millis(50));
+    harness.state_mut().session.stop_working();
+    wait_for_threads(harness.state());
     harness.run_steps(3);
     assert_eq!(map(harness.state()).known(), known);
     harness.get_by_label("Continue").click();
@@ -74,18 +94,17 @@ fn it_stops_and_goes_on() {
 
 #[test]
 fn hidden_it_computes_nothing() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = large();
     harness.run_steps(5);
     assert!(harness.state().session.map.map().is_none());
-    // more cells than are run in the frames of this test
-    harness.state_mut().session.map.choose(Some(axes((0.005, 0.005))));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
-    harness.run_steps(3);
+    begin(&mut harness);
     assert!(harness.state().session.map.is_running());
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Num1);
     harness.run_steps(3);
     assert!(!harness.state().session.map.is_running());
     let known = map(harness.state()).known();
+    harness.state_mut().session.stop_working();
+    wait_for_threads(harness.state());
     harness.run_steps(3);
     assert_eq!(map(harness.state()).known(), known);
     // what is known is kept

@@ -1,4 +1,4 @@
-//! Does a window that plays for an hour hold more and more?
+//! Memory of a window that plays for an hour.
 
 use allocation_counter::measure;
 use interwell::app::views::View;

@@ -1,4 +1,4 @@
-//! The past is shown as it was, whatever has been changed since.
+//! The past, shown with the model of its time.
 
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;

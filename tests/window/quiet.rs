@@ -1,5 +1,5 @@
-//! What does a window cost in which nothing happens, or of which only a part is looked at? Counted in frames, ledgers and
-//! unfinished work, not in seconds.
+//! Cost of a window in which nothing happens, or of which a part is looked at: in frames, ledgers and
+//! unfinished work.
 
 use std::time::Duration;
 
@@ -12,13 +12,10 @@ use interwell::study::Watch;
 
 use crate::screen::Screen;
 use crate::shared::axis;
-use crate::support::{LONG, PROJECTED, WIDE};
+use crate::support::{LONG, PROJECTED, WIDE, wait_for_threads};
 
 /// Frames in which what moves by itself comes to its end: tooltips, rings, axes that glide.
 const GLIDING: usize = 60;
-
-/// Longer than a thread takes to call after its answer is there, on a busy machine.
-const CALLED: Duration = Duration::from_millis(100);
 
 /// A map for which the shaking is no axis.
 fn axes(step: f64) -> [SweepAxis; 2] {
@@ -39,7 +36,7 @@ fn comes_to_rest(screen: &mut Screen, what: &str) {
     let frames = busy.count();
     assert!(frames < GLIDING, "{what}: still asks for frames");
     // an answer is there before its thread has called
-    std::thread::sleep(CALLED);
+    wait_for_threads(&screen.window);
     let (time, woken) = (screen.window.session.player.time(), screen.woken());
     for _ in 0..5 {
         screen.step(Vec::new());
@@ -138,7 +135,8 @@ fn ledgers_change_no_bit_of_the_path() {
     }
 }
 
-/// Runs that never end are all around a hand that drags: the sentence, the thresholds and the map wait, the hand does not.
+/// Runs that never end are all around a hand that drags: the sentence, the thresholds and the map wait, the
+/// hand does not.
 #[test]
 fn a_drag_waits_for_nothing() {
     let mut screen = Screen::new("paper", WIDE);

@@ -1,5 +1,5 @@
-//! Is there anything that a hand can do and the window does not stand? Thousands of things at random, all of which it has to
-//! survive with numbers that are numbers, a scene that is what its text says, and a motion that goes on when it is told to.
+//! Thousands of random acts of a hand. The window has to survive all of them with numbers that are numbers,
+//! a scene that is what its text says, and a motion that goes on when it is told to.
 //!
 //! `INTERWELL_SEED` and `INTERWELL_INTERACTIONS` ask for another or a longer stream.
 

@@ -1,10 +1,10 @@
-//! Does the status line say what the run says?
+//! The sentence of the status line against the run.
 
 use interwell::app::session::Session;
 use interwell::app::words::kind::Kind;
 use interwell::scene::{Excitation, Stops};
 
-use crate::support::{LONG, session};
+use crate::support::{LONG, session, settled};
 
 fn says(session: &Session) -> (Kind, String) {
     let sentence = session.sentence();
@@ -23,7 +23,8 @@ fn stops(mm: f64) -> String {
 fn shaken() {
     let (kind, text) = of("first-look", &[]);
     assert_eq!(kind, Kind::Intrawell);
-    // It rattles without a rhythm: the turning point is 5.65 mm, give or take some micrometres, and the RMS velocity 17.1 to
+    // It rattles without a rhythm: the turning point is 5.65 mm, give or take some micrometres, and the RMS
+    // velocity 17.1 to
     // 17.9 mm/s at tolerances from 1e-3 to 1e-12.
     let likely = ["5.6", "5.7"].into_iter().flat_map(|low| ["17", "18"].map(|speed| (low, speed)));
     let mut likely = likely.map(|(low, speed)| {
@@ -34,13 +35,15 @@ fn shaken() {
     assert!(text.contains("g short of crossing, which takes about 1.1"), "{text}");
 
     let (kind, text) = of("first-look", &[&stops(1.5)]);
-    let expected = "Interwell: will cross twice a period, from stop to stop at ±1.5 mm; RMS velocity 48 mm/s, impacts take 9";
+    let expected = "Interwell: will cross twice a period, from stop to stop at ±1.5 mm; \
+        RMS velocity 48 mm/s, impacts take 9";
     assert!(kind == Kind::Interwell && text.starts_with(expected), "{text}");
     assert!(text.ends_with(" 0.18 g to spare: crosses from 0.718 g."), "{text}");
 
     // at rest from the first instant on, which needs no future
     let (kind, text) = of("first-look", &[&stops(2.5)]);
-    let expected = "Resting: stays pressed on the right-hand stop; 0.900 g never frees it. Frees at 1.06 g, crosses from 1.1";
+    let expected = "Resting: stays pressed on the right-hand stop; 0.900 g never frees it. Frees at 1.06 g, \
+        crosses from 1.1";
     assert!(kind == Kind::Resting && text.starts_with(expected), "{text}");
 
     let (kind, text) = of("first-look", &[&stops(1.95)]);
@@ -76,7 +79,7 @@ fn shaken() {
 fn a_transient_is_told_as_one() {
     // irregular in the scene's own window, then in step with the drive
     for amplitude in ["1.16", "1.2", "1.25", "1.3", "1.33"] {
-        let mut own = session("first-look", &[&format!("excitation.amplitude_g={amplitude}")]);
+        let mut own = settled("first-look", &[&format!("excitation.amplitude_g={amplitude}")]);
         let (kind, text) = says(&own);
         let (start, rest) = text.split_once(" s on: ").unwrap();
         let since: f64 = start.strip_prefix("Interwell from ").unwrap().parse().unwrap();
@@ -89,7 +92,7 @@ fn a_transient_is_told_as_one() {
         assert!(says(&own).1.starts_with("Interwell: crosses "), "{:?}", says(&own));
     }
     // irregular for good, from some 200 periods on that were followed
-    let (kind, text) = of("first-look", &["excitation.amplitude_g=1.5"]);
+    let (kind, text) = says(&settled("first-look", &["excitation.amplitude_g=1.5"]));
     assert!(
         kind == Kind::Irregular && text.starts_with("Irregular: will cross in every period, never"),
         "{text}"
@@ -123,7 +126,8 @@ fn a_ramp_is_told_by_what_happens_on_it() {
     assert_eq!(kind, Kind::Resting);
     assert_eq!(
         text,
-        "Growing shaking: first released at 0.689 g, after 103 s; crosses at 0.719 g, after 108 s, and in every period \
+        "Growing shaking: first released at 0.689 g, after 103 s; crosses at 0.719 g, after 108 s, \
+         and in every period \
          from then on."
     );
     // also where the run ends before the ramp does
@@ -166,7 +170,7 @@ fn not_shaken() {
 
 #[test]
 fn held_ended_and_wrong() {
-    let mut own = session("first-look", &[]);
+    let mut own = settled("first-look", &[]);
     own.player.hold(3.2e-3);
     assert!(says(&own).1.starts_with("Held at 3.2 mm: it pulls outwards with 0.1"), "{:?}", says(&own));
     own.player.hold(7.4e-3);
@@ -174,14 +178,14 @@ fn held_ended_and_wrong() {
     own.player.hold(1e-9);
     assert_eq!(says(&own).1, "Held at 0.0 mm: nothing pulls.");
 
-    let own = session("first-look", &["start=At(x_mm: 7.9, v_m_per_s: 2)"]);
+    let own = settled("first-look", &["start=At(x_mm: 7.9, v_m_per_s: 2)"]);
     let (kind, text) = says(&own);
     assert!(kind == Kind::Fault && text.starts_with("The run ended at 0.0"), "{text}");
     assert!(text.contains("went further than the flexures were computed, 8.3 mm"), "{text}");
-    let own = session("paper-table", &["stops=None", "start=At(x_mm: 7.9, v_m_per_s: 2)"]);
+    let own = settled("paper-table", &["stops=None", "start=At(x_mm: 7.9, v_m_per_s: 2)"]);
     assert!(says(&own).1.contains("left the force table"), "{:?}", says(&own));
 
-    let mut own = session("first-look", &[]);
+    let mut own = settled("first-look", &[]);
     own.edit_once(|scene| scene.mass_g = f64::NAN);
     assert_eq!(says(&own).0, Kind::Fault);
     own.undo();

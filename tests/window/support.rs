@@ -1,7 +1,7 @@
 //! A window that tests drive, and sessions without one.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use eframe::egui::Role;
 use egui_kittest::Harness;
@@ -18,8 +18,23 @@ use crate::shared::changed;
 pub const WIDE: [f32; 2] = [1280.0, 720.0];
 pub const PROJECTED: [f32; 2] = [853.0, 480.0];
 
-/// Long enough for any answer on a busy machine.
-pub const LONG: Duration = Duration::from_secs(60);
+/// Longer than any answer takes on any machine: a test waits for what must come, and not for a time.
+pub const LONG: Duration = Duration::from_secs(3600);
+
+/// Waits for a condition, which must come.
+pub fn wait_until(what: &str, mut condition: impl FnMut() -> bool) {
+    let begin = Instant::now();
+    while !condition() {
+        assert!(begin.elapsed() < LONG, "waited in vain: {what}");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Waits until no thread works for a window: each holds its wake to the end, as the window and its session
+/// do.
+pub fn wait_for_threads(window: &Window) {
+    wait_until("threads end", || Arc::strong_count(window.session.wake()) == 2);
+}
 
 /// A window on a built-in scene, with its first answers there.
 pub fn window(preset: &str, size: [f32; 2], settings: Settings) -> Harness<'static, Window> {
@@ -42,7 +57,14 @@ pub fn command(harness: &mut Harness<'_, Window>, command: Command) {
     harness.run_steps(3);
 }
 
-/// A session on a built-in scene with fields changed, its answers there.
+/// A session on a built-in scene with fields changed, with what its motion settles to.
+pub fn settled(preset: &str, changes: &[&str]) -> Session {
+    let mut session = Session::new(Editor::new(changed(preset, changes)), Arc::new(|| ())).unwrap();
+    session.wait_settled(LONG);
+    session
+}
+
+/// A session on a built-in scene with fields changed, with all its answers.
 pub fn session(preset: &str, changes: &[&str]) -> Session {
     let mut session = Session::new(Editor::new(changed(preset, changes)), Arc::new(|| ())).unwrap();
     session.wait(LONG);

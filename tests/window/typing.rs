@@ -1,5 +1,4 @@
-//! Numbers that are typed: what is passed through stays, what is typed is taken to its last digit, and what cannot be is
-//! refused in words.
+//! Typed numbers: unchanged where they are passed through, kept to the last digit, refused in words.
 
 use eframe::egui::{Event, Key, Modifiers, accesskit::Role};
 use egui_kittest::Harness;
@@ -8,7 +7,7 @@ use interwell::app::ui::settings::Settings;
 use interwell::app::window::Window;
 use interwell::scene::{Excitation, FieldPath, Stops};
 
-use crate::support::{LONG, command, window};
+use crate::support::{LONG, command, wait_until, window};
 
 const TALL: [f32; 2] = [1280.0, 1600.0];
 
@@ -202,8 +201,10 @@ fn what_takes_long_can_be_stopped_and_a_newer_change_takes_its_place() {
     let time = harness.state().session.player.time();
     harness.run_steps(5);
     assert!(harness.state().session.player.time() > time);
-    std::thread::sleep(interwell::app::session::OFFER_TO_STOP);
-    harness.run_steps(2);
+    wait_until("it is offered to stop", || {
+        harness.run_steps(1);
+        harness.query_by_label_contains("Stop (").is_some()
+    });
     harness.get_by_label_contains("Stop (").click();
     harness.run_steps(2);
     assert!(harness.state().session.working().is_none());

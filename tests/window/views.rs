@@ -1,4 +1,4 @@
-//! The views: every one draws whatever moves, and a hand on one does what it says.
+//! The views: drawing of every scene, and the hand on each of them.
 
 use eframe::egui::{Key, Modifiers, Pos2, accesskit::Role, pos2};
 use egui_kittest::Harness;

@@ -50,14 +50,20 @@ impl Model {
     /// gives for each, bit for bit, in their order; `until_settled` as in [`Request`]. The CPU time of all is
     /// shared evenly between them.
     pub fn run_all(models: &[Self], until_settled: Option<f64>, cancel: Option<&AtomicBool>) -> Vec<Run> {
-        run_all(models, &Request { cancel, until_settled, ..Request::default() })
+        run_all(models, &Request { cancel, until_settled, ..Request::default() }, usize::MAX)
+    }
+
+    /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; none where the processor has not so many.
+    #[doc(hidden)]
+    pub fn run_all_in_lanes(models: &[Self], width: usize) -> Option<Vec<Run>> {
+        has_lanes(width).then(|| run_all(models, &Request::default(), width))
     }
 }
 
 /// Runs several models, as [`Model::run`] does, with nothing listed; the results in their order.
 ///
-/// Those that cannot share their steps with others are run alone.
-fn run_all(models: &[Model], request: &Request) -> Vec<Run> {
+/// Those that cannot share their steps with others are run alone. No more than `most` lanes are used.
+fn run_all(models: &[Model], request: &Request, most: usize) -> Vec<Run> {
     let mut runs: Vec<Option<Run>> = models.iter().map(|_| None).collect();
     let mut batched = Vec::new();
     for (place, model) in models.iter().enumerate() {
@@ -73,7 +79,7 @@ fn run_all(models: &[Model], request: &Request) -> Vec<Run> {
     batched.sort_by(|a, b| b.model.tolerance.total_cmp(&a.model.tolerance));
     for alike in batched.chunk_by(|a, b| a.model.tolerance == b.model.tolerance) {
         let watch = ThreadClock::start();
-        run_batch(alike, request, &mut runs);
+        run_batch(alike, request, most, &mut runs);
         let share = watch.seconds() / alike.len() as f64;
         for own in alike {
             if let Some(run) = &mut runs[own.place] {
@@ -84,17 +90,34 @@ fn run_all(models: &[Model], request: &Request) -> Vec<Run> {
     runs.into_iter().zip(models).map(|(run, model)| run.unwrap_or_else(|| model.run(request))).collect()
 }
 
-/// Runs models of one tolerance in as many lanes as the processor has.
-fn run_batch(prepared: &[Prepared], request: &Request, runs: &mut [Option<Run>]) {
+/// Whether the processor at hand has so many lanes.
+fn has_lanes(width: usize) -> bool {
+    match width {
+        4 => true,
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        8 => pulp::x86::V3::is_available(),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        WIDEST => pulp::x86::V4::is_available(),
+        _ => false,
+    }
+}
+
+/// Runs models of one tolerance in as many lanes as the processor has, at most `most`.
+fn run_batch(prepared: &[Prepared], request: &Request, most: usize, runs: &mut [Option<Run>]) {
+    debug_assert!(most >= 4, "every processor has 4 lanes");
     if prepared.len() == 1 {
         return; // alone
     }
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
-        if let Some(wide) = pulp::x86::V4::try_new() {
+        if most >= WIDEST
+            && let Some(wide) = pulp::x86::V4::try_new()
+        {
             return wide.vectorize(Wide(Batch::<WIDEST>::new(prepared, request, runs)));
         }
-        if let Some(wide) = pulp::x86::V3::try_new() {
+        if most >= 8
+            && let Some(wide) = pulp::x86::V3::try_new()
+        {
             return wide.vectorize(Wide(Batch::<8>::new(prepared, request, runs)));
         }
     }

@@ -172,7 +172,7 @@ fn tables_that_are_no_curves() {
     let output = headless("check").arg(&path).output().unwrap();
     let said = [output.stdout, output.stderr].concat();
     let said = String::from_utf8_lossy(&said).into_owned();
-    assert!(said.contains("mm") || said.contains("millimet"), "{said}");
+    assert!(said.contains("if these are millimetres, divide the column by 1000"), "{said}");
 
     // A table that is not there, wherever the rows would go.
     let (folder, path) = file("table.ron", scene.as_bytes());

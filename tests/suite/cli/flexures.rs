@@ -1,4 +1,4 @@
-//! What the commands say and write of flexures.
+//! Flexures on the command line: columns, shapes, warnings, sweeps.
 
 use std::fs;
 use std::path::PathBuf;
@@ -10,7 +10,8 @@ use super::{column, headless, refused};
 
 const SCENE: &str = "(title: \"Flexures\", mass_g: 15.2, damping: Ratio(0.023),
     mechanism: Flexures(preload_mm: 2.7, thickness_mm: 0.1, young_gpa: 190,
-        parallel: (count: 2, length_mm: 26, width_mm: 20), buckling: (count: 1, length_mm: 27.7, width_mm: 6.8)),
+        parallel: (count: 2, length_mm: 26, width_mm: 20), buckling: (count: 1, length_mm: 27.7, \
+        width_mm: 6.8)),
     stops: Rigid(travel_limit_mm: 1.5, restitution: 0.36),
     excitation: Sine(frequency_hz: 3, amplitude_g: 1), run: (duration_s: 0.5, settle_s: 0))";
 

@@ -34,7 +34,8 @@ fn common_options_may_stand_before_the_command() {
     let over =
         "sweep nominal-cubic --over excitation.amplitude_g=0.5,1 --set run.duration_s=2 --set run.settle_s=1";
     let right = rows(&format!("--quiet | {over} --set mass_g=12 --tolerance 1e-6 --jobs 2"));
-    // What stands before the command counts first: a later --set of the same field wins, and none is forgotten.
+    // What stands before the command counts first: a later --set of the same field wins, and none is
+    // forgotten.
     let line = format!("--set mass_g=12 --tolerance 1e-6 --quiet --jobs 2 --set run.settle_s=0.5 | {over}");
     assert_eq!(rows(&line), right);
     refused(headless("--jobs 2 curve --jobs 1"), &["--jobs", "before and after"]);

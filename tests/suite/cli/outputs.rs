@@ -97,7 +97,8 @@ fn a_full_device_and_a_read_only_place_fail() {
         full.assert().code(1).stderr(contains("/dev/full"));
     }
     headless(&format!("{QUICK} --out /dev/null --summary /dev/full")).assert().code(1);
-    // No one, not even root, makes a file in /proc; the system's words come once, and no name but the one asked for.
+    // No one, not even root, makes a file in /proc; the system's words come once, and no name but the one
+    // asked for.
     let assert = headless(&format!("{QUICK} --out /proc/run.csv")).assert().code(1);
     let said = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
     assert!(said.starts_with("error: cannot write /proc/run.csv: ") && !said.contains(".part"), "{said}");
@@ -149,26 +150,21 @@ fn a_closed_pipe_ends_quietly() {
 fn ctrl_c_leaves_no_half_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.csv");
-    // Minutes of work.
+    // More cells than can be run before the signal.
     let line =
         "sweep --quiet --over stops.travel_limit_mm=1:7:0.001 --over excitation.amplitude_g=0:2:0.001 --out";
-    let child = Process::new(assert_cmd::cargo::cargo_bin!("interwell"))
+    let mut child = Process::new(assert_cmd::cargo::cargo_bin!("interwell"))
         .arg("--headless")
         .args(line.split_whitespace())
         .arg(&path)
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let begun = || fs::read_dir(folder.path()).unwrap().count() > 0;
-    for _ in 0..400 {
-        if begun() {
-            break;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(25));
+    // The program listens before it makes a file.
+    while fs::read_dir(folder.path()).unwrap().count() == 0 {
+        assert_eq!(child.try_wait().unwrap(), None, "it ended before it wrote");
+        std::thread::yield_now();
     }
-    assert!(begun());
-    // The file is there a moment before the handler is.
-    std::thread::sleep(std::time::Duration::from_millis(300));
     let killed = Process::new("kill").arg("-INT").arg(child.id().to_string()).status().unwrap();
     assert!(killed.success());
     let end = child.wait_with_output().unwrap();

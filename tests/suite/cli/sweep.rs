@@ -6,7 +6,8 @@ use super::{column, headless, refused, stdout};
 fn sweep_rows_and_columns() {
     let line = "sweep --over stops.travel_limit_mm=1:2:0.5 --over excitation.amplitude_g=0.58,0 --quiet";
     let text = stdout(line);
-    let header = "travel_limit_mm,amplitude_g,rms_velocity_m_per_s,regime,crossings,impacts,max_abs_x_m,period,outcome";
+    let header = "travel_limit_mm,amplitude_g,rms_velocity_m_per_s,regime,crossings,impacts,max_abs_x_m,\
+        period,outcome";
     assert_eq!(text.lines().next().unwrap(), header);
     assert_eq!(column(&text, "travel_limit_mm"), ["1", "1", "1.5", "1.5", "2", "2"]);
     assert_eq!(column(&text, "amplitude_g"), ["0.58", "0", "0.58", "0", "0.58", "0"]);
@@ -44,7 +45,8 @@ fn sweeps_that_cannot_be_are_refused() {
     refused(headless("sweep --over mass_g=1,2 --over mass_g=1,2"), &["mass_g"]);
     refused(headless("sweep --over mass_g=1,2 --jobs 0"), &["--jobs"]);
     // A cell that has no place to rest, in the middle of a grid that is valid at its corners.
-    let start = "sweep nominal-cubic --over mechanism.linear_n_per_m=-40,40 --over mechanism.cubic_n_per_m3=1e5,-1e5,1e6";
+    let start = "sweep nominal-cubic --over mechanism.linear_n_per_m=-40,40 \
+        --over mechanism.cubic_n_per_m3=1e5,-1e5,1e6";
     refused(headless(start), &["linear_n_per_m = -40", "cubic_n_per_m3 = -100000"]);
 }
 

@@ -10,7 +10,8 @@ fn twenty_amplitudes_settle() {
     assert_eq!(csv.lines().next().unwrap(), "amplitude_g,regime,period,settled,settles_at_s");
     assert_eq!(column(&csv, "regime"), ["interwell"; 20]);
     assert_eq!(column(&csv, "settled"), ["true"; 20]);
-    // Most repeat in every period. Beside that motion there are others, and the wild beginning chooses among them.
+    // Most repeat in every period. Beside that motion there are others, and the wild beginning chooses among
+    // them.
     let once = column(&csv, "period").iter().filter(|period| *period == "1").count();
     assert!(once >= 14, "{csv}");
     // the same bytes for any number of threads
@@ -66,6 +67,7 @@ fn thresholds_are_tables() {
     let csv = stdout("threshold paper --of release --over stops.travel_limit_mm=1,1.5,4");
     assert_eq!(csv.lines().next().unwrap(), "travel_limit_mm,of,value,windows");
     let curve = column(&stdout("curve paper --at-mm 1,1.5,4"), "force_n");
+    assert_eq!((column(&csv, "value").len(), curve.len()), (3, 3));
     for (value, force) in column(&csv, "value").iter().zip(curve) {
         let (value, force): (f64, f64) = (value.parse().unwrap(), force.parse().unwrap());
         assert!((value + force / 15.2e-3 / 9.80665).abs() < 1e-12, "{value} {force}");
@@ -76,7 +78,8 @@ fn thresholds_are_tables() {
     let least: Vec<f64> = column(&csv, "value").iter().map(|value| value.parse().unwrap()).collect();
     for (mm, own) in [1.0, 1.5, 4.0].into_iter().zip(&least) {
         let runs = format!(
-            "sweep paper --set stops.travel_limit_mm={mm} --over excitation.amplitude_g={},{} --until-settled 100 --quiet",
+            "sweep paper --set stops.travel_limit_mm={mm} --over excitation.amplitude_g={},{} \
+             --until-settled 100 --quiet",
             own - 0.001,
             own
         );

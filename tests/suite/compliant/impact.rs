@@ -1,4 +1,4 @@
-//! One impact and no other force: contact time, rebound, depth, force and loss have closed forms.
+//! One impact without any other force: contact time, rebound, depth, force and loss against closed forms.
 
 use interwell::dynamics::Request;
 
@@ -7,7 +7,8 @@ use super::*;
 /// (4/5) B(2/5, 1/2), the contact time over depth/speed without loss, by quadrature-free gamma functions.
 const HERTZ_TIME: f64 = 2.943_275_184_324_704_7;
 
-/// ln((1 + p)/(1 - p e)) - p (1 + e), whose root e in (0, 1) is the restitution at p = loss times speed; by halving.
+/// ln((1 + p)/(1 - p e)) - p (1 + e), whose root e in (0, 1) is the restitution at p = loss times speed; by
+/// halving.
 fn restitution(p: f64) -> f64 {
     // atanh forms keep digits where p is small: ln((1 + p)/(1 - p e)) = ln1p(p) - ln1p(-p e)
     let excess = |e: f64| p.ln_1p() - (-p * e).ln_1p() - p * (1.0 + e);
@@ -66,8 +67,8 @@ fn rebound_and_time_with_loss_are_those_of_hunt_and_crossley() {
 
 #[test]
 fn the_order_holds_at_touch_down_and_every_tolerance_is_kept() {
-    // d^1.5 has no series in time at either end of the contact: a method that ignores that loses its order, and six
-    // more digits would cost it a hundred times the steps.
+    // d^1.5 has no series in time at either end of the contact: a method that ignores that loses its order,
+    // and six more digits would cost it a hundred times the steps.
     let exact =
         flight(0.5, 4.854, 1e-12).run_reference(&Request { events: true, ..Request::default() }, 1e-28);
     let (touch, leave, _, v_out) = contact(&exact);

@@ -1,10 +1,12 @@
-//! Contact as a phase: pressed at rest, trembling, a stop that would have to pull, a break of the curve inside it.
+//! Contact as a phase: pressed at rest, trembling, a stop that would have to pull, a break of the curve
+//! inside it.
 
 use interwell::dynamics::{Model, Outcome, Phase, Request, Side};
 
 use super::*;
 
-/// A free mass of 1 kg under a constant force towards the right, in N, with a stop at 1 m and what else is given.
+/// A free mass of 1 kg under a constant force towards the right, in N, with a stop at 1 m and what else is
+/// given.
 fn pressed(force: f64, stop: &str, rest: &str) -> Model {
     model(&format!(
         "mass_g: 1000, mechanism: Polynomial(coefficients_si: [{}]), \
@@ -36,7 +38,8 @@ fn a_start_at_rest_is_pressed_in_as_deep_as_the_forces_balance() {
 
 #[test]
 fn let_go_on_the_surface_it_sinks_to_its_depth_and_comes_back() {
-    // A d - (2/5)(k/m) d^2.5 = 0 at the deepest place; no speed at the start, where d' = 0 is the singular case.
+    // A d - (2/5)(k/m) d^2.5 = 0 at the deepest place; no speed at the start, where d' = 0 is the singular
+    // case.
     let (force, stiffness) = (13.0, 1e9);
     let stop = format!("stiffness_n_per_m1_5: {stiffness}, loss_s_per_m: 0");
     for sign in [1.0, -1.0] {
@@ -78,8 +81,8 @@ fn trembling_on_a_stop_has_the_frequency_of_its_stiffness() {
 
 #[test]
 fn a_stop_that_would_have_to_pull_trails() {
-    // The mass is pulled out of the stop faster than the stop can follow: from the speed 1/a on its force would be
-    // negative. It is 0, and the mass falls freely until it is out.
+    // The mass is pulled out of the stop faster than the stop can follow: from the speed 1/a on its force
+    // would be negative. It is 0, and the mass falls freely until it is out.
     let (pull, speed, loss) = (-4e4, 1.0, 10.0);
     let stop = format!("stiffness_n_per_m1_5: 1e8, loss_s_per_m: {loss}");
     let start = format!(
@@ -109,7 +112,8 @@ fn a_stop_that_would_have_to_pull_trails() {
 
 #[test]
 fn a_break_of_the_curve_deep_in_a_stop_is_passed_and_passed_back() {
-    // The flexures' force turns into a wall at 7.181 mm; a soft stop at 7.17 mm lets the mass through to there.
+    // The flexures' force turns into a wall at 7.181 mm; a soft stop at 7.17 mm lets the mass through to
+    // there.
     let model = preset(
         "paper",
         &[
@@ -162,8 +166,8 @@ fn resting_costs_what_is_said_and_a_hopeless_rest_ends_by_the_budget() {
 
 #[test]
 fn a_quiet_rest_is_followed_and_its_small_energies_add_up() {
-    // Shaken by less than frees it, the mass follows the drive by a thousandth of the depth: far below the scene's scales,
-    // and yet known, since the tolerance of a contact is relative to the energy in it.
+    // Shaken by less than frees it, the mass follows the drive by a thousandth of the depth: far below the
+    // scene's scales, and yet known, since the tolerance of a contact is relative to the energy in it.
     let at = |tolerance: &str| run(&prototype(&["excitation.amplitude_g=0.3", tolerance]));
     let exact = at("run.tolerance=1e-12").summary;
     for (tolerance, bound) in

@@ -125,8 +125,8 @@ fn the_mirrored_drive_gives_the_mirrored_run() {
 
 #[test]
 fn a_ledger_changes_no_bit_of_the_figures() {
-    // A stop so soft that a contact of few steps is a third of the settled window: were the ends of such a step found from
-    // its time, the RMS velocity would lose digits.
+    // A stop so soft that a contact of few steps is a third of the settled window: were the ends of such a
+    // step found from its time, the RMS velocity would lose digits.
     let model = model(
         "mass_g: 0.06641919462496394,
          mechanism: DoubleWell(equilibrium_mm: 1381.5120503848032, barrier_mj: 2.729717496550561e-12),

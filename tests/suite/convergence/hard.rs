@@ -70,7 +70,8 @@ fn a_stiff_spring_under_a_slow_drive() {
     // steady orbit.
     let (k, g, w) = (1e8, 1e4, 1.0);
     let model = model(&format!(
-        "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, {k:?}]), damping: Coefficient(c_n_s_per_m: {g:?}),
+        "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, {k:?}]), \
+         damping: Coefficient(c_n_s_per_m: {g:?}),
          excitation: Sine(frequency_hz: {:?}, amplitude_g: 1), start: At(x_mm: 0, v_m_per_s: 0),
          run: (duration_s: 3, tolerance: 1e-12)",
         w / TAU
@@ -84,5 +85,6 @@ fn a_stiff_spring_under_a_slow_drive() {
         near(s.v, -amplitude * w * angle.cos(), 1e-12 * model.scales().speed);
     }
     assert_eq!(run.samples.len(), 5);
-    assert!(run.summary.steps < 5000, "{}", run.summary.steps); // 3755: stability bounds the step, not accuracy
+    // 3755: stability bounds the step, not accuracy
+    assert!(run.summary.steps < 5000, "{}", run.summary.steps);
 }

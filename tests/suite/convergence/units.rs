@@ -1,4 +1,4 @@
-//! The same scene in other units is the same motion.
+//! One scene in several systems of units.
 
 use interwell::dynamics::{EventKind, Model, Run};
 

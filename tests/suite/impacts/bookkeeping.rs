@@ -1,4 +1,4 @@
-//! Samples at events, windows and their counts, watching without touching.
+//! Samples at events, counts of the settled window, and runs that are watched or not.
 
 use interwell::dynamics::{EventKind, Phase, Request, Run};
 

@@ -1,4 +1,4 @@
-//! Break points of the curve: a mode that only a located crossing changes.
+//! Break points of the force curve, where only a located crossing changes the piece.
 
 use std::f64::consts::PI;
 

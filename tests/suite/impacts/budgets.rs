@@ -1,4 +1,4 @@
-//! Runs that end early say so; none hangs.
+//! Runs that end early: infinite motions, spent budgets, cancelled runs.
 
 use std::sync::atomic::AtomicBool;
 
@@ -92,7 +92,8 @@ fn samples_of_a_single_rest_end_with_the_run_that_is_told_to_stop() {
 
 #[test]
 fn a_common_period_is_found_however_many_parts_a_drive_has() {
-    // A hundred sines that never free the mass and repeat after ten seconds: known once a common period has passed.
+    // A hundred sines that never free the mass and repeat after ten seconds: known once a common period has
+    // passed.
     let sines = (0..100).map(|i| sine(1.0 + 0.1 * f64::from(i), 0.001, 0.0)).collect();
     let resting = nominal_scene(1.5, 0.36, Excitation::Sum(sines), 1e9);
     let run = run(&resting);

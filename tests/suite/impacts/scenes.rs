@@ -1,4 +1,4 @@
-//! Short ways to write the scenes of these tests.
+//! Scenes made from their parts, for the tests of impacts.
 
 use std::sync::Arc;
 

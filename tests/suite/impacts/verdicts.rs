@@ -1,11 +1,11 @@
-//! A run that says it is done is right, or its outcome says what it is.
+//! Outcomes of runs that are hard to finish: either they are right, or they say what went wrong.
 
 use interwell::dynamics::{Model, Outcome, Request, Run};
 
 use crate::support::{model, near, near_relative, preset, run, run_at};
 
-/// A mass that creeps from the top of its barrier, against a damping that makes every step a thousandth of a second: what
-/// it moves is a millionth of the room between the stops, and all of that is error.
+/// A mass that creeps from the top of its barrier, against a damping that makes every step a thousandth of a
+/// second: what it moves is a millionth of the room between the stops, and all of that is error.
 const CREEPING: &str = "mass_g: 606, mechanism: DoubleWell(equilibrium_mm: 6850, barrier_mj: 41),
     damping: Coefficient(c_n_s_per_m: 3180), start: At(x_mm: -0.0011, v_m_per_s: 0),
     stops: Hertz(travel_limit_mm: 3.86, stiffness_n_per_m1_5: 1.1e11, loss_s_per_m: 6e11),
@@ -28,8 +28,8 @@ fn energy_that_does_not_balance_is_an_outcome() {
 
 #[test]
 fn a_motion_far_smaller_than_the_wells_is_no_noise() {
-    // Shaken by a billionth of what the wells would need, at rest in one of them: the mass follows as a linear oscillator
-    // does, x = a/w^2 long before resonance.
+    // Shaken by a billionth of what the wells would need, at rest in one of them: the mass follows as a
+    // linear oscillator does, x = a/w^2 long before resonance.
     for (tolerance, bound) in [("1e-3", 0.1), ("1e-6", 1e-2), ("1e-9", 1e-4), ("1e-12", 1e-2)] {
         let changes = [
             "stops=None",
@@ -52,13 +52,15 @@ fn a_motion_far_smaller_than_the_wells_is_no_noise() {
 
 #[test]
 fn stops_far_inside_the_wells_set_the_scale() {
-    // Wells kilometres away, or a force so small that it would move the mass by as much: the tolerance is that of the room.
+    // Wells kilometres away, or a force so small that it would move the mass by as much: the tolerance is
+    // that of the room.
     let rattles = "mass_g: 0.002, mechanism: Cubic(linear_n_per_m: -6e-11, cubic_n_per_m3: 1.3e-4),
         damping: Ratio(0.017), stops: Rigid(travel_limit_mm: 155, restitution: 0.9999999999999999),
         excitation: Constant(accel_g: 325), start: At(x_mm: 0.01, v_m_per_s: 0),
         run: (duration_s: 50, tolerance: 1e-6)";
     let wells = "mass_g: 1000, mechanism: DoubleWell(equilibrium_mm: 1e15, barrier_mj: 1), damping: None,
-        stops: Rigid(travel_limit_mm: 1, restitution: 0.8), excitation: Sine(frequency_hz: 3, amplitude_g: 0.1),
+        stops: Rigid(travel_limit_mm: 1, restitution: 0.8), excitation: Sine(frequency_hz: 3, \
+        amplitude_g: 0.1),
         start: At(x_mm: 0.3, v_m_per_s: 0.05), run: (duration_s: 10, tolerance: 1e-6)";
     for (text, room) in [(rattles, 0.155), (wells, 1e-3)] {
         let own = model(text);
@@ -76,7 +78,8 @@ fn stops_far_inside_the_wells_set_the_scale() {
 
 #[test]
 fn the_scales_of_a_room_go_over_into_those_of_the_wells() {
-    // From where the room is a hundredth of the length, without a jump; a side that is open leaves them as they are.
+    // From where the room is a hundredth of the length, without a jump; a side that is open leaves them as
+    // they are.
     let with = |stops: &str| preset("nominal-cubic", &[&format!("stops={stops}")]).scales();
     let open = with("None");
     let at = |mm: f64| with(&format!("Rigid(travel_limit_mm: {mm:?}, restitution: 0.36)"));
@@ -123,7 +126,8 @@ fn a_run_that_is_done_has_numbers() {
         "mass_g: 2.59, mechanism: DoubleWell(equilibrium_mm: 134421718942.9, barrier_mj: 0.0013359),
          damping: Coefficient(c_n_s_per_m: 0.0049), start: At(x_mm: 1, v_m_per_s: -1),
          stops: Hertz(travel_limit_mm: 1, stiffness_n_per_m1_5: 1, loss_s_per_m: 1e10),
-         excitation: Chirp(from_hz: 1, to_hz: 10, over_s: 5, amplitude_g: 1), run: (duration_s: 1, tolerance: 1e-9)",
+         excitation: Chirp(from_hz: 1, to_hz: 10, over_s: 5, amplitude_g: 1),
+         run: (duration_s: 1, tolerance: 1e-9)",
         "mass_g: 1, mechanism: Polynomial(coefficients_si: [-1e30, 1, 113.7]), damping: Ratio(1),
          stops: Hertz(travel_limit_mm: 1, stiffness_n_per_m1_5: 0.014, loss_s_per_m: 10.9),
          excitation: Constant(accel_g: 1), run: (duration_s: 10)",
@@ -139,7 +143,8 @@ fn a_run_that_is_done_has_numbers() {
     ] {
         let own: Model = model(text);
         let times: Vec<f64> = (0..=50).map(|i| own.duration() * f64::from(i) / 50.0).collect();
-        let run = run_at(&own, &times);
+        let request = Request { sample_times: &times, events: true, ledger: true, ..Request::default() };
+        let run = own.run(&request);
         let (outcome, bare) = (run.summary.outcome, own.run(&Request::default()).summary);
         assert!(outcome != Outcome::Done || finite(&run), "{text}\n{:?}", run.summary);
         assert!(bare.outcome != Outcome::Done || bare.rms_velocity.is_some(), "{text}\n{bare:?}");

@@ -1,4 +1,5 @@
-//! Flexures: the solved force curve against exact answers, a second method, laws that it must obey, and what it promises.
+//! Flexures: the solved force curve against exact answers, a second method, laws that it must obey, and what
+//! it promises.
 
 mod agreement;
 mod exact;

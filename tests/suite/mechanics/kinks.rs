@@ -1,4 +1,5 @@
-//! Landscapes of curves with kinks: equilibria on or beside a kink and the stiffness that damping and scales refer to.
+//! Landscapes of curves with kinks: equilibria on or beside a kink and the stiffness that damping and scales
+//! refer to.
 
 use std::sync::Arc;
 
@@ -141,8 +142,9 @@ fn a_kink_beside_a_well_gives_it_two_stiffnesses() {
 
 #[test]
 fn the_scales_do_not_jump_while_a_well_crosses_its_kink() {
-    // All that a run in the unit of 1 m is relative to, beside the tolerance: it follows the well, by micrometres, and
-    // the slope inside the kink, 137 N/m, not the wall of 4000 N/m in which the well lies once it is beyond.
+    // All that a run in the unit of 1 m is relative to, beside the tolerance: it follows the well, by
+    // micrometres, and the slope inside the kink, 137 N/m, not the wall of 4000 N/m in which the well lies
+    // once it is beyond.
     let text = "(title: \"t\", mass_g: 15.2, mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1), \
                 damping: Ratio(0.023), run: (duration_s: 1))";
     let scene = Document::from_text("t", text, Files::default()).unwrap().scene;

@@ -11,7 +11,8 @@ fn the_layout_of_the_text_does_not_matter() {
     for text in [
         "\u{feff}x_m,force_n\n-1,2\n0,0\n1,-2\n2,1\n",
         "x_m,force_n\r\n-1,2\r\n0,0\r\n1,-2\r\n2,1",
-        "# a comment, with commas\n\n force_n , note, x_m \n2,a,-1\n# another\n0,,0\n-2,\"b, c\",1\n\n1,d,2\n",
+        "# a comment, with commas\n\n force_n , note, x_m \n2,a,-1\n# another\n0,,0\n-2,\"b, \
+         c\",1\n\n1,d,2\n",
         "x_m,force_n\n2,1\n1,-2\n0,0\n-1,2\n",
         "x_m,force_n\n-1.0e0, +2.000\n  0 ,0\n1,-2,9,9\n2,1\n",
         "x_m,force_n\r-1,2\r\r# a comment\r0,0\r1,-2\r2,1\r",

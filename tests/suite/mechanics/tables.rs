@@ -148,21 +148,24 @@ fn millimetres_draw_a_warning() {
     let table = sampled(-8.0, 8.0, 33, |x| x * x * x - 40.0 * x);
     let curve = keeps_its_promises(&table, 1e-4);
     let [warning] = &curve.fit().unwrap().warnings[..] else { panic!("{:?}", curve.fit()) };
-    assert!(warning.contains("16") || warning.contains("-8 m to 8 m"), "{warning}");
+    assert!(warning.contains("-8 m to 8 m"), "{warning}");
     assert!(warning.contains("divide"), "{warning}");
 }
 
 #[test]
 fn numbers_at_the_ends_of_the_range_are_an_answer_or_an_error() {
+    let mut fitted = 0;
     for length in [1e-300, 1e-150, 1e150, 1e300] {
         for force in [1e-300, 1e300] {
             let table = sampled(-length, length, 12, |x| force * ((x / length).powi(3) - 0.3 * x / length));
             if let Ok(curve) = fit(&table, 1e-4) {
+                fitted += 1;
                 assert!(curve.pieces().iter().all(|p| p.coefficients.iter().all(|c| c.is_finite())));
                 Landscape::of(&curve);
             }
         }
     }
+    assert!(fitted >= 1, "{fitted} of 8");
 }
 
 #[test]
@@ -183,7 +186,8 @@ fn text_of(table: &ForceTable) -> String {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
-    /// Random tables, smooth or not, are followed or refused; the landscape agrees with the signs of the force.
+    /// Random tables, smooth or not, are followed or refused; the landscape agrees with the signs of the
+    /// force.
     #[test]
     fn any_table_is_followed(
         steps in prop::collection::vec(1e-3..1.0_f64, 4..60),

@@ -1,4 +1,4 @@
-//! What must be true of any run at all, over scenes drawn at random.
+//! Consistency of the events, samples, sums and ledger of runs, over scenes drawn at random.
 
 use interwell::dynamics::{EventKind, Outcome, Phase, Run, Side};
 
@@ -99,11 +99,13 @@ fn check_samples(run: &Run, limits: &Limits) {
     }
 }
 
-/// Curves of several pieces, with a kink beyond which the force is a wall: the prototype's table and its flexures.
+/// Curves of several pieces, with a kink beyond which the force is a wall: the prototype's table and its
+/// flexures.
 const PIECES: [&str; 2] = [
     "mechanism=Table(path: \"force_dl2.7.csv\")",
     "mechanism=Flexures(preload_mm: 2.7, thickness_mm: 0.1, young_gpa: 190, \
-     parallel: (count: 2, length_mm: 26, width_mm: 20), buckling: (count: 1, length_mm: 27.7, width_mm: 6.8))",
+     parallel: (count: 2, length_mm: 26, width_mm: 20), buckling: (count: 1, length_mm: 27.7, \
+     width_mm: 6.8))",
 ];
 
 #[test]
@@ -133,7 +135,8 @@ fn every_record_tells_one_story() {
         let mut changes = vec![
             format!("damping=Coefficient(c_n_s_per_m: {c:?})"),
             format!(
-                "stops=Uneven(left_mm: {left:?}, right_mm: {right:?}, restitution_left: {e_left:?}, restitution_right: {e_right:?})"
+                "stops=Uneven(left_mm: {left:?}, right_mm: {right:?}, restitution_left: {e_left:?}, \
+                 restitution_right: {e_right:?})"
             ),
             format!("excitation=Sine(frequency_hz: {f:?}, amplitude_g: {a:?}, phase_deg: {phase:?})"),
             format!("start=At(x_mm: {x:?}, v_m_per_s: {v:?})"),

@@ -1,4 +1,4 @@
-//! A late event is as exact as an early one.
+//! Exactness of late events.
 
 use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
@@ -61,7 +61,8 @@ fn a_slow_ramp_releases_after_a_million_seconds() {
             "nominal-cubic",
             &[
                 &format!(
-                    "excitation=AmplitudeRamp(frequency_hz: {frequency:?}, from_g: 0, to_g: {to:?}, over_s: {over:?})"
+                    "excitation=AmplitudeRamp(frequency_hz: {frequency:?}, from_g: 0, to_g: {to:?}, \
+                     over_s: {over:?})"
                 ),
                 &format!("run.duration_s={duration:?}"),
                 "run.settle_s=0",
@@ -95,7 +96,8 @@ fn a_forced_oscillator_has_its_phase_after_a_hundred_million_seconds() {
     let (frequency, duration) = (0.003, 1e8);
     let model = model(&format!(
         "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 1e-3]),
-         damping: Coefficient(c_n_s_per_m: 0.01), excitation: Sine(frequency_hz: {frequency:?}, amplitude_g: 0.001),
+         damping: Coefficient(c_n_s_per_m: 0.01), excitation: Sine(frequency_hz: {frequency:?}, \
+         amplitude_g: 0.001),
          start: At(x_mm: 0, v_m_per_s: 0), run: (duration_s: {duration:?}, settle_s: 9.9e7, tolerance: 1e-12)"
     ));
     let times = [1e8 - 123.456789, 1e8 - 0.1, 1e8];

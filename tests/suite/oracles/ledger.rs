@@ -1,4 +1,4 @@
-//! Energy: nothing drifts, every ledger closes, and the reference numbers hold.
+//! Energy: drift, closed ledgers, and the reference numbers of two runs.
 
 use interwell::dynamics::{EventKind, Outcome, Regime};
 
@@ -32,7 +32,8 @@ fn elastic_impacts_over_a_barrier_keep_their_speed() {
     // what a flight adds to the error is at most the local tolerance, 1e-13, so 2e-9 is left after 2e4 of
     // them.
     let model = unit_well(
-        "stops: Rigid(travel_limit_mm: 1200, restitution: 1), start: At(x_mm: 0, v_m_per_s: 0.4472135954999579),
+        "stops: Rigid(travel_limit_mm: 1200, restitution: 1), start: At(x_mm: 0, \
+         v_m_per_s: 0.4472135954999579),
          run: (duration_s: 80000, tolerance: 1e-12)",
     );
     let run = run(&model);
@@ -107,8 +108,8 @@ fn an_undamped_orbit_keeps_its_energy() {
 
 #[test]
 fn a_ledger_closes_on_a_motion_that_hardly_leaves_a_well_far_from_the_origin() {
-    // A shaking of 7e-8 g about a well at some 0.9 of a length from x = 0: what is moved, 2e-20 J, is far below the
-    // rounding of the potential there, and above that of its change.
+    // A shaking of 7e-8 g about a well at some 0.9 of a length from x = 0: what is moved, 2e-20 J, is far
+    // below the rounding of the potential there, and above that of its change.
     let model = model(
         "mass_g: 15.2, mechanism: Polynomial(coefficients_si: [-0.9096988182377469, -83.27071848141118,
          -5878.520094976837, -1224028.5575540755, 0, 28136424637.88236]),

@@ -1,4 +1,4 @@
-//! Linear oscillators, of which every answer is known.
+//! Linear oscillators against their closed forms.
 
 use std::f64::consts::{PI, TAU};
 
@@ -72,7 +72,8 @@ fn a_steady_orbit_has_the_textbook_rms() {
     // run's period is one forcing period; the base's work is damping's.
     let (_, model) = sprung(
         0.6,
-        "excitation: Sine(frequency_hz: 5, amplitude_g: 0.7), run: (duration_s: 6, settle_s: 3, tolerance: 1e-12)",
+        "excitation: Sine(frequency_hz: 5, amplitude_g: 0.7), run: (duration_s: 6, settle_s: 3, \
+         tolerance: 1e-12)",
     );
     let w = TAU * 5.0;
     let l = (50.0 / 0.02 - w * w).hypot(0.6 / 0.02 * w);
@@ -84,7 +85,6 @@ fn a_steady_orbit_has_the_textbook_rms() {
     assert_eq!(summary.period, Some(1));
 }
 
-// until a sum's series is right
 #[test]
 fn a_ramped_amplitude_in_closed_form_through_its_end() {
     // (from + (to - from) t/over) sin w t, then `to`: the closed form of each part, joined at the end of the
@@ -93,7 +93,8 @@ fn a_ramped_amplitude_in_closed_form_through_its_end() {
         let (oscillator, model) = sprung(
             0.05,
             &format!(
-                "excitation: AmplitudeRamp(frequency_hz: 6.5, from_g: {from:?}, to_g: {to:?}, over_s: {over:?}),
+                "excitation: AmplitudeRamp(frequency_hz: 6.5, from_g: {from:?}, to_g: {to:?}, \
+                 over_s: {over:?}),
                  run: (duration_s: 6, tolerance: 1e-12)"
             ),
         );
@@ -118,7 +119,6 @@ fn a_ramped_amplitude_in_closed_form_through_its_end() {
     }
 }
 
-// until a sum's series is right
 #[test]
 fn sums_of_sines_superpose() {
     // 3 and 4.5 Hz have the common period 2/3 s; 3 and 3 sqrt 2 Hz have none: both in closed form, with a
@@ -156,7 +156,8 @@ fn a_ripple_on_a_slow_drive_superposes() {
     // the scales.
     let (oscillator, model) = sprung(
         0.08,
-        "excitation: Sum([Sine(frequency_hz: 0.5, amplitude_g: 1), Sine(frequency_hz: 500, amplitude_g: 0.001)]),
+        "excitation: Sum([Sine(frequency_hz: 0.5, amplitude_g: 1), Sine(frequency_hz: 500, \
+         amplitude_g: 0.001)]),
          run: (duration_s: 5, tolerance: 1e-12)",
     );
     let g = STANDARD_GRAVITY;

@@ -1,4 +1,4 @@
-//! Mirrored scenes have mirrored answers, bit for bit.
+//! Bits of mirrored scenes.
 
 use interwell::dynamics::{Model, Run, Side};
 
@@ -79,8 +79,10 @@ fn stops_chatter_and_rest_are_mirrored_to_the_last_bit() {
             "AmplitudeRamp(frequency_hz: 3, from_g: -0.5, to_g: -2, over_s: 7.7)",
         ),
         (
-            "Sum([Constant(accel_g: 0.1), Sine(frequency_hz: 3, amplitude_g: 1.5), Sine(frequency_hz: 7, amplitude_g: 0.3, phase_deg: 45)])",
-            "Sum([Constant(accel_g: -0.1), Sine(frequency_hz: 3, amplitude_g: -1.5), Sine(frequency_hz: 7, amplitude_g: 0.3, phase_deg: 225)])",
+            "Sum([Constant(accel_g: 0.1), Sine(frequency_hz: 3, amplitude_g: 1.5), Sine(frequency_hz: 7, \
+             amplitude_g: 0.3, phase_deg: 45)])",
+            "Sum([Constant(accel_g: -0.1), Sine(frequency_hz: 3, amplitude_g: -1.5), Sine(frequency_hz: 7, \
+             amplitude_g: 0.3, phase_deg: 225)])",
         ),
     ] {
         let scene = |x: &str, drive: &str| {
@@ -121,7 +123,8 @@ fn uneven_stops_are_mirrored_to_the_last_bit() {
 
 #[test]
 fn a_curve_of_many_pieces_is_mirrored_to_the_last_bit() {
-    // The prototype, its table and its flexures, odd by structure, crossing the breaks, with and without stops.
+    // The prototype, its table and its flexures, odd by structure, crossing the breaks, with and without
+    // stops.
     let all = ["None", "Rigid(travel_limit_mm: 4, restitution: 0.36)"];
     for (name, stops) in ["paper", "paper-table"].into_iter().flat_map(|name| all.map(|stops| (name, stops)))
     {

@@ -1,4 +1,4 @@
-//! What of a picture can be chosen: quantity, ranges, times, size, title.
+//! Options of a picture: quantity, ranges, times, size, title.
 
 use super::super::cli::{headless, refused};
 use super::{SMALL_MAP, pixels, plot, says, texts, with_plot};

@@ -1,4 +1,4 @@
-//! Do the lines over a map stand where the runs say?
+//! Lines over a map against the runs of its cells.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

@@ -1,4 +1,4 @@
-//! Manifests as output and as input, and what a summary says of its origin.
+//! Manifests as output and as input, and the origin in a summary.
 
 use std::path::Path;
 
@@ -6,7 +6,8 @@ use serde_json::Value;
 
 use super::super::cli::{headless, refused};
 
-const SWEEP: &str = "sweep nominal-cubic --set run.settle_s=None --set run.duration_s=2 --set mass_g=12.5 --tolerance 1e-7 --jobs 2 \
+const SWEEP: &str = "sweep nominal-cubic --set run.settle_s=None --set run.duration_s=2 --set mass_g=12.5 \
+    --tolerance 1e-7 --jobs 2 \
                      --over stops.travel_limit_mm=2,4 --over excitation.amplitude_g=0:1:0.5";
 
 fn json(path: &Path) -> Value {
@@ -64,14 +65,16 @@ fn a_manifest_is_swept_to_the_same_rows() {
         folder.path(),
     );
     // Stops that the scene's own value does not fit, an optional field, more digits than a number has.
-    let start = "sweep nominal-cubic --set start=At(x_mm:5,v_m_per_s:0) --set run.duration_s=1 --set run.settle_s=None";
+    let start = "sweep nominal-cubic --set start=At(x_mm:5,v_m_per_s:0) --set run.duration_s=1 \
+        --set run.settle_s=None";
     swept_again(&format!("{start} --over stops.travel_limit_mm=6:8:1"), folder.path());
     swept_again(&format!("{start} --set stops=None --over run.settle_s=0:1:0.5"), folder.path());
     let digits = "--over mass_g=10:11:0.3333333333333333333333333";
     swept_again(&format!("{start} --set stops=None {digits}"), folder.path());
     // A text as the path of an excitation, quotes and lines in the notes, and the scene's own sweep.
     swept_again(
-        "sweep duffing-chaos --set run.duration_s=20 --set run.settle_s=None --over excitation.amplitude_g=0.03",
+        "sweep duffing-chaos --set run.duration_s=20 --set run.settle_s=None \
+         --over excitation.amplitude_g=0.03",
         folder.path(),
     );
 }

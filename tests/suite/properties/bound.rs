@@ -1,9 +1,10 @@
-//! The error of a run is bounded: by a constant times its conditioning times its tolerance, plus rounding.
+//! A bound of the error of a run: a constant times its conditioning times its tolerance, plus rounding.
 //!
-//! The error is measured against the program's own stepper in double-doubles. The conditioning K is how much the answer
-//! moves when a datum of the scene (start, mass, shaking, damping, restitution) is moved by a small share, summed over
-//! the data: the share is of the size of the tolerance, so that a stop that is just missed, or a barrier that is just
-//! passed, shows. What is ill-conditioned so measured says nothing about the stepper and is passed over.
+//! The error is measured against the program's own stepper in double-doubles. The conditioning K is how much
+//! the answer moves when a datum of the scene (start, mass, shaking, damping, restitution) is moved by a
+//! small share, summed over the data: the share is of the size of the tolerance, so that a stop that is just
+//! missed, or a barrier that is just passed, shows. What is ill-conditioned so measured says nothing about
+//! the stepper and is passed over.
 
 use std::cell::RefCell;
 
@@ -20,23 +21,24 @@ const REFERENCE: f64 = 1e-22;
 /// Tolerance of the runs in doubles from which the conditioning is taken.
 const TIGHT: f64 = 1e-14;
 
-/// Beyond this conditioning, and beyond this product of conditioning and tolerance, an answer is no longer linear in
-/// its data.
+/// Beyond this conditioning, and beyond this product of conditioning and tolerance, an answer is no longer
+/// linear in its data.
 const MOST: f64 = 1e4;
 const LINEAR: f64 = 1e-2;
 
 /// What one step may do to the state by rounding, relative to the scales: the accuracy study's own bound.
 const STEP_ERROR: f64 = interwell::study::accuracy::STEP_ERROR;
 
-/// Bounds of error / (K tolerance + rounding): of the median and of the worst. Measured on eight thousand scenes: 0.0023
-/// and 0.39, on the thousand that are drawn each day 0.0024 and 0.10; at a hundred times the tolerance 0.2 and above 4.
+/// Bounds of error / (K tolerance + rounding): of the median and of the worst. Measured on eight thousand
+/// scenes: 0.0023 and 0.39, on the thousand that are drawn each day 0.0024 and 0.10; at a hundred times the
+/// tolerance 0.2 and above 4.
 const MEDIAN: f64 = 0.01;
 const WORST: f64 = 1.0;
 
-/// The answer as numbers of the order of 1 in the scene's scales: displacements at some times, and the RMS velocity.
-/// Velocities too where nothing is struck: they jump at a stop, and an instant that is off by a rounding is then an
-/// error of 1.
-/// The RMS velocity is the last: another drive may have another settled window.
+/// The answer as numbers of the order of 1 in the scene's scales: displacements at some times, and the RMS
+/// velocity. Velocities too where nothing is struck: they jump at a stop, and an instant that is off by a
+/// rounding is then an error of 1. The RMS velocity is the last: another drive may have another settled
+/// window.
 fn numbers(model: &Model, run: &Run, struck: bool) -> Vec<f64> {
     let mut all: Vec<f64> = run.samples.iter().map(|s| s.x / model.scales().length).collect();
     if !struck {
@@ -64,8 +66,9 @@ fn shake(excitation: &mut Excitation, by: f64) {
     }
 }
 
-/// A slow shaking so weak that it moves the mass by a share of the length: what errors on the way do and no change of
-/// the other data does. An undamped mass that left a stop at rest comes back to it at rest, whatever mass it has.
+/// A slow shaking so weak that it moves the mass by a share of the length: what errors on the way do and no
+/// change of the other data does. An undamped mass that left a stop at rest comes back to it at rest,
+/// whatever mass it has.
 fn wobble(model: &Model, share: f64) -> Excitation {
     let Scales { length, time, .. } = model.scales();
     Excitation::Sine {
@@ -116,7 +119,8 @@ fn moved(scene: &Scene, model: &Model, share: f64) -> Vec<Scene> {
     all
 }
 
-/// The conditioning of the answer, by data moved by `share` to both sides; none where the answer is not smooth there.
+/// The conditioning of the answer, by data moved by `share` to both sides; none where the answer is not
+/// smooth there.
 fn conditioning(scene: &Scene, times: &[f64], share: f64, struck: bool) -> Option<f64> {
     let request = Request { sample_times: times, ..Request::default() };
     let base = model(scene)?;

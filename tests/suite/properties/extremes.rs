@@ -1,4 +1,4 @@
-//! Scenes at the far ends of what may be written: none panics or hangs, and none returns a number that is not finite
+//! Scenes at the far ends of the valid ranges: no panic, no endless run, and no number that is not finite
 //! without an outcome that says so.
 
 use std::cell::RefCell;
@@ -13,8 +13,8 @@ use super::harness::hold;
 use super::mechanisms::built;
 use super::sound::{finite, within_stops};
 
-/// Steps that a run which was told to stop may still make, and rebounds in them: a search for a release from a stop goes
-/// on for a million before it looks.
+/// Steps that a run which was told to stop may still make, and rebounds in them: a search for a release from
+/// a stop goes on for a million before it looks.
 const STEPS: u64 = 1 << 21;
 
 /// A magnitude from one end of a range to the other, its ends and its middle more often than others.
@@ -33,9 +33,9 @@ fn signed(low: i32, high: i32) -> impl Strategy<Value = f64> {
         .prop_map(|(own, sign)| own * sign)
 }
 
-/// Coefficients go to 1e30 and not to the 1e200 that a scene accepts, and so with the other numbers of which products are
-/// taken: beyond, masses move by 1e100 m, and the squares of their speeds and their energies are no doubles any more; RMS
-/// velocity and ledger are then missing or no numbers.
+/// Coefficients go to 1e30 and not to the 1e200 that a scene accepts, and so with the other numbers of which
+/// products are taken: beyond, masses move by 1e100 m, and the squares of their speeds and their energies are
+/// no doubles any more; RMS velocity and ledger are then missing or no numbers.
 fn mechanism() -> impl Strategy<Value = Mechanism> {
     prop_oneof![
         2 => (signed(-30, 30), signed(-30, 30))
@@ -48,8 +48,9 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
     ]
 }
 
-/// Compliant stops are not among them: known to fail is a stop so soft, or with so much loss, that the mass goes through it
-/// for metres; its velocity and the integrals of it are then no numbers. Those that are harder are drawn elsewhere.
+/// Compliant stops are not among them: known to fail is a stop so soft, or with so much loss, that the mass
+/// goes through it for metres; its velocity and the integrals of it are then no numbers. Those that are
+/// harder are drawn elsewhere.
 fn stops() -> impl Strategy<Value = Stops> {
     let restitution =
         || prop_oneof![Just(0.0), Just(1.0), Just(f64::EPSILON), Just(1.0 - f64::EPSILON), 0.0..1.0f64];
@@ -58,12 +59,14 @@ fn stops() -> impl Strategy<Value = Stops> {
         1 => Just(Stops::None),
         2 => (distance(), restitution())
             .prop_map(|(travel_limit_mm, restitution)| Stops::Rigid { travel_limit_mm, restitution }),
-        1 => (distance(), prop::option::of(distance()), restitution()).prop_map(|(left, right_mm, e)| Stops::Uneven {
-            left_mm: Some(left),
-            right_mm,
-            restitution_left: None,
-            restitution_right: Some(e),
-        }),
+        1 => (distance(), prop::option::of(distance()), restitution()).prop_map(
+            |(left, right_mm, restitution)| Stops::Uneven {
+                left_mm: Some(left),
+                right_mm,
+                restitution_left: None,
+                restitution_right: Some(restitution),
+            }
+        ),
     ]
 }
 
@@ -124,8 +127,8 @@ fn scene() -> impl Strategy<Value = Scene> {
     )
 }
 
-/// The model of a scene that can be run, over so many of its own times as its duration says. A start beyond a stop is
-/// put on it.
+/// The model of a scene that can be run, over so many of its own times as its duration says. A start beyond a
+/// stop is put on it.
 fn model(scene: &Scene) -> Option<Model> {
     let mut own = scene.clone();
     if let Start::At { x_mm, .. } = &mut own.start {
@@ -143,8 +146,9 @@ fn model(scene: &Scene) -> Option<Model> {
     build(&own)
 }
 
-/// Its first steps: most of these scenes would go on until their budget, and the first moments are the ones that break
-/// something. A run that was told to stop before it began makes some hundred steps, the same ones every time.
+/// Its first steps: most of these scenes would go on until their budget, and the first moments are the ones
+/// that break something. A run that was told to stop before it began makes some hundred steps, the same ones
+/// every time.
 fn begin(model: &Model, sample_times: &[f64]) -> Ran {
     let told = AtomicBool::new(true);
     model.run(&Request {

@@ -1,4 +1,4 @@
-//! How scenes are drawn, how many, and what is printed of one that fails.
+//! Drawing of scenes, their number, and the report of one that fails.
 
 use std::cell::Cell;
 
@@ -11,8 +11,8 @@ use super::mechanisms::table_text;
 /// How many times as many scenes are drawn.
 const CASES: &str = "INTERWELL_PROPERTY_CASES";
 
-/// The number that all scenes follow from: the same scenes every day, so that a test that was green does not turn
-/// red without a change. Another number, or the word `new`, draws others.
+/// The number that all scenes follow from: the same scenes every day, so that a test that was green does not
+/// turn red without a change. Another number, or the word `new`, draws others.
 const SEED: &str = "INTERWELL_PROPERTY_SEED";
 
 /// What a check of one scene says.
@@ -34,7 +34,8 @@ fn seed() -> u64 {
     }
 }
 
-/// A generator of its own for each property, so that one more of them leaves the scenes of the others as they are.
+/// A generator of its own for each property, so that one more of them leaves the scenes of the others as they
+/// are.
 fn generator(property: &str, seed: u64) -> TestRng {
     let mut bytes = [0; 32];
     bytes[..8].copy_from_slice(&seed.to_le_bytes());
@@ -45,9 +46,9 @@ fn generator(property: &str, seed: u64) -> TestRng {
     TestRng::from_seed(RngAlgorithm::ChaCha, &bytes)
 }
 
-/// Draws `cases` values and holds each against `check`, which may pass over some, as it says by false: `least_share` must
-/// count, or the property would be one of nothing. A value that fails is made as simple as it stays failing and shown
-/// by `show`, with the seed that draws it again.
+/// Draws `cases` values and holds each against `check`, which may pass over some, as it says by false:
+/// `least_share` must count, or the property would be one of nothing. A value that fails is made as simple as
+/// it stays failing and shown by `show`, with the seed that draws it again.
 pub fn hold_for<S: Strategy>(
     property: &str,
     cases: u32,

@@ -1,4 +1,4 @@
-//! The scene seen in a mirror, and what its run must be.
+//! The mirror image of a scene, and of a run.
 
 use std::sync::Arc;
 
@@ -38,8 +38,8 @@ fn opposite(excitation: &Excitation) -> Option<Excitation> {
     })
 }
 
-/// The scene in a mirror; none where it cannot be written (noise; rest, or a damping ratio, of the left one of two wells; a table, which
-/// is fitted from left to right, unless it is odd and fitted as such).
+/// The scene in a mirror; none where it cannot be written (noise; rest, or a damping ratio, of the left one
+/// of two wells; a table, which is fitted from left to right, unless it is odd and fitted as such).
 pub fn image(scene: &Scene) -> Option<Scene> {
     let mut image = scene.clone();
     let odd = match &scene.mechanism {

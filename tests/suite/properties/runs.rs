@@ -1,4 +1,4 @@
-//! What must hold of one run of any scene, of its mirror image, and of the same run watched otherwise.
+//! Properties of one run of any scene, of its mirror image, and of the same run watched otherwise.
 
 use std::cell::Cell;
 
@@ -96,6 +96,7 @@ fn a_stop_that_is_never_reached_changes_no_bit() {
             restitution_left: Some(0.3),
             restitution_right: None,
         };
+        let mut compared = 0;
         for stops in [
             Stops::Rigid { travel_limit_mm: just, restitution: 0.36 },
             Stops::Rigid { travel_limit_mm: just * 1e4, restitution: 1.0 },
@@ -105,16 +106,17 @@ fn a_stop_that_is_never_reached_changes_no_bit() {
         ] {
             let stopped = Scene { stops, ..open.clone() };
             let Some(stopped_model) = model(&stopped) else { continue };
-            // Stops far inside all that the mass could do otherwise set the scale: it is soon at one of them, unless the
-            // run is shorter.
+            // Stops far inside all that the mass could do otherwise set the scale: it is soon at one of them,
+            // unless the run is shorter.
             if stopped_model.scales() != own.scales() {
                 continue;
             }
             let mut watched = stopped_model.run(&request);
             watched.summary.peak_contact_force = None; // none where there is nothing to touch
             same_bits(&run, &watched).map_err(|e| TestCaseError::fail(format!("{e}, with {stops:?}")))?;
+            compared += 1;
         }
-        Ok(true)
+        Ok(compared > 0)
     });
 }
 

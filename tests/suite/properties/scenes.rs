@@ -10,8 +10,8 @@ use proptest::strategy::Union;
 use super::mechanisms::{built, mechanism};
 use super::units::Units;
 
-/// The model of a scene; none where the scene asks for what its mechanism does not have (a place to rest at, a
-/// stiffness, a start on the curve), which it must say in words.
+/// The model of a scene; none where the scene asks for what its mechanism does not have (a place to rest at,
+/// a stiffness, a start on the curve), which it must say in words.
 pub fn model(scene: &Scene) -> Option<Model> {
     let checked = check(scene);
     assert!(checked.faults.is_empty(), "{:?}", checked.faults);
@@ -196,7 +196,12 @@ pub fn tolerance() -> impl Strategy<Value = f64> {
 }
 
 fn run() -> impl Strategy<Value = RunSettings> {
-    let settle = prop_oneof![3 => Just(None), 1 => Just(Some(0.0)), 2 => (0.0..1.0f64).prop_map(Some), 1 => Just(Some(1.0))];
+    let settle = prop_oneof![
+        3 => Just(None),
+        1 => Just(Some(0.0)),
+        2 => (0.0..1.0f64).prop_map(Some),
+        1 => Just(Some(1.0)),
+    ];
     (prop_oneof![3 => 3.0..12.0f64, 1 => 1e-3..3.0f64], settle, tolerance(), any::<bool>()).prop_map(
         |(duration_s, settle, tolerance, recurrence)| RunSettings {
             duration_s,
@@ -217,8 +222,8 @@ pub fn scene_with(
     (mechanism(), stops, excitation, damping(), state, run()).prop_map(
         |((mechanism, units), natural_stops, excitation, damping, (share, speed), run)| {
             let elastic = elastic(&natural_stops);
-            // An elastic rebound that is pressed and damped has no end before its budget, and a slow one makes a million
-            // impacts.
+            // An elastic rebound that is pressed and damped has no end before its budget, and a slow one
+            // makes a million impacts.
             let damping = if elastic { Damping::None } else { damping };
             let speed = if elastic && speed.abs() < 1e-3 { 0.0 } else { speed };
             Scene {

@@ -1,4 +1,4 @@
-//! Everything that must hold of a run of any scene, sampled or not.
+//! Properties of a single run, sampled or not.
 
 use interwell::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Run, Side, Summary};
 use interwell::scene::{Scene, Start, Stops};
@@ -14,16 +14,17 @@ pub fn sign(side: Side) -> f64 {
     }
 }
 
-/// The residual of the ledger that is allowed, in tolerances. Of thirty thousand scenes the most was 4.1; of the
-/// thousand that are drawn each day it is 0.2.
+/// The residual of the ledger that is allowed, in tolerances. Of thirty thousand scenes the most was 4.1; of
+/// the thousand that are drawn each day it is 0.2.
 pub const LEDGER: f64 = 10.0;
 
-/// Roundings of the place that add up in a ledger, and the tolerance below which rounding is all that it shows.
+/// Roundings of the place that add up in a ledger, and the tolerance below which rounding is all that it
+/// shows.
 const PLACES: f64 = 16.0;
 const FINEST: f64 = 1e-13;
 
-/// Steps whose errors add up to no more than the tolerance: an undamped mass that rattles between elastic stops makes
-/// tens of thousands, and all of them err to one side.
+/// Steps whose errors add up to no more than the tolerance: an undamped mass that rattles between elastic
+/// stops makes tens of thousands, and all of them err to one side.
 const MANY_STEPS: f64 = 1000.0;
 
 /// Asserts [`sound`].
@@ -44,7 +45,8 @@ pub fn sound(scene: &Scene, model: &Model, run: &Run, ledger_factor: f64) -> Ver
     ledger_closes(model, run, ledger_factor)
 }
 
-/// No number that is not finite without an outcome that says so. Of the ledger it is asked where the energies themselves can be written as doubles.
+/// No number that is not finite without an outcome that says so. Of the ledger it is asked where the energies
+/// themselves can be written as doubles.
 pub fn finite(model: &Model, run: &Run) -> Verdict {
     if matches!(run.summary.outcome, Outcome::NotFinite { .. }) {
         return Ok(());
@@ -73,7 +75,8 @@ pub fn finite(model: &Model, run: &Run) -> Verdict {
     Ok(())
 }
 
-/// Never beyond a rigid stop, not by one bit: in the samples, at the end, and in the extremes. At rest exactly on it.
+/// Never beyond a rigid stop, not by one bit: in the samples, at the end, and in the extremes. At rest
+/// exactly on it.
 pub fn within_stops(scene: &Scene, run: &Run) -> Verdict {
     if matches!(scene.stops, Stops::Hertz { .. }) {
         return Ok(());
@@ -195,9 +198,9 @@ fn counted(model: &Model, run: &Run) -> Verdict {
     Ok(())
 }
 
-/// The ledger's residual in tolerances: relative to what was moved, or, where that is far below the scene's own
-/// scales, to those. Less what the rounding of the place alone makes of it, which is all that is left of a mass that
-/// moves by some billionths of its distance from x = 0, and a thousand steps at a time.
+/// The ledger's residual in tolerances: relative to what was moved, or, where that is far below the scene's
+/// own scales, to those. Less what the rounding of the place alone makes of it, which is all that is left of
+/// a mass that moves by some billionths of its distance from x = 0, and a thousand steps at a time.
 pub fn ledger_in_tolerances(model: &Model, run: &Run) -> f64 {
     let ledger = run.summary.ledger.expect("a ledger");
     let curve = &model.mechanism().curve;

@@ -1,4 +1,4 @@
-//! A random grid over a random scene gives the same bytes for any number of threads.
+//! Bytes of a random grid over a random scene for any number of threads.
 
 use std::sync::atomic::AtomicBool;
 

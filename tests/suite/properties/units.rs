@@ -1,7 +1,7 @@
-//! From natural numbers to the units of a scene.
+//! Conversion from natural numbers to the units of a scene.
 //!
-//! Scenes are drawn with a mass, a length and a time of about 1, where a thing that is small or fast can be told from
-//! one that is not, and then measured in units: the program must do the same in all of them.
+//! Scenes are drawn with a mass, a length and a time of about 1, where a thing that is small or fast can be
+//! told from one that is not, and then measured in units: the program must do the same in all of them.
 
 use std::sync::Arc;
 
@@ -62,7 +62,8 @@ impl Units {
         }
     }
 
-    /// Stops whose distances are natural numbers in place of mm, the stiffness and the loss of compliant ones too.
+    /// Stops whose distances are natural numbers in place of mm, the stiffness and the loss of compliant ones
+    /// too.
     pub fn stops(self, natural: Stops) -> Stops {
         let mm = |x: Option<f64>| x.map(|x| self.millimetres(x));
         match natural {

@@ -1,4 +1,4 @@
-//! All faults come at once, each with its line.
+//! Faults and warnings of a scene, all at once and each with its line.
 
 use super::*;
 
@@ -71,7 +71,8 @@ fn every_relation_between_fields_is_checked() {
         (&[("app", "(stops_when_on: Uneven())")], "app.stops_when_on = Uneven()"),
         (
             &axis("[(field: \"stops.left_mm\", from: 1, to: 2, step: 1)]"),
-            "sweep.0.field = \"stops.left_mm\": the scene has no numeric field `stops.left_mm`; it has: mass_g, mechanism.linear_n_per_m,",
+            "sweep.0.field = \"stops.left_mm\": the scene has no numeric field `stops.left_mm`; \
+             it has: mass_g, mechanism.linear_n_per_m,",
         ),
         (
             &axis("[(field: \"mass_g\", from: 1, to: 2, step: 0)]"),
@@ -97,7 +98,8 @@ fn every_relation_between_fields_is_checked() {
         ),
         (
             &axis(
-                "[(field: \"mass_g\", from: 1, to: 2, step: 1), (field: \"mass_g\", from: 1, to: 2, step: 1)]",
+                "[(field: \"mass_g\", from: 1, to: 2, step: 1), (field: \"mass_g\", from: 1, to: 2, \
+                 step: 1)]",
             ),
             "mass_g: is swept twice",
         ),

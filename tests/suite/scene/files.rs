@@ -1,4 +1,4 @@
-//! Scenes and their tables are found, or the message says what there is.
+//! Files of scenes and of their tables, and messages about those that are missing.
 
 use interwell::scene::*;
 

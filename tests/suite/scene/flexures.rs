@@ -1,4 +1,4 @@
-//! Flexures read, are set and swept, and refuse shapes that are none.
+//! Flexures in a scene: reading, setting, sweeps, and shapes that are refused.
 
 use interwell::scene::*;
 
@@ -95,7 +95,8 @@ fn paths_that_are_not_there_list_those_that_are() {
     for (argument, expected) in [
         (
             "mechanism.parallel.lenght_mm=26",
-            "no field `mechanism.parallel.lenght_mm`; it has: title, notes, mass_g, mechanism, mechanism.preload_mm,",
+            "no field `mechanism.parallel.lenght_mm`; it has: title, notes, mass_g, mechanism, \
+             mechanism.preload_mm,",
         ),
         ("mechanism.linear_n_per_m=1", "mechanism.parallel.length_mm, "),
         ("mechanism.plane_strain=1", "expected boolean"),
@@ -117,7 +118,8 @@ fn shapes_that_are_no_flexures_name_the_limit() {
         (&["preload_mm=-0.1"][..], "mechanism.preload_mm = -0.1: must be 0 to 1e15; "),
         (
             &["preload_mm=13.01"],
-            "mechanism.preload_mm = 13.01: must be 0 to 13 mm, half of the shorter flexure (mechanism.parallel.length_mm = 26); ",
+            "mechanism.preload_mm = 13.01: must be 0 to 13 mm, half of the shorter flexure \
+             (mechanism.parallel.length_mm = 26); ",
         ),
         (
             &["preload_mm=6", "buckling.length_mm=10"],
@@ -158,7 +160,8 @@ fn limits_are_valid_themselves_at_any_scale() {
         let length = |mm: f64| format!("{:?}", mm * factor);
         let text = format!(
             "Flexures(preload_mm: {}, thickness_mm: {}, young_gpa: 190, initial_bow_mm: {}, \
-             parallel: (count: 64, length_mm: {}, width_mm: {}), buckling: (count: 1, length_mm: {}, width_mm: {}))",
+             parallel: (count: 64, length_mm: {}, width_mm: {}), buckling: (count: 1, length_mm: {}, \
+             width_mm: {}))",
             length(13.0),
             length(2.6),
             length(1.385),

@@ -1,4 +1,4 @@
-//! Whatever is written, nothing panics, and what is read can be written.
+//! Arbitrary texts, values and scenes: no panic, and what is read can be written.
 
 use interwell::scene::*;
 use proptest::prelude::*;
@@ -148,7 +148,11 @@ proptest! {
     }
 
     #[test]
-    fn almost_scenes_never_panic(at in 0_usize..400, cut in 0_usize..6, insert in "[-()\\[\\]{}:,\"'/*# \nre0-9é]{0,6}") {
+    fn almost_scenes_never_panic(
+        at in 0_usize..400,
+        cut in 0_usize..6,
+        insert in "[-()\\[\\]{}:,\"'/*# \nre0-9é]{0,6}",
+    ) {
         let mut chars: Vec<char> = broad(1).text.chars().collect();
         let at = at.min(chars.len());
         let end = (at + cut).min(chars.len());
@@ -162,7 +166,10 @@ proptest! {
     }
 
     #[test]
-    fn fields_take_arbitrary_values_without_panic(field in 0_usize..60, value in "\\PC{0,12}|[A-Z][a-z]+\\([a-z_: 0-9]*\\)") {
+    fn fields_take_arbitrary_values_without_panic(
+        field in 0_usize..60,
+        value in "\\PC{0,12}|[A-Z][a-z]+\\([a-z_: 0-9]*\\)",
+    ) {
         let mut document = broad(1);
         let fields = all_fields(&document.scene);
         let _ = document.set(&format!("{}={value}", fields[field % fields.len()]));
@@ -183,7 +190,12 @@ proptest! {
     }
 
     #[test]
-    fn grids_are_decimal(from in -10_000_i32..10_000, steps in 1_u32..300, step in 1_i32..5000, digits in 0_u32..6) {
+    fn grids_are_decimal(
+        from in -10_000_i32..10_000,
+        steps in 1_u32..300,
+        step in 1_i32..5000,
+        digits in 0_u32..6,
+    ) {
         let decimal = |n: i64| format!("{n}e-{digits}");
         let to = i64::from(from) + i64::from(step) * i64::from(steps);
         let over = format!(

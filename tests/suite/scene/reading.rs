@@ -1,4 +1,4 @@
-//! Every variant reads and writes; what is no scene is refused with its place.
+//! Reading and writing of every variant, and the place of an error.
 
 use interwell::scene::*;
 
@@ -158,7 +158,8 @@ fn structural_errors_have_a_place_and_the_known_names() {
     for (changes, expected) in [
         (
             ("mechanism", "Springs(k: 2.7)"),
-            "s.ron:5:16: mechanism: unknown choice `Springs` in Mechanism; known: Flexures, Cubic, DoubleWell, Polynomial, Table",
+            "s.ron:5:16: mechanism: unknown choice `Springs` in Mechanism; known: Flexures, Cubic, \
+             DoubleWell, Polynomial, Table",
         ),
         (("mechanism", "Flexures(preload_mm: 2.7)"), "`thickness_mm` is missing in Flexures"),
         (
@@ -172,7 +173,8 @@ fn structural_errors_have_a_place_and_the_known_names() {
         (("stops", "Hertz(travel_limit_mm: 1)"), "`loss_s_per_m` is missing in Hertz"),
         (
             ("excitation", "Sum([\n  Shock(peak_g: 1)])"),
-            "s.ron:7:3: excitation.0: unknown choice `Shock` in Excitation; known: None, Constant, Sine, AmplitudeRamp, Chirp, Noise, Recorded, Sum",
+            "s.ron:7:3: excitation.0: unknown choice `Shock` in Excitation; known: None, Constant, Sine, \
+             AmplitudeRamp, Chirp, Noise, Recorded, Sum",
         ),
         (("excitation", "Noise(seed: 1)"), "`rms_g` is missing in Noise"),
         (
@@ -215,8 +217,10 @@ fn structural_errors_have_a_place_and_the_known_names() {
 
 #[test]
 fn unknown_names_come_with_whatever_else_is_wrong() {
-    let text = "(\n  colour: (red: [1, 2], \"é\": 3), mass_g: -1,\n  mechanism: Cubic(linear: 1, linear_n_per_m: -40, \
-        cubic_n_per_m3: 8e5),\n  run: (duration_s: 1, speed: 3),\n  stops: Rigid(travel_limit_mm: 0, restitution: 2),\n)";
+    let text = "(\n  colour: (red: [1, 2], \"é\": 3), mass_g: -1,\n  mechanism: Cubic(linear: 1, \
+        linear_n_per_m: -40, \
+        cubic_n_per_m3: 8e5),\n  run: (duration_s: 1, speed: 3),\n  stops: Rigid(travel_limit_mm: 0, \
+        restitution: 2),\n)";
     let error = refused(text);
     let lines: Vec<&str> = error.lines().collect();
     for (line, wanted) in lines.iter().zip([

@@ -1,4 +1,4 @@
-//! Every field can be set; sweeps take decimal values.
+//! Arguments that set a field or sweep one.
 
 use interwell::scene::*;
 
@@ -101,11 +101,13 @@ fn a_wrong_set_names_the_argument_and_changes_nothing() {
     for (argument, expected) in [
         (
             "stops.travel_limit_mm=3",
-            "--set stops.travel_limit_mm=3: the scene has no field `stops.travel_limit_mm`; it has: title, notes, mass_g, mechanism, mechanism.linear_n_per_m,",
+            "--set stops.travel_limit_mm=3: the scene has no field `stops.travel_limit_mm`; it has: title, \
+             notes, mass_g, mechanism, mechanism.linear_n_per_m,",
         ),
         (
             "stops=Soft(k: 1)",
-            "--set stops=Soft(k: 1): `Soft(k: 1)`: unknown choice `Soft` in Stops; known: None, Rigid, Uneven",
+            "--set stops=Soft(k: 1): `Soft(k: 1)`: unknown choice `Soft` in Stops; known: None, Rigid, \
+             Uneven",
         ),
         ("stops=Rigid(travel_limit_mm: 1)", "`restitution` is missing in Rigid"),
         ("mass_g", "--set mass_g: write FIELD=VALUE"),
@@ -167,7 +169,8 @@ fn a_wrong_over_names_the_argument() {
         ),
         (
             &["run.settle_s=1,20"],
-            "run.settle_s = 20: must not exceed run.duration_s = 10; left out, it is half of it (in the sweep, at run.settle_s = 20)",
+            "run.settle_s = 20: must not exceed run.duration_s = 10; left out, it is half of it (in the \
+             sweep, at run.settle_s = 20)",
         ),
     ] {
         let error = document.axes(over).unwrap_err().to_string();

@@ -1,8 +1,8 @@
-//! What must hold whatever a person or a file says: nothing panics, nothing hangs or fills the memory, what is refused is
-//! refused in words, and what is taken is written back as the same.
+//! Promises about any input: no panic, no endless work, a refusal in words, and the same text when it is
+//! written back.
 //!
-//! Each function takes any bytes. The fuzz targets in `fuzz/` feed them with what a fuzzer invents, the tests around this
-//! file with the small corpus in `tests/corpus`.
+//! Each function takes any bytes. The fuzz targets in `fuzz/` feed them with what a fuzzer invents, the tests
+//! around this file with the small corpus in `tests/corpus`.
 
 use std::fmt::Display;
 use std::sync::Arc;
@@ -20,7 +20,8 @@ use interwell::study::{Grid, MAX_CELLS};
 /// What messages call the scene.
 const NAME: &str = "s.ron";
 
-/// How long a run may take before it is told to stop: what a run does is for other tests, here it must only start.
+/// How long a run may take before it is told to stop: what a run does is for other tests, here it must only
+/// start.
 const RUN: Duration = Duration::from_millis(20);
 
 /// The longest line of a message in bytes: a list of sixty fields, and a clipped value.
@@ -174,7 +175,8 @@ fn harmless(bytes: &[u8]) -> Option<&str> {
     (!names_a_file).then_some(text)
 }
 
-/// A built-in scene, named by the first line, and the further lines as arguments; none where one names a file.
+/// A built-in scene, named by the first line, and the further lines as arguments; none where one names a
+/// file.
 fn preset_and_arguments(bytes: &[u8]) -> Option<(Document, Vec<&str>)> {
     let text = std::str::from_utf8(bytes).ok().filter(|text| !text.contains(['/', '\\']))?;
     let mut lines = text.lines();

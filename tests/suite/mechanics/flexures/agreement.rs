@@ -1,5 +1,6 @@
-//! Two methods that share nothing but the physics agree: the library's Galerkin solution and the integrated differential
-//! equations of [`StrongForm`], in force, stiffness, energy, axial force, shape, and in the place of the kink.
+//! Two methods that share nothing but the physics agree: the library's Galerkin solution and the integrated
+//! differential equations of [`StrongForm`], in force, stiffness, energy, axial force, shape, and in the
+//! place of the kink.
 
 use super::strong_form::*;
 use super::*;

@@ -1,5 +1,5 @@
-//! Elastica with exact answers (elliptic integrals), reached as limits: flexures so thin that they neither stretch nor shear, and a
-//! second group so stiff or so soft that it does nothing.
+//! Elastica with exact answers (elliptic integrals), reached as limits: flexures so thin that they neither
+//! stretch nor shear, and a second group so stiff or so soft that it does nothing.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,8 @@ fn bending(own: &Geometry, group: &Group) -> f64 {
     own.young * group.width * own.thickness.powi(3) / 12.0
 }
 
-/// Thin as they are, the wider group yields nothing of the preload. Clamped-clamped, post-buckled, with its ends in line.
+/// Thin as they are, the wider group yields nothing of the preload. Clamped-clamped, post-buckled, with its
+/// ends in line.
 #[test]
 fn a_buckled_elastica() {
     for (shortening, load, middle) in
@@ -56,7 +57,8 @@ fn stretching_goes_with_the_square_of_the_thickness() {
     near(fine - (coarse - fine) / 3.0, 0.0, 1e-9);
 }
 
-/// Two equal groups with twice the shortening of a guided elastica as preload: held there, both are free of axial force.
+/// Two equal groups with twice the shortening of a guided elastica as preload: held there, both are free of
+/// axial force.
 #[test]
 fn two_guided_elastica() {
     let shortening = 0.165409844700;

@@ -1,4 +1,5 @@
-//! Valid geometries at the ends of their ranges: an answer that holds, or an error that says where; never a panic.
+//! Valid geometries at the ends of their ranges: an answer that holds, or an error that says where; never a
+//! panic.
 
 use super::verdict::Verdict;
 use super::*;
@@ -116,7 +117,8 @@ fn absurd_sizes() {
     }
 }
 
-/// Groups that buckle under the same load, or nearly: both bulge, and lose their bulges together or one after the other.
+/// Groups that buckle under the same load, or nearly: both bulge, and lose their bulges together or one after
+/// the other.
 #[test]
 fn equal_groups() {
     for part in [1e-3, 0.01, 0.1, 0.25] {

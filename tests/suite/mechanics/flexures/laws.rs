@@ -1,4 +1,5 @@
-//! Laws that hold for any flexures: symmetry, one path, scaling, energy as the integral of force, stiffness as its derivative.
+//! Laws that hold for any flexures: symmetry, one path, scaling, energy as the integral of force, stiffness
+//! as its derivative.
 
 use super::super::integral;
 use super::*;
@@ -50,7 +51,8 @@ fn curve_and_states_are_odd_bit_for_bit() {
     }
 }
 
-/// What a state is does not depend on what was looked at before it, nor on the states that the curve was made of.
+/// What a state is does not depend on what was looked at before it, nor on the states that the curve was made
+/// of.
 #[test]
 fn there_is_no_hysteresis() {
     for own in some() {

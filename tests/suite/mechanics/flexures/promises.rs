@@ -1,4 +1,4 @@
-//! The accuracy that is promised, at many places that no curve was made of or compared at.
+//! Promised accuracy at many places of which no curve was made.
 
 use super::verdict::Verdict;
 use super::*;
@@ -33,8 +33,8 @@ fn one_well_and_bows() {
     }
 }
 
-/// Geometries that were hard once. The wells lie beyond 1.15 times the kink; the pair buckles; the slope bends away from what
-/// the force's error shows; the wells are shallow and near the middle.
+/// Geometries that were hard once. The wells lie beyond 1.15 times the kink; the pair buckles; the slope
+/// bends away from what the force's error shows; the wells are shallow and near the middle.
 #[test]
 fn hard_ones() {
     let group = |count, length, width| Group { count, length, width };

@@ -1,4 +1,5 @@
-//! The prototype's numbers: established with other codes, in `check` to the printed digits, and beside the table of a solid model.
+//! The prototype's numbers: established with other codes, in `check` to the printed digits, and beside the
+//! table of a solid model.
 
 use interwell::mechanics::{ForceTable, Landscape, fit};
 
@@ -94,8 +95,8 @@ fn a_vanishing_bow_changes_nothing_but_the_corner() {
     }
 }
 
-/// An independent model of the solid. The beams leave out what wide strips do sideways, which moves the wells by 0.3 mm and with
-/// them the force between 5 mm and there.
+/// An independent model of the solid. The beams leave out what wide strips do sideways, which moves the wells
+/// by 0.3 mm and with them the force between 5 mm and there.
 #[test]
 fn a_solid_model_is_near() {
     let table = ForceTable::parse(super::super::PROTOTYPE).unwrap();
@@ -109,7 +110,8 @@ fn a_solid_model_is_near() {
     near_relative(own.right_stable().unwrap().x, 6.88e-3, 0.05);
 }
 
-/// The stiffness that a damping ratio means is that inside the kink wherever the well lies, so that it follows the preload smoothly.
+/// The stiffness that a damping ratio means is that inside the kink wherever the well lies, so that it
+/// follows the preload smoothly.
 #[test]
 fn the_damping_stiffness_follows_the_preload() {
     let stiffness = |mm: f64| {

@@ -1,6 +1,7 @@
-//! A second method for the same beams, sharing no line with the library's: the differential equations of Reissner's beam
-//! are integrated along each flexure by Taylor series, from cell to cell, and Newton's method makes the ends of the cells
-//! meet (multiple shooting). The tangents of the cells are carried along by dual numbers.
+//! A second method for the same beams, sharing no line with the library's: the differential equations of
+//! Reissner's beam are integrated along each flexure by Taylor series, from cell to cell, and Newton's method
+//! makes the ends of the cells meet (multiple shooting). The tangents of the cells are carried along by dual
+//! numbers.
 //!
 //! ```text
 //! theta' = M/EI + theta_0'       N = H cos theta + Q sin theta      V = Q cos theta - H sin theta
@@ -8,8 +9,8 @@
 //! px' = (1 + N/EA) cos theta - V/GA_s sin theta      py' = (1 + N/EA) sin theta + V/GA_s cos theta
 //! ```
 //!
-//! Where it stands: good to some 1e-12 of the force as long as a cell is not longer than the boundary layer at a clamp;
-//! stability is not tested, the branch is that of the guess.
+//! Where it stands: good to some 1e-12 of the force as long as a cell is not longer than the boundary layer
+//! at a clamp; stability is not tested, the branch is that of the guess.
 
 mod strip;
 
@@ -266,8 +267,8 @@ impl StrongForm {
         all
     }
 
-    /// How a small bump of this group fares: the rotation in the middle that a unit moment at the clamp makes. It
-    /// vanishes with the bump, at the kink.
+    /// How a small bump of this group fares: the rotation in the middle that a unit moment at the clamp
+    /// makes. It vanishes with the bump, at the kink.
     fn bump_condition(&self, held: &Held, group: usize) -> f64 {
         let (mut theta, mut moment) = (0.0, 1.0);
         for cell in self.shoot(group, &held.unknowns).iter().take(self.cells / 2) {
@@ -277,7 +278,8 @@ impl StrongForm {
         theta
     }
 
-    /// The kink near the buckled state `beside`: there a bump of this group fits the taut flexure, without a force of its own.
+    /// The kink near the buckled state `beside`: there a bump of this group fits the taut flexure, without a
+    /// force of its own.
     pub fn kink(&self, beside: &Held, group: usize) -> Held {
         let mut held = self.taut(beside, &[beside.x]).remove(0);
         let mut value = self.bump_condition(&held, group);

@@ -1,4 +1,5 @@
-//! One flexure of the second method: the Taylor series of Reissner's beam over a cell, with derivatives by dual numbers.
+//! One flexure of the second method: the Taylor series of Reissner's beam over a cell, with derivatives by
+//! dual numbers.
 
 use std::array::from_fn;
 use std::f64::consts::PI;
