@@ -8,8 +8,9 @@
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+use super::number::Number;
 use super::quadrature::{GaussLegendre, Rules};
-use super::scalar::{Number, Scalar, sin_cos_by_octant};
+use super::scalar::{Scalar, sin_cos_by_octant};
 
 /// high + low with |low| at most half an ulp of high.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,7 +7,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::scalar::Number;
+use super::number::Number;
 
 /// `W` numbers side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]

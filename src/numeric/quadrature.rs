@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::scalar::{Number, Scalar};
+use super::number::Number;
 
 /// The most points of a rule.
 pub const MOST_POINTS: usize = 20;
@@ -37,7 +37,7 @@ impl<T: Number> GaussLegendre<T> {
     }
 }
 
-impl<T: Scalar> GaussLegendre<T> {
+impl<T: Number> GaussLegendre<T> {
     /// The rule with 1 to [`MOST_POINTS`] points (clamped), to the rounding of `T`: Newton's method on the
     /// Legendre polynomials from the usual cosine guess.
     pub fn new(points: usize) -> Self {
@@ -56,7 +56,7 @@ impl<T: Scalar> GaussLegendre<T> {
 /// The rules of all numbers of points, each made when it is first asked for.
 pub struct Rules<T>([OnceLock<GaussLegendre<T>>; MOST_POINTS]);
 
-impl<T: Scalar> Rules<T> {
+impl<T: Number> Rules<T> {
     /// None yet.
     pub const fn new() -> Self {
         Self([const { OnceLock::new() }; MOST_POINTS])
@@ -72,7 +72,7 @@ impl<T: Scalar> Rules<T> {
 
 /// The `count` roots from number `first` of the Legendre polynomial of degree `points`, descending from 1 to
 /// -1, and its slope at each. At most [`MOST_POINTS`] at a time.
-fn roots<T: Scalar>(points: usize, first: usize, count: usize) -> ([T; MOST_POINTS], [T; MOST_POINTS]) {
+fn roots<T: Number>(points: usize, first: usize, count: usize) -> ([T; MOST_POINTS], [T; MOST_POINTS]) {
     let one = T::of(1.0);
     let mut x = [one; MOST_POINTS];
     for (i, x) in x[..count].iter_mut().enumerate() {

@@ -1,50 +1,10 @@
-//! Number types of the integrator, as traits.
+//! Single real numbers of the integrator: order and a few functions, for the decisions between steps.
 //!
-//! Two levels. [`Number`] is what a power series needs: arithmetic without a branch, so that a
-//! bundle of several trajectories can be one. [`Scalar`] adds order and a few functions, for the
-//! decisions between steps. `f64` is the working type, [`DoubleDouble`](super::DoubleDouble) the
-//! reference.
-
-use std::fmt::Debug;
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+//! `f64` is the working type, [`DoubleDouble`](super::DoubleDouble) the reference.
 
 use super::double_double::DoubleDouble;
+use super::number::Number;
 use super::quadrature::{GaussLegendre, Rules};
-
-/// Arithmetic without a branch.
-pub trait Number:
-    'static
-    + Copy
-    + Debug
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-    + AddAssign
-    + SubAssign
-{
-    /// Whether an operation takes so little that the bookkeeping of a short loop costs as much.
-    const QUICK: bool = false;
-
-    /// The number nearest to `value`.
-    fn of(value: f64) -> Self;
-    /// The number nearest to `over / under`.
-    fn ratio(over: f64, under: f64) -> Self;
-    /// Magnitude.
-    fn abs(self) -> Self;
-
-    /// A whole number below 2^32, a degree as a rule.
-    #[inline(always)]
-    fn whole(number: usize) -> Self {
-        Self::of(f64::from(number as u32)) // (one instruction, where 64 bits without a sign take several)
-    }
-
-    /// 0.
-    fn zero() -> Self {
-        Self::of(0.0)
-    }
-}
 
 /// A single real number: order, division, a few functions.
 pub trait Scalar: Number + PartialOrd {
@@ -84,23 +44,6 @@ pub trait Scalar: Number + PartialOrd {
     /// The smaller of two; the first where they do not compare.
     fn smaller(self, other: Self) -> Self {
         if other < self { other } else { self }
-    }
-}
-
-impl Number for f64 {
-    const QUICK: bool = true;
-
-    #[inline(always)]
-    fn of(value: f64) -> Self {
-        value
-    }
-    #[inline(always)]
-    fn ratio(over: f64, under: f64) -> Self {
-        over / under
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        f64::abs(self)
     }
 }
 

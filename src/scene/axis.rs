@@ -2,11 +2,11 @@
 
 use std::collections::HashSet;
 
+use super::clip::clip;
 use super::data::{Scene, SweepAxis};
 use super::fields::{Field, FieldPath, numeric_fields};
 use super::ranges::{Spec, number_text};
 use super::steps::EvenSteps;
-use super::text::clip;
 use crate::numeric::Decimal;
 
 /// The most values that one axis may have. A map is refused by its number of cells, long before; this

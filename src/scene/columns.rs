@@ -3,7 +3,7 @@
 //! Comma separated, a header row with the wanted columns in any order among others, lines that begin with
 //! `#` are comments. Nothing is repaired silently: what cannot be meant is refused with its line and value.
 
-use super::text::clip;
+use super::clip::clip;
 
 /// The most rows that are read.
 pub const MOST_ROWS: usize = 1_000_000;

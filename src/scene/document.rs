@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::axis::{Axis, LARGEST_AXIS, MOST_AXES, repeated, unknown};
 use super::check::{check, corners};
+use super::clip::clip;
 use super::data::{Mechanism, Scene};
 use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 use super::fields::{Field, FieldPath, Slot, all_fields};
@@ -13,7 +14,7 @@ use super::manifest;
 use super::presets::{self, PRESETS};
 use super::ranges::number_text;
 use super::record;
-use super::text::{self, LARGEST_SCENE, clip, explain};
+use super::text::{self, LARGEST_SCENE, explain};
 use crate::system::files;
 
 /// How many faults an error names; the rest it counts. A list may hold a million NaN.

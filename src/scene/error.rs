@@ -2,8 +2,8 @@
 
 use std::fmt;
 
+use super::clip::clip;
 use super::locate::Place;
-use super::text::clip;
 
 /// One thing that is wrong with a scene.
 #[derive(Debug, Clone, PartialEq)]

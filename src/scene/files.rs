@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use super::clip::clip;
 use super::presets;
-use super::text::clip;
 use crate::system::files;
 
 /// The largest table that is read, 64 MB: some two million rows.

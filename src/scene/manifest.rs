@@ -5,10 +5,10 @@ use std::path::Path;
 
 use serde::Deserialize;
 
+use super::clip::clip;
 use super::document::Document;
 use super::error::SceneError;
 use super::files::{Files, LARGEST_TABLE, read_text};
-use super::text::clip;
 
 /// What the manifests of this program say in their key `program`.
 pub const PROGRAM: &str = "interwell";

@@ -19,6 +19,7 @@
 mod arguments;
 mod axis;
 mod check;
+mod clip;
 mod columns;
 mod comments;
 mod data;

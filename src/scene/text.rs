@@ -6,6 +6,7 @@
 use ron::error::{Error as Ron, SpannedError};
 use ron::extensions::Extensions;
 
+use super::clip::clip;
 use super::data::*;
 use super::locate::{Place, Places};
 use super::stops::Stops;
@@ -166,17 +167,6 @@ pub(super) fn explain(error: &SpannedError) -> String {
             clip(&format!("{first}{}", chars.as_str()))
         }
     }
-}
-
-/// Text from a file as part of a message: one line, not too long, nothing that moves a cursor.
-pub(super) fn clip(text: &str) -> String {
-    const LONGEST: usize = 200;
-    let clean = |c: char| if c.is_control() { ' ' } else { c };
-    let mut clipped: String = text.chars().take(LONGEST).map(clean).collect();
-    if text.chars().nth(LONGEST).is_some() {
-        clipped.push_str("..");
-    }
-    clipped
 }
 
 /// The scene as RON text that parses back to the same scene.
