@@ -112,7 +112,7 @@ pub fn even_half(half: usize) -> Vec<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{DoubleDouble, Number};
+    use super::super::{DoubleDouble, Scalar};
     use super::*;
 
     #[test]

@@ -7,7 +7,7 @@ use eframe::egui::{self, ComboBox, Ui};
 use crate::app::session::Session;
 use crate::scene::{Excitation, Stops};
 
-use super::controls::{field_ui, fields_ui};
+use super::fields::{field_ui, fields_ui};
 
 /// Draws it. Whether something changed.
 pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {

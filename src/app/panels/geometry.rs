@@ -5,7 +5,7 @@ use eframe::egui::{self, Ui};
 use crate::app::session::Session;
 use crate::scene::Mechanism;
 
-use super::controls::{field_ui, fields_ui};
+use super::fields::{field_ui, fields_ui};
 
 /// The slider of the preload; for a mechanism without one greyed, with the reason. Whether something changed.
 pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {

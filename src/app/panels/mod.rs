@@ -2,6 +2,7 @@
 
 mod advanced;
 pub mod controls;
+mod fields;
 mod geometry;
 pub(super) mod hint;
 pub(super) mod notes;

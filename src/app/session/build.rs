@@ -7,8 +7,6 @@ use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FlexureError, Mechanism};
 use crate::scene::{Document, Excitation, Fault, Scene, SceneError};
 
-use super::Session;
-
 /// Why a scene cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum CannotRun {
@@ -52,22 +50,6 @@ pub(super) fn why(error: &CannotRun, scene: &Scene) -> String {
             },
         ),
         _ => error.to_string(),
-    }
-}
-
-impl Session {
-    /// The model of the scene as it stands.
-    pub(super) fn build(&mut self) -> Result<Model, CannotRun> {
-        let document = &self.editor.runnable();
-        document.check()?;
-        let scene = &document.scene;
-        if scene.mechanism != self.mechanism_of {
-            let built = Mechanism::build(&scene.mechanism, &document.files)
-                .map_err(|error| unbuilt(document, error))?;
-            self.mechanism = Arc::new(built);
-            self.mechanism_of = scene.mechanism.clone();
-        }
-        Ok(Model::build(scene, Arc::clone(&self.mechanism)).map_err(|faults| document.error_from(faults))?)
     }
 }
 

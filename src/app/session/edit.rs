@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use crate::app::words::fields::{in_words, name_and_unit};
 use crate::dynamics::{Model, STANDARD_GRAVITY};
-use crate::mechanics::FLEXURE_TOLERANCE;
+use crate::mechanics::{self, FLEXURE_TOLERANCE};
 use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
 
 use super::Session;
-use super::build::{solved, why};
+use super::build::{CannotRun, solved, unbuilt, why};
 use super::editor::Editor;
 
 /// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and
@@ -194,5 +194,33 @@ impl Session {
         let frequency_hz = digit(0.2 / (std::f64::consts::TAU * scales.time), 3.0);
         let amplitude_g = digit(0.075 * scales.length / scales.time.powi(2) / STANDARD_GRAVITY, 0.5);
         Excitation::Sine { frequency_hz, amplitude_g, phase_deg: 0.0 }
+    }
+
+    /// Switches the stops; the ones that were there are remembered.
+    pub fn switch_stops(&mut self, on: bool) -> bool {
+        let stops = if on { self.remembered_stops } else { Stops::None };
+        if !on && self.scene().stops != Stops::None {
+            self.remembered_stops = self.scene().stops;
+        }
+        self.edit_once(|scene| scene.stops = stops)
+    }
+
+    /// The stops that come when they are switched on.
+    pub fn remembered_stops(&self) -> Stops {
+        self.remembered_stops
+    }
+
+    /// The model of the scene as it stands.
+    pub(super) fn build(&mut self) -> Result<Model, CannotRun> {
+        let document = &self.editor.runnable();
+        document.check()?;
+        let scene = &document.scene;
+        if scene.mechanism != self.mechanism_of {
+            let built = mechanics::Mechanism::build(&scene.mechanism, &document.files)
+                .map_err(|error| unbuilt(document, error))?;
+            self.mechanism = Arc::new(built);
+            self.mechanism_of = scene.mechanism.clone();
+        }
+        Ok(Model::build(scene, Arc::clone(&self.mechanism)).map_err(|faults| document.error_from(faults))?)
     }
 }

@@ -1,28 +1,10 @@
-//! Stops of the open scene that are switched off and on.
+//! Stops that suit a scene which has none.
 
 use crate::dynamics::Model;
 use crate::scene::{Scene, Stops};
 
-use super::Session;
-
 /// The share of speed that stops keep where a scene does not say which stops come.
 const RESTITUTION: f64 = 0.36;
-
-impl Session {
-    /// Switches the stops; the ones that were there are remembered.
-    pub fn switch_stops(&mut self, on: bool) -> bool {
-        let stops = if on { self.remembered_stops } else { Stops::None };
-        if !on && self.scene().stops != Stops::None {
-            self.remembered_stops = self.scene().stops;
-        }
-        self.edit_once(|scene| scene.stops = stops)
-    }
-
-    /// The stops that come when they are switched on.
-    pub fn remembered_stops(&self) -> Stops {
-        self.remembered_stops
-    }
-}
 
 /// The stops that come when they are switched on, before a hand has moved any.
 pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {

@@ -6,7 +6,7 @@ use crate::app::ui::settings::Setting;
 use crate::app::views::View;
 use crate::scene::Layout;
 
-use super::files::Wanted;
+use super::wanted::Wanted;
 
 /// What menus, keys and buttons ask for.
 #[derive(Debug, Clone, PartialEq)]

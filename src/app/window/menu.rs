@@ -12,9 +12,9 @@ use crate::app::views::View;
 use crate::scene::{Document, PRESETS};
 
 use super::command::{Command, DISCARD, MENUS, Part};
-use super::files::Wanted;
 use super::keys::SPEED_KEYS;
 use super::layouts::{Room, Tiling};
+use super::wanted::Wanted;
 
 /// Draws the bar and says what was asked for.
 pub fn menu_ui(

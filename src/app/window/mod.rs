@@ -46,15 +46,16 @@ mod messages;
 mod path_dialog;
 mod perform;
 mod size;
+mod wanted;
 mod writing;
 
 pub use command::Command;
 use deferred::DeferredInput;
-use files::Chosen;
-pub use files::Wanted;
 use messages::Notice;
 use path_dialog::PathDialog;
 use size::WindowSize;
+use wanted::Chosen;
+pub use wanted::Wanted;
 
 /// Everything that the window shows.
 pub struct Window {

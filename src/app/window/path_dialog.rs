@@ -7,7 +7,7 @@ use eframe::egui::{self, Key, RichText, TextEdit, Ui};
 use crate::app::disk;
 use crate::app::ui::widgets::{dialog, dialog_width};
 
-use super::files::Wanted;
+use super::wanted::Wanted;
 
 /// A path that is being typed, and what for.
 #[derive(Debug, Clone, PartialEq)]

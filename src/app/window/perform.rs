@@ -14,10 +14,10 @@ use crate::scene::Layout;
 
 use super::Window;
 use super::command::{Command, UNDO};
-use super::files::Wanted;
 use super::keys;
 use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::Next;
+use super::wanted::Wanted;
 
 /// How many periods of the motion an event is looked for.
 const PERIODS_AHEAD: f64 = 300.0;
