@@ -55,7 +55,7 @@ fn shaking_harder_and_stops_both_make_it_cross() {
         let straight = own.x + own.v * (next.t - own.t);
         assert!(if harder { (next.x - straight).abs() < 1e-4 } else { next.x == 1.5e-3 }, "{own:?} {next:?}");
         assert!(harness.state().session.editor.can_undo());
-        harness.state_mut().session.wait(LONG);
+        harness.state_mut().session.wait_settled(LONG);
         harness.key_press(Key::Num5);
         harness.run_steps(240);
         let watch = harness.state().session.player.watch();

@@ -189,7 +189,7 @@ fn held_ended_and_wrong() {
     own.edit_once(|scene| scene.mass_g = f64::NAN);
     assert_eq!(says(&own).0, Kind::Fault);
     own.undo();
-    own.wait(LONG);
+    own.wait_settled(LONG);
     assert_eq!(says(&own).0, Kind::Intrawell);
 }
 
