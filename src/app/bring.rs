@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::output;
 use crate::scene::{FileError, Files, Scene, named_paths};
-
-use super::export;
 
 /// Puts the table and the records of `scene` into the folder of `target` and names them as they are called
 /// there. A file that is there already is used where it holds the same, and never written over. Returns the
@@ -25,7 +24,7 @@ pub fn bring(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<Stri
         let text = text.map_err(|error| format!("the scene names a file that cannot be read: {error}"))?;
         let name = free_name(path, &text, target)?;
         if !target.with_file_name(&name).exists() {
-            export::write(&target.with_file_name(&name), text.as_bytes())?;
+            output::write(&target.with_file_name(&name), text.as_bytes())?;
             written.push(name.clone());
         }
         *path = name;

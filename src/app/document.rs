@@ -5,10 +5,10 @@
 
 use std::path::Path;
 
-use crate::scene::{Document, Files, Scene, SceneError, Source, Start, numeric_fields, write};
+use crate::output;
+use crate::scene::{Document, Files, Scene, SceneError, Source, Start, has_comments, numeric_fields, write};
 
 use super::bring::{bring, follow};
-use super::export;
 
 /// The most steps back that are kept.
 const MOST_STEPS: usize = 500;
@@ -68,7 +68,7 @@ impl Editor {
 
     /// Whether the file that the scene came from has comments, which are no part of a scene.
     pub fn has_comments(&self) -> bool {
-        self.path().is_some() && super::leave::has_comments(&self.document.text)
+        self.path().is_some() && has_comments(&self.document.text)
     }
 
     /// The scene.
@@ -174,7 +174,7 @@ impl Editor {
         let mut document = self.document.clone();
         let brought = bring(&mut document.scene, &document.files, path)?;
         document.text = text_of(&runnable(&document).scene)?;
-        export::write(path, document.text.as_bytes())?;
+        output::write(path, document.text.as_bytes())?;
         (document.name, document.source) = (path.display().to_string(), Source::File(path.to_owned()));
         let before = std::mem::replace(&mut document.files, Files::beside(path));
         let mut now = document.scene.clone();

@@ -1,12 +1,11 @@
 //! What leaves the window: the motion as CSV, the window as a picture, the command line that shows the same.
 
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use eframe::egui::ColorImage;
 
 use crate::dynamics::Model;
-use crate::output::{Sink, header, rows};
+use crate::output::{header, rows};
 use crate::scene::{Scene, arguments};
 use crate::study::{
     CURVE_POINTS, Keep, OutsideCurve, Sampling, continued_scene, curve, default_positions, events_table,
@@ -16,14 +15,6 @@ use crate::study::{
 use super::document::keep_start_inside;
 use super::player::Player;
 use super::session::Session;
-
-/// Writes text or bytes; a file is replaced only once all of it is there. The error is a sentence.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    let mut sink = Sink::open(path).map_err(|error| error.to_string())?;
-    let refused = |error: std::io::Error| format!("cannot write {}: {error}", path.display());
-    sink.put_bytes(bytes).map_err(refused)?;
-    sink.finish().map_err(refused)
-}
 
 /// The motion that is remembered, in the columns of the command line's `simulate`.
 pub fn motion_csv(player: &Player) -> String {

@@ -21,4 +21,4 @@ pub use plot::{
 };
 pub use text::aligned;
 
-pub use crate::system::{OpenError, Sink, is_regular, same_target};
+pub use crate::system::{OpenError, Sink, is_regular, same_target, write};

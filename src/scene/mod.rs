@@ -45,7 +45,7 @@ pub use document::{Document, Source, is_scene_file, named_paths};
 pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 pub use fields::{FieldPath, all_fields, numeric_fields};
 pub use files::{FileError, Files, LARGEST_TABLE};
-pub use locate::{Place, Places};
+pub use locate::{Place, Places, has_comments};
 pub use manifest::{PROGRAM, is_manifest};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
 pub use ranges::MAX_COEFFICIENTS;

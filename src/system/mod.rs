@@ -5,4 +5,4 @@ pub mod files;
 mod sink;
 pub mod threads;
 
-pub use sink::{OpenError, Sink, is_regular, same_target};
+pub use sink::{OpenError, Sink, is_regular, same_target, write};

@@ -186,6 +186,14 @@ impl Sink {
     }
 }
 
+/// Writes text or bytes; a file is replaced only once all of it is there. The error is a sentence.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    let mut sink = Sink::open(path).map_err(|error| error.to_string())?;
+    let refused = |error: io::Error| format!("cannot write {}: {error}", path.display());
+    sink.put_bytes(bytes).map_err(refused)?;
+    sink.finish().map_err(refused)
+}
+
 /// Whether an output at `path` would be a regular file, and not standard output, a device or a pipe.
 /// Nothing is opened: a pipe that is opened and closed is at its end.
 pub fn is_regular(path: &Path) -> bool {

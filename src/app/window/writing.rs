@@ -7,6 +7,7 @@ use eframe::egui;
 
 use crate::app::export;
 use crate::app::map::Map;
+use crate::output;
 
 use super::Window;
 
@@ -106,7 +107,7 @@ impl Window {
         self.told = None;
         ctx.request_screenshot(move |image| {
             let bytes = export::png(&image);
-            let saved = bytes.and_then(|bytes| export::write(&path, &bytes));
+            let saved = bytes.and_then(|bytes| output::write(&path, &bytes));
             written.send(saved.map(|()| format!("Saved {}", file_name(&path)))).ok();
             wake();
         });
@@ -115,7 +116,7 @@ impl Window {
 
 /// Writes a text; what was written, in words.
 fn put(path: &Path, text: &str) -> Written {
-    export::write(path, text.as_bytes()).map(|()| format!("Saved {}", file_name(path)))
+    output::write(path, text.as_bytes()).map(|()| format!("Saved {}", file_name(path)))
 }
 
 fn file_name(path: &Path) -> String {
