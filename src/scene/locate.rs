@@ -53,9 +53,7 @@ const DEEPEST: usize = 200;
 impl Places {
     /// Scans a text.
     pub fn of(text: &str) -> Self {
-        let mut scanner = Scanner { text: text.as_bytes(), at: 0, found: Vec::new() };
-        scanner.header();
-        scanner.value(None, 0);
+        let scanner = Scanner::over(text);
         let mut places = Vec::with_capacity(scanner.found.len());
         let (mut place, mut passed) = (Place { line: 1, column: 1 }, 0);
         for Found { around, part, at, end } in scanner.found {
@@ -112,6 +110,11 @@ impl Places {
     }
 }
 
+/// Whether a scene's text has comments: `//` or `/*` outside of its strings, raw ones included.
+pub fn has_comments(text: &str) -> bool {
+    Scanner::over(text).comments
+}
+
 /// A field of the scanner, with the byte at which it begins.
 struct Found {
     around: Option<usize>,
@@ -125,9 +128,20 @@ struct Scanner<'t> {
     at: usize,
     /// In the order of the text.
     found: Vec<Found>,
+    /// Whether a comment was passed.
+    comments: bool,
 }
 
-impl Scanner<'_> {
+impl<'t> Scanner<'t> {
+    /// Scans a text to its end.
+    fn over(text: &'t str) -> Self {
+        let mut own = Self { text: text.as_bytes(), at: 0, found: Vec::new(), comments: false };
+        own.header();
+        own.value(None, 0);
+        own.blank();
+        own
+    }
+
     fn peek(&self) -> Option<u8> {
         self.text.get(self.at).copied()
     }
@@ -159,8 +173,10 @@ impl Scanner<'_> {
             if byte.is_ascii_whitespace() {
                 self.at += 1;
             } else if self.starts(b"//") {
+                self.comments = true;
                 self.skip_to(b"\n");
             } else if self.starts(b"/*") {
+                self.comments = true;
                 self.at += 2;
                 let mut open = 1;
                 while open > 0 && self.at < self.text.len() {
@@ -231,7 +247,7 @@ impl Scanner<'_> {
                         self.inside(b')', &variant, around, depth);
                     }
                 } else {
-                    while self.peek().is_some_and(|byte| !b",()[]{}\" \t\r\n".contains(&byte)) {
+                    while self.peek().is_some_and(|byte| !b",()[]{}/\" \t\r\n".contains(&byte)) {
                         self.at += 1;
                     }
                 }
@@ -366,5 +382,22 @@ mod tests {
         for open in ["(", "[", "{", "a(", "(a:", "\"", "/*", "r#", "'"] {
             Places::of(&open.repeat(300_000));
         }
+    }
+
+    #[test]
+    fn comments_are_told_from_text() {
+        assert!(has_comments("( // what\n)") && has_comments("(/* what */)"));
+        assert!(!has_comments("(notes: \"http://a \\\" // b\", mass_g: 1)"));
+        assert!(has_comments("(notes: \"a\\\\\") // b"));
+    }
+
+    #[test]
+    fn raw_strings_end_where_they_say() {
+        assert!(!has_comments(r#"(notes: r"C:\" , title: "http://a")"#));
+        assert!(!has_comments("(notes: r#\"she said \"no\" // not a comment\"#, mass_g: 1)"));
+        assert!(has_comments(r#"(notes: r"C:\" /* here */)"#));
+        assert!(has_comments("(notes: r##\"a \"# b\"## // here\n)"));
+        // a name that ends in r is no raw string
+        assert!(has_comments("(r: \"a\\\"b\", // here\n)"));
     }
 }

@@ -49,6 +49,7 @@ type Built = Result<Arc<Mechanism>, BuildError>;
 
 /// What one cell came to.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "nearly all cells are run")]
 pub enum Cell {
     /// It has not been run.
     NotRun,
