@@ -8,8 +8,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | `clock`, `disk` | the clock and the file system |
-//! | [`task`] | threads: background jobs as values |
+//! | [`task`] | background jobs as values |
 //! | [`words`] | names and units of fields, number formats, explanations, the sentence about the motion |
 //! | [`session`] | the open scene with undo and files, the player, the map, the accuracy, without a window |
 //! | [`export`] | files and command lines that leave the window |
@@ -18,8 +17,6 @@
 //! | [`views`] | the plots and drawings, a file each |
 //! | [`window`] | layouts, menus, keys, files, dialogs: the `eframe::App` |
 
-mod clock;
-mod disk;
 pub mod export;
 pub mod panels;
 pub mod session;

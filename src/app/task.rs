@@ -1,4 +1,4 @@
-//! Background computations: the only place of the window that starts threads.
+//! Background computations.
 //!
 //! A job is a value: dropped, it is cancelled. [`Latest`] asks again and again for the same kind of
 //! answer and shows the newest; an answer to an older question is thrown away.
@@ -8,8 +8,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use crate::app::clock::Instant;
-use crate::system::threads::{Pool, processors};
+use crate::system::clock::WallClock;
+use crate::system::threads::{Pool, processors, sleep, spawn};
 
 /// Threads for a computation that uses all cores but one, which stays for the window; none where the system
 /// has no threads to give.
@@ -19,9 +19,9 @@ pub fn pool() -> Option<Pool> {
 
 /// Lets `take` take in what comes until it says that nothing more will, at most so long.
 pub fn wait_while(most: Duration, mut take: impl FnMut() -> bool) {
-    let until = Instant::now() + most;
-    while take() && Instant::now() < until {
-        std::thread::sleep(Duration::from_millis(2));
+    let clock = WallClock::start();
+    while take() && clock.elapsed() < most {
+        sleep(Duration::from_millis(2));
     }
 }
 
@@ -48,7 +48,7 @@ impl<T: Send + 'static> Job<T> {
         let (sender, parts) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
         let (flag, wake) = (Arc::clone(&cancel), Arc::clone(wake));
-        let last = Mutex::new(Instant::now());
+        let last = Mutex::new(WallClock::start());
         let run = move || {
             let each = |part: T| {
                 // nobody listens where the job was dropped
@@ -58,7 +58,7 @@ impl<T: Send + 'static> Job<T> {
                 if let Ok(mut last) = last.try_lock()
                     && last.elapsed() > WAKE_EVERY
                 {
-                    *last = Instant::now();
+                    *last = WallClock::start();
                     wake();
                 }
             };
@@ -68,8 +68,7 @@ impl<T: Send + 'static> Job<T> {
                 wake();
             }
         };
-        let thread = std::thread::Builder::new().name("study".into());
-        thread.spawn(run).ok().map(|_| Self { parts, cancel })
+        spawn(run).then_some(Self { parts, cancel })
     }
 
     /// Waits for the next part, at most so long; `Err` where none will come any more.
@@ -105,7 +104,7 @@ pub struct Latest<T> {
     generation: u64,
     job: Option<Job<T>>,
     /// When the question under way was asked.
-    since: Option<Instant>,
+    since: Option<WallClock>,
     /// The answer and the generation of its question.
     answer: Option<(u64, T)>,
 }
@@ -125,7 +124,7 @@ impl<T: Send + 'static> Latest<T> {
                 each(answer);
             }
         });
-        self.since = Some(Instant::now());
+        self.since = Some(WallClock::start());
     }
 
     /// Forgets question and answer.
@@ -204,7 +203,7 @@ mod tests {
         let (sender, seen) = channel();
         let job = Job::<()>::start(&wake(), move |cancel, _| {
             while !cancel.load(Ordering::Relaxed) {
-                std::thread::sleep(Duration::from_millis(1));
+                sleep(Duration::from_millis(1));
             }
             sender.send(()).ok();
         });
@@ -236,7 +235,7 @@ mod tests {
             each(1);
             each(2);
             while !cancel.load(Ordering::Relaxed) {
-                std::thread::sleep(Duration::from_millis(1));
+                sleep(Duration::from_millis(1));
             }
             each(3);
             sender.send(()).ok();

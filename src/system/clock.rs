@@ -1,6 +1,6 @@
 //! Clocks.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use cpu_time::{ProcessTime, ThreadTime};
 
@@ -31,4 +31,11 @@ clocks! {
     ThreadClock(ThreadTime);
     /// The time that all threads of the program work.
     ProcessClock(ProcessTime);
+}
+
+impl WallClock {
+    /// The time since the start.
+    pub fn elapsed(self) -> Duration {
+        self.0.elapsed()
+    }
 }

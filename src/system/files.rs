@@ -29,6 +29,11 @@ pub fn is_folder(path: &Path) -> bool {
     path.is_dir()
 }
 
+/// The folder that the program was started in; an empty path where there is none.
+pub fn working_folder() -> PathBuf {
+    std::env::current_dir().unwrap_or_default()
+}
+
 /// The absolute path of what is there, without links.
 pub fn canonical(path: &Path) -> Option<PathBuf> {
     path.canonicalize().ok()

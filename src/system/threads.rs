@@ -11,6 +11,16 @@ pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
+/// Does `work` on a thread of its own. Whether the system has one to give.
+pub fn spawn(work: impl FnOnce() + Send + 'static) -> bool {
+    std::thread::Builder::new().name("study".into()).spawn(work).is_ok()
+}
+
+/// Lets this thread stand still.
+pub fn sleep(time: Duration) {
+    std::thread::sleep(time);
+}
+
 /// Threads that share the parts of one study.
 #[derive(Debug)]
 pub struct Pool(rayon::ThreadPool);

@@ -121,7 +121,7 @@ impl Accuracy {
         let Some((model, from)) = &self.origin else { return };
         let span = match (self.asked, self.trust.current()) {
             (None, _) => model.duration(),
-            // what parts stays parted
+            // once the runs have diverged they are not compared again
             (Some(asked), Some(known)) if known.course.until().is_none() && now - from > asked => {
                 STRETCH * (now - from)
             }

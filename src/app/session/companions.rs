@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::disk;
 use crate::output::write_file;
 use crate::scene::{FileError, Files, Scene, named_paths};
+use crate::system;
 
 /// Puts the table and the records of `scene` into the folder of `target` and names them as they are called
 /// there. A file that is there already is used where it holds the same, and never written over. Returns the
@@ -24,7 +24,7 @@ pub fn bring(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<Stri
         };
         let text = text.map_err(|error| format!("the scene names a file that cannot be read: {error}"))?;
         let name = free_name(path, &text, target)?;
-        if !disk::exists(&target.with_file_name(&name)) {
+        if !system::files::exists(&target.with_file_name(&name)) {
             write_file(&target.with_file_name(&name), text.as_bytes())?;
             written.push(name.clone());
         }
@@ -59,7 +59,9 @@ fn free_name(path: &str, text: &str, target: &Path) -> Result<String, String> {
     });
     let fits = |name: &String| {
         let there = target.with_file_name(name);
-        there != target && (!disk::exists(&there) || disk::holds(&there, text.as_bytes()))
+        there != target
+            && (!system::files::exists(&there)
+                || system::files::bytes(&there).is_ok_and(|own| own == text.as_bytes()))
     };
     names
         .take(1000)
@@ -74,7 +76,7 @@ fn folder_of(file: &Path) -> PathBuf {
 fn is_same(a: &Path, b: PathBuf) -> bool {
     let whole = |path: &Path| {
         let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
-        disk::whole(path)
+        system::files::canonical(path)
     };
     whole(a).is_some_and(|a| whole(&b) == Some(a))
 }

@@ -6,11 +6,11 @@ use std::sync::mpsc::channel;
 
 use eframe::egui::{self, Ui};
 
-use crate::app::clock::Instant;
-use crate::app::disk;
 use crate::app::session::CannotRun;
 use crate::app::session::editor::Editor;
 use crate::app::ui::style::STATUS;
+use crate::system::clock::WallClock;
+use crate::system::files;
 
 use super::Window;
 use super::command::Command;
@@ -61,7 +61,7 @@ impl Window {
     /// Puts the scene's file first among the recent ones.
     pub fn remember_file(&mut self) {
         let Some(path) = self.session.editor.path() else { return };
-        let whole = disk::whole(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
+        let whole = files::canonical(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
         self.recent.retain(|own| *own != whole);
         self.recent.insert(0, whole);
         self.recent.truncate(MOST_RECENT);
@@ -235,15 +235,15 @@ impl Window {
         let stem = stem.map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.as_ref().and_then(|path| path.parent()).map(Path::to_path_buf);
         // what a path would begin with where there is no dialog
-        let begin = folder.clone().unwrap_or_else(disk::working_folder);
+        let begin = folder.clone().unwrap_or_else(files::working_folder);
         let begin =
             if wanted == Wanted::Open { begin.join("") } else { begin.join(format!("{stem}.{ending}")) };
         self.dialog.ask(&self.wake, move |_| {
             let mut dialog = rfd::FileDialog::new().add_filter(kind, &[ending]);
-            if let Some(folder) = folder.filter(|folder| disk::is_folder(folder)) {
+            if let Some(folder) = folder.filter(|folder| files::is_folder(folder)) {
                 dialog = dialog.set_directory(folder);
             }
-            let since = Instant::now();
+            let since = WallClock::start();
             let chosen = if wanted == Wanted::Open {
                 dialog.pick_file()
             } else {

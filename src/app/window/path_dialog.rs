@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Key, RichText, TextEdit, Ui};
 
-use crate::app::disk;
 use crate::app::ui::widgets::{dialog, dialog_width};
+use crate::system::files;
 
 use super::wanted::Wanted;
 
@@ -41,13 +41,13 @@ impl PathDialog {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         if self.path.trim().is_empty() {
             (false, Some("A path is needed."))
-        } else if disk::is_folder(path) {
+        } else if files::is_folder(path) {
             (false, Some("This is a folder: add the name of a file."))
         } else if self.wanted == Wanted::Open {
-            if disk::is_file(path) { (true, None) } else { (false, Some("There is no such file.")) }
-        } else if folder.is_some_and(|folder| !disk::is_folder(folder)) {
+            if files::is_file(path) { (true, None) } else { (false, Some("There is no such file.")) }
+        } else if folder.is_some_and(|folder| !files::is_folder(folder)) {
             (false, Some("There is no such folder."))
-        } else if disk::exists(path) {
+        } else if files::exists(path) {
             (true, Some("This file exists and will be replaced."))
         } else {
             (true, None)

@@ -11,10 +11,10 @@ mod of_session;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::app::clock::Instant;
 use crate::app::task::{Job, Wake, pool};
 use crate::scene::{Scene, SweepAxis};
 use crate::study::{self, Cell};
+use crate::system::clock::WallClock;
 
 use super::editor::Editor;
 
@@ -52,7 +52,7 @@ pub struct Mapping {
     generation: u64,
     /// Counts what has changed in the picture.
     version: u64,
-    begun: Option<Instant>,
+    begun: Option<WallClock>,
     stopped: bool,
     wanted: bool,
     /// A question that waits for the hand to be still, and since when.
@@ -222,7 +222,7 @@ impl Mapping {
         let (sweep, levels) = (Arc::clone(&map.sweep), Arc::clone(&map.levels));
         let known: Vec<bool> = map.cells.iter().map(Option::is_some).collect();
         let generation = self.generation;
-        self.begun = Some(Instant::now());
+        self.begun = Some(WallClock::start());
         self.task = Job::start(wake, move |cancel, each| {
             let Some(pool) = pool() else { return };
             let task = study::Task { tick: &|| (), cancel };

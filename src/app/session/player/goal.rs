@@ -5,8 +5,8 @@
 
 use std::time::Duration;
 
-use crate::app::clock::Instant;
 use crate::dynamics::{Event, EventKind};
+use crate::system::clock::WallClock;
 
 use super::Player;
 
@@ -83,7 +83,7 @@ impl Player {
 
     /// One frame's share of the way.
     pub(super) fn follow(&mut self, goal: Goal) {
-        let (begun, until) = (Instant::now(), goal.until());
+        let (begun, until) = (WallClock::start(), goal.until());
         let stretch = STRETCH * self.watch.model_at(self.watch.time()).characteristic_time();
         loop {
             let before = self.watch.time();
