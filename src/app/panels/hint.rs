@@ -12,9 +12,9 @@ use crate::scene::Excitation;
 const TRIED_MM: f64 = 0.3;
 
 /// What stops do between any two wells.
-const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier, so that a weaker push carries \
-                      it over; but the mass travels less. Further out the mechanism presses the mass harder \
-                      against the stop";
+const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier, so that a weaker push \
+                      carries it over; but the mass travels less. Further out the mechanism presses the mass \
+                      harder against the stop";
 
 /// What is to be tried.
 #[derive(Debug, Clone, Copy, PartialEq)]

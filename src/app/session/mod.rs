@@ -265,8 +265,8 @@ impl Session {
         }
     }
 
-    /// Lets the motion go on from its present state by the model; one that has ended, and could not go on from
-    /// there, begins again.
+    /// Lets the motion go on from its present state by the model; one that has ended, and could not go on
+    /// from there, begins again.
     fn go_on(&mut self) {
         let (ended, before) = (self.player.ended().is_some(), self.player.watch().now().x);
         self.player.change(&self.model);

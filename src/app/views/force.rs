@@ -2,8 +2,8 @@
 //!
 //! The curve is dV/dx, the force that would hold the mass there: the mechanism pulls the other way. The base
 //! pushes the mass with -m a_b, a level line that moves up and down. Both act on the mass and are positive to
-//! the right. Where the line is above the curve the mass is driven to the right, where it is below to the left;
-//! on a stop it is released when the line passes the curve at the stop.
+//! the right. Where the line is above the curve the mass is driven to the right, where it is below to the
+//! left; on a stop it is released when the line passes the curve at the stop.
 
 use eframe::egui::{Align2, Painter, Sense, Shape, Stroke, Ui, pos2, vec2};
 

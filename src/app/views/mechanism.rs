@@ -6,22 +6,18 @@
 //! than the travel and has an inset at its own scale. An impact is a ring whose size is the energy that it
 //! takes.
 
-use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::ui::style::{BALL, RING_SECONDS};
 use crate::app::words::meanings::explained;
 use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
-use crate::mechanics::ForceCurve;
 
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
 use super::labels::{ago, plated};
+use super::schematic::{Schematic, schematic};
 use super::stops::{WALL, stops_beside_ui};
-use super::{Span, ViewContext, mass::mass_ui, too_small_ui};
-
-/// Half turns of a drawn spring, and half its width in points.
-const COILS: usize = 12;
-const COIL: f32 = 9.0;
+use super::{ViewContext, mass::mass_ui, too_small_ui};
 
 /// The least size in points of a drawing whose parts are named.
 const NAMED: egui::Vec2 = vec2(280.0, 140.0);
@@ -202,72 +198,6 @@ fn bent_ui(
     Some((scale.middle(&bent), words))
 }
 
-/// What is drawn of a force without flexures behind it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Schematic {
-    /// A spring that pushes the mass away from the middle and draws it back from far out, or the like.
-    Spring,
-    /// Nothing: the force is the same everywhere.
-    Mass { pulled: bool },
-}
-
-impl Schematic {
-    /// Where the force does not depend on the place there is no spring.
-    fn of(curve: &ForceCurve, span: Span) -> Self {
-        let domain = curve.domain();
-        let place = |share: f64| (span.low + share * (span.high - span.low)).clamp(domain.0, domain.1);
-        let forces = [0.0, 0.21, 0.5, 0.83, 1.0].map(|share| curve.force(place(share)));
-        let same = forces.iter().all(|force| (force - forces[0]).abs() <= 1e-9 * forces[0].abs());
-        if same { Self::Mass { pulled: forces[0] != 0.0 } } else { Self::Spring }
-    }
-
-    fn words(self, force: f64) -> String {
-        match self {
-            Self::Spring => "a spring of this force, not to scale".to_owned(),
-            Self::Mass { pulled: false } => "a free mass".to_owned(),
-            Self::Mass { pulled: true } => {
-                let way = if force > 0.0 { "left" } else { "right" };
-                format!("a steady force of {} N to the {way}", three(force.abs()))
-            }
-        }
-    }
-}
-
-/// The mass on its rail, with a spring from above where there is one.
-fn schematic(
-    painter: &egui::Painter,
-    context: &ViewContext<'_>,
-    rect: Rect,
-    (x, middle, half): (f32, f32, egui::Vec2),
-    top: f32,
-) -> String {
-    let style = context.style;
-    let curve = &context.session.shown().mechanism().curve;
-    let own = Schematic::of(curve, context.span);
-    painter.hline(rect.x_range().shrink(6.0), middle + half.y + 3.0, Stroke::new(2.0, style.faint()));
-    if own == Schematic::Spring {
-        let clamp_at = Rect::from_x_y_ranges(rect.x_range().shrink(6.0), top - CLAMP..=top);
-        clamp(painter, &style, clamp_at, true);
-        let barrier = context.session.shown().mechanism().landscape.barrier;
-        let foot = context.span.screen_from_world(barrier.map_or(0.0, |barrier| barrier.x), rect);
-        let (from, to) = (pos2(foot, top), pos2(x, middle - half.y));
-        painter.add(Shape::line(coil(from, to), style.flexure_stroke()));
-    }
-    own.words(curve.force(0.0_f64.clamp(curve.domain().0, curve.domain().1)))
-}
-
-/// A coil spring from one place to another: straight ends, and turns between that a stretch pulls apart.
-fn coil(from: Pos2, to: Pos2) -> Vec<Pos2> {
-    let along = to - from;
-    let across = along.normalized().rot90() * COIL;
-    let turn = |i: usize| {
-        let share = 0.15 + 0.7 * (i as f32 + 0.5) / COILS as f32;
-        from + along * share + if i.is_multiple_of(2) { across } else { -across }
-    };
-    let turns = (0..COILS).map(turn);
-    [from, from + along * 0.15].into_iter().chain(turns).chain([from + along * 0.85, to]).collect()
-}
-
 /// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g). It lies at the mass's
 /// height on the inner side of the body, where neither flexures nor stops are.
 fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, base_accel: f64, rect: Rect) {
@@ -391,28 +321,5 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
         let color: Color32 = style.impact().gamma_multiply((1.0 - age) as f32);
         painter.circle_stroke(center, radius, Stroke::new(2.5, color));
         ui.ctx().request_repaint();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use super::*;
-    use crate::app::session::Session;
-    use crate::app::session::editor::Editor;
-
-    #[test]
-    fn only_a_force_that_depends_on_the_place_has_a_spring() {
-        let words = |preset: &str| {
-            let session = Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap();
-            let curve = &session.model().mechanism().curve;
-            Schematic::of(curve, Span::of(&session, (0.0, 0.0))).words(curve.force(0.0))
-        };
-        assert_eq!(words("bouncing-ball"), "a steady force of 9.81 N to the left");
-        assert_eq!(words("elastic-box"), "a free mass");
-        for preset in ["duffing", "monostable", "nominal-cubic", "paper-table"] {
-            assert!(words(preset).starts_with("a spring"), "{preset}");
-        }
     }
 }

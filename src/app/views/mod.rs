@@ -17,6 +17,7 @@ mod mass;
 mod mechanism;
 mod phase;
 mod ranges;
+mod schematic;
 mod span;
 mod stops;
 mod timeline;
@@ -107,10 +108,10 @@ impl View {
                  motion go on from a state."
             }
             Self::ForceCurve => {
-                "The force that would hold the mass at a place, positive to the right; the mechanism pulls with \
-                 as much the other way. Where the push is above the curve it drives the mass to the right, \
-                 below it to the left; a mass on a stop is freed when the push passes the mark there. Filled: \
-                 stable. Hollow: unstable. Diamond: a kink, where the stiffness jumps."
+                "The force that would hold the mass at a place, positive to the right; the mechanism pulls \
+                 with as much the other way. Where the push is above the curve it drives the mass to the \
+                 right, below it to the left; a mass on a stop is freed when the push passes the mark there. \
+                 Filled: stable. Hollow: unstable. Diamond: a kink, where the stiffness jumps."
             }
             Self::Energy => {
                 "Where the energy came from, where it went, and what is there against the barrier."

@@ -35,8 +35,8 @@ pub fn menu_ui(
         }
         ui.add_space(16.0);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let hover = "The scene as it was opened or last saved, its views, and time 0 (Home). Undo brings the \
-                         changes back.";
+            let hover = "The scene as it was opened or last saved, its views, and time 0 (Home). Undo brings \
+                         the changes back.";
             if ui.button(DISCARD).on_hover_text(hover).clicked() {
                 asked.push(Command::BackToStart);
             }

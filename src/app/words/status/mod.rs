@@ -92,7 +92,8 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
                 );
             }
             format!(
-                "the mass left the force table, which ends at {end} mm. Set stops inside it or extend the table."
+                "the mass left the force table, which ends at {end} mm. Set stops inside it or extend the \
+                 table."
             )
         }
         Outcome::ImpactBudget { count, .. } => {
