@@ -8,7 +8,7 @@ use crate::app::words::fields::name_and_unit;
 use crate::app::words::meanings::{explained, meaning};
 use crate::app::words::numbers::{decimals_for, exact, shown};
 use crate::app::words::status::{Kind, grams, mm_beside, seconds, speed};
-use crate::dynamics::{Outcome, Regime, Summary};
+use crate::dynamics::{Outcome, Summary};
 use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};
 
 use super::ViewContext;
@@ -266,15 +266,11 @@ fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>) 
         ui.label("the run ended early");
         return;
     }
-    let (kind, name) = match settled.regime {
-        Regime::Rest => (Kind::Resting, "resting"),
-        Regime::Intrawell if settled.releases > 0 => (Kind::Intrawell, "hopping"),
-        Regime::Intrawell => (Kind::Intrawell, "intrawell"),
-        Regime::Interwell => (Kind::Interwell, "interwell"),
-        Regime::Irregular => (Kind::Irregular, "irregular"),
-        Regime::Crossing => (Kind::Crossing, "crossing"),
-        // no wells or one: there is nothing to cross
-        Regime::OneWell => (Kind::Other, "no barrier"),
+    let kind = Kind::from(settled.regime);
+    let name = match kind {
+        Kind::Resting => "resting",
+        Kind::Intrawell if settled.releases > 0 => "hopping",
+        kind => kind.name(),
     };
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(16.0), Sense::hover());
