@@ -1,19 +1,20 @@
 //! Does what a scene does not use cost nothing? `cargo bench --bench absent`.
 //!
-//! First the same scene by the general path and written out by hand (`by_hand`): the end is the same bit for bit
-//! (a test holds that), the time should be within a few per cent. By hand there is the motion alone, and with the
-//! crossings counted, as every run of a scene with a well counts them; the ratio is to the latter. Both count them
-//! by the same search, and neither locates them: their instants are asked for only in a settled window under a
-//! periodic drive, and by events.
+//! First the same scene by the general path and written out by hand (`by_hand`): the end is the same bit for
+//! bit (a test holds that), the time should be within a few per cent. By hand there is the motion alone, and
+//! with the crossings counted, as every run of a scene with a well counts them; the ratio is to the latter.
+//! Both count them by the same search, and neither locates them: their instants are asked for only in a
+//! settled window under a periodic drive, and by events.
 //!
-//! Where nothing is asked for but this, the general path goes on in a loop of its own (`dynamics/flight.rs`), which asks of
-//! each step whether it comes near an end of the arena, the top, or a border of time. What keeps the ratio above 1: some
-//! 1.5 us a run for what begins and ends one, and 10 to 20 ns a step: these questions, the origin of the piece, and the
-//! series as a call of its own. How the compiler lays out the loops makes a twentieth either way, and where the machine's
-//! other threads leave less of the processor, instructions count for more and the ratio rises.
+//! Where nothing is asked for but this, the general path goes on in a loop of its own
+//! (`dynamics/run/event_free.rs`), which asks of each step whether it comes near an end of the mode, the
+//! barrier, or a border of time. What keeps the ratio above 1: some 1.5 us a run for what begins and ends
+//! one, and 10 to 20 ns a step: these questions, the origin of the piece, and the series as a call of its
+//! own. How the compiler lays out the loops makes a twentieth either way, and where the machine's other
+//! threads leave less of the processor, instructions count for more and the ratio rises.
 //!
-//! Then what is asked for, or stands in the scene without an effect, against the same scene without it. A ratio is
-//! the median over pairs run in turn.
+//! Then what is asked for, or stands in the scene without an effect, against the same scene without it. A
+//! ratio is the median over pairs run in turn.
 
 mod by_hand;
 mod shared;

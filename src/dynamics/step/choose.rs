@@ -79,7 +79,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// Extends the series to the full order.
     #[inline]
     fn expand(&mut self, state: &MotionState<T>) {
-        if let (2, Some(Touch { order: BY_JERK.., .. })) = (self.series.known, state.touch) {
+        if let (2, Some(Touch { multiplicity: BY_JERK.., .. })) = (self.series.known, state.touch) {
             self.push(state);
         }
         let mode = self.mode(state);
@@ -93,7 +93,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let next = self.series.known;
         self.series.extend(next, &mode.force, self.equation.damping, self.drive, &mut self.cursor);
         if self.series.known == 3
-            && let Some(Touch { order: BY_JERK.., .. }) = state.touch
+            && let Some(Touch { multiplicity: BY_JERK.., .. }) = state.touch
         {
             self.series.y[2] = T::zero(); // a release: the net force is 0 by definition
         }

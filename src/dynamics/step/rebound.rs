@@ -22,7 +22,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     pub fn flies_freely(&mut self, state: &MotionState<T>) -> bool {
         match state.touch {
             None => true,
-            Some(Touch { order: BY_SPEED, .. }) => {
+            Some(Touch { multiplicity: BY_SPEED, .. }) => {
                 self.seed(state);
                 self.pressed_rebound(state)
                     .is_none_or(|(end, rates)| self.short_flight(state, end, rates).is_none())
@@ -35,7 +35,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// derivatives; none where it has not, or is not pressed back. Expects the drive to be seeded.
     #[inline]
     pub fn pressed_rebound(&self, state: &MotionState<T>) -> Option<(End, [T; 3])> {
-        let Some(Touch { end, order: BY_SPEED }) = state.touch else { return None };
+        let Some(Touch { end, multiplicity: BY_SPEED }) = state.touch else { return None };
         if !matches!(self.mode(state).end(end).1, EndKind::Stop | EndKind::Compliant) {
             return None;
         }
@@ -65,7 +65,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// Expects the series to be begun.
     #[inline]
     pub fn rebound(&mut self, state: &MotionState<T>, flight: T, left: T) -> Option<(End, T, Endpoint<T>)> {
-        let Some(Touch { end, order: BY_SPEED }) = state.touch else { return None };
+        let Some(Touch { end, multiplicity: BY_SPEED }) = state.touch else { return None };
         let (level, kind) = self.mode(state).end(end);
         let border = self.drive.segment_end(state.segment);
         let before = |border| flight < self.clock.between(&state.at, &border);
