@@ -21,7 +21,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// Coefficients may vanish one after the other without the next one vanishing (a high power from its flat
     /// middle, tones that cancel), and then the last ones promise too long a step. So each step is checked
     /// against the equation of motion at its end, and halved until it holds.
-    #[inline]
+    #[inline(always)]
     pub fn choose_step(&mut self, state: &MotionState<T>, flight: Option<T>, left: T) -> Option<Step<T>> {
         let length = match flight {
             Some(flight) if self.expand_for(state, flight) => flight,
@@ -41,6 +41,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     }
 
     /// The step of up to length `h` that ends in time, and with which the equation of motion holds.
+    #[inline(always)]
     pub fn shorten(&mut self, state: &MotionState<T>, mut h: T, left: T) -> Option<Step<T>> {
         let border = self.drive.segment_end(state.segment);
         for attempt in 0..MOST_HALVINGS {

@@ -12,7 +12,7 @@ use crate::numeric::{PolynomialRoots, Scalar};
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// The first contact with an end of the mode within the step, as a share of it; of the step's end is
     /// known how it lies in the piece.
-    #[inline]
+    #[inline(always)]
     pub fn find_exit(
         &self,
         state: &MotionState<T>,
