@@ -7,11 +7,11 @@
 //! settled window under a periodic drive, and by events.
 //!
 //! Where nothing is asked for but this, the general path goes on in a loop of its own
-//! (`dynamics/flight.rs`), which asks of each step whether it comes near an end of the arena, the top, or a
-//! border of time. What keeps the ratio above 1: some 1.5 us a run for what begins and ends one, and 10 to
-//! 20 ns a step: these questions, the origin of the piece, and the series as a call of its own. How the
-//! compiler lays out the loops makes a twentieth either way, and where the machine's other threads leave
-//! less of the processor, instructions count for more and the ratio rises.
+//! (`dynamics/run/event_free.rs`), which asks of each step whether it comes near an end of the mode, the
+//! barrier, or a border of time. What keeps the ratio above 1: some 1.5 us a run for what begins and ends
+//! one, and 10 to 20 ns a step: these questions, the origin of the piece, and the series as a call of its
+//! own. How the compiler lays out the loops makes a twentieth either way, and where the machine's other
+//! threads leave less of the processor, instructions count for more and the ratio rises.
 //!
 //! Then what is asked for, or stands in the scene without an effect, against the same scene without it. A
 //! ratio is the median over pairs run in turn.

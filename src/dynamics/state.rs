@@ -5,15 +5,15 @@ use super::equation::End;
 use super::result::{Outcome, Phase};
 use crate::numeric::Scalar;
 
-/// A surface that the mass touches at the start of a step, and how many of the leading coefficients of the
-/// gap are 0 by definition.
+/// A surface that the mass touches at the start of a step, and the multiplicity of the leading zero of the
+/// gap there: how many of its coefficients are 0 by definition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Touch {
     pub end: End,
-    pub order: usize,
+    pub multiplicity: usize,
 }
 
-/// Orders of a touch: the gap opens with the speed, the acceleration, or what follows them.
+/// Multiplicities of a touch: the gap opens with the speed, the acceleration, or what follows them.
 pub(crate) const BY_SPEED: usize = 1;
 pub(crate) const BY_ACCELERATION: usize = 2;
 pub(crate) const BY_JERK: usize = 3;

@@ -10,7 +10,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// The mass passes the break at `end` of its mode.
     pub fn enter_neighbour(&mut self, end: End) {
         self.state.enter(end);
-        self.state.touch = Some(Touch { end: end.other(), order: BY_SPEED });
+        self.state.touch = Some(Touch { end: end.other(), multiplicity: BY_SPEED });
     }
 
     /// The mass stands on the break at `end` of its mode with no speed: the first derivative of its motion
@@ -24,16 +24,16 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let rates = [-(sign * (force + a[0])), -(sign * a[1]), -(sign * a[2])];
         let rounding = rounding + a[0].abs() * T::of(4.0 * T::EPSILON);
         self.state.v = T::zero();
-        self.state.touch = Some(Touch { end, order: HELD });
-        for (order, rate) in (BY_ACCELERATION..).zip(rates) {
-            let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
+        self.state.touch = Some(Touch { end, multiplicity: HELD });
+        for (multiplicity, rate) in (BY_ACCELERATION..).zip(rates) {
+            let size = if multiplicity == BY_ACCELERATION { rounding } else { T::zero() };
             if rate > size {
                 self.enter_neighbour(end);
-                self.state.touch = Some(Touch { end: end.other(), order });
+                self.state.touch = Some(Touch { end: end.other(), multiplicity });
                 return;
             }
             if rate < -size {
-                self.state.touch = Some(Touch { end, order });
+                self.state.touch = Some(Touch { end, multiplicity });
                 return;
             }
         }

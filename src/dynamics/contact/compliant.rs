@@ -54,7 +54,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
         self.state.contact = Contact::Free;
         if outward < T::zero() {
-            self.state.touch = Some(Touch { end, order: BY_SPEED });
+            self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
             return;
         }
         match self.leaves(end) {
@@ -159,7 +159,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.state.contact = Contact::Free;
         let outward = end.sign::<T>() * self.state.v;
         if outward < T::zero() {
-            self.state.touch = Some(Touch { end, order: BY_SPEED });
+            self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
         } else {
             self.meet(end, T::zero()); // it has come to rest right at the surface
         }
@@ -174,7 +174,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         if outward > T::zero() {
             self.enter_neighbour(at);
         } else {
-            self.state.touch = Some(Touch { end: at, order: HELD });
+            self.state.touch = Some(Touch { end: at, multiplicity: HELD });
         }
         None
     }

@@ -34,14 +34,14 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 if outward > T::zero() {
                     self.strike(end, outward);
                 } else if outward < T::zero() {
-                    self.state.touch = Some(Touch { end, order: BY_SPEED });
+                    self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
                 } else {
                     self.settle(end);
                 }
             } else if outward > T::zero() {
                 self.enter_neighbour(end);
             } else if outward < T::zero() {
-                self.state.touch = Some(Touch { end, order: BY_SPEED });
+                self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
             } else {
                 self.balance(end);
             }
@@ -72,11 +72,11 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 if !at_once {
                     self.balance(end);
                 } else if self.state.turned_back {
-                    self.state.touch = Some(Touch { end, order: HELD });
+                    self.state.touch = Some(Touch { end, multiplicity: HELD });
                 } else {
                     self.state.turned_back = true;
                     self.enter_neighbour(end);
-                    self.state.touch = Some(Touch { end: end.other(), order: BY_ACCELERATION });
+                    self.state.touch = Some(Touch { end: end.other(), multiplicity: BY_ACCELERATION });
                 }
             }
             EndKind::Unknown if level.abs() >= T::of(FAR) => {

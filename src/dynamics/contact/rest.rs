@@ -23,16 +23,16 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let rates = self.stepper.contact_acceleration(&self.state, end);
         let rounding = self.stepper.contact_acceleration_rounding(end);
         self.state.v = T::zero();
-        for (order, rate) in (BY_ACCELERATION..).zip(rates) {
-            let size = if order == BY_ACCELERATION { rounding } else { T::zero() };
+        for (multiplicity, rate) in (BY_ACCELERATION..).zip(rates) {
+            let size = if multiplicity == BY_ACCELERATION { rounding } else { T::zero() };
             if rate > size {
                 return None;
             }
             if rate < -size {
-                return Some(Touch { end, order });
+                return Some(Touch { end, multiplicity });
             }
         }
-        Some(Touch { end, order: UNDECIDED })
+        Some(Touch { end, multiplicity: UNDECIDED })
     }
 
     /// The mass stands at the stop of `end` with no speed: it rests or leaves.
@@ -98,9 +98,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
     }
 
-    fn release(&mut self, end: End, order: usize) {
+    fn release(&mut self, end: End, multiplicity: usize) {
         self.tell(Call::Release { at: self.state.at, side: end.side() });
         self.state.contact = Contact::Free;
-        self.state.touch = Some(Touch { end, order });
+        self.state.touch = Some(Touch { end, multiplicity });
     }
 }

@@ -22,7 +22,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.tell(Call::Impact { at: self.state.at, side: end.side(), v_in, v_out });
         if rebound > T::zero() {
             self.state.v = -(sign * rebound);
-            self.state.touch = Some(Touch { end, order: BY_SPEED });
+            self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
         } else {
             self.settle(end);
         }

@@ -17,7 +17,7 @@ const STANDARD_ERRORS: f64 = 3.0;
 
 /// An observation of the judge, kept for replay.
 #[derive(Debug, Clone, Copy)]
-enum Call {
+enum Observation {
     Strobe(Strobe),
     Crossing { time: f64, side: Side, seconds: f64 },
     Release { time: f64, seconds: f64 },
@@ -89,7 +89,7 @@ pub(crate) struct Judge {
     firsts: Firsts,
     /// Forcing period of the last crossing of the whole run.
     last_crossing: Option<i64>,
-    tape: Option<Vec<Call>>,
+    tape: Option<Vec<Observation>>,
 }
 
 impl Judge {
@@ -120,16 +120,16 @@ impl Judge {
         self.rhythm == Rhythm::Changing
     }
 
-    fn keep(&mut self, told: Call) {
+    fn keep(&mut self, own: Observation) {
         if let Some(tape) = &mut self.tape {
-            tape.push(told);
+            tape.push(own);
         }
     }
 
     /// A stroboscopic state; the integral of the squared velocity and the number of crossings since the
     /// window's begin.
     pub fn strobe(&mut self, state: Strobe, squared_velocity: f64, crossings: u64) {
-        self.keep(Call::Strobe(state));
+        self.keep(Observation::Strobe(state));
         let number = self.strobes.seen();
         self.strobes.tell(state);
         if number > self.from && number <= self.from + self.periods {
@@ -142,7 +142,7 @@ impl Judge {
 
     /// A crossing into the well on `side`; `seconds` since the run's begin.
     pub fn crossing(&mut self, time: f64, side: Side, seconds: f64) {
-        self.keep(Call::Crossing { time, side, seconds });
+        self.keep(Observation::Crossing { time, side, seconds });
         if self.rhythm == Rhythm::Changing {
             let first = First { t: seconds, amplitude: None };
             self.firsts.crossing.get_or_insert(first);
@@ -164,7 +164,7 @@ impl Judge {
 
     /// A release from rest on a stop.
     pub fn release(&mut self, time: f64, seconds: f64) {
-        self.keep(Call::Release { time, seconds });
+        self.keep(Observation::Release { time, seconds });
         if self.rhythm == Rhythm::Changing {
             self.firsts.release.get_or_insert(First { t: seconds, amplitude: None });
         }
@@ -210,9 +210,11 @@ impl Judge {
             let later = (lap * periods) as f64;
             for entry in tape.get(from..to).unwrap_or_default() {
                 match *entry {
-                    Call::Strobe(state) => self.strobe(state, self.last.0, self.last.1),
-                    Call::Crossing { time, side, seconds } => self.crossing(time + later, side, seconds),
-                    Call::Release { time, seconds } => self.release(time + later, seconds),
+                    Observation::Strobe(state) => self.strobe(state, self.last.0, self.last.1),
+                    Observation::Crossing { time, side, seconds } => {
+                        self.crossing(time + later, side, seconds)
+                    }
+                    Observation::Release { time, seconds } => self.release(time + later, seconds),
                 }
             }
         }

@@ -21,7 +21,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// Coefficients may vanish one after the other without the next one vanishing (a high power from its flat
     /// middle, tones that cancel), and then the last ones promise too long a step. So each step is checked
     /// against the equation of motion at its end, and halved until it holds.
-    #[inline]
+    #[inline(always)]
     pub fn choose_step(&mut self, state: &MotionState<T>, flight: Option<T>, left: T) -> Option<Step<T>> {
         let length = match flight {
             Some(flight) if self.expand_for(state, flight) => flight,
@@ -41,6 +41,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     }
 
     /// The step of up to length `h` that ends in time, and with which the equation of motion holds.
+    #[inline(always)]
     pub fn shorten(&mut self, state: &MotionState<T>, mut h: T, left: T) -> Option<Step<T>> {
         let border = self.drive.segment_end(state.segment);
         for attempt in 0..MOST_HALVINGS {
@@ -79,7 +80,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// Extends the series to the full order.
     #[inline]
     fn expand(&mut self, state: &MotionState<T>) {
-        if let (2, Some(Touch { order: BY_JERK.., .. })) = (self.series.known, state.touch) {
+        if let (2, Some(Touch { multiplicity: BY_JERK.., .. })) = (self.series.known, state.touch) {
             self.push(state);
         }
         let mode = self.mode(state);
@@ -93,7 +94,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let next = self.series.known;
         self.series.extend(next, &mode.force, self.equation.damping, self.drive, &mut self.cursor);
         if self.series.known == 3
-            && let Some(Touch { order: BY_JERK.., .. }) = state.touch
+            && let Some(Touch { multiplicity: BY_JERK.., .. }) = state.touch
         {
             self.series.y[2] = T::zero(); // a release: the net force is 0 by definition
         }

@@ -138,7 +138,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         for at in [End::Low, End::High] {
             let (level, kind) = mode.end(at);
             let touch = state.touch.filter(|touch| touch.end == at);
-            if kind == EndKind::Compliant || touch.is_some_and(|touch| touch.order == HELD) {
+            if kind == EndKind::Compliant || touch.is_some_and(|touch| touch.multiplicity == HELD) {
                 continue;
             }
             let mut g = path.scaled(whole);

@@ -12,7 +12,7 @@ use crate::numeric::{PolynomialRoots, Scalar};
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// The first contact with an end of the mode within the step, as a share of it; of the step's end is
     /// known how it lies in the piece.
-    #[inline]
+    #[inline(always)]
     pub fn find_exit(
         &self,
         state: &MotionState<T>,
@@ -40,7 +40,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             let sign = end.sign::<T>();
             let gap = sign * (mode.end(end).0 - state.x);
             let touch = state.touch.filter(|t| t.end == end);
-            if touch.map_or(gap > bound, |touch| touch.order == HELD) {
+            if touch.map_or(gap > bound, |touch| touch.multiplicity == HELD) {
                 continue;
             }
             let mut g = [zero; ROOM];
@@ -51,7 +51,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             g[0] = gap;
             // Beyond the surface only by rounding, after it was held, and not on the way out: it is touched.
             let returns = touch.is_none() && gap < zero && sign * state.v <= zero;
-            let mut from = if returns { BY_SPEED } else { touch.map_or(0, |t| t.order.min(n - 1)) };
+            let mut from = if returns { BY_SPEED } else { touch.map_or(0, |t| t.multiplicity.min(n - 1)) };
             // A coefficient that is exactly 0 decides nothing.
             while from + 1 < n && g[from] == zero {
                 from += 1;

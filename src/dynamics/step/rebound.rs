@@ -22,7 +22,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     pub fn flies_freely(&mut self, state: &MotionState<T>) -> bool {
         match state.touch {
             None => true,
-            Some(Touch { order: BY_SPEED, .. }) => {
+            Some(Touch { multiplicity: BY_SPEED, .. }) => {
                 self.seed(state);
                 self.pressed_rebound(state)
                     .is_none_or(|(end, rates)| self.short_flight(state, end, rates).is_none())
@@ -33,9 +33,9 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
 
     /// The stop from which the mass has just rebounded, with the contact acceleration there and its first two
     /// derivatives; none where it has not, or is not pressed back. Expects the drive to be seeded.
-    #[inline]
+    #[inline(always)]
     pub fn pressed_rebound(&self, state: &MotionState<T>) -> Option<(End, [T; 3])> {
-        let Some(Touch { end, order: BY_SPEED }) = state.touch else { return None };
+        let Some(Touch { end, multiplicity: BY_SPEED }) = state.touch else { return None };
         if !matches!(self.mode(state).end(end).1, EndKind::Stop | EndKind::Compliant) {
             return None;
         }
@@ -46,7 +46,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// Bound of the time of flight of a rebound that is pressed back, where drive and mechanism change the
     /// contact acceleration little meanwhile, and off a compliant stop in any case; none where it is a flight
     /// like any other.
-    #[inline]
+    #[inline(always)]
     pub fn short_flight(
         &self,
         state: &MotionState<T>,
@@ -63,9 +63,9 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// The flight of a rebound back to its stop: its end, its length, and where it leads; none where it may
     /// be longer than `flight`, or is too far from a parabola for its end to be known without a search.
     /// Expects the series to be begun.
-    #[inline]
+    #[inline(always)]
     pub fn rebound(&mut self, state: &MotionState<T>, flight: T, left: T) -> Option<(End, T, Endpoint<T>)> {
-        let Some(Touch { end, order: BY_SPEED }) = state.touch else { return None };
+        let Some(Touch { end, multiplicity: BY_SPEED }) = state.touch else { return None };
         let (level, kind) = self.mode(state).end(end);
         let border = self.drive.segment_end(state.segment);
         let before = |border| flight < self.clock.between(&state.at, &border);
@@ -86,7 +86,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     }
 
     /// Where gap / time, positive at 0 and falling all the way up to `flight`, is 0.
-    #[inline]
+    #[inline(always)]
     fn parabola_like(&self, sign: T, flight: T) -> Option<T> {
         let zero = T::zero();
         let y = &self.series.y[1..self.series.known];

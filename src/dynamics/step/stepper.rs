@@ -82,8 +82,8 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         move |at| base_at(drive, &clock, segment, at, unit)
     }
 
-    /// A step of free flight from this state as the recorder sees it: as chosen and as kept, with a bound of the way,
-    /// and the state at its end.
+    /// A step of free flight from this state as the recorder sees it: as chosen and as kept, with a bound of
+    /// the way, and the state at its end.
     #[inline]
     pub fn view(
         &self,

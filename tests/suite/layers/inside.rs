@@ -63,7 +63,11 @@ impl Source {
         let mut found = Vec::new();
         let mut rest = self.code.as_str();
         while let Some(start) = rest.find(|c: char| c.is_alphabetic() || c == '_') {
+            let scope = rest[..start].ends_with('(') && rest[start..].starts_with("in ");
             rest = read_path(&rest[start..], &[], &mut found);
+            if scope {
+                rest = rest.split_once(')').map_or("", |(_, after)| after); // pub(in path)
+            }
         }
         found
     }
