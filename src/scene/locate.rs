@@ -389,10 +389,6 @@ mod tests {
         assert!(has_comments("( // what\n)") && has_comments("(/* what */)"));
         assert!(!has_comments("(notes: \"http://a \\\" // b\", mass_g: 1)"));
         assert!(has_comments("(notes: \"a\\\\\") // b"));
-    }
-
-    #[test]
-    fn raw_strings_end_where_they_say() {
         assert!(!has_comments(r#"(notes: r"C:\" , title: "http://a")"#));
         assert!(!has_comments("(notes: r#\"she said \"no\" // not a comment\"#, mass_g: 1)"));
         assert!(has_comments(r#"(notes: r"C:\" /* here */)"#));

@@ -148,7 +148,6 @@ const SHORT: f64 = 0.3;
 /// Cells that a thread runs together: several times the lanes of any processor, so that few of them fly alone
 /// at the end.
 const BATCH: usize = 128;
-
 /// The same where each cell is waited for.
 const SHOWN: usize = 16;
 
@@ -365,7 +364,6 @@ mod tests {
     use super::*;
     use crate::mechanics::FlexureError;
     use crate::scene::Document;
-    use std::sync::atomic::AtomicBool;
 
     #[test]
     fn a_mechanism_that_was_not_solved_is_an_outcome_of_its_cells() {
