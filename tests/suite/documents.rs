@@ -1,11 +1,11 @@
-//! The documents: every field, column, word and option of the program stands in them, and what they show works.
+//! The documents: every field, column and word of the program stands in them, and what they show works.
 
 use std::fs;
 use std::path::Path;
 
-use interwell::dynamics::{EventKind, Phase, Regime};
+use interwell::dynamics::{EventKind, Outcome, Phase, Regime};
 use interwell::scene::{Document, Files};
-use interwell::study::SUMMARY_FIELDS;
+use interwell::study::{Cell, SUMMARY_FIELDS};
 
 use crate::cli::{headless, stdout};
 
@@ -74,9 +74,18 @@ fn every_column_and_word_of_the_output_is_documented() {
     for word in words.chain(kinds.map(EventKind::name)).chain(compliant).chain(phases) {
         assert!(says(OUTPUT, word), "docs/output.md does not say `{word}`");
     }
-    // outcomes as the source names them, that of a sweep's cell too
-    let names = include_str!("../../src/study/sweep.rs").split("NOT_CONVERGED: &str = \"").nth(1).unwrap();
-    assert!(says(OUTPUT, names.split('"').next().unwrap()));
+    let outcomes = [
+        Outcome::Done,
+        Outcome::LeftTable { at: 0.0 },
+        Outcome::ImpactBudget { at: 0.0, count: 0 },
+        Outcome::StepBudget { at: 0.0, count: 0 },
+        Outcome::NotFinite { at: 0.0 },
+        Outcome::Inaccurate { residual: 0.0 },
+        Outcome::Cancelled { at: 0.0 },
+    ];
+    for word in outcomes.map(Outcome::name).into_iter().chain([Cell::Unsolved.outcome()]) {
+        assert!(says(OUTPUT, word), "docs/output.md does not say `{word}`");
+    }
 
     let hertz = "--set stops=Hertz(travel_limit_mm:1.5,stiffness_n_per_m1_5:3.7e9,loss_s_per_m:10)";
     let tables = [

@@ -7,6 +7,7 @@
 //! at 1e-9 some sixty of their checks fail, so the bounds are no formality.
 
 mod ball;
+mod case;
 mod chatter;
 mod curves;
 mod drives;
@@ -16,35 +17,7 @@ mod scales;
 mod touch;
 mod well;
 
-use super::Stopped;
-use super::measure::{Bench, Variant};
-use crate::study::Task;
-
-/// A problem, its answer and its conditioning.
-pub struct HardCase {
-    /// The word that selects it.
-    pub name: &'static str,
-    /// What is run.
-    pub problem: &'static str,
-    /// What the right answer is and how it is known.
-    pub answer: &'static str,
-    /// Why so many digits are allowed.
-    pub conditioning: &'static str,
-    find: fn(&Bench) -> Result<Vec<Variant>, Stopped>,
-}
-
-impl HardCase {
-    /// Runs the case. Progress is not told within a case; a cancelled one stops soon.
-    pub fn find(&self, task: &Task) -> Result<Vec<Variant>, Stopped> {
-        (self.find)(&Bench::new(task))
-    }
-}
-
-impl std::fmt::Debug for HardCase {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("HardCase").field("name", &self.name).finish_non_exhaustive()
-    }
-}
+pub use case::HardCase;
 
 /// All of them, in the order in which they are shown.
 pub const HARD_CASES: &[HardCase] = &[

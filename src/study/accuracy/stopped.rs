@@ -1,0 +1,12 @@
+//! Ends of the study without a result.
+
+/// Why the study has no result.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Stopped {
+    /// It was told to stop.
+    #[error("told to stop")]
+    Cancelled,
+    /// A scene of the study cannot be run: a fault of the program.
+    #[error("a scene of the study cannot be run: {0}")]
+    Scene(String),
+}
