@@ -27,7 +27,7 @@ const CIRCLES: [(&str, usize); 8] = [
     ("study", 2),
     ("output", 2),
     ("cli", 2),
-    ("app", 2),
+    ("app", 20),
 ];
 
 /// Where a type may have methods, as folders or files of its layer.
