@@ -55,8 +55,8 @@ pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
         return Err(Refusal { place: start, problem, unknown: None });
     }
     if is_json(text) {
-        let problem = "this is JSON; a scene begins with `(`. The manifest of a sweep is taken by the \
-                       commands check, curve, simulate, sweep and accuracy"
+        let problem = "this is JSON; a scene begins with `(`. The manifest of a sweep is taken by every \
+                       command that takes a scene"
             .to_owned();
         return Err(Refusal { place: start, problem, unknown: None });
     }

@@ -36,6 +36,9 @@ fn same_summary(model: &Model, a: &Summary, b: &Summary) {
         ((|s| s.rms_velocity) as fn(&Summary) -> Option<f64>, speed),
         (|s| s.max_abs_x, length),
         (|s| s.travel(), length),
+        (|s| s.range.map(|range| range.0), length),
+        (|s| s.mean_x, length),
+        (|s| s.impact_speed_max, speed),
         (|s| s.impact_share, 1.0),
         (|s| s.rested_share, 1.0),
     ] {

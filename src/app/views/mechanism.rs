@@ -15,6 +15,7 @@ use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
 use super::labels::{ago, plated};
+use super::memory::Ring;
 use super::schematic::{Schematic, schematic};
 use super::stops::{WALL, stops_beside_ui};
 use super::{ViewContext, mass::mass_ui, too_small_ui};
@@ -30,15 +31,6 @@ const ARROW_HEAD: f32 = 12.0;
 
 /// Room in points that the base's own motion needs.
 const INSET: f32 = 184.0;
-
-/// A ring that grows and fades.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ring {
-    /// Screen time in s at which it began.
-    began: f64,
-    /// Share of the energy scale.
-    size: f64,
-}
 
 /// Draws it. Whether something changed.
 pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {

@@ -10,17 +10,6 @@ use super::trace::TraceQuantity;
 const LONGEST: f64 = 10.0;
 const SHORTEST: f64 = 1e-3;
 
-/// What traces share.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Timeline {
-    /// The stretch of time in s that a person has chosen.
-    pub window: Option<f64>,
-    /// The ends of the vertical axes that a person has chosen, in the order of the quantities.
-    pub vertical: [Option<(f64, f64)>; 4],
-    /// The time in s under the pointer, and the pass in which it was there.
-    pub(super) cursor: Option<(f64, u64)>,
-}
-
 /// The wheel chooses the stretch of time, for all traces; a double click leaves it to the scene.
 pub(super) fn zoom(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, own: f64) {
     let window = &mut context.memory.timeline.window;

@@ -2,7 +2,7 @@
 //!
 //! A [`Live`] run is the integrator of [`Model::run`] without an end: it steps ahead of the time that it has
 //! been advanced to, and what it hands out never depends on how often it was asked. So a run that is advanced
-//! in any pieces takes the same steps as one that is not, to the bit; a time between two steps is unit_from
+//! in any pieces takes the same steps as one that is not, to the bit; a time between two steps is looked
 //! at by taking the last step once more, up to there.
 //!
 //! A change of the model takes effect at the present time: the state is kept as far as the new stops and the

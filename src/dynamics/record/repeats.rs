@@ -36,7 +36,7 @@ impl Strobe {
 pub(crate) struct Strobes {
     /// Length and speed that states are compared by.
     scales: (f64, f64),
-    /// The longest period that is unit_from for.
+    /// The longest period that is looked for.
     longest: usize,
     seen: u64,
     /// The last of them, each at its number modulo [`LONGEST`].
@@ -77,7 +77,7 @@ impl Strobes {
     }
 
     /// Adds `more` states of a motion that repeats exactly after every `lap` states, which divides `more`,
-    /// and has done so for twice as many states as are unit_from back at and four laps.
+    /// and has done so for twice as many states as are looked back at and four laps.
     pub fn skip(&mut self, more: u64, lap: u64) {
         for since in &mut self.since {
             // one that has not come back lately will not either
@@ -89,7 +89,7 @@ impl Strobes {
         self.seen += more;
     }
 
-    /// The longest period that is unit_from for.
+    /// The longest period that is looked for.
     pub fn longest(&self) -> usize {
         self.longest
     }
@@ -172,7 +172,7 @@ impl Crossings {
     }
 
     /// Adds whole repetitions that last `periods` in all, of a motion that has repeated exactly for as long
-    /// as a period is unit_from for, and once more.
+    /// as a period is looked for, and once more.
     pub fn skip(&mut self, periods: f64) {
         for crossing in &mut self.recent {
             crossing.0 += periods;

@@ -9,7 +9,7 @@ pub(crate) struct Sums<T> {
     pub squared_velocity: CompensatedSum<T>,
     /// - integral of a v.
     pub work: CompensatedSum<T>,
-    /// Kinetic energy over mass taken by impacts.
+    /// Kinetic energy that impacts have taken, divided by the mass.
     pub impact: CompensatedSum<T>,
     /// Time at rest on a stop.
     pub rested: CompensatedSum<T>,
@@ -59,10 +59,12 @@ impl<T: Scalar> Sums<T> {
         after: &Self,
         more: impl Fn(&mut CompensatedSum<T>, &CompensatedSum<T>, &CompensatedSum<T>),
     ) {
-        more(&mut self.squared_velocity, &before.squared_velocity, &after.squared_velocity);
-        more(&mut self.work, &before.work, &after.work);
-        more(&mut self.impact, &before.impact, &after.impact);
-        more(&mut self.rested, &before.rested, &after.rested);
-        more(&mut self.displacement, &before.displacement, &after.displacement);
+        // no sum can be forgotten
+        let Self { squared_velocity, work, impact, rested, displacement } = self;
+        more(squared_velocity, &before.squared_velocity, &after.squared_velocity);
+        more(work, &before.work, &after.work);
+        more(impact, &before.impact, &after.impact);
+        more(rested, &before.rested, &after.rested);
+        more(displacement, &before.displacement, &after.displacement);
     }
 }

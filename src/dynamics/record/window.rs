@@ -9,7 +9,7 @@ use crate::dynamics::step::path::{Path, StepView};
 use crate::numeric::{CompensatedSum, Scalar};
 
 /// Stroboscopic states of a mass at rest that are recorded one by one before some are skipped: more than the
-/// longest period that is unit_from for.
+/// longest period that is looked for.
 pub(crate) const STILL: u32 = 32;
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {

@@ -27,7 +27,8 @@ const CIRCLES: [(&str, usize); 8] = [
     ("study", 2),
     ("output", 2),
     ("cli", 2),
-    ("app", 20),
+    // methods of one type, `Session` or `Window`, in several files of its folder
+    ("app", 5),
 ];
 
 /// Where a type may have methods, as folders or files of its layer.

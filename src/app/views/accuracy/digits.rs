@@ -9,7 +9,7 @@ use crate::study::accuracy::scene::{
 
 use super::super::ViewContext;
 use super::super::labels::haloed;
-use super::waiting_ui;
+use super::waiting::waiting_ui;
 
 /// Height in points from which error over time is drawn, and its least.
 const PICTURE: f32 = 110.0;

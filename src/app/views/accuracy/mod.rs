@@ -5,9 +5,11 @@
 
 mod digits;
 mod steps;
+mod waiting;
 
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
+use super::memory::Page;
 use super::{ViewContext, too_small_ui};
 
 /// Room in points from which both parts are shown.
@@ -15,25 +17,6 @@ const BOTH: (f32, f32) = (760.0, 250.0);
 
 /// Share of the width that the digits have then.
 const DIGITS: f32 = 0.42;
-
-/// What is shown where there is no room for all of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Page {
-    /// What each digit costs.
-    Digits,
-    /// What the step size does.
-    #[default]
-    Steps,
-}
-
-impl Page {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Digits => "What a digit costs",
-            Self::Steps => "What the step size does",
-        }
-    }
-}
 
 /// Draws it. Whether something changed.
 pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
@@ -73,14 +56,4 @@ pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     });
     part(ui, area.with_min_y(area.top() + 30.0), context.memory.accuracy_page, context);
     false
-}
-
-/// Said while something is worked out for the first time.
-fn waiting_ui(ui: &mut Ui, context: &ViewContext<'_>) {
-    let text = match context.session.fault() {
-        Some(_) => "This scene cannot run.",
-        None if context.session.accuracy.is_stopped() => "Stopped: the next change begins it again.",
-        None => "Working it out.",
-    };
-    ui.label(RichText::new(text).color(context.style.faint()));
 }

@@ -11,7 +11,7 @@ use crate::study::accuracy::scene::{StepSize, step_name};
 use super::super::ViewContext;
 use super::super::legend::{LEGEND, Sign, legend};
 use super::super::trace::{marks, plain};
-use super::waiting_ui;
+use super::waiting::waiting_ui;
 
 /// Ends of the slider in s, and steps with a name.
 const RANGE: (f64, f64) = (1e-5, 1.0 / 30.0);

@@ -19,7 +19,6 @@ use super::{ViewContext, too_small_ui};
 
 use coordinates::Coordinates;
 use picture::{Picture, bar, lines};
-pub use pointer::PointerState;
 use quantity::ColourScale;
 pub use quantity::MapQuantity;
 

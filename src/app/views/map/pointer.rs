@@ -7,20 +7,12 @@ use crate::app::ui::style::{GRAB, Style};
 use crate::scene::SweepAxis;
 
 use super::super::ViewContext;
+use super::super::memory::PointerState;
 use super::cell_at;
 use super::coordinates::Coordinates;
 
 /// The least side in points of a box that enlarges: less is a click of an unsteady state.
 const LEAST_BOX: f32 = 10.0;
-
-/// What is kept between frames.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct PointerState {
-    /// Where a box begins.
-    corner: Option<Pos2>,
-    /// A click that waits whether it is the first of two, and since when.
-    clicked: Option<((usize, usize), f64)>,
-}
 
 /// What the pointer or the keyboard asks of the map.
 #[derive(Debug, Clone, PartialEq)]

@@ -68,7 +68,7 @@ pub fn energy(j: f64) -> String {
     if mj == 0.0 || mj >= 0.1 { format!("{mj:.2} mJ") } else { format!("{} mJ", significant(mj, 3)) }
 }
 
-/// A length in mm beside the stops, left and right, in m: as [`mm`], or with as many more decimals as keep it
+/// A length in mm beside the stops, left and right, in m: as `mm`, or with as many more decimals as keep it
 /// on its side of them.
 pub fn mm_beside(m: f64, stops: (Option<f64>, Option<f64>)) -> String {
     let (left, right) = stops;
