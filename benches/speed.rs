@@ -34,7 +34,7 @@ fn main() {
     jobs();
 }
 
-/// CPU time in s of a run alone, and of one in company, medians.
+/// CPU time in s of a run alone, and of one in a batch, medians.
 fn alone_and_together(model: &Model) -> (f64, f64) {
     let many = vec![model.clone(); TOGETHER];
     let (mut alone, mut together) = (Vec::new(), Vec::new());
@@ -49,7 +49,7 @@ fn alone_and_together(model: &Model) -> (f64, f64) {
     (shared::median(&mut alone), shared::median(&mut together))
 }
 
-/// CPU time in s of some models, in company or each alone, the median.
+/// CPU time in s of some models, in a batch or each alone, the median.
 fn cpu_of(models: &[Model], together: bool) -> f64 {
     let mut all = Vec::new();
     for _ in 0..shared::rounds(3) {
@@ -94,7 +94,7 @@ fn grid(document: &Document, (limits, amplitudes): (usize, usize)) -> Grid {
 }
 
 fn flexures() {
-    println!("\n| `paper` | tolerance | error | steps | CPU | in company |");
+    println!("\n| `paper` | tolerance | error | steps | CPU | batched |");
     println!("| --- | --- | --- | --- | --- | --- |");
     for (name, changes) in [
         ("without stops, 1 g", &["stops=None", "excitation.amplitude_g=1"][..]),
@@ -117,7 +117,7 @@ fn flexures() {
 }
 
 fn duration() {
-    println!("\n| duration | P1, no stops, in company | P2, its cycle comes back | P2, integrated |");
+    println!("\n| duration | P1, no stops, batched | P2, its cycle comes back | P2, integrated |");
     println!("| --- | --- | --- | --- |");
     for seconds in ["1", "10", "100", "1000"] {
         let (duration, settle) = (format!("run.duration_s={seconds}"), format!("run.settle_s={seconds}e-1"));
@@ -200,7 +200,7 @@ fn operations(order: usize) -> usize {
 }
 
 fn step() {
-    println!("\n| P1 | order | a step alone | in company | operations | alone | in company |");
+    println!("\n| P1 | order | a step alone | batched | operations | alone | batched |");
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     let rounds = if shared::is_measured() { 2_000_000 } else { 10 };
     let peak = |simd: bool| {
@@ -240,7 +240,7 @@ fn step() {
 }
 
 fn measures() {
-    println!("\n| at 1e-6 | as it is | without lanes | without recurrence | without both |");
+    println!("\n| at 1e-6 | as it is | without batches | without recurrence | without both |");
     println!("| --- | --- | --- | --- | --- |");
     let rows = [
         ("201 cells without stops", "nominal-cubic", &["stops=None", "run.tolerance=1e-6"][..], (0, 201)),

@@ -39,7 +39,7 @@ const TOGETHER: usize = 64;
 const WELL: f64 = 7e-3;
 
 fn main() {
-    println!("| problem | tolerance | error | 99 % of cells | steps | CPU | in company |");
+    println!("| problem | tolerance | error | 99 % of cells | steps | CPU | batched |");
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     runs();
     map();
