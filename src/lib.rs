@@ -66,7 +66,6 @@
 //! | layer | holds |
 //! | --- | --- |
 //! | [`system`] | threads, clocks and files of the machine |
-//! | [`system`] | threads, clocks and files of the machine |
 //! | [`numeric`] | mathematics that knows no mechanics |
 //! | [`scene`] | what a person writes: fields, units, ranges, files, presets |
 //! | [`mechanics`] | the restoring force and its landscape of wells and barrier |
