@@ -110,23 +110,4 @@ impl Session {
             && matches!(self.built.excitation, Excitation::Sine { .. })
             && self.mechanism.landscape.barrier.is_some()
     }
-
-    /// Waits until it is known what the motion settles to, at most so long.
-    pub fn wait_settled(&mut self, most: Duration) {
-        self.apply();
-        self.settled.wait(most);
-    }
-
-    /// Waits for what is being computed, at most so long.
-    pub fn wait(&mut self, most: Duration) {
-        self.wait_settled(most);
-        if self.thresholds.is_running() {
-            self.thresholds.wait(most);
-        }
-        if self.stops_that_cross.is_running() {
-            self.stops_that_cross.wait(most);
-        }
-        self.follow_accuracy();
-        self.accuracy.wait(most);
-    }
 }

@@ -4,12 +4,14 @@ use std::sync::Arc;
 
 use crate::app::words::fields::{in_words, name_and_unit};
 use crate::dynamics::{Model, STANDARD_GRAVITY};
-use crate::mechanics::{self, FLEXURE_TOLERANCE};
+use crate::mechanics::FLEXURE_TOLERANCE;
 use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
 
 use super::Session;
-use super::build::{CannotRun, solved, unbuilt, why};
+use super::build::{solved, why};
 use super::editor::Editor;
+use super::player::fitting_speed;
+use super::stops::first_stops;
 
 /// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and
 /// what it is off by is not seen. At the end of the gesture they are solved as every study solves them.
@@ -210,17 +212,14 @@ impl Session {
         self.remembered_stops
     }
 
-    /// The model of the scene as it stands.
-    pub(super) fn build(&mut self) -> Result<Model, CannotRun> {
-        let document = &self.editor.runnable();
-        document.check()?;
-        let scene = &document.scene;
-        if scene.mechanism != self.mechanism_of {
-            let built = mechanics::Mechanism::build(&scene.mechanism, &document.files)
-                .map_err(|error| unbuilt(document, error))?;
-            self.mechanism = Arc::new(built);
-            self.mechanism_of = scene.mechanism.clone();
-        }
-        Ok(Model::build(scene, Arc::clone(&self.mechanism)).map_err(|faults| document.error_from(faults))?)
+    /// The scene and the time as they were opened, playing.
+    pub fn back_to_start(&mut self) {
+        self.travel(Editor::back_to_start);
+        self.before = None;
+        self.remembered_stops = first_stops(self.scene(), &self.model);
+        self.restart();
+        let hinted = self.scene().app.as_ref().and_then(|hints| hints.speed);
+        self.player.speed = hinted.unwrap_or_else(|| fitting_speed(self.model.characteristic_time()));
+        self.player.set_playing(true);
     }
 }

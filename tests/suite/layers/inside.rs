@@ -27,7 +27,7 @@ const CIRCLES: [(&str, usize); 8] = [
     ("study", 2),
     ("output", 2),
     ("cli", 2),
-    // methods of one type, `Session` or `Window`, in several files of its folder
+    // methods of `Window` in several files of its folder
     ("app", 5),
 ];
 

@@ -26,7 +26,7 @@ pub const SPEEDS: [(f64, &str); 7] = [
 /// Time on the screen in s that a period of the motion should take.
 const PERIOD_ON_SCREEN: f64 = 3.0;
 
-/// The speed up to real time that suits a motion whose [characteristic time](Model::characteristic_time) is so many seconds.
+/// The speed up to real time that suits a motion whose characteristic time is so many seconds.
 pub fn fitting_speed(pace: f64) -> f64 {
     let off = |speed: f64| (pace / speed / PERIOD_ON_SCREEN).ln().abs();
     let speeds = SPEEDS.iter().map(|own| own.0).filter(|speed| *speed <= 1.0);
