@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use interwell::dynamics::{Model, Outcome};
-use interwell::output::{run_figure, summary};
+use interwell::numeric::short;
+use interwell::output::{push_number, run_figure, summary};
 use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_trace, yield_warning};
 
 use super::failure::Failure;
@@ -143,13 +144,15 @@ fn remark(outcome: Outcome) -> Option<String> {
         Outcome::NotFinite { .. } => "a number was no longer finite".to_owned(),
         Outcome::Inaccurate { residual } => {
             return Some(format!(
-                "the energy does not balance ({}): {residual:.1e} of what was moved is missing; use a \
+                "the energy does not balance ({}): the residual is {} times the energy that was moved; use a \
                  smaller tolerance",
-                outcome.name()
+                outcome.name(),
+                short(residual)
             ));
         }
         Outcome::Cancelled { .. } => "it was told to stop".to_owned(),
     };
-    let at = outcome.ended_at()?;
+    let mut at = String::new();
+    push_number(&mut at, outcome.ended_at()?);
     Some(format!("the run ended early at t = {at} s ({}): {reason}", outcome.name()))
 }

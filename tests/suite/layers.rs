@@ -1,4 +1,4 @@
-//! Does each layer use only what stands to its left, and does the physics build without a window?
+//! Order of the layers: each uses only those before it, and the physics builds without a window.
 
 mod inside;
 
@@ -51,7 +51,8 @@ fn uses(text: &str) -> Vec<(usize, String)> {
     found
 }
 
-fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
+/// Adds the source files of a folder and of those in it.
+pub fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {

@@ -1,24 +1,15 @@
 //! Width of lines and length of files, comments and strings included.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use crate::layers::sources;
 
 /// Folders whose files keep to both limits.
 const FOLDERS: [&str; 6] = ["benches", "examples", "fuzz/fuzz_targets", "fuzz/src", "src", "tests"];
 
 const WIDEST_LINE: usize = 110;
 const LONGEST_FILE: usize = 400;
-
-fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            sources(&path, into);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            into.push(path);
-        }
-    }
-}
 
 #[test]
 fn lines_and_files_are_short() {

@@ -133,6 +133,11 @@ fn the_notes_are_read_in_the_column_and_in_full() {
     harness.run_steps(3);
     assert_eq!(harness.state().message(), Some(notes.as_str()));
     press(&mut harness, Key::Escape);
+    // what they tell is no longer so once something was changed
+    harness.state_mut().session.switch_stops(true);
+    harness.run_steps(3);
+    harness.get_by_label("The scene before changes");
+    assert!(harness.query_by_label("About this scene").is_none());
     // a projected window has no room for them
     let mut harness = window("first-look", PROJECTED, Settings::default());
     assert!(harness.query_by_label("About this scene").is_none());

@@ -9,19 +9,21 @@ const HEADING: f32 = 42.0;
 const MORE: f32 = 30.0;
 const LEAST: f32 = 120.0;
 
-/// Draws them down to `bottom`. Whether all of them are asked for.
-pub fn notes_ui(ui: &mut Ui, scene: &Scene, bottom: f32) -> bool {
+/// Draws them down to `bottom`; of a scene that was changed they tell what it was. Whether all of them are
+/// asked for.
+pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bool {
     let notes = scene.notes.trim();
     let room = bottom - ui.cursor().top();
     if notes.is_empty() {
         return false;
     }
     let hover = "All that the scene says about itself";
+    let heading = if is_changed { "The scene before changes" } else { "About this scene" };
     ui.add_space(14.0);
     if room < LEAST {
-        return ui.button("About this scene").on_hover_text(hover).clicked();
+        return ui.button(heading).on_hover_text(hover).clicked();
     }
-    ui.label(RichText::new("About this scene").heading());
+    ui.label(RichText::new(heading).heading());
     let font = FontSelection::Default.resolve(ui.style());
     let width = ui.available_width();
     let height = |text: &str| {

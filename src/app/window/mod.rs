@@ -254,7 +254,9 @@ impl Window {
                 let bottom = ui.max_rect().bottom();
                 egui::ScrollArea::vertical().show(ui, |ui| {
                     controls::column_ui(ui, &mut self.session, &mut self.more);
-                    if !self.covered && notes::notes_ui(ui, self.session.scene(), bottom) {
+                    if !self.covered
+                        && notes::notes_ui(ui, self.session.scene(), self.session.editor.is_dirty(), bottom)
+                    {
                         asked.push(Command::Notes);
                     }
                 });

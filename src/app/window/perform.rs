@@ -174,7 +174,8 @@ impl Window {
         let scene = self.session.scene();
         let notes = scene.notes.trim();
         let notes = if notes.is_empty() { "This scene has no notes." } else { notes };
-        (scene.title.clone(), notes.to_owned())
+        let changed = if self.session.editor.is_dirty() { " (before changes)" } else { "" };
+        (format!("{}{changed}", scene.title), notes.to_owned())
     }
 
     fn say_nameless(&mut self) {
