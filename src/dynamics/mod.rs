@@ -14,6 +14,7 @@
 //! - `motion`: state, stepper, recorder and log together.
 //! - `contact`: events of a motion: impact, rest, release, compliant contact, breaks.
 //! - `run`: the loop from event to event, the fast path of event-free steps, recurrence, and the verdict.
+//! - `map`: the stroboscopic map with its derivatives, through every event.
 //! - `lanes`: several runs batched, step by step in the same instructions.
 //! - `live`: a run without an end, which may be changed while it goes on.
 //!
@@ -25,6 +26,7 @@ mod drive;
 mod equation;
 mod lanes;
 mod live;
+mod map;
 mod model;
 mod motion;
 mod record;
@@ -35,6 +37,7 @@ mod state;
 mod step;
 
 pub use live::{Live, LiveLedger, LiveOutput};
+pub use map::{Jacobian, Multiplier, Passage, StroboscopicMap};
 pub use model::Model;
 pub use model::excitation::{ChirpPart, ExcitationParts, NoisePart, STANDARD_GRAVITY, TonePart};
 pub use model::scales::Scales;

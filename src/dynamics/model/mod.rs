@@ -43,7 +43,7 @@ pub struct Model {
     pub(in crate::dynamics) crossing_level: Option<f64>,
     pub(in crate::dynamics) one_well: bool,
     /// Cycles of the clock in a forcing period.
-    cycles_per_period: i64,
+    pub(in crate::dynamics) cycles_per_period: i64,
     pub(in crate::dynamics) rhythm: Rhythm,
 }
 

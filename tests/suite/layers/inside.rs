@@ -14,7 +14,7 @@ const ROOMS: [(&str, &[&str]); 1] = [(
     "dynamics",
     &[
         "clock", "result", "model", "equation", "series", "drive", "state", "step", "record", "motion",
-        "contact", "run", "lanes", "live",
+        "contact", "run", "map", "lanes", "live",
     ],
 )];
 

@@ -105,7 +105,8 @@ fn frequency() -> impl Strategy<Value = f64> {
     prop_oneof![10 => 0.05..1.0f64, 1 => 1.0..30.0f64, 1 => 1e-4..0.05f64]
 }
 
-fn sine() -> impl Strategy<Value = Excitation> {
+/// One sine, in natural units.
+pub fn sine() -> impl Strategy<Value = Excitation> {
     let phase = prop_oneof![Just(0.0), Just(90.0), Just(180.0), Just(270.0), -400.0..400.0f64];
     (frequency(), amplitude(), phase).prop_map(|(frequency_hz, amplitude_g, phase_deg)| Excitation::Sine {
         frequency_hz,
