@@ -1,8 +1,8 @@
 //! Dual numbers: a value with its derivatives by two quantities.
 //!
-//! A number x + x1 e1 + x2 e2 with e1^2 = e1 e2 = e2^2 = 0 (Clifford 1873). What is computed with such numbers
-//! comes with its derivatives, exact to rounding. The value is computed as in doubles alone, bit for bit, and
-//! decides every comparison; the derivatives decide nothing.
+//! A number x + x1 e1 + x2 e2 with e1^2 = e1 e2 = e2^2 = 0 (Clifford 1873). What is computed with such
+//! numbers comes with its derivatives, exact to rounding. The value is computed as in doubles alone, bit for
+//! bit, and decides every comparison.
 
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -22,10 +22,10 @@ pub struct Dual {
 }
 
 impl Dual {
-    /// Its derivatives, each from one of its own and one of another number's.
+    /// The derivatives of `a` times it and `b` times another number, `a` and `b` held.
     #[inline(always)]
-    fn slopes_with(self, other: Self, of: impl Fn(f64, f64) -> f64) -> [f64; 2] {
-        [of(self.slopes[0], other.slopes[0]), of(self.slopes[1], other.slopes[1])]
+    fn slopes_of(self, a: f64, other: Self, b: f64) -> [f64; 2] {
+        std::array::from_fn(|i| a * self.slopes[i] + b * other.slopes[i])
     }
 }
 
@@ -46,7 +46,7 @@ impl Add for Dual {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        Self { value: self.value + o.value, slopes: self.slopes_with(o, |a, b| a + b) }
+        Self { value: self.value + o.value, slopes: self.slopes_of(1.0, o, 1.0) }
     }
 }
 
@@ -54,7 +54,7 @@ impl Sub for Dual {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        Self { value: self.value - o.value, slopes: self.slopes_with(o, |a, b| a - b) }
+        Self { value: self.value - o.value, slopes: self.slopes_of(1.0, o, -1.0) }
     }
 }
 
@@ -62,8 +62,7 @@ impl Mul for Dual {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        let slopes = self.slopes_with(o, |a, b| a * o.value + self.value * b);
-        Self { value: self.value * o.value, slopes }
+        Self { value: self.value * o.value, slopes: self.slopes_of(o.value, o, self.value) }
     }
 }
 
@@ -71,8 +70,8 @@ impl Div for Dual {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: Self) -> Self {
-        let value = self.value / o.value;
-        Self { value, slopes: self.slopes_with(o, |a, b| (a - value * b) / o.value) }
+        let (value, inverse) = (self.value / o.value, 1.0 / o.value);
+        Self { value, slopes: self.slopes_of(inverse, o, -(value * inverse)) }
     }
 }
 

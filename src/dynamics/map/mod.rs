@@ -1,10 +1,10 @@
 //! Stroboscopic map: the state once a forcing period, and its derivatives through every event.
 //!
 //! The stepper is written for any number type. With [`Dual`] numbers a stretch of motion comes with the
-//! derivatives of its end by its beginning: those of a step by the arithmetic of its series, those of an event
-//! because its instant is a root, one step of Newton's method at which gives the derivatives of the instant.
-//! What results at an impact is the saltation matrix (Müller 1995; Kong et al. 2024), which is written down
-//! nowhere; a mass that rests has no derivatives left, since its release depends on the drive alone.
+//! derivatives of its end by its beginning. Those of a step follow from the arithmetic of its series. The
+//! instant of an event is a root, and one step of Newton's method there gives its derivatives; what they make
+//! of the state at an impact is the saltation matrix (Müller 1995; Kong et al. 2024). A mass that rests has no
+//! derivatives left, since its release depends on the drive alone.
 
 #[cfg(test)]
 mod differences;
