@@ -3,8 +3,8 @@
 //! The stepper is written for any number type. With [`Dual`] numbers a stretch of motion comes with the
 //! derivatives of its end by its beginning. Those of a step follow from the arithmetic of its series. The
 //! instant of an event is a root, and one step of Newton's method there gives its derivatives; what they make
-//! of the state at an impact is the saltation matrix (Müller 1995; Kong et al. 2024). A mass that rests has no
-//! derivatives left, since its release depends on the drive alone.
+//! of the state at an impact is the saltation matrix (Müller 1995; Kong et al. 2024). A mass that rests has
+//! no derivatives left, since its release depends on the drive alone.
 
 #[cfg(test)]
 mod differences;
