@@ -7,8 +7,8 @@ use crate::scene::Mechanism;
 
 use super::fields::{field_ui, fields_ui};
 
-/// The slider of the preload; for a mechanism without one greyed, with the reason. Whether something changed.
-pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+/// The slider of the preload; for a mechanism without one greyed, with the reason.
+pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     match session.scene().mechanism {
         Mechanism::Flexures { .. } => field_ui(ui, session, "mechanism.preload_mm", width),
         Mechanism::Table { .. } => {
@@ -18,8 +18,8 @@ pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     }
 }
 
-/// The sliders of the other sizes. Whether something changed.
-pub fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+/// The sliders of the other sizes.
+pub fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     if !matches!(session.scene().mechanism, Mechanism::Flexures { .. }) {
         let why = "The mechanism of this scene is a force without flexures behind it.";
         return absent_ui(ui, "sizes of flexures", why);
@@ -34,7 +34,6 @@ pub fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     fields_ui(ui, session, &sizes, width)
 }
 
-fn absent_ui(ui: &mut Ui, name: &str, why: &str) -> bool {
+fn absent_ui(ui: &mut Ui, name: &str, why: &str) {
     ui.add_enabled(false, egui::Label::new(name)).on_disabled_hover_text(why);
-    false
 }

@@ -199,12 +199,12 @@ impl Session {
     }
 
     /// Switches the stops; the ones that were there are remembered.
-    pub fn switch_stops(&mut self, on: bool) -> bool {
+    pub fn switch_stops(&mut self, on: bool) {
         let stops = if on { self.remembered_stops } else { Stops::None };
         if !on && self.scene().stops != Stops::None {
             self.remembered_stops = self.scene().stops;
         }
-        self.edit_once(|scene| scene.stops = stops)
+        self.edit_once(|scene| scene.stops = stops);
     }
 
     /// The stops that come when they are switched on.

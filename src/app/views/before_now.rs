@@ -20,8 +20,8 @@ const APART: (f32, f32) = (6.0, 1.0);
 /// Rows that are always there: the heading, motion, RMS velocity, reach, and from where it crosses.
 const ALWAYS: usize = 5;
 
-/// Draws it. Whether something changed.
-pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
     ground.show(ui, |ui| {
@@ -29,7 +29,6 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         // what has no room for every row can be scrolled
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| card_ui(ui, context));
     });
-    false
 }
 
 fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {

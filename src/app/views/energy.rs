@@ -70,15 +70,14 @@ fn accounted(residual: f64) -> String {
     if missing < 0.005 { "100".to_owned() } else { format!("{:.2}", 100.0 - missing) }
 }
 
-/// Draws it. Whether something changed.
-pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
     let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
     // less than every row and the bar below them
     if area.width() < NAMES + NUMBERS + 40.0 || area.height() < ROWS.0 * (COUNT - 2.0) {
-        too_small_ui(ui, &style, ui.max_rect());
-        return false;
+        return too_small_ui(ui, &style, ui.max_rect());
     }
     context.session.player.want_ledgers();
     let session = &context.session;
@@ -152,7 +151,6 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     y += 1.3 * row;
     let rest = Rect::from_min_max(pos2(area.left(), y), area.max);
     present_ui(ui, context, rest, (unit, name));
-    false
 }
 
 fn cell(x: f32, y: f32, width: f32, height: f32) -> Rect {

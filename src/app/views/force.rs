@@ -15,7 +15,7 @@ use super::chart::Chart;
 use super::labels::plated;
 use super::legend::Sign;
 use super::ranges::{axis_end, room_for_push};
-use super::stops::stops_beside_ui;
+use super::stops::stops_ui;
 use super::{ViewContext, too_small_ui};
 
 /// Room above the largest force of the wells, as a factor.
@@ -31,12 +31,11 @@ const LINE: f32 = 8.0;
 const BESIDE: f32 = 16.0;
 const LABEL: f32 = 110.0;
 
-/// Draws it. Whether something changed.
-pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if area.width() < 60.0 || area.height() < 80.0 {
-        too_small_ui(ui, &context.style, area);
-        return false;
+        return too_small_ui(ui, &context.style, area);
     }
     let style = context.style;
     let own = end_of_axis(context);
@@ -46,7 +45,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let painter = ui.painter().with_clip_rect(chart.rect);
     curve(&painter, context, &chart);
     let edges = (chart.rect.top(), chart.rect.bottom());
-    let changed = stops_beside_ui(ui, context, chart.rect, edges, 0.0);
+    stops_ui(ui, context, chart.rect, edges, 0.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
     let model = context.session.shown();
     let (landscape, own) = (&model.mechanism().landscape, &model.mechanism().curve);
@@ -81,7 +80,6 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
             chart.readout(ui, &style, &text);
         }
     }
-    changed
 }
 
 /// As far up as the forces between the wells and the pushes that the scene may have.

@@ -107,8 +107,8 @@ impl TraceQuantity {
     }
 }
 
-/// Draws it. Whether something changed.
-pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ends = quantity.ends(context);
     let (low, high) = context.memory.timeline.vertical[quantity as usize].unwrap_or(ends);
@@ -238,7 +238,6 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }
     legend(&ui, &style, area, right, &entries);
-    false
 }
 
 /// How many seconds are shown of a motion by a model.

@@ -19,12 +19,11 @@ use super::{ViewContext, too_small_ui};
 /// Points between two points of a curve.
 const CURVE_STEP: f32 = 2.0;
 
-/// Draws it. Whether something changed.
-pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if area.width() < 60.0 || area.height() < 60.0 {
-        too_small_ui(ui, &context.style, area);
-        return false;
+        return too_small_ui(ui, &context.style, area);
     }
     let style = context.style;
     let rect = Rect::from_min_max(area.min + vec2(0.0, LEGEND), area.max - vec2(0.0, 22.0));
@@ -62,13 +61,11 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
 
     landmarks(&clipped, context, rect);
     let ball = height(state.x, tilt) - vec2(0.0, BALL);
-    let (top, bottom) = (rect.top() + 4.0, rect.bottom());
-    let mut changed = stops_ui(ui, context, rect, top, bottom);
-    changed |= mass_ui(ui, context, ball, rect);
+    stops_ui(ui, context, rect, (rect.top() + 4.0, rect.bottom()), 0.0);
+    mass_ui(ui, context, ball, rect);
     let painter = ui.painter().with_clip_rect(rect);
     painter.circle(ball, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     legend(ui, context, area);
-    changed
 }
 
 /// Names of the wells and the barrier in a row below the curve, each at its place along x; what has no room

@@ -189,12 +189,11 @@ impl Tiling {
         least.max(LEAST_TITLE)
     }
 
-    /// Draws the views. Whether one changed something; `fill` is set where a view asks for the whole window.
-    pub fn ui(&mut self, ui: &mut Ui, context: &mut ViewContext<'_>, fill: &mut Option<View>) -> bool {
+    /// Draws the views; `fill` is set where a view asks for the whole window.
+    pub fn ui(&mut self, ui: &mut Ui, context: &mut ViewContext<'_>, fill: &mut Option<View>) {
         let title = self.title_size(ui);
-        let mut behavior = Behavior { context, changed: false, fill, title };
+        let mut behavior = Behavior { context, fill, title };
         self.tree.ui(&mut behavior, ui);
-        behavior.changed
     }
 }
 
@@ -297,7 +296,6 @@ fn pair(tiles: &mut Tiles<View>, direction: LinearDir, first: TileId, second: Ti
 
 struct Behavior<'a, 'b> {
     context: &'a mut ViewContext<'b>,
-    changed: bool,
     fill: &'a mut Option<View>,
     /// Size of the titles.
     title: f32,
@@ -313,7 +311,7 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
     }
 
     fn pane_ui(&mut self, ui: &mut Ui, _: TileId, view: &mut View) -> UiResponse {
-        self.changed |= view_ui(ui, *view, self.context);
+        view_ui(ui, *view, self.context);
         UiResponse::None
     }
 

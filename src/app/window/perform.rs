@@ -93,8 +93,8 @@ impl Window {
             }
             Command::PlayPause => self.session.play_or_pause(),
             Command::Step => self.session.player.step(),
-            Command::PreviousEvent => _ = self.session.player.seek_event(false, EVENT_AHEAD),
-            Command::NextEvent => _ = self.session.player.seek_event(true, EVENT_AHEAD),
+            Command::PreviousEvent => self.session.player.seek_event(false, EVENT_AHEAD),
+            Command::NextEvent => self.session.player.seek_event(true, EVENT_AHEAD),
             Command::NextRelease => self.go_to_first(EventKind::Release),
             Command::NextCrossing => self.go_to_first(EventKind::Crossing),
             Command::RunToEnd => match self.session.end_of_run() {

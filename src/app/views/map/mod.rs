@@ -22,23 +22,22 @@ use picture::{Picture, bar, lines};
 use quantity::ColourScale;
 pub use quantity::MapQuantity;
 
-/// Draws it. Whether something changed.
-pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
     let time = ui.input(|input| input.time);
     if context.session.want_map(time) {
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
     }
-    let changed = tools::tools_ui(ui, context);
+    tools::tools_ui(ui, context);
     if let Some(problem) = context.session.map.problem() {
         ui.label(format!("  No map: {}", problem.lines().next().unwrap_or_default()));
     }
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-    let Some((map, current)) = context.session.map.shown() else { return changed };
+    let Some((map, current)) = context.session.map.shown() else { return };
     if area.width() < 140.0 || area.height() < 110.0 {
-        too_small_ui(ui, &style, area);
-        return changed;
+        return too_small_ui(ui, &style, area);
     }
     let quantity = context.memory.map_quantity;
     let scale = ColourScale::of(quantity, map);
@@ -75,7 +74,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let hand = (&mut context.memory.map_pointer, context.session.map.is_enlarged());
     let wanted = pointer::action_ui(ui, (&response, &frame), map, hand, (&style, at));
     ui.data_mut(|data| data.insert_temp(id, Some(picture)));
-    changed | pointer::perform(context, wanted)
+    pointer::perform(context, wanted);
 }
 
 /// The cell at a place on the screen.
