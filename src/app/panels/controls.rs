@@ -6,11 +6,13 @@ use crate::app::session::Session;
 use crate::app::ui::widgets::hover_beside;
 use crate::scene::{Damping, Excitation, Stops};
 
-use super::fields::{field_ui, fields_ui};
+use super::fields::{absent_ui, field_ui, fields_ui};
 use super::{advanced, geometry};
 
 /// Width in points of a row of controls that has no room for a heading.
 const NARROW: f32 = 640.0;
+
+const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass.";
 
 /// The controls as a column.
 pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
@@ -21,9 +23,8 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     stops_switch_ui(ui, session);
     limit_ui(ui, session, width);
     ui.add_space(14.0);
-    let arrow = if *more { "Less" } else { "More" };
-    let hover = "Restitution, preload, frequency, damping and mass.";
-    if ui.selectable_label(*more, RichText::new(arrow).strong()).on_hover_text(hover).clicked() {
+    let name = RichText::new(if *more { "Less" } else { "More" }).strong();
+    if ui.selectable_label(*more, name).on_hover_text(MORE_HOVER).clicked() {
         *more = !*more;
     }
     if *more {
@@ -34,8 +35,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
 /// Shaking and stops as one row, where room is short; the rest opens beside the views.
 pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        let hover = "Restitution, preload, frequency, damping and mass.";
-        let button = ui.selectable_label(*more, "More").on_hover_text(hover);
+        let button = ui.selectable_label(*more, "More").on_hover_text(MORE_HOVER);
         let escaped = *more && ui.input(|input| input.key_pressed(egui::Key::Escape));
         if button.clicked() || escaped {
             *more = !*more;
@@ -137,13 +137,12 @@ fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) {
         }
         Stops::Uneven { .. } => "The two stops have a restitution each, under Advanced.",
     };
-    ui.add_enabled(false, egui::Label::new("restitution")).on_disabled_hover_text(why);
+    absent_ui(ui, "restitution", why);
 }
 
 fn damping_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     if session.scene().damping == Damping::None {
-        let label = ui.add_enabled(false, egui::Label::new("no damping"));
-        label.on_disabled_hover_text("The scene has none.");
+        absent_ui(ui, "no damping", "The scene has none.");
     }
     fields_ui(ui, session, &["damping.xi", "damping.c_n_s_per_m"], width)
 }

@@ -1,6 +1,6 @@
 //! Controls of the numbers of a scene, by their paths.
 
-use eframe::egui::Ui;
+use eframe::egui::{Label, Ui};
 
 use crate::app::session::Session;
 use crate::app::ui::knob::{How, Knob, refuse};
@@ -33,4 +33,9 @@ pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &'static str, w
 /// The same for several numbers below each other.
 pub(super) fn fields_ui(ui: &mut Ui, session: &mut Session, paths: &[&'static str], width: f32) {
     paths.iter().for_each(|path| field_ui(ui, session, path, width));
+}
+
+/// The name of a control that the scene has no use for, greyed, with the reason.
+pub(super) fn absent_ui(ui: &mut Ui, name: &str, why: &str) {
+    ui.add_enabled(false, Label::new(name)).on_disabled_hover_text(why);
 }

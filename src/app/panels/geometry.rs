@@ -1,11 +1,11 @@
 //! Controls of the flexures: preload, thickness, lengths, widths.
 
-use eframe::egui::{self, Ui};
+use eframe::egui::Ui;
 
 use crate::app::session::Session;
 use crate::scene::Mechanism;
 
-use super::fields::{field_ui, fields_ui};
+use super::fields::{absent_ui, field_ui, fields_ui};
 
 /// The slider of the preload; for a mechanism without one greyed, with the reason.
 pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) {
@@ -32,8 +32,4 @@ pub fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) {
         "mechanism.buckling.width_mm",
     ];
     fields_ui(ui, session, &sizes, width)
-}
-
-fn absent_ui(ui: &mut Ui, name: &str, why: &str) {
-    ui.add_enabled(false, egui::Label::new(name)).on_disabled_hover_text(why);
 }

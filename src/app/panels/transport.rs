@@ -11,6 +11,7 @@ use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::{Icon, arrows, icon_button_ui};
 use crate::app::words::meanings::{explained, meaning};
+use crate::app::words::status::{Kind, speed};
 use crate::dynamics::{Event, EventKind};
 
 /// How far ahead in s of the motion an event is looked for.
@@ -124,7 +125,7 @@ fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
     };
     match row(kind) {
         0 => {
-            let color = style.kind(crate::app::words::status::Kind::Interwell);
+            let color = style.kind(Kind::Interwell);
             convex(&[(0.0, -4.0), (3.5, 0.0), (0.0, 4.0), (-3.5, 0.0)], color)
         }
         1 => convex(&[(0.0, -3.5), (3.5, 3.0), (-3.5, 3.0)], style.stop()),
@@ -229,7 +230,7 @@ fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
 /// What happened, in words: which side, how fast.
 fn words(event: &Event) -> String {
     let side = event.side.name();
-    let speed = |v: f64| crate::app::words::status::speed(v.abs());
+    let speed = |v: f64| speed(v.abs());
     match event.kind {
         EventKind::Impact => format!("impact, {side}, {} to {} mm/s", speed(event.v_in), speed(event.v_out)),
         EventKind::Contact => format!("contact, {side}, {} mm/s", speed(event.v_in)),

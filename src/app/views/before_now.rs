@@ -73,24 +73,14 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
             regime_ui(ui, context, card.and_then(|card| card.settled.as_ref()));
         }
         ui.end_row();
-        let both = |name: &str, text: &dyn Fn(&Card) -> String| Row {
+        let both = |name: &str, text: fn(&Card) -> String| Row {
             name: name.to_owned(),
             before: before.map_or_else(dash, text),
             now: text(&now),
         };
-        row_ui(
-            ui,
-            &both(RMS, &|card| value(card, |s| s.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))),
-        );
-        row_ui(
-            ui,
-            &both("reach", &|card| {
-                let [left, right] = card.scene.stops.limits_mm();
-                let stops = (left.map(|mm| -mm * 1e-3), right.map(|mm| mm * 1e-3));
-                value(card, |s| s.max_abs_x.map(|reach| format!("{} mm", mm_beside(reach, stops))))
-            }),
-        );
-        row_ui(ui, &both("crosses from", &crosses_from));
+        row_ui(ui, &both(RMS, rms));
+        row_ui(ui, &both("reach", reach));
+        row_ui(ui, &both("crosses from", crosses_from));
     });
     // only where there is room for it
     if before.is_none() && ui.available_height() > 28.0 {
@@ -173,6 +163,16 @@ fn in_shaking(excitation: &Excitation, number: &str) -> bool {
         _ => &[],
     };
     all.contains(&number)
+}
+
+fn rms(card: &Card) -> String {
+    value(card, |settled| settled.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))
+}
+
+fn reach(card: &Card) -> String {
+    let [left, right] = card.scene.stops.limits_mm();
+    let stops = (left.map(|mm| -mm * 1e-3), right.map(|mm| mm * 1e-3));
+    value(card, |settled| settled.max_abs_x.map(|reach| format!("{} mm", mm_beside(reach, stops))))
 }
 
 /// The least shaking that crosses, as far as it was searched for.

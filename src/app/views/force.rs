@@ -96,18 +96,14 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
         .fold(0.0, f64::max);
     if wells.is_none() {
         // without a pair of wells the whole axis is of interest
-        let (domain, curve) = (model.mechanism().curve.domain(), &model.mechanism().curve);
+        let curve = &model.mechanism().curve;
+        let domain = curve.domain();
         for x in [context.span.low, context.span.high] {
             most = most.max(curve.force(x.clamp(domain.0, domain.1)).abs());
         }
     }
-    let push = if model.is_shaken() {
-        model.mass()
-            * room_for_push(context.session.shown().largest_base_acceleration())
-                .min(1.1 * context.session.shown().largest_base_acceleration())
-    } else {
-        0.0
-    };
+    let hardest = model.largest_base_acceleration();
+    let push = if model.is_shaken() { model.mass() * room_for_push(hardest).min(1.1 * hardest) } else { 0.0 };
     axis_end((ROOM * most).max(1.1 * push))
 }
 
@@ -120,9 +116,8 @@ fn curve(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
     let (inner, outer) = (left.unwrap_or(low).clamp(low, high), right.unwrap_or(high).clamp(low, high));
     let force = |x: f64| own.force(x);
-    let faint = Stroke::new(style.ghost_stroke().width, style.faint());
     for (from, to) in [(low, inner), (outer, high)] {
-        painter.extend(Shape::dashed_line(&chart.curve(from, to, force), faint, 5.0, 5.0));
+        painter.extend(Shape::dashed_line(&chart.curve(from, to, force), style.ghost_stroke(), 5.0, 5.0));
     }
     painter.add(Shape::line(chart.curve(inner, outer, force), style.tray_stroke()));
 }
@@ -139,9 +134,8 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
             continue;
         }
         let at = chart.screen_from_world(x, force);
-        let stroke = Stroke::new(style.stop_stroke().width, style.stop());
         let inwards = -MARK * way as f32;
-        painter.line_segment([at, at + vec2(LINE * inwards, 0.0)], stroke);
+        painter.line_segment([at, at + vec2(LINE * inwards, 0.0)], style.stop_stroke());
         // beyond the wall, out of the way of the mass; on the inner side where the picture ends
         let text = format!("frees at {} g", three(force.abs() / (model.mass() * STANDARD_GRAVITY)));
         let room = if way > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };

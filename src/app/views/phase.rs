@@ -149,7 +149,7 @@ fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bo
         for i in 1..=400 {
             let square = square(place(i));
             if !(square > 0.0) {
-                let turn = turning(&square_at(curve, top), place(i - 1), place(i));
+                let turn = turning(|x| top - curve.potential(x), place(i - 1), place(i));
                 path.push((turn, 0.0));
                 break;
             }
@@ -163,12 +163,8 @@ fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bo
     true
 }
 
-fn square_at(curve: &crate::mechanics::ForceCurve, top: f64) -> impl Fn(f64) -> f64 {
-    move |x| top - curve.potential(x)
-}
-
 /// Where `height` comes to 0 between a place where it is above and one where it is not, as near as is seen.
-fn turning(height: &impl Fn(f64) -> f64, above: f64, below: f64) -> f64 {
+fn turning(height: impl Fn(f64) -> f64, above: f64, below: f64) -> f64 {
     let (above, below) = bisect(above, below, 20, |x| height(x) > 0.0);
     0.5 * (above + below)
 }
@@ -196,10 +192,8 @@ fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let mut drawn = FADES;
     let finish = |line: &mut Vec<Pos2>, level: usize| {
         if line.len() > 1 {
-            painter.add(Shape::line(
-                std::mem::take(line),
-                Stroke::new(motion.width, shade(motion.color, level)),
-            ));
+            let stroke = Stroke::new(motion.width, shade(motion.color, level));
+            painter.add(Shape::line(std::mem::take(line), stroke));
         }
         line.clear();
     };
@@ -293,6 +287,6 @@ mod tests {
 
     #[test]
     fn a_turning_point_is_found() {
-        assert!((turning(&|x| 1.0 - x, 0.0, 4.0) - 1.0).abs() < 1e-5);
+        assert!((turning(|x| 1.0 - x, 0.0, 4.0) - 1.0).abs() < 1e-5);
     }
 }

@@ -6,6 +6,7 @@ use egui_tiles::{
 };
 
 use crate::app::ui::style::{BODY, COMPACT_BELOW, LARGE_FROM};
+use crate::app::ui::widgets::{Icon, icon_button_ui};
 use crate::app::views::{View, ViewContext, view_ui};
 use crate::scene::Layout;
 
@@ -171,13 +172,8 @@ impl Tiling {
     fn title_size(&self, ui: &Ui) -> f32 {
         let width = |id: &TileId| {
             let view = self.tree.tiles.get_pane(id).filter(|_| self.tree.is_visible(*id))?;
-            let font = egui::FontId::proportional(BODY);
-            Some(
-                ui.painter()
-                    .layout_no_wrap(view.name().to_owned(), font, egui::Color32::PLACEHOLDER)
-                    .size()
-                    .x,
-            )
+            let (name, font) = (view.name().to_owned(), egui::FontId::proportional(BODY));
+            Some(ui.painter().layout_no_wrap(name, font, egui::Color32::PLACEHOLDER).size().x)
         };
         let fitting = |(id, tile): (&TileId, &Tile<View>)| {
             let Tile::Container(Container::Tabs(tabs)) = tile else { return None };
@@ -342,15 +338,7 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
         let Some(view) = tabs.active.and_then(|id| tiles.get_pane(&id)) else { return };
         let name = format!("fill the window with {}", view.name());
         let hover = "This view over the whole window (Z)";
-        if crate::app::ui::widgets::icon_button_ui(
-            ui,
-            crate::app::ui::widgets::Icon::Fill,
-            22.0,
-            &name,
-            hover,
-        )
-        .clicked()
-        {
+        if icon_button_ui(ui, Icon::Fill, 22.0, &name, hover).clicked() {
             *self.fill = Some(*view);
         }
     }

@@ -94,7 +94,7 @@ impl Window {
         }
         let fill = ui.visuals().panel_fill;
         let frame = |x: i8, y: i8| Frame::new().fill(fill).inner_margin(Margin::symmetric(x, y));
-        let (bar, line, feet) = (frame(8, 2), frame(12, 4), frame(12, 4));
+        let (bar, line) = (frame(8, 2), frame(12, 4));
         let mut asked = Vec::new();
         Panel::top("menu").frame(bar).exact_size(32.0).show(ui, |ui| {
             asked = menu::menu_ui(ui, &self.session, &self.tiling, self.settings, &self.recent);
@@ -107,7 +107,7 @@ impl Window {
                 status_ui(ui, &mut self.session, &mut self.announcer, &style, compact);
             }
         });
-        Panel::bottom("transport").frame(feet).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
+        Panel::bottom("transport").frame(line).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
             transport::transport_ui(ui, &mut self.session, &style, self.covered);
         });
         if compact {

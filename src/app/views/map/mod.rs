@@ -8,12 +8,12 @@ mod tools;
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::session::map::{Map, name_and_unit};
+use crate::app::session::map::{Map, name_and_unit, short};
 use crate::app::ui::style::Style;
 use crate::app::words::kind::Kind;
 use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
-use crate::output::sweep_about;
+use crate::output::{PlotAxis, sweep_about};
 
 use super::{ViewContext, too_small_ui};
 
@@ -138,7 +138,7 @@ fn reading(map: &Map, column: usize, row: usize) -> String {
 
 /// `travel limit 1.5 mm` of a column's name and 1.5.
 fn named(column: &str, value: f64) -> String {
-    let number = crate::app::session::map::short(value);
+    let number = short(value);
     match name_and_unit(column) {
         (name, Some(unit)) => format!("{name} {number} {unit}"),
         (name, None) => format!("{name} {number}"),
@@ -149,12 +149,11 @@ fn named(column: &str, value: f64) -> String {
 fn marker(painter: &egui::Painter, frame: &Coordinates, style: &Style, place: [Option<f64>; 2]) -> Pos2 {
     // without a stop the mass goes as far as it would with one far out
     let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));
-    let inside = |axis: &crate::output::PlotAxis, value: f64| (axis.low..=axis.high).contains(&value);
+    let inside = |axis: &PlotAxis, value: f64| (axis.low..=axis.high).contains(&value);
     let at =
         frame.screen_from_world((x.clamp(frame.x.low, frame.x.high), y.clamp(frame.y.low, frame.y.high)));
-    let [halo, line] = style.marker_strokes();
     if inside(&frame.x, x) && inside(&frame.y, y) {
-        for stroke in [halo, line] {
+        for stroke in style.marker_strokes() {
             painter.circle_stroke(at, 8.0, stroke);
             for way in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
                 painter.line_segment([at + way * 5.0, at + way * 13.0], stroke);
@@ -168,7 +167,7 @@ fn marker(painter: &egui::Painter, frame: &Coordinates, style: &Style, place: [O
     )
     .normalized();
     let (tip, back, side) = (at - way * 2.0, at - way * 16.0, way.rot90() * 8.0);
-    let points = vec![tip, back + side, back - side];
+    let ([halo, line], points) = (style.marker_strokes(), vec![tip, back + side, back - side]);
     painter.add(Shape::convex_polygon(points, line.color, Stroke::new(1.5, halo.color)));
     let words = if place[0].is_none() { "no stops" } else { "now: further out" };
     let galley = painter.layout_no_wrap(words.to_owned(), style.body(), Color32::PLACEHOLDER);
