@@ -12,6 +12,7 @@ use super::{advanced, geometry};
 /// Width in points of a row of controls that has no room for a heading.
 const NARROW: f32 = 640.0;
 
+/// What stands under More.
 const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass.";
 
 /// The controls as a column.
