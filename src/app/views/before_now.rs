@@ -20,8 +20,8 @@ const APART: (f32, f32) = (6.0, 1.0);
 /// Rows that are always there: the heading, motion, RMS velocity, reach, and from where it crosses.
 const ALWAYS: usize = 5;
 
-/// Draws it. Whether something changed.
-pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
     ground.show(ui, |ui| {
@@ -29,7 +29,6 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         // what has no room for every row can be scrolled
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| card_ui(ui, context));
     });
-    false
 }
 
 fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
@@ -74,24 +73,14 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
             regime_ui(ui, context, card.and_then(|card| card.settled.as_ref()));
         }
         ui.end_row();
-        let both = |name: &str, text: &dyn Fn(&Card) -> String| Row {
+        let both = |name: &str, text: fn(&Card) -> String| Row {
             name: name.to_owned(),
             before: before.map_or_else(dash, text),
             now: text(&now),
         };
-        row_ui(
-            ui,
-            &both(RMS, &|card| value(card, |s| s.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))),
-        );
-        row_ui(
-            ui,
-            &both("reach", &|card| {
-                let [left, right] = card.scene.stops.limits_mm();
-                let stops = (left.map(|mm| -mm * 1e-3), right.map(|mm| mm * 1e-3));
-                value(card, |s| s.max_abs_x.map(|reach| format!("{} mm", mm_beside(reach, stops))))
-            }),
-        );
-        row_ui(ui, &both("crosses from", &crosses_from));
+        row_ui(ui, &both(RMS, rms));
+        row_ui(ui, &both("reach", reach));
+        row_ui(ui, &both("crosses from", crosses_from));
     });
     // only where there is room for it
     if before.is_none() && ui.available_height() > 28.0 {
@@ -174,6 +163,16 @@ fn in_shaking(excitation: &Excitation, number: &str) -> bool {
         _ => &[],
     };
     all.contains(&number)
+}
+
+fn rms(card: &Card) -> String {
+    value(card, |settled| settled.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))
+}
+
+fn reach(card: &Card) -> String {
+    let [left, right] = card.scene.stops.limits_mm();
+    let stops = (left.map(|mm| -mm * 1e-3), right.map(|mm| mm * 1e-3));
+    value(card, |settled| settled.max_abs_x.map(|reach| format!("{} mm", mm_beside(reach, stops))))
 }
 
 /// The least shaking that crosses, as far as it was searched for.
