@@ -4,12 +4,12 @@ use eframe::egui::{self, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
 
 use crate::app::session::Card;
 use crate::app::ui::widgets::kind_shapes;
-use crate::app::words::fields::name_and_unit;
+use crate::app::words::fields::{mechanism_name, name_and_unit};
 use crate::app::words::meanings::{explained, meaning};
 use crate::app::words::numbers::{decimals_for, exact, shown};
 use crate::app::words::status::{Kind, grams, mm_beside, seconds, speed};
 use crate::dynamics::{Outcome, Summary};
-use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};
+use crate::scene::{Damping, Excitation, FieldPath, Scene, Start, numeric_fields};
 
 use super::ViewContext;
 
@@ -119,7 +119,7 @@ fn changes(before: &Scene, now: &Scene) -> Vec<Row> {
         row("shaking", shaking),
         row("stops", stops),
         row("damping", damping),
-        row("mechanism", mechanism),
+        row("mechanism", |scene| mechanism_name(&scene.mechanism)),
         row("start", start),
     ];
     let mut rows: Vec<Row> = whole.into_iter().filter(|row| row.before != row.now).collect();
@@ -214,17 +214,14 @@ fn shaking(scene: &Scene) -> String {
 }
 
 fn stops(scene: &Scene) -> String {
-    let mm = |value: f64| format!("{} mm", shown(value, decimals_for(value).min(2)));
-    match scene.stops {
-        Stops::None => "none".to_owned(),
-        Stops::Rigid { travel_limit_mm, .. } => format!("±{}", mm(travel_limit_mm)),
-        Stops::Hertz { travel_limit_mm, .. } => format!("±{}, compliant", mm(travel_limit_mm)),
-        Stops::Uneven { left_mm, right_mm, .. } => {
-            let side = |own: Option<f64>, sign: &str| {
-                own.map_or("open".to_owned(), |own| format!("{sign}{}", mm(own)))
-            };
-            format!("{}, {}", side(left_mm, "-"), side(right_mm, "+"))
-        }
+    let (stops, mm) = (&scene.stops, |value: f64| format!("{} mm", shown(value, decimals_for(value).min(2))));
+    let side =
+        |own: Option<f64>, sign: &str| own.map_or("open".to_owned(), |own| format!("{sign}{}", mm(own)));
+    match (stops.travel_limit_mm(), stops.limits_mm()) {
+        (Some(limit), _) if stops.restitutions() == [None; 2] => format!("±{}, compliant", mm(limit)),
+        (Some(limit), _) => format!("±{}", mm(limit)),
+        (None, [None, None]) => "none".to_owned(),
+        (None, [left, right]) => format!("{}, {}", side(left, "-"), side(right, "+")),
     }
 }
 
@@ -236,17 +233,6 @@ fn damping(scene: &Scene) -> String {
         Damping::Coefficient { .. } => "by coefficient",
     }
     .to_owned()
-}
-
-/// What kind of mechanism it is; its numbers have rows of their own.
-fn mechanism(scene: &Scene) -> String {
-    match &scene.mechanism {
-        Mechanism::Flexures { .. } => "flexures".to_owned(),
-        Mechanism::Cubic { .. } => "cubic".to_owned(),
-        Mechanism::DoubleWell { .. } => "double well".to_owned(),
-        Mechanism::Polynomial { coefficients_si } => format!("polynomial of {}", coefficients_si.len()),
-        Mechanism::Table { path, .. } => path.clone(),
-    }
 }
 
 fn start(scene: &Scene) -> String {

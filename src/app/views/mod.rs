@@ -1,7 +1,7 @@
-//! The views, each in a file of its own.
+//! The views of the window.
 //!
-//! A new view is an entry of [`View`], a file with a function `..._ui(ui, &mut ViewContext)`, and a place in
-//! a layout of the window. Views share the x axis of [`Span`], so that mechanism and well stand above each
+//! A view is a row in the table of [`View`] and a function `..._ui(ui, &mut ViewContext)` in a file or folder
+//! of its own. Views share the x axis of [`Span`], so that mechanism and well stand above each
 //! other, and keep what they must remember between frames in [`Memory`].
 
 mod accuracy;

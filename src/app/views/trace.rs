@@ -18,8 +18,8 @@ use super::ranges::room_for_push;
 use super::span::ticks;
 use super::timeline::{zoom, zoom_up};
 
-/// Forcing periods that are shown; without a period multiples of the motion's pace. No more swings of the
-/// mechanism than are told apart.
+/// Forcing periods that are shown; without a period multiples of the motion's characteristic time. No more
+/// swings of the mechanism than are told apart.
 const PERIODS: f64 = 6.0;
 const SWINGS: f64 = 8.0;
 const MOST_SWINGS: f64 = 200.0;
