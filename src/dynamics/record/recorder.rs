@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use super::barrier::side_of;
+use super::listing::Listings;
 use super::regime::Judge;
 use super::sums::{Counts, Sums};
 use crate::dynamics::clock::{Clock, Instant};
@@ -47,6 +48,7 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     /// The first instant of the run at the window's phase.
     pub origin: Instant<T>,
     pub next_strobe: Option<Instant<T>>,
+    pub listings: Listings<T>,
     /// Cycles of the clock in a forcing period.
     pub period_cycles: i64,
     /// How many stroboscopic states may still be recorded one by one.
@@ -115,6 +117,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             judge: Judge::new(model.rhythm, scales, periods, first),
             origin,
             next_strobe: (periods > 0).then_some(origin),
+            listings: Listings::new(request, &clock, from, (periods, cycles), model.start_phase),
             period_cycles: cycles,
             strobes_left: MOST_STROBES,
             periods,

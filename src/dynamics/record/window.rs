@@ -108,6 +108,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         self.impact_speed = T::zero();
         (self.counts.crossings, self.counts.impacts, self.counts.releases) = (0, 0, 0);
         self.judge.open_window();
+        self.listings.next_window(self.periods);
         Some(to)
     }
 }
