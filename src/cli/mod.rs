@@ -6,6 +6,7 @@ mod curve;
 mod failure;
 mod interrupt;
 mod options;
+mod orbit;
 mod picture;
 mod presets;
 mod scene_accuracy;

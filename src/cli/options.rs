@@ -104,6 +104,8 @@ commands! {
     sweep Sweep " [SCENE]";
     /// The least value of a field from which on a motion from rest is released, crosses or is interwell
     threshold Threshold " [SCENE]";
+    /// The periodic motion near a run's own, with its multipliers; or a branch of them over a field
+    orbit Orbit " [SCENE]";
     /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed
     /// against error beside other methods, and the hard cases with the digits that they allow and reach
     accuracy Accuracy " [SCENE]";

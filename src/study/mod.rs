@@ -20,6 +20,7 @@ mod inspect;
 mod levels;
 mod map;
 mod models;
+mod orbit;
 mod push;
 mod settled;
 mod simulate;
@@ -51,6 +52,9 @@ pub use inspect::inspect;
 pub use levels::{Levels, STRIDES};
 pub use map::{first_crossing, release_line};
 pub use models::Held;
+pub use orbit::{
+    Branch, BranchEnd, BranchEvent, Family, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table,
+};
 pub use settled::{Standing, lasts, settled, standing};
 pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};
 pub use sweep::{DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepOptions};

@@ -65,7 +65,7 @@ impl Model {
     pub fn stroboscopic_map(&self, phase: f64) -> Option<StroboscopicMap> {
         let period = self.forcing_period.filter(|_| self.repeats())?;
         let cycles = self.cycles_per_period;
-        let turns = phase.rem_euclid(1.0) * cycles as f64;
+        let turns = (phase - self.start_phase).rem_euclid(1.0) * cycles as f64;
         Some(StroboscopicMap {
             phase: (turns.floor() as i64, turns - turns.floor()),
             length: Length::Cycles(cycles),
@@ -91,6 +91,12 @@ impl StroboscopicMap {
     /// The model.
     pub fn model(&self) -> &Model {
         &self.model
+    }
+
+    /// Time in s of the first strobe of a run.
+    pub fn first_strobe(&self) -> f64 {
+        let Kernel { clock, equation, .. } = &self.plain;
+        (self.phase.0 as f64 + self.phase.1) * clock.period() * equation.unit
     }
 
     /// Time in s that one application takes: the forcing period.

@@ -1,0 +1,229 @@
+//! Branch of periodic motions over a field, followed through folds by pseudo-arclength (Keller 1977).
+
+use std::fmt;
+
+use nalgebra::Vector3;
+
+use super::corrector::{Corrector, Point, Units};
+use super::events::{BranchEvent, between, differ};
+use super::family::Family;
+use super::{NoOrbit, Orbit, orbit, with_orbits};
+use crate::study::{Table, Task};
+
+/// Steps of the walk in the units of the branch: the first, the longest, and the one below which it does not
+/// go on.
+const FIRST: f64 = 2e-3;
+const LONGEST: f64 = 1e-2;
+const SHORTEST: f64 = 1e-9;
+
+/// Cosine of the angle by which the direction may turn in a step.
+const STRAIGHT: f64 = 0.9;
+
+/// The most points.
+const MOST_POINTS: usize = 20_000;
+
+/// Distances at which another motion is looked for where the branch ends at a grazing.
+const AROUND: [f64; 3] = [3e-3, 3e-4, 3e-5];
+
+/// Why a branch ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum BranchEnd {
+    /// At an end of the range.
+    Range,
+    /// It came back to where it began.
+    Closed,
+    /// The motion touches a stop without speed, and no motion near to it goes on.
+    Grazing,
+    /// Newton's method no longer converges: the motion no longer lasts for its period, or changes too fast.
+    Lost,
+    /// At the most points.
+    Points,
+}
+
+impl fmt::Display for BranchEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Range => "at an end of the range",
+            Self::Closed => "where it began",
+            Self::Grazing => "where the motion touches a stop without speed, and none near to it goes on",
+            Self::Lost => "where the motion no longer lasts for its period, or changes too fast",
+            Self::Points => "after 20000 motions",
+        })
+    }
+}
+
+/// A branch: its motions in order, each with the value of the field and what happens there.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Branch {
+    /// The field that changes.
+    pub field: String,
+    /// Its value at each motion.
+    pub values: Vec<f64>,
+    /// The motions.
+    pub orbits: Vec<Orbit>,
+    /// What happens there.
+    pub events: Vec<Option<BranchEvent>>,
+    /// Why the branch ended after the last.
+    pub end: BranchEnd,
+}
+
+impl Branch {
+    /// A row a motion: the field, what [`orbit_table`](super::orbit_table) has, and `event`.
+    pub fn table(&self) -> Table {
+        let table = Table::new().with(&self.field, self.values.iter().copied().collect());
+        let name = |event: &Option<BranchEvent>| event.map_or("", BranchEvent::name);
+        with_orbits(table, &self.orbits).each("event", &self.events, name)
+    }
+
+    fn add(&mut self, event: Option<BranchEvent>, point: &Point) {
+        self.values.push(point.value);
+        self.orbits.push(point.orbit.clone());
+        self.events.push(event);
+    }
+}
+
+/// The branch of periodic motions of a family over `field` from one value towards another, on from the motion
+/// that a run comes to at the first; `phase` in forcing periods, `period` where one is asked for.
+///
+/// Ticks once a motion. An error is one of the first motion.
+pub fn branch(
+    family: &Family,
+    field: &str,
+    (from, to): (f64, f64),
+    (phase, period): (f64, Option<u32>),
+    task: &Task,
+) -> Result<Branch, NoOrbit> {
+    let model = family.model(from).ok_or(NoOrbit::NotConverged)?;
+    let first = orbit(&model, phase, period, task.cancel)?;
+    let scales = model.scales();
+    let units = Units { length: scales.length, speed: scales.speed, range: (to - from).abs() };
+    let corrector = Corrector { family, phase, periods: first.period, units };
+    let upwards = Vector3::new(0.0, 0.0, (to - from).signum());
+    let start = corrector.at(first.state, from);
+    let point = corrector.correct(start, &upwards).ok_or(NoOrbit::NotConverged)?;
+    let along = corrector.tangent(&point, &upwards).ok_or(NoOrbit::Grazing)?;
+    let branch = Branch {
+        field: field.to_owned(),
+        values: Vec::new(),
+        orbits: Vec::new(),
+        events: Vec::new(),
+        end: BranchEnd::Points,
+    };
+    let ends = [from.min(to), from.max(to)].map(|own| own / units.range);
+    let mut walk = Walk { corrector, branch, ends, start: (point.clone(), along), at: (point, along) };
+    walk.branch.add(None, &walk.at.0.clone());
+    walk.branch.end = walk.to_the_end(task)?;
+    Ok(walk.branch)
+}
+
+/// A walk along a branch.
+struct Walk<'a> {
+    corrector: Corrector<'a>,
+    branch: Branch,
+    /// The ends of the range in its unit.
+    ends: [f64; 2],
+    /// The first point and the last, with the direction there.
+    start: (Point, Vector3<f64>),
+    at: (Point, Vector3<f64>),
+}
+
+impl Walk<'_> {
+    fn to_the_end(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
+        let mut step = FIRST;
+        while self.branch.values.len() < MOST_POINTS {
+            if task.is_cancelled() {
+                return Err(NoOrbit::Cancelled);
+            }
+            (task.tick)();
+            let (point, along) = &self.at;
+            let guess = point.at + along * step;
+            let beyond = self.ends.into_iter().find(|end| (guess.z - end) * (point.at.z - end) < 0.0);
+            let next = match beyond {
+                Some(end) => self.last(end),
+                None => self.corrector.correct(guess, along).and_then(|next| {
+                    let onward = self.corrector.tangent(&next, along)?;
+                    (onward.dot(along) > STRAIGHT).then_some((next, onward))
+                }),
+            };
+            match next {
+                Some(next) => {
+                    self.go_to(next);
+                    if beyond.is_some() {
+                        return Ok(BranchEnd::Range);
+                    }
+                    if self.is_closed(step) {
+                        return Ok(BranchEnd::Closed);
+                    }
+                    step = (step * 1.3).min(LONGEST);
+                }
+                None => { if std::env::var("DBG").is_ok() { eprintln!("halve {step:e} at {:?} along {:?}", point.at, along); } step *= 0.5 }
+            }
+            if step < SHORTEST {
+                let Some(next) = self.past_a_grazing() else {
+                    let passage = &self.at.0.orbit.passage;
+                    let units = self.corrector.units;
+                    let grazes = passage.nearest_miss.is_some_and(|miss| miss < 1e-5 * units.length)
+                        || passage.gentlest_impact().is_some_and(|speed| speed < 1e-2 * units.speed);
+                    return Ok(if grazes { BranchEnd::Grazing } else { BranchEnd::Lost });
+                };
+                if let Some(event) = self.branch.events.last_mut() {
+                    *event = Some(BranchEvent::Grazing);
+                }
+                self.branch.add(None, &next.0);
+                self.at = next;
+                step = FIRST * 0.1;
+            }
+        }
+        Ok(BranchEnd::Points)
+    }
+
+    /// The point at an end of the range.
+    fn last(&self, end: f64) -> Option<(Point, Vector3<f64>)> {
+        let (point, along) = &self.at;
+        let across = Vector3::new(0.0, 0.0, 1.0);
+        let share = (end - point.at.z) / along.z;
+        let next = self.corrector.correct(point.at + along * share, &across)?;
+        let onward = self.corrector.tangent(&next, along)?;
+        ((next.at - point.at).norm() <= 2.0 * LONGEST).then_some((next, onward))
+    }
+
+    fn go_to(&mut self, next: (Point, Vector3<f64>)) {
+        let (point, along) = &self.at;
+        for (event, there) in between(&self.corrector, (point, along.z), (&next.0, next.1.z)) {
+            self.branch.add(Some(event), &there);
+        }
+        self.branch.add(None, &next.0);
+        self.at = next;
+    }
+
+    fn is_closed(&self, step: f64) -> bool {
+        let (point, along) = &self.at;
+        let (first, began) = &self.start;
+        self.branch.values.len() > 10 && (point.at - first.at).norm() < step && along.dot(began) > STRAIGHT
+    }
+
+    /// A motion that touches the stops otherwise, near the last one, and the direction away from it.
+    fn past_a_grazing(&self) -> Option<(Point, Vector3<f64>)> {
+        let (last, _) = &self.at;
+        let part = |number: i32, place: u32| f64::from(number / 3_i32.pow(place) % 3 - 1);
+        for distance in AROUND {
+            let directions = (0..27).map(|own| Vector3::new(part(own, 0), part(own, 1), part(own, 2)));
+            for direction in directions.filter_map(|own| own.try_normalize(0.5)) {
+                let Some(point) = self.corrector.correct(last.at + direction * distance, &direction) else {
+                    continue;
+                };
+                let away = point.at - last.at;
+                let far = away.norm();
+                if !(0.3 * distance..=3.0 * distance).contains(&far) || !differ(last, &point) {
+                    continue;
+                }
+                if let Some(onward) = self.corrector.tangent(&point, &(away / far)) {
+                    return Some((point, onward));
+                }
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,150 @@
+//! Points of a branch of periodic motions, by Newton's method in a plane across it (pseudo-arclength; Keller
+//! 1977).
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::family::Family;
+use super::{Orbit, allowed, map_of};
+use crate::dynamics::{Outcome, StroboscopicMap};
+
+/// The most steps to a point.
+const MOST_STEPS: usize = 9;
+
+/// Half the distance over which the map is differenced by the field, as a share of its range. Where the
+/// motion stretches what is near to it a thousandfold, the direction of the branch is what is left of large
+/// numbers, and the quotient must be true to their digits: the error grows with the square of the distance,
+/// that of the map's rounding with its inverse.
+const DIFFERENCE: f64 = 3e-8;
+
+/// The largest correction of a predicted point.
+const LARGEST: f64 = 0.2;
+
+/// The change of a point by the map, in its units, that is left to rounding.
+const CLOSE: f64 = 1e-10;
+
+/// The step below which nothing is gained any more.
+const SMALLEST_STEP: f64 = 1e-12;
+
+/// What a point's coordinates are measured in: length in m, speed in m/s, and the range of the field.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Units {
+    pub length: f64,
+    pub speed: f64,
+    pub range: f64,
+}
+
+/// A periodic motion on a branch.
+#[derive(Debug, Clone)]
+pub(super) struct Point {
+    /// Displacement, velocity and field in their units.
+    pub at: Vector3<f64>,
+    /// Value of the field.
+    pub value: f64,
+    pub orbit: Orbit,
+    /// Derivative of the map by the field, in the units.
+    by_field: [f64; 2],
+}
+
+/// What all points of a branch share.
+pub(super) struct Corrector<'a> {
+    pub family: &'a Family<'a>,
+    pub phase: f64,
+    pub periods: u32,
+    pub units: Units,
+}
+
+impl Corrector<'_> {
+    fn map(&self, value: f64) -> Option<StroboscopicMap> {
+        map_of(&self.family.model(value)?, self.phase)
+    }
+
+    /// The coordinates of a state at a value of the field.
+    pub fn at(&self, state: (f64, f64), value: f64) -> Vector3<f64> {
+        let Units { length, speed, range } = self.units;
+        Vector3::new(state.0 / length, state.1 / speed, value / range)
+    }
+
+    fn state(&self, at: &Vector3<f64>) -> (f64, f64) {
+        (at.x * self.units.length, at.y * self.units.speed)
+    }
+
+    /// Change of a state by the map in the units; none where the motion ends early.
+    fn change(&self, map: &StroboscopicMap, state: (f64, f64)) -> Option<[f64; 2]> {
+        let passage = map.pass(state, self.periods);
+        (passage.outcome == Outcome::Done).then(|| self.off(passage.state, state))
+    }
+
+    fn off(&self, to: (f64, f64), from: (f64, f64)) -> [f64; 2] {
+        [(to.0 - from.0) / self.units.length, (to.1 - from.1) / self.units.speed]
+    }
+
+    /// The derivative of the map by the field, in the units; from one side where the other is no scene.
+    fn by_field(&self, state: (f64, f64), value: f64) -> Option<[f64; 2]> {
+        let step = DIFFERENCE * self.units.range;
+        let side = |value: f64| self.map(value).and_then(|map| Some((self.change(&map, state)?, value)));
+        let ends = [side(value + step), side(value), side(value - step)];
+        let mut known = ends.into_iter().flatten();
+        let (above, below) = (known.next()?, known.last()?);
+        let over = (above.1 - below.1) / self.units.range;
+        Some([(above.0[0] - below.0[0]) / over, (above.0[1] - below.0[1]) / over])
+    }
+
+    /// Derivatives of the change of a state by the map, the last row being `across`.
+    fn matrix(&self, orbit: &Orbit, by_field: [f64; 2], across: &Vector3<f64>) -> Matrix3<f64> {
+        let Units { length, speed, .. } = self.units;
+        let [[a, b], [c, d]] = orbit.jacobian.rows;
+        let (b, c) = (b * speed / length, c * length / speed);
+        Matrix3::new(a - 1.0, b, by_field[0], c, d - 1.0, by_field[1], across.x, across.y, across.z)
+    }
+
+    /// The point of the branch in the plane through `guess` across a direction; none where the method does
+    /// not converge.
+    pub fn correct(&self, guess: Vector3<f64>, across: &Vector3<f64>) -> Option<Point> {
+        let mut at = guess;
+        let mut by_field = None;
+        let mut best = f64::INFINITY;
+        for _ in 0..MOST_STEPS {
+            let value = at.z * self.units.range;
+            let map = self.map(value)?;
+            let state = allowed(map.model(), self.state(&at));
+            (at.x, at.y) = (state.0 / self.units.length, state.1 / self.units.speed);
+            let (passage, jacobian) = map.pass_with_jacobian(state, self.periods);
+            if passage.outcome != Outcome::Done
+                || !jacobian.rows.as_flattened().iter().all(|own| own.is_finite())
+            {
+                if std::env::var("DBG").is_ok() { eprintln!("ended {:?} {jacobian:?}", passage.outcome); }
+                return None;
+            }
+            let off = self.off(passage.state, state);
+            let slopes = match by_field {
+                Some(slopes) => slopes,
+                None => *by_field.insert(self.by_field(state, value)?),
+            };
+            let orbit = Orbit { period: self.periods, state, passage, jacobian };
+            let matrix = self.matrix(&orbit, slopes, across);
+            let right = Vector3::new(-off[0], -off[1], -across.dot(&(at - guess)));
+            let step = matrix.lu().solve(&right)?;
+            let length = step.amax();
+            let close = off.iter().all(|own| own.abs() <= CLOSE);
+            if length <= SMALLEST_STEP || (close || length <= CLOSE) && length >= 0.5 * best {
+                return Some(Point { at, value, orbit, by_field: slopes });
+            }
+            if !(length.is_finite() && (at + step - guess).amax() <= LARGEST) {
+                if std::env::var("DBG").is_ok() { eprintln!("large {length:e} off {off:?} at {at:?}"); }
+                return None;
+            }
+            best = best.min(length);
+            at += step;
+        }
+        if std::env::var("DBG").is_ok() { eprintln!("steps out best {best:e} at {at:?}"); }
+        None
+    }
+
+    /// The direction of the branch at a point, on the side of `along`.
+    pub fn tangent(&self, point: &Point, along: &Vector3<f64>) -> Option<Vector3<f64>> {
+        let matrix = self.matrix(&point.orbit, point.by_field, along);
+        let tangent = matrix.lu().solve(&Vector3::new(0.0, 0.0, 1.0))?;
+        let tangent = tangent.try_normalize(0.0)?;
+        tangent.iter().all(|own| own.is_finite()).then_some(tangent)
+    }
+}

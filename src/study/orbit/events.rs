@@ -1,0 +1,163 @@
+//! Events on a branch between two of its points: where they are, to some 1e-9 of the range.
+
+use super::corrector::{Corrector, Point};
+use crate::dynamics::{EventKind, Side};
+
+/// What happens to a periodic motion at a value of the field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BranchEvent {
+    /// The branch turns back: a multiplier passes through 1.
+    Fold,
+    /// A multiplier passes through -1: a motion of twice the period begins.
+    Flip,
+    /// A multiplier passes through 1 where the branch goes on: a pair of motions that are not their own
+    /// mirror images begins.
+    Symmetry,
+    /// The motion begins or ceases to touch a stop.
+    Grazing,
+}
+
+impl BranchEvent {
+    /// The word in the CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fold => "fold",
+            Self::Flip => "flip",
+            Self::Symmetry => "symmetry",
+            Self::Grazing => "grazing",
+        }
+    }
+}
+
+/// How close in the units of the branch an event is located.
+const LOCATED: f64 = 1e-10;
+
+/// The most points for it.
+const MOST_POINTS: usize = 80;
+
+/// What happens at the stops in order, without the impacts of a chatter that ends in rest: they are without
+/// end, and how many of them are told apart from their sum means nothing.
+fn contacts(point: &Point) -> Vec<(EventKind, Side)> {
+    let mut kept: Vec<(EventKind, Side)> = Vec::new();
+    for (kind, side) in point.orbit.passage.sequence() {
+        if kind == EventKind::Rest {
+            while kept.last() == Some(&(EventKind::Impact, side)) {
+                kept.pop();
+            }
+        }
+        kept.push((kind, side));
+    }
+    kept
+}
+
+/// Whether two motions touch the stops in another order or number.
+pub(super) fn differ(a: &Point, b: &Point) -> bool {
+    contacts(a) != contacts(b)
+}
+
+/// What changes sign at a fold: the direction of the field; at a flip, and where a multiplier is 1, the
+/// characteristic polynomial.
+fn at_minus_one(point: &Point) -> f64 {
+    1.0 + point.orbit.jacobian.trace() + point.orbit.determinant()
+}
+
+fn at_one(point: &Point) -> f64 {
+    1.0 - point.orbit.jacobian.trace() + point.orbit.determinant()
+}
+
+/// The events between two points that follow each other, in order, each with its point; of the points are
+/// given the directions of the branch.
+pub(super) fn between(
+    corrector: &Corrector,
+    (from, along): (&Point, f64),
+    (to, onward): (&Point, f64),
+) -> Vec<(BranchEvent, Point)> {
+    let chord = to.at - from.at;
+    let length = chord.norm();
+    if !(length > 0.0) {
+        return Vec::new();
+    }
+    let direction = chord / length;
+    let at = |share: f64| corrector.correct(from.at + chord * share, &direction);
+    let mut found: Vec<(f64, BranchEvent, Point)> = Vec::new();
+    let touches = differ(from, to);
+    if touches {
+        // A motion with fewer contacts is on the side on which it misses the stop.
+        let changed = |point: &Point| differ(from, point);
+        let (mut low, mut high) = (0.0, 1.0);
+        let (mut before, mut after) = (None, None);
+        for _ in 0..MOST_POINTS {
+            if (high - low) * length <= LOCATED {
+                break;
+            }
+            let middle = 0.5 * (low + high);
+            match at(middle) {
+                Some(point) if !changed(&point) => (low, before) = (middle, Some(point)),
+                Some(point) => (high, after) = (middle, Some(point)),
+                None => high = middle,
+            }
+        }
+        let before = before.unwrap_or_else(|| from.clone());
+        let grazes = |point: &Point| {
+            let passage = &point.orbit.passage;
+            let units = corrector.units;
+            passage.nearest_miss.is_some_and(|miss| miss < 1e-5 * units.length)
+                || passage.gentlest_impact().is_some_and(|speed| speed < 1e-2 * units.speed)
+        };
+        if grazes(&before) || after.as_ref().is_some_and(grazes) {
+            found.push((low, BranchEvent::Grazing, before));
+        }
+    }
+    // Across a grazing the multipliers jump: nothing passes through the unit circle there.
+    let mut add = |event: BranchEvent, ends: (f64, f64), of: &dyn Fn(&Point) -> Option<f64>| {
+        if touches || !(ends.0 * ends.1 < 0.0) {
+            return false;
+        }
+        if let Some((share, point)) = root(ends, &at, length, of) {
+            found.push((share, event, point));
+        }
+        true
+    };
+    let folds = add(BranchEvent::Fold, (along, onward), &|point| {
+        corrector.tangent(point, &direction).map(|tangent| tangent.z)
+    });
+    add(BranchEvent::Flip, (at_minus_one(from), at_minus_one(to)), &|point| Some(at_minus_one(point)));
+    if !folds {
+        add(BranchEvent::Symmetry, (at_one(from), at_one(to)), &|point| Some(at_one(point)));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().map(|(_, event, point)| (event, point)).collect()
+}
+
+/// Where a quantity with these values at the ends of a chord is 0, by the secant method kept in its bracket
+/// (Illinois).
+fn root(
+    ends: (f64, f64),
+    at: &impl Fn(f64) -> Option<Point>,
+    length: f64,
+    of: &dyn Fn(&Point) -> Option<f64>,
+) -> Option<(f64, Point)> {
+    let ((mut low, mut below), (mut high, mut above)) = ((0.0, ends.0), (1.0, ends.1));
+    let mut kept = 0_i8;
+    let mut last = None;
+    for _ in 0..MOST_POINTS {
+        let middle = low + (high - low) * (below / (below - above)).clamp(1e-9, 1.0 - 1e-9);
+        let point = at(middle)?;
+        let value = of(&point)?;
+        let moved = last.as_ref().map_or(f64::INFINITY, |(before, _): &(f64, Point)| (middle - before).abs());
+        last = Some((middle, point));
+        if value == 0.0 || moved * length <= LOCATED || (high - low) * length <= LOCATED {
+            break;
+        }
+        if (value < 0.0) == (below < 0.0) {
+            (low, below) = (middle, value);
+            above *= if kept < 0 { 0.5 } else { 1.0 };
+            kept = -1;
+        } else {
+            (high, above) = (middle, value);
+            below *= if kept > 0 { 0.5 } else { 1.0 };
+            kept = 1;
+        }
+    }
+    last
+}
