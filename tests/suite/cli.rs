@@ -45,7 +45,7 @@ pub fn refused(mut command: Command, words: &[&str]) {
     }
 }
 
-fn column(csv: &str, name: &str) -> Vec<String> {
+pub fn column(csv: &str, name: &str) -> Vec<String> {
     let mut lines = csv.lines();
     let place = lines.next().unwrap().split(',').position(|own| own == name).unwrap();
     lines.map(|line| line.split(',').nth(place).unwrap().to_owned()).collect()

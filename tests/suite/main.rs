@@ -26,6 +26,7 @@ mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
 mod source_text;
+mod spectrum;
 mod studies;
 mod support;
 mod untrusted;
