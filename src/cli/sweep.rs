@@ -215,7 +215,8 @@ pub fn located(document: &Document, cell: interwell::study::CellFaults) -> Failu
     wrong_cell(&cell, error)
 }
 
-/// A bar of so many parts, called `unit`, with rate and time left, where standard error is a terminal that the rows do not go to too.
+/// A bar of so many parts, called `unit`, with rate and time left, where standard error is a terminal that
+/// the rows do not go to too.
 pub fn bar(parts: u64, unit: &str, quiet: bool, out: &Path) -> ProgressBar {
     let rows_on_terminal = out == Path::new("-") && std::io::stdout().is_terminal();
     if quiet || rows_on_terminal || !std::io::stderr().is_terminal() {

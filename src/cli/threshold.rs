@@ -18,8 +18,8 @@ Examples:
   interwell --headless threshold paper --of release --over stops.travel_limit_mm=0.5:6.5:0.5 --plot free.png
   interwell --headless threshold paper --over stops.travel_limit_mm=0.5:6.5:0.25 --plot cross.png
   interwell --headless threshold paper --field stops.travel_limit_mm=0.5:3:0.05 --of interwell
-  interwell --headless threshold paper-unconstrained --field excitation.amplitude_g=0.8:1.6:0.01 \\
-      --over damping.xi=0.01,0.02,0.04 --over excitation.frequency_hz=2:8:0.5 --plot lines.png";
+  interwell --headless threshold paper --over excitation.frequency_hz=2,3,4 \\
+      --over stops.travel_limit_mm=0.5:6:0.25 --plot lines.png";
 
 /// What it takes.
 #[derive(Debug, Args)]
@@ -77,11 +77,13 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
     let picture = Picture::asked(&options.plot)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
-    let (document, warnings) = load(&options.scene, common, Some(&options.over))?;
+    // without --over no cell of the scene's own sweep is run
+    let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
+    let (document, warnings) = load(&options.scene, common, over)?;
     let scan = scan(options, &document)?;
-    let grid = match options.over.as_slice() {
-        [] => None,
-        over => Some(Grid::new(document.axes(over)?)?),
+    let grid = match over {
+        None => None,
+        Some(over) => Some(Grid::new(document.axes(over)?)?),
     };
     if let Some(axis) = grid.iter().flat_map(|grid| grid.axes()).find(|axis| axis.field == scan.field) {
         let field = &axis.field;
@@ -93,12 +95,9 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     if picture.is_some() {
         can_show_thresholds(grid.as_ref())?;
     }
-    if grid.as_ref().is_none_or(|grid| !grid.changes_mechanism()) {
-        let mechanism = mechanism(&document)?;
-        warn(&document, common, &warnings, Some(&mechanism));
-    } else {
-        warn(&document, common, &warnings, None);
-    }
+    let same = grid.as_ref().is_none_or(|grid| !grid.changes_mechanism());
+    let own = same.then(|| mechanism(&document)).transpose()?;
+    warn(&document, common, &warnings, own.as_deref());
     let pool = pool(common)?;
     let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;

@@ -92,12 +92,12 @@ impl Spectrum {
         };
         let repeats = match self.period {
             None => String::new(),
-            Some(1) => "; repeats in every forcing period".to_owned(),
-            Some(n) => format!("; repeats after {n} forcing periods"),
+            Some(1) => "; repeats in each".to_owned(),
+            Some(n) => format!("; repeats after {n}"),
         };
         let taper = if self.taper == Taper::Hann { "Hann taper" } else { "no taper" };
         let (from, to) = (short(self.window.0), short(self.window.1));
-        format!("from {from} to {to} s{periods}{repeats}; {taper}, {} samples a second", short(self.rate_hz))
+        format!("from {from} to {to} s{periods}{repeats}; {taper}, sampled at {} Hz", short(self.rate_hz))
     }
 }
 

@@ -140,7 +140,8 @@ pub fn threshold(
 /// The thresholds of every cell of `grid` over `scene`, in order: the swept fields, then `of,value,windows`.
 /// A value that is not found is missing, as is that of a cell whose mechanism is not solved. Ticks as often
 /// as there are cells and values of the scan. An error has every cell in which no value makes a valid model,
-/// or for interwell motion none under a drive that repeats, and then nothing has been run. None where the search was cancelled.
+/// or for interwell motion none under a drive that repeats, and then nothing has been run. None where the
+/// search was cancelled.
 pub fn threshold_table(
     (scene, files): (&Scene, &Files),
     grid: Option<&Grid>,

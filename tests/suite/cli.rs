@@ -67,7 +67,10 @@ fn without_headless_it_says_what_to_write() {
     for command in ["presets", "check", "curve", "simulate", "sweep", "threshold", "accuracy"] {
         refused(plain(command), &["--headless", command]);
     }
-    refused(plain("--headless"), &["presets, check, curve, simulate, sweep, threshold or accuracy"]);
+    refused(
+        plain("--headless"),
+        &["presets, check, curve, simulate, sweep, threshold, spectrum or accuracy"],
+    );
     refused(headless("swep"), &["`swep`", "sweep"]);
     refused(headless("sweep --bogus"), &["--bogus"]);
     refused(headless("check --plot a.png"), &["--plot"]);

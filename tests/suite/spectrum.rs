@@ -31,8 +31,9 @@ fn power(own: &Spectrum) -> f64 {
 /// A mass of 2 kg on a spring of 50 N/m with damping: transients are gone at 60 s.
 fn linear(excitation: &str) -> Model {
     model(&format!(
-        "mass_g: 2000, mechanism: Polynomial(coefficients_si: [0, 50]), damping: Coefficient(c_n_s_per_m: 3), \
-         excitation: {excitation}, run: (duration_s: 80, settle_s: 60, tolerance: 1e-13)"
+        "mass_g: 2000, mechanism: Polynomial(coefficients_si: [0, 50]), \
+         damping: Coefficient(c_n_s_per_m: 3), excitation: {excitation}, \
+         run: (duration_s: 80, settle_s: 60, tolerance: 1e-13)"
     ))
 }
 
@@ -182,8 +183,7 @@ fn the_command_writes_lines_and_says_what_is_wrong() {
     assert_eq!(column(&csv, "psd").len(), 76);
     assert_eq!(stdout(&format!("{line} --jobs 1")), stdout(&format!("{line} --jobs 3")));
     headless("spectrum paper --rate-hz 30 --out /dev/null").assert().success().stderr(
-        "built-in paper: from 5 to 10 s, 15 forcing periods; repeats in every forcing period; no \
-                 taper, 30 samples a second\n",
+        "built-in paper: from 5 to 10 s, 15 forcing periods; repeats in each; no taper, sampled at 30 Hz\n",
     );
     for (line, words) in [
         ("spectrum paper --rate-hz 0", &["--rate-hz 0", "above 0"][..]),
@@ -199,6 +199,7 @@ fn the_command_writes_lines_and_says_what_is_wrong() {
         refused(headless(line), words);
     }
     let left = "spectrum duffing --set mechanism=Table(path:\"force_dl2.7.csv\") --set start=Rest --set \
-                excitation.amplitude_g=30 --set mass_g=100 --set damping=None --set excitation.frequency_hz=3";
+                excitation.amplitude_g=30 --set mass_g=100 --set damping=None --set \
+                excitation.frequency_hz=3";
     headless(left).assert().code(1).stderr(predicates::str::contains("ended early"));
 }

@@ -71,9 +71,11 @@ pub fn threshold_figure(
 /// What begins at the threshold.
 fn about(onset: Onset) -> &'static str {
     match onset {
-        Onset::Release => "from there on a mass at rest is released from its stop",
-        Onset::Crossing => "from there on the motion from rest crosses, once it has settled",
-        Onset::Interwell => "from there on the motion from rest is interwell, once it has settled",
+        Onset::Release => "the least value at which the mass is released from the stop that it rests on",
+        Onset::Crossing => "the least value at which the motion from rest, once it has settled, crosses",
+        Onset::Interwell => {
+            "the least value at which the motion from rest, once it has settled, is interwell"
+        }
     }
 }
 
@@ -109,8 +111,8 @@ fn lines(
     }
     let gap = gaps.contains(&true);
     if gap {
-        entries.push((Sample::Marker(Marker::Disc, theme.ink), "from there on without a gap".to_owned()));
-        entries.push((Sample::Marker(Marker::Triangle, theme.unstable), "gaps above it".to_owned()));
+        entries.push((Sample::Marker(Marker::Disc, theme.ink), "holds for all values above".to_owned()));
+        entries.push((Sample::Marker(Marker::Triangle, theme.unstable), "gaps above".to_owned()));
     }
     let missing: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
     if !missing.is_empty() {
