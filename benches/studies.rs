@@ -26,8 +26,8 @@ fn row(study: &str, problem: &str, against: &str, mut work: impl FnMut() -> f64)
     let mut error = 0.0;
     let rounds = shared::rounds(ROUNDS);
     let mut times: Vec<f64> = (0..rounds).map(|_| shared::cpu(|| error = work())).collect();
-    let ms = shared::median(&mut times) * 1e3;
-    println!("| {study} | {problem} | {error:.1e} | {against} | {ms:.2} ms |");
+    let us = shared::median(&mut times) * 1e6;
+    println!("| {study} | {problem} | {error:.1e} | {against} | {us:.1} us |");
 }
 
 fn spectra() {

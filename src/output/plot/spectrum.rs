@@ -47,9 +47,11 @@ pub fn spectrum_figure(
     let across = PlotAxis::between(0.0, shown_to(spectrum, frequencies, density), 8, "frequency, Hz");
     let across = across.or_given(ranges.x, 8, "frequency, Hz");
     let seen = frequencies.iter().zip(values).filter(|(own, _)| (across.low..=across.high).contains(*own));
-    let greatest = seen.map(|own| *own.1).fold(0.0, f64::max);
+    let seen = seen.map(|own| *own.1).filter(|own| *own > 0.0);
+    let (least, greatest) =
+        seen.fold((f64::INFINITY, 0.0_f64), |(low, high), own| (low.min(own), high.max(own)));
     let decades = if quantity == SpectrumQuantity::Density { 2.0 * DECADES } else { DECADES };
-    let ends = ranges.y.unwrap_or((greatest * 10_f64.powf(-decades), greatest * 1.5));
+    let ends = ranges.y.unwrap_or((least.max(greatest * 10_f64.powf(-decades)), greatest * 1.5));
     let mut up = PlotAxis::decades([ends.0, ends.1], 8, label);
     if ranges.y.is_some() {
         (up.low, up.high) = (ends.0.log10(), ends.1.log10());
