@@ -10,6 +10,7 @@ mod picture;
 mod presets;
 mod scene_accuracy;
 mod simulate;
+mod spectrum;
 mod support;
 mod sweep;
 mod threshold;

@@ -104,6 +104,8 @@ commands! {
     sweep Sweep " [SCENE]";
     /// The least value of a field from which on a motion from rest is released, crosses or is interwell
     threshold Threshold " [SCENE]";
+    /// Amplitude and power spectral density of the settled motion over frequency: CSV
+    spectrum Spectrum " [SCENE]";
     /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed
     /// against error beside other methods, and the hard cases with the digits that they allow and reach
     accuracy Accuracy " [SCENE]";

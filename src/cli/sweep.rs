@@ -91,7 +91,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
 
-    let bar = bar(sweep.grid().cells(), common.quiet, common.out());
+    let bar = bar(sweep.grid().cells(), "cells", common.quiet, common.out());
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let watch = Watch::start();
     let result = (|| {
@@ -215,16 +215,17 @@ pub fn located(document: &Document, cell: interwell::study::CellFaults) -> Failu
     wrong_cell(&cell, error)
 }
 
-/// A bar with rate and time left, where standard error is a terminal that the rows do not go to too.
-fn bar(cells: u64, quiet: bool, out: &Path) -> ProgressBar {
+/// A bar of so many parts, called `unit`, with rate and time left, where standard error is a terminal that
+/// the rows do not go to too.
+pub fn bar(parts: u64, unit: &str, quiet: bool, out: &Path) -> ProgressBar {
     let rows_on_terminal = out == Path::new("-") && std::io::stdout().is_terminal();
     if quiet || rows_on_terminal || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let template = "{wide_bar} {human_pos}/{human_len} cells  {rate}  {eta} left";
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {unit}  {{rate}}  {{eta}} left");
+    let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
         let _ = write!(text, "{:.0}/s", state.per_sec());
     };
-    ProgressBar::new(cells).with_style(style.with_key("rate", rate))
+    ProgressBar::new(parts).with_style(style.with_key("rate", rate))
 }

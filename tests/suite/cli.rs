@@ -48,7 +48,7 @@ pub fn refused(mut command: Command, words: &[&str]) {
     }
 }
 
-fn column(csv: &str, name: &str) -> Vec<String> {
+pub fn column(csv: &str, name: &str) -> Vec<String> {
     let mut lines = csv.lines();
     let place = lines.next().unwrap().split(',').position(|own| own == name).unwrap();
     lines.map(|line| line.split(',').nth(place).unwrap().to_owned()).collect()
@@ -70,8 +70,15 @@ fn without_headless_it_says_what_to_write() {
     for command in COMMANDS {
         refused(plain(command), &["--headless", command]);
     }
+<<<<<<< HEAD
     let (last, others) = COMMANDS.split_last().unwrap();
     refused(plain("--headless"), &[&format!("{} or {last}", others.join(", "))]);
+=======
+    refused(
+        plain("--headless"),
+        &["presets, check, curve, simulate, sweep, threshold, spectrum or accuracy"],
+    );
+>>>>>>> tools
     refused(headless("swep"), &["`swep`", "sweep"]);
     refused(headless("sweep --bogus"), &["--bogus"]);
     refused(headless("check --plot a.png"), &["--plot"]);

@@ -27,6 +27,7 @@ mod scene;
 mod shared;
 mod source_text;
 mod stroboscopic;
+mod spectrum;
 mod studies;
 mod support;
 mod untrusted;

@@ -15,8 +15,10 @@ mod mark;
 mod paint;
 mod quantity;
 mod run;
+mod spectrum;
 mod style;
 mod sweep;
+mod threshold;
 
 use std::path::Path;
 
@@ -30,8 +32,10 @@ pub use mark::Caption;
 pub use paint::PaintError;
 pub use quantity::{RMS, quantities};
 pub use run::{run_figure, speed_unit};
+pub use spectrum::{SpectrumQuantity, spectrum_figure};
 pub use style::{Ink, Theme, viridis};
 pub use sweep::{MAX_PICTURE_CELLS, NoPicture, SweepPicture, can_show, sweep_about, sweep_figure};
+pub use threshold::{ThresholdPicture, can_show_thresholds, threshold_figure};
 
 /// A kind of file that holds a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

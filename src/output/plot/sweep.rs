@@ -23,6 +23,12 @@ pub enum NoPicture {
          take the others out, or sweep without --plot"
     )]
     Fields(usize),
+    /// One threshold.
+    #[error(
+        "--plot shows thresholds over another field (a line) or two (a map), and there is one threshold: add \
+         --over FIELD=FROM:TO:STEP, or leave --plot out"
+    )]
+    SingleThreshold,
     /// Finer than a picture.
     #[error(
         "--plot shows at most {MAX_PICTURE_CELLS} cells, not {0}: take longer steps, or sweep without --plot"
@@ -83,23 +89,30 @@ pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) ->
     let SweepPicture { rows, grid, scene, .. } = *picture;
     can_show(grid, picture.quantity, rows)?;
     let mut figure = Figure::new(theme.paper);
-    let few = |of: usize, beside: usize| {
-        let count = |i: usize| distinct(rows.numbers(&grid.columns()[i]).unwrap_or_default()).len();
-        count(of) <= FEW && count(beside) >= MANY * count(of)
-    };
-    match grid.columns() {
-        [x] => lines(&mut figure, picture, x, None, theme),
-        [x, y] if few(1, 0) => lines(&mut figure, picture, x, Some(y), theme),
-        [x, y] if few(0, 1) => lines(&mut figure, picture, y, Some(x), theme),
-        [x, y] => map(&mut figure, picture, (x, y), theme),
-        other => return Err(NoPicture::Fields(other.len())),
+    match (grid.columns(), few_lines(rows, grid)) {
+        ([x], _) => lines(&mut figure, picture, x, None, theme),
+        (_, Some((x, each))) => lines(&mut figure, picture, x, Some(each), theme),
+        ([x, y], None) => map(&mut figure, picture, (x, y), theme),
+        (other, None) => return Err(NoPicture::Fields(other.len())),
     }
     caption.draw(&mut figure, theme, &sweep_about(grid, scene), LEFT);
     Ok(figure)
 }
 
+/// Of two swept fields the one to the right and the one of which each value has a line, where one has few.
+pub(super) fn few_lines<'a>(rows: &Table, grid: &'a Grid) -> Option<(&'a str, &'a str)> {
+    let [a, b] = grid.columns() else { return None };
+    let count = |name: &str| distinct(rows.numbers(name).unwrap_or_default()).len();
+    let few = |of: &str, beside: &str| count(of) <= FEW && count(beside) >= MANY * count(of);
+    match (few(b, a), few(a, b)) {
+        (true, _) => Some((a, b)),
+        (false, true) => Some((b, a)),
+        _ => None,
+    }
+}
+
 /// The values in ascending order, each once.
-fn distinct(values: &[f64]) -> Vec<f64> {
+pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
     let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);
     values.dedup();
