@@ -16,7 +16,8 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 7] = ["presets", "check", "curve", "simulate", "sweep", "threshold", "accuracy"];
+const COMMANDS: [&str; 8] =
+    ["presets", "check", "curve", "simulate", "sweep", "threshold", "spectrum", "accuracy"];
 
 /// The program with these arguments, given in one line.
 pub fn plain(line: &str) -> Command {
@@ -70,15 +71,8 @@ fn without_headless_it_says_what_to_write() {
     for command in COMMANDS {
         refused(plain(command), &["--headless", command]);
     }
-<<<<<<< HEAD
     let (last, others) = COMMANDS.split_last().unwrap();
     refused(plain("--headless"), &[&format!("{} or {last}", others.join(", "))]);
-=======
-    refused(
-        plain("--headless"),
-        &["presets, check, curve, simulate, sweep, threshold, spectrum or accuracy"],
-    );
->>>>>>> tools
     refused(headless("swep"), &["`swep`", "sweep"]);
     refused(headless("sweep --bogus"), &["--bogus"]);
     refused(headless("check --plot a.png"), &["--plot"]);
