@@ -7,6 +7,7 @@ mod flexure_numbers;
 mod flexures;
 mod options;
 mod outputs;
+mod section;
 mod simulate;
 mod sweep;
 mod verdicts;

@@ -23,6 +23,7 @@ mod presets;
 mod properties;
 mod recurrence;
 mod scene;
+mod section;
 #[path = "../shared/mod.rs"]
 mod shared;
 mod source_text;

@@ -3,17 +3,13 @@
 use std::sync::atomic::AtomicBool;
 
 use super::barrier::side_of;
-use super::listing::Listings;
+use super::listing::{Listings, MOST_STROBES};
 use super::regime::Judge;
 use super::sums::{Counts, Sums};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Event, EventKind, Request, Sample, Side};
 use crate::numeric::{CompensatedSum, Scalar};
-
-/// The most stroboscopic states that are recorded one by one: some tenths of a second of one core, and more
-/// than a run makes whose steps are shorter than a forcing period. Later ones are not judged.
-pub(crate) const MOST_STROBES: u32 = 1 << 22;
 
 pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub model: &'a Model,

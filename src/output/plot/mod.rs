@@ -15,8 +15,11 @@ mod mark;
 mod paint;
 mod quantity;
 mod run;
+mod section;
 mod style;
 mod sweep;
+mod swept;
+mod walk;
 
 use std::path::Path;
 
@@ -25,13 +28,14 @@ pub use axis::{PlotAxis, Ranges};
 pub use contact::contact_figure;
 pub use curve::curve_figure;
 pub use figure::Figure;
-pub use map::Overlay;
 pub use mark::Caption;
 pub use paint::PaintError;
 pub use quantity::{RMS, quantities};
 pub use run::{run_figure, speed_unit};
+pub use section::{SectionPicture, section_figure};
 pub use style::{Ink, Theme, viridis};
-pub use sweep::{MAX_PICTURE_CELLS, NoPicture, SweepPicture, can_show, sweep_about, sweep_figure};
+pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_figure};
+pub use swept::{Overlay, SweepPicture};
 
 /// A kind of file that holds a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
