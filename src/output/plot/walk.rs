@@ -26,7 +26,9 @@ fn walked(rows: &Table, x: &[f64], direction: Direction) -> Vec<usize> {
 }
 
 /// How a direction is drawn: its colour, and its dash.
-fn strokes(theme: &Theme) -> [(Direction, Ink, Option<(f64, f64)>); 2] {
+type Stroke = (Direction, Ink, Option<(f64, f64)>);
+
+fn strokes(theme: &Theme) -> [Stroke; 2] {
     [(Direction::Up, theme.ink, None), (Direction::Down, theme.second, Some(style::DASH))]
 }
 
