@@ -9,6 +9,7 @@ mod options;
 mod picture;
 mod presets;
 mod scene_accuracy;
+mod section;
 mod simulate;
 mod spectrum;
 mod support;

@@ -23,13 +23,19 @@ pub struct Provenance {
     pub jobs: usize,
 }
 
-/// The manifest of a sweep as text: itself, or a scene file with `scene_ron` as its text beside the `files`,
-/// is swept to the same rows again. `scene_ron` has every argument applied, the swept fields at their unswept
-/// values, and the grid that ran as its `sweep`; `files` are the texts of the tables and records that the
-/// scene reads, by their paths in it.
+/// The manifest of what `command` swept as text: itself, or a scene file with `scene_ron` as its text beside
+/// the `files`, is swept to the same rows again. `scene_ron` has every argument applied, the swept fields at
+/// their unswept values, and the grid that ran as its `sweep`; `files` are the texts of the tables and
+/// records that the scene reads, by their paths in it.
 ///
 /// `document` has its files held; `data` is the name of the file with the rows.
-pub fn manifest(document: &Document, grid: &Grid, tally: &Tally, origin: &Provenance, data: &str) -> String {
+pub fn manifest(
+    (command, document): (&str, &Document),
+    grid: &Grid,
+    tally: &Tally,
+    origin: &Provenance,
+    data: &str,
+) -> String {
     let axes: Vec<Value> = grid
         .axes()
         .iter()
@@ -46,7 +52,7 @@ pub fn manifest(document: &Document, grid: &Grid, tally: &Tally, origin: &Proven
     pretty(&json!({
         "program": PROGRAM,
         "version": origin.version,
-        "command": "sweep",
+        "command": command,
         "arguments": origin.arguments,
         "data": data,
         "scene_name": document.name,

@@ -16,9 +16,9 @@ pub use manifest::{Provenance, manifest};
 pub use number::push_number;
 pub use plot::{
     Caption, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, PlotAxis, RMS, Ranges,
-    SpectrumQuantity, SweepPicture, Theme, ThresholdPicture, UnknownFormat, accuracy_figure, can_show,
-    can_show_thresholds, contact_figure, curve_figure, quantities, run_figure, spectrum_figure, speed_unit,
-    sweep_about, sweep_figure, threshold_figure, viridis,
+    SectionPicture, SpectrumQuantity, SweepPicture, Theme, ThresholdPicture, UnknownFormat, accuracy_figure,
+    can_show, can_show_thresholds, contact_figure, curve_figure, quantities, run_figure, section_figure,
+    spectrum_figure, speed_unit, sweep_about, sweep_figure, threshold_figure, viridis,
 };
 pub use text::aligned;
 

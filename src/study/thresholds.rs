@@ -8,9 +8,9 @@
 use std::sync::Arc;
 
 use super::Task;
+use super::cell::CellFaults;
 use super::grid::Grid;
 use super::push::{AMPLITUDE, frees_at};
-use super::sweep::CellFaults;
 use super::table::Table;
 use crate::dynamics::{Model, Regime, Summary};
 use crate::mechanics::{BuildError, Mechanism};

@@ -7,6 +7,7 @@ mod flexure_numbers;
 mod flexures;
 mod options;
 mod outputs;
+mod section;
 mod simulate;
 mod sweep;
 mod verdicts;
@@ -16,8 +17,8 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 8] =
-    ["presets", "check", "curve", "simulate", "sweep", "threshold", "spectrum", "accuracy"];
+const COMMANDS: [&str; 9] =
+    ["presets", "check", "curve", "simulate", "sweep", "section", "threshold", "spectrum", "accuracy"];
 
 /// The program with these arguments, given in one line.
 pub fn plain(line: &str) -> Command {

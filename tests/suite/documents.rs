@@ -107,6 +107,8 @@ fn every_column_and_word_of_the_output_is_documented() {
         format!("curve paper --out /dev/null --contact - {hertz}"),
         "threshold paper --of release".to_owned(),
         "spectrum paper --rate-hz 30 --quiet".to_owned(),
+        "section paper --over excitation.amplitude_g=1 --carry up --quiet".to_owned(),
+        "section paper --at impacts".to_owned(),
         "accuracy --case grazing --out - --quiet".to_owned(),
         "accuracy nominal-cubic --out - --quiet".to_owned(),
         "sweep paper --over excitation.amplitude_g=1 --columns all --out - --quiet".to_owned(),

@@ -23,11 +23,12 @@ mod presets;
 mod properties;
 mod recurrence;
 mod scene;
+mod section;
 #[path = "../shared/mod.rs"]
 mod shared;
 mod source_text;
-mod stroboscopic;
 mod spectrum;
+mod stroboscopic;
 mod studies;
 mod support;
 mod untrusted;

@@ -50,7 +50,12 @@ impl Model {
     /// gives for each, bit for bit, in their order; `until_settled` as in [`Request`]. The CPU time of all is
     /// shared evenly between them.
     pub fn run_all(models: &[Self], until_settled: Option<f64>, cancel: Option<&AtomicBool>) -> Vec<Run> {
-        run_all(models, &Request { cancel, until_settled, ..Request::default() }, usize::MAX)
+        Self::run_together(models, &Request { cancel, until_settled, ..Request::default() })
+    }
+
+    /// The same with what `request` asks of each. With a ledger, events or samples they are run one by one.
+    pub fn run_together(models: &[Self], request: &Request) -> Vec<Run> {
+        run_all(models, request, usize::MAX)
     }
 
     /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; none where the processor has not so many.
@@ -60,16 +65,17 @@ impl Model {
     }
 }
 
-/// Runs several models, as [`Model::run`] does, with nothing listed; the results in their order.
+/// Runs several models, as [`Model::run`] does; the results in their order.
 ///
 /// Those that cannot share their steps with others are run alone. No more than `most` lanes are used.
 fn run_all(models: &[Model], request: &Request, most: usize) -> Vec<Run> {
     let mut runs: Vec<Option<Run>> = models.iter().map(|_| None).collect();
     let mut batched = Vec::new();
+    let shared = !request.ledger && !request.events && request.sample_times.is_empty();
     for (place, model) in models.iter().enumerate() {
         let unit = model.scales.unit();
         match form(model, &clock(model, unit)) {
-            Form::Sine(drive) if model.compliant.is_none() && !model.motionless => {
+            Form::Sine(drive) if shared && model.compliant.is_none() && !model.motionless => {
                 batched.push(Prepared { model, equation: Equation::new(model, unit), drive, place });
             }
             _ => runs[place] = Some(model.run(request)),

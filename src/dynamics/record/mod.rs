@@ -5,6 +5,7 @@ mod crossings;
 pub(crate) mod event_free;
 pub(crate) mod events;
 pub(crate) mod laps;
+mod listing;
 pub(crate) mod log;
 pub(crate) mod recorder;
 mod regime;

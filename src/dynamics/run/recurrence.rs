@@ -174,7 +174,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// depend on what is listed. A replay is work: the number of laps for which it was done.
     fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) -> i64 {
         let (sums, judge) = (self.record.totals(), self.record.judge.clone());
-        self.record.next_strobe = None; // it has no part in what is listed
+        // The stroboscopic states are those of the lap.
+        self.record.next_strobe = None;
+        let listings = std::mem::take(&mut self.record.listings);
         let start = self.state.at;
         let length = self.stepper.clock.period() * T::of(lap.cycles as f64);
         let begin =
@@ -189,7 +191,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             }
             if self.stepper.work.is_cancelled() || self.stepper.work.is_spent() {
                 self.record.take_back(&sums);
-                self.record.judge = judge;
+                (self.record.judge, self.record.listings) = (judge, listings);
                 return told;
             }
             if self.stepper.clock.between(&next, &begin(number)) >= T::zero() {
@@ -200,7 +202,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             told = number;
         }
         self.record.take_back(&sums);
-        self.record.judge = judge;
+        (self.record.judge, self.record.listings) = (judge, listings);
         laps
     }
 

@@ -3,10 +3,11 @@
 use super::axis::{PlotAxis, Ranges};
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
-use super::map::{Overlay, map};
+use super::map::map;
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Theme};
-use super::sweep::{BOTTOM, LEFT, NoPicture, SweepPicture, TOP, distinct, few_lines, label};
+use super::sweep::{NoPicture, distinct, few_lines};
+use super::swept::{BOTTOM, LEFT, Overlay, SweepPicture, TOP, label};
 use crate::numeric::short;
 use crate::scene::{Scene, column_names};
 use crate::study::{Column, Grid, Onset, Table, Values};
