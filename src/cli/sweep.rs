@@ -91,7 +91,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
 
-    let bar = bar(sweep.grid().cells(), common.quiet, common.out());
+    let bar = bar(sweep.grid().cells(), "cells", common.quiet, common.out());
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let watch = Watch::start();
     let result = (|| {
@@ -195,7 +195,7 @@ fn first_mechanism(document: &Document, sweep: &Sweep) -> Result<Option<Arc<Mech
 }
 
 /// Where the manifest of the rows at `out` goes: beside them, where they are a regular file.
-fn manifest_path(out: &Path) -> Option<PathBuf> {
+pub fn manifest_path(out: &Path) -> Option<PathBuf> {
     is_regular(out).then(|| {
         let mut name = out.as_os_str().to_owned();
         name.push(".json");
@@ -216,15 +216,15 @@ pub fn located(document: &Document, cell: interwell::study::CellFaults) -> Failu
 }
 
 /// A bar with rate and time left, where standard error is a terminal that the rows do not go to too.
-fn bar(cells: u64, quiet: bool, out: &Path) -> ProgressBar {
+pub fn bar(count: u64, what: &str, quiet: bool, out: &Path) -> ProgressBar {
     let rows_on_terminal = out == Path::new("-") && std::io::stdout().is_terminal();
     if quiet || rows_on_terminal || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let template = "{wide_bar} {human_pos}/{human_len} cells  {rate}  {eta} left";
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {what}  {{rate}}  {{eta}} left");
+    let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
         let _ = write!(text, "{:.0}/s", state.per_sec());
     };
-    ProgressBar::new(cells).with_style(style.with_key("rate", rate))
+    ProgressBar::new(count).with_style(style.with_key("rate", rate))
 }

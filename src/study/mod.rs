@@ -6,6 +6,7 @@
 
 pub mod accuracy;
 mod amplitudes;
+mod basins;
 mod contact;
 mod continued;
 mod curve;
@@ -31,6 +32,7 @@ mod watch;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use amplitudes::{Thresholds, stops_that_cross, thresholds};
+pub use basins::{Answer, Attractor, Basins, EvenRange, MAX_STARTS, NoBasins, Shares, Starts, StartsError};
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
 pub use continued::continued_scene;
 pub use curve::{

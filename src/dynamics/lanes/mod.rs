@@ -20,8 +20,9 @@ use crate::dynamics::drive::tone::Sine;
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
-use crate::dynamics::result::{Outcome, Request, Run};
+use crate::dynamics::result::{Arrival, Outcome, Pursuit, Request, Run};
 use crate::dynamics::run::ending::Begun;
+use crate::dynamics::run::pursue::pursue_alone;
 use crate::dynamics::series::{SEEDED, Series};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::stepper::Step;
@@ -40,10 +41,15 @@ const BATCH_STEPS: u64 = 256;
 /// A run and what it is made of.
 struct Prepared<'a> {
     model: &'a Model,
-    equation: Equation<f64>,
-    drive: Sine<f64>,
+    equation: &'a Equation<f64>,
+    drive: &'a Sine<f64>,
+    /// Of a motion that is pursued.
+    pursuit: Option<&'a Pursuit<'a>>,
     place: usize,
 }
+
+/// What is done with a motion that has ended: its place, the motion, what it began as, and its outcome.
+type Ended<'r> = dyn FnMut(usize, LaneMotion, &Begun<f64>, Outcome) + 'r;
 
 impl Model {
     /// Runs several models with nothing listed, many at once where the processor can: what [`run`](Self::run)
@@ -51,6 +57,26 @@ impl Model {
     /// shared evenly between them.
     pub fn run_all(models: &[Self], until_settled: Option<f64>, cancel: Option<&AtomicBool>) -> Vec<Run> {
         run_all(models, &Request { cancel, until_settled, ..Request::default() }, usize::MAX)
+    }
+
+    /// Pursues motions of this model from starts of their own, many at once where the processor can; what
+    /// each has come to, in their order, the same bit for bit for any batch. The model's scales are those of
+    /// all of them, so that motions that meet in one release from rest go on alike. Its start and duration do
+    /// not matter. Precondition: its drive [repeats](Self::repeats), and the starts lie in its curve and
+    /// between its stops.
+    pub fn pursue(&self, pursuits: &[Pursuit], cancel: Option<&AtomicBool>) -> Vec<Arrival> {
+        pursue_all(self, pursuits, &Request { cancel, ..Request::default() }, usize::MAX)
+    }
+
+    /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; none where the processor has
+    /// not so many.
+    #[doc(hidden)]
+    pub fn pursue_in_lanes(&self, pursuits: &[Pursuit], width: usize) -> Option<Vec<Arrival>> {
+        let request = Request::default();
+        match width {
+            1 => Some(pursue_alone(self, pursuits, &request)),
+            _ => has_lanes(width).then(|| pursue_all(self, pursuits, &request, width)),
+        }
     }
 
     /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; none where the processor has not so many.
@@ -65,21 +91,31 @@ impl Model {
 /// Those that cannot share their steps with others are run alone. No more than `most` lanes are used.
 fn run_all(models: &[Model], request: &Request, most: usize) -> Vec<Run> {
     let mut runs: Vec<Option<Run>> = models.iter().map(|_| None).collect();
-    let mut batched = Vec::new();
+    let mut shared = Vec::new();
     for (place, model) in models.iter().enumerate() {
         let unit = model.scales.unit();
         match form(model, &clock(model, unit)) {
             Form::Sine(drive) if model.compliant.is_none() && !model.motionless => {
-                batched.push(Prepared { model, equation: Equation::new(model, unit), drive, place });
+                shared.push((model, Equation::new(model, unit), drive, place));
             }
             _ => runs[place] = Some(model.run(request)),
         }
     }
+    let prepared = shared.iter().map(|(model, equation, drive, place)| Prepared {
+        model,
+        equation,
+        drive,
+        pursuit: None,
+        place: *place,
+    });
+    let mut batched: Vec<Prepared> = prepared.collect();
     // Motions of one order share their steps; tolerances differ only where a sweep is over them.
     batched.sort_by(|a, b| b.model.tolerance.total_cmp(&a.model.tolerance));
     for alike in batched.chunk_by(|a, b| a.model.tolerance == b.model.tolerance) {
         let watch = ThreadClock::start();
-        run_batch(alike, request, most, &mut runs);
+        run_batch(alike, request, most, &mut |place, motion, begun, outcome| {
+            runs[place] = Some(motion.finish(&models[place], begun, outcome));
+        });
         let share = watch.seconds() / alike.len() as f64;
         for own in alike {
             if let Some(run) = &mut runs[own.place] {
@@ -88,6 +124,29 @@ fn run_all(models: &[Model], request: &Request, most: usize) -> Vec<Run> {
         }
     }
     runs.into_iter().zip(models).map(|(run, model)| run.unwrap_or_else(|| model.run(request))).collect()
+}
+
+/// Pursues motions of one model; what each has come to, in their order.
+fn pursue_all(model: &Model, pursuits: &[Pursuit], request: &Request, most: usize) -> Vec<Arrival> {
+    let unit = model.scales.unit();
+    let drive = match form(model, &clock(model, unit)) {
+        Form::Sine(drive) if model.compliant.is_none() && pursuits.len() > 1 => drive,
+        _ => return pursue_alone(model, pursuits, request),
+    };
+    let equation = Equation::new(model, unit);
+    let prepared = pursuits.iter().enumerate().map(|(place, pursuit)| Prepared {
+        model,
+        equation: &equation,
+        drive: &drive,
+        pursuit: Some(pursuit),
+        place,
+    });
+    let prepared: Vec<Prepared> = prepared.collect();
+    let mut arrivals: Vec<Option<Arrival>> = pursuits.iter().map(|_| None).collect();
+    run_batch(&prepared, request, most, &mut |place, motion, begun, outcome| {
+        arrivals[place] = Some(motion.arrived(model, begun, outcome));
+    });
+    arrivals.into_iter().flatten().collect()
 }
 
 /// Whether the processor at hand has so many lanes.
@@ -103,7 +162,7 @@ fn has_lanes(width: usize) -> bool {
 }
 
 /// Runs models of one tolerance in as many lanes as the processor has, at most `most`.
-fn run_batch(prepared: &[Prepared], request: &Request, most: usize, runs: &mut [Option<Run>]) {
+fn run_batch(prepared: &[Prepared], request: &Request, most: usize, ended: &mut Ended) {
     debug_assert!(most >= 4, "every processor has 4 lanes");
     if prepared.len() == 1 {
         return; // alone
@@ -113,15 +172,15 @@ fn run_batch(prepared: &[Prepared], request: &Request, most: usize, runs: &mut [
         if most >= WIDEST
             && let Some(wide) = pulp::x86::V4::try_new()
         {
-            return wide.vectorize(Wide(Batch::<WIDEST>::new(prepared, request, runs)));
+            return wide.vectorize(Wide(Batch::<WIDEST>::new(prepared, request, ended)));
         }
         if most >= 8
             && let Some(wide) = pulp::x86::V3::try_new()
         {
-            return wide.vectorize(Wide(Batch::<8>::new(prepared, request, runs)));
+            return wide.vectorize(Wide(Batch::<8>::new(prepared, request, ended)));
         }
     }
-    Batch::<4>::new(prepared, request, runs).run();
+    Batch::<4>::new(prepared, request, ended).run();
 }
 
 /// What is run by instructions that not every processor has. (A type of its own and no closure: a closure's
@@ -149,7 +208,7 @@ struct Lane<'a> {
 struct Batch<'a, 'r, const W: usize> {
     prepared: &'a [Prepared<'a>],
     request: &'a Request<'a>,
-    runs: &'r mut [Option<Run>],
+    ended: &'r mut Ended<'r>,
     next: usize,
     lanes: [Option<Lane<'a>>; W],
     columns: Box<Columns<W>>,
@@ -160,12 +219,12 @@ struct Batch<'a, 'r, const W: usize> {
 }
 
 impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
-    fn new(prepared: &'a [Prepared<'a>], request: &'a Request<'a>, runs: &'r mut [Option<Run>]) -> Self {
+    fn new(prepared: &'a [Prepared<'a>], request: &'a Request<'a>, ended: &'r mut Ended<'r>) -> Self {
         let most = prepared.iter().map(|own| own.equation.most_products()).max().unwrap_or(0);
         let mut bundle = Self {
             prepared,
             request,
-            runs,
+            ended,
             next: 0,
             lanes: [const { None }; W],
             columns: Box::new(Columns::new()),
@@ -191,8 +250,11 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         self.lanes[lane] = self.prepared.get(self.next).map(|own| {
             let clock = clock(own.model, own.equation.unit);
             let (model, request) = (own.model, self.request);
-            let motion = Motion::new(model, request, model.tolerance, &own.equation, clock, &own.drive);
-            let mut motion = Box::new(motion.with_recurrence(model.recurrence, model));
+            let motion = Motion::new(model, request, model.tolerance, own.equation, clock, own.drive);
+            let mut motion = Box::new(match own.pursuit {
+                Some(pursuit) => motion.pursuing(pursuit, model),
+                None => motion.with_recurrence(model.recurrence, model),
+            });
             let begun = motion.begin(model);
             Lane { index: self.next, motion, begun }
         });
@@ -202,8 +264,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     /// Ends the run of a lane and takes up the next.
     fn end(&mut self, lane: usize, outcome: Outcome) {
         if let Some(Lane { index, motion, begun }) = self.lanes[lane].take() {
-            let own = &self.prepared[index];
-            self.runs[own.place] = Some(motion.finish(own.model, &begun, outcome));
+            (self.ended)(self.prepared[index].place, *motion, &begun, outcome);
         }
         self.start_next(lane);
     }

@@ -4,6 +4,7 @@ pub(crate) mod barrier;
 mod crossings;
 pub(crate) mod event_free;
 pub(crate) mod events;
+pub(crate) mod goal;
 pub(crate) mod laps;
 pub(crate) mod log;
 pub(crate) mod recorder;
