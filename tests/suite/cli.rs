@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod bad_input;
+mod basins;
 mod curve;
 mod flexure_numbers;
 mod flexures;

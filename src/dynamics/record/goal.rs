@@ -1,10 +1,7 @@
 //! Goal of a motion that is pursued: what it is found to go to.
 
-use super::recorder::Recorder;
 use super::regime::Judge;
-use crate::dynamics::clock::Instant;
-use crate::dynamics::result::{Arrival, Pursuit, ReleaseIdentity, Side};
-use crate::numeric::Scalar;
+use crate::dynamics::result::{Arrival, Pursuit};
 
 /// Stroboscopic states beyond two periods of a motion that must have come back.
 const MORE: u64 = 12;
@@ -13,7 +10,7 @@ const MORE: u64 = 12;
 #[derive(Debug)]
 pub(crate) struct Goal<'a> {
     pursuit: Pursuit<'a>,
-    reached: Option<Arrival>,
+    pub reached: Option<Arrival>,
 }
 
 impl<'a> Goal<'a> {
@@ -36,41 +33,17 @@ impl<'a> Goal<'a> {
             self.reached = period.map(|period| Arrival::Repeats { period, state, periods });
         }
     }
-}
 
-impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
-    /// Whether the motion has reached what it was pursued to.
-    #[inline]
-    pub fn has_arrived(&self) -> bool {
-        self.goal.as_ref().is_some_and(|goal| goal.reached.is_some())
-    }
-
-    /// What it has reached.
-    pub fn arrival(&mut self) -> Option<Arrival> {
-        self.goal.as_mut().and_then(|goal| goal.reached.take())
-    }
-
-    /// The mass was released with this identity; whether that is what was looked for.
-    pub fn released(&mut self, at: &Instant<T>, identity: ReleaseIdentity) -> bool {
-        let periods = self.periods_until(at);
-        let Some(goal) = &mut self.goal else { return false };
-        match goal.pursuit.releases.checked_sub(1) {
-            Some(left) => goal.pursuit.releases = left,
-            None => goal.reached = goal.reached.take().or(Some(Arrival::Released { identity, periods })),
-        }
-        true
-    }
-
-    /// The mass rests from `at` on, and will not be released.
-    pub fn rests_forever(&mut self, at: &Instant<T>, side: Side) {
-        let periods = self.periods_until(at);
-        if let Some(goal) = &mut self.goal {
-            goal.reached.get_or_insert(Arrival::Rests { side, periods });
+    /// A release; one that is not passed over ends the pursuit.
+    pub fn release(&mut self, arrival: Arrival) {
+        match self.pursuit.releases.checked_sub(1) {
+            Some(left) => self.pursuit.releases = left,
+            None => self.end(arrival),
         }
     }
 
-    /// The number of the first stroboscopic state from `at` on.
-    fn periods_until(&self, at: &Instant<T>) -> u64 {
-        self.in_periods(at).ceil().max(0.0) as u64
+    /// Ends the pursuit where nothing has yet.
+    pub fn end(&mut self, arrival: Arrival) {
+        self.reached.get_or_insert(arrival);
     }
 }

@@ -7,6 +7,7 @@ pub(crate) mod events;
 pub(crate) mod goal;
 pub(crate) mod laps;
 pub(crate) mod log;
+mod pursuit;
 pub(crate) mod recorder;
 mod regime;
 mod repeats;

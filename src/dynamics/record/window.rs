@@ -1,7 +1,6 @@
 //! The settled window of a record: its borders, the stroboscopic states within and before it, and the next
 //! one.
 
-use super::goal::Goal;
 use super::recorder::Recorder;
 use super::repeats::Strobe;
 use super::sums::Sums;
@@ -13,10 +12,7 @@ use crate::numeric::{CompensatedSum, Scalar};
 /// longest period that is looked for.
 pub(crate) const STILL: u32 = 32;
 
-/// Forcing periods of the settled window of a pursuit.
-const WINDOW: u64 = 100;
-
-impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
+impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     pub(crate) fn strobes<P: Path<T>>(&mut self, step: &StepView<T, P>) {
         while let Some(strobe) = self.next_strobe {
             let into = self.clock.between(&step.at, &strobe);
@@ -91,20 +87,6 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         };
         let (from, reached) = (seconds(from), seconds(reached));
         (from, reached.max(from))
-    }
-
-    /// Pursues a goal: stroboscopic states from time 0 on, and a settled window of some last periods before
-    /// `most`. The time at which that ends.
-    pub fn pursue(&mut self, goal: Goal<'a>, most: u64) -> Instant<T> {
-        let at = |period: u64| Instant { cycle: period as i64 * self.period_cycles, phase: T::zero() };
-        self.periods = most.min(WINDOW);
-        let from = most - self.periods;
-        self.window = (at(from), at(most));
-        self.origin = at(0);
-        self.next_strobe = Some(self.origin);
-        self.judge = self.judge.anew(self.periods, from);
-        self.goal = Some(goal);
-        self.window.1
     }
 
     /// The end of the settled window.

@@ -208,6 +208,6 @@ fn about(basins: &Basins, answer: &Answer) -> String {
         None => format!("{} random starts", answer.rows.len()),
     };
     let period = basins.model().forcing_period().filter(|_| basins.model().is_shaken());
-    let when = period.map_or_else(String::new, |_| ", at the drive's phase at time 0".to_owned());
-    format!("Where motions go: {counted}{when}; markers: the attractors at that phase")
+    let when = period.map_or_else(String::new, |_| " at time 0 of the drive".to_owned());
+    format!("Where motions go from {counted}{when}; markers: the attractors")
 }

@@ -42,8 +42,8 @@ pub enum NoBasins {
     Faults(Vec<Fault>),
     /// Its drive does not repeat.
     #[error(
-        "its excitation does not repeat, so there is no state once a period to compare; take a Sine, a Sum of \
-         sines whose frequencies have a common period, or None"
+        "its excitation does not repeat, so there is no state once a period to compare; take a Sine, a Sum \
+         of sines whose frequencies have a common period, or None"
     )]
     NoPeriod,
     /// It loses no energy.
@@ -187,8 +187,8 @@ fn loses_energy(scene: &Scene) -> bool {
         }
 }
 
-/// An excitation with a period that does the same, where the scene's has none because nothing in it moves: with
-/// a sine of amplitude 0 at the frequency of small oscillations.
+/// An excitation with a period that does the same, where the scene's has none because nothing in it moves:
+/// with a sine of amplitude 0 at the frequency of small oscillations.
 fn shaken(scene: &Scene, model: &Model) -> Option<Excitation> {
     if model.forcing_period().is_some() || !model.excitation().is_constant() {
         return None;

@@ -67,7 +67,10 @@ pub(super) fn find(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Optio
 }
 
 fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Found> {
-    let Some(root) = newton(scope, period, scope.point(state))? else { return Some(Found::Nothing) };
+    let Some(root) = newton(scope, period, scope.point(state))? else {
+        let departs = departs(scope, period, scope.point(state))?;
+        return Some(if departs { Found::Unstable(state) } else { Found::Nothing });
+    };
     let after: Vec<(Point, u32)> = (1..=period).map(|periods| (root, periods)).collect();
     let Some(states) = scope.map(&after)?.into_iter().collect::<Option<Vec<Point>>>() else {
         return Some(Found::Nothing);
@@ -88,6 +91,16 @@ fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Foun
 
 fn distance(a: &Point, b: &Point) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Whether a point comes back, and one beside it has come to rest meanwhile.
+fn departs(scope: &Stroboscope, period: u32, at: Point) -> Option<bool> {
+    let beside = [[DIFFERENCE, 0.0], [-DIFFERENCE, 0.0], [0.0, DIFFERENCE], [0.0, -DIFFERENCE]];
+    let beside = beside.map(|[x, v]| [at[0] + x, at[1] + v]).into_iter().filter(|own| scope.has(*own));
+    let starts: Vec<(Point, u32)> = [at].into_iter().chain(beside).map(|own| (own, period)).collect();
+    let images = scope.map(&starts)?;
+    let back = images[0].is_some_and(|image| distance(&image, &at) < SAME);
+    Some(back && images.iter().any(Option::is_none))
 }
 
 /// A fixed point of the map of `period` forcing periods near `from`.

@@ -1,4 +1,4 @@
-//! Absorbing regions: sets of cells of the plane of states around an irregular attractor that no motion leaves.
+//! Absorbing regions: cells of the plane of states around an irregular attractor that no motion leaves.
 //!
 //! The cells that long motions visit once a period, and their neighbours, are followed by the stroboscopic
 //! map: a cell into which a corner or the middle of another one is mapped is added, until none is missing.

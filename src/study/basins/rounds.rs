@@ -197,8 +197,8 @@ impl Rounds {
         Some(())
     }
 
-    /// Looks for a region around the irregular motion that an item was found to go to, which has a state. None
-    /// where it was cancelled.
+    /// Looks for a region around the irregular motion that an item was found to go to, which has this state.
+    /// None where it was cancelled.
     fn surround(&mut self, scope: &Stroboscope, item: Item, state: (f64, f64)) -> Option<()> {
         let fate = item.after.map_or(self.fates[item.row], |own| self.releases[own.0 as usize].next);
         let Fate::Kind(kind, _) = fate else { return Some(()) };
