@@ -6,6 +6,7 @@ use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Ink, Theme};
 use super::sweep::{BOTTOM, LEFT, MAX_PICTURE_CELLS, NoPicture, TOP};
+use crate::dynamics::Regime;
 use crate::numeric::short;
 use crate::study::{Answer, Attractor, Basins, Edges, Starts};
 
@@ -107,11 +108,11 @@ fn cells(
 ) {
     let (across, up) = (Edges::new(x_mm), Edges::new(v));
     let stand_in = standing(basins);
-    for column in 0..x_mm.len() {
+    for (column, x_mm) in x_mm.iter().enumerate() {
         let own = |row: usize| answer.rows[stand_in(column * v.len() + row)].map(|own| own.0);
         let all: Vec<Option<u32>> = (0..v.len()).map(own).collect();
         let (low, high) = basins.room();
-        let outside = x_mm[column] / 1e3 < low || x_mm[column] / 1e3 > high;
+        let outside = x_mm / 1e3 < low || x_mm / 1e3 > high;
         let mut row = 0;
         for run in all.chunk_by(|a, b| a == b) {
             let (left, right) = (frame.across(across.edges[column]), frame.across(across.edges[column + 1]));
@@ -166,7 +167,7 @@ fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, Stri
     named.sort_unstable();
     let mut entries: Vec<(Sample, String)> = Vec::new();
     for place in named {
-        let words = words(&answer.attractors[place], basins.starts().is_grid());
+        let words = words(place, &answer.attractors[place], basins.starts().is_grid());
         entries.push((Sample::Patch(ink(place), hatch(place)), words));
     }
     if more > 0 {
@@ -178,17 +179,20 @@ fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, Stri
     entries
 }
 
-/// An attractor in words, with its share; of random starts with its interval.
-fn words(own: &Attractor, is_grid: bool) -> String {
-    let mut words = match own.regime.name() {
-        "" => "one well".to_owned(),
-        name => name.to_owned(),
+/// An attractor in words, with its number and its share; of random starts with its interval.
+fn words(place: usize, own: &Attractor, is_grid: bool) -> String {
+    let regime = match own.regime.name() {
+        "" => "one well",
+        name => name,
     };
+    let mut words = format!("{} {regime}", place + 1);
     if let Some(side) = own.side.map(|side| side.name()).filter(|side| *side != "both") {
         words += &format!(" {side}");
     }
     if let Some(period) = own.period {
         words += &format!(", period {period}");
+    } else if own.regime == Regime::Intrawell {
+        words += ", no period";
     }
     let percent = |share: f64| short((1e3 * share).round() / 10.0);
     let share = &own.share;

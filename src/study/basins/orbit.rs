@@ -201,7 +201,7 @@ fn radius(scope: &Stroboscope, period: u32, at: Point, norm: &[f64; 3]) -> Optio
     };
     let whole = circles.chunks(AROUND).zip(images.chunks(AROUND));
     let good = whole.take_while(|(from, to)| from.iter().zip(*to).all(shrinks)).count();
-    Some(radii().take(good).last())
+    Some(good.checked_sub(1).and_then(|last| radii().nth(last)))
 }
 
 /// The ellipse of this radius in a norm, in SI.
