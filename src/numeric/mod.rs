@@ -3,6 +3,7 @@
 mod bisect;
 mod decimal;
 mod double_double;
+mod dual;
 pub mod fit;
 mod lanes;
 mod number;
@@ -19,6 +20,7 @@ mod sum;
 pub use bisect::bisect;
 pub use decimal::Decimal;
 pub use double_double::DoubleDouble;
+pub use dual::Dual;
 pub use lanes::Lanes;
 pub use number::Number;
 pub use quadrature::{GaussLegendre, MOST_POINTS, even_half};

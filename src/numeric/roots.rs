@@ -84,7 +84,13 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     /// Calls `visit` with every s in (0, 1] where the polynomial changes sign, in ascending order, until
     /// it returns false.
     pub fn each_sign_change(&self, mut visit: impl FnMut(T) -> bool) {
-        self.each_bracket(|low, high| visit(self.polish(low, high)));
+        self.each_bracket(|low, high| {
+            let root = self.polish(low, high);
+            visit(T::at_root(root, |s| {
+                let (value, slope, _) = self.expansion(s);
+                (value, slope)
+            }))
+        });
     }
 
     /// How often it changes sign in (0, 1]: what [`Self::each_sign_change`] visits, without locating it.

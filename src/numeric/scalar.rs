@@ -33,6 +33,19 @@ pub trait Scalar: Number + PartialOrd {
     /// The Gauss-Legendre rule of 1 to 20 points (clamped), made once.
     fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self>;
 
+    /// The root of a function that an iteration has found, with what this number type asks of it beyond the
+    /// iteration's last step.
+    #[inline(always)]
+    fn at_root(root: Self, _value_and_slope: impl FnOnce(Self) -> (Self, Self)) -> Self {
+        root
+    }
+
+    /// The magnitude by which the length of a step is chosen.
+    #[inline(always)]
+    fn magnitude(self) -> f64 {
+        self.to_f64().abs()
+    }
+
     /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool {
         self.to_f64().is_finite()

@@ -16,6 +16,9 @@ use assert_cmd::Command;
 use predicates::prelude::*;
 use predicates::str::contains;
 
+/// The words of all commands, in the order of `--help`.
+const COMMANDS: [&str; 7] = ["presets", "check", "curve", "simulate", "sweep", "threshold", "accuracy"];
+
 /// The program with these arguments, given in one line.
 pub fn plain(line: &str) -> Command {
     let mut command = assert_cmd::cargo::cargo_bin_cmd!("interwell");
@@ -65,10 +68,11 @@ fn without_headless_it_says_what_to_write() {
         let text = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
         assert!(text.contains("--headless") && text.lines().count() == 1, "{text}");
     }
-    for command in ["presets", "check", "curve", "simulate", "sweep", "threshold", "accuracy"] {
+    for command in COMMANDS {
         refused(plain(command), &["--headless", command]);
     }
-    refused(plain("--headless"), &["presets, check, curve, simulate, sweep, threshold or accuracy"]);
+    let (last, others) = COMMANDS.split_last().unwrap();
+    refused(plain("--headless"), &[&format!("{} or {last}", others.join(", "))]);
     refused(headless("swep"), &["`swep`", "sweep"]);
     refused(headless("sweep --bogus"), &["--bogus"]);
     refused(headless("check --plot a.png"), &["--plot"]);
@@ -78,8 +82,7 @@ fn without_headless_it_says_what_to_write() {
 #[test]
 fn help_and_version() {
     plain("--version").assert().success().stdout(format!("interwell {}\n", env!("CARGO_PKG_VERSION")));
-    let commands = ["presets", "check", "curve", "simulate", "sweep", "threshold", "accuracy"];
-    for word in commands.into_iter().chain(["Examples", "Exit status"]) {
+    for word in COMMANDS.into_iter().chain(["Examples", "Exit status"]) {
         plain("--help").assert().success().stdout(contains(word));
     }
     for word in ["--out", "--set", "--tolerance", "--jobs", "--quiet", "--over", "--plot", "--dark"] {

@@ -28,7 +28,15 @@ fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
 fn every_field_of_a_scene_is_documented_with_its_range() {
     // a field is declared as `name: Type,`, its range in the comment above
     let (mut fields, mut range) = (0, None);
-    let sources = [include_str!("../../src/scene/data.rs"), include_str!("../../src/scene/stops.rs")];
+    let sources = [
+        include_str!("../../src/scene/data.rs"),
+        include_str!("../../src/scene/mechanism.rs"),
+        include_str!("../../src/scene/stops.rs"),
+    ];
+    let dictionaries = ["scene.dict", "arguments.dict"].map(|name| {
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/dictionaries").join(name))
+            .unwrap()
+    });
     for line in
         sources.iter().flat_map(|text| text.split("#[cfg(test)]").next()).flat_map(str::lines).map(str::trim)
     {
@@ -48,6 +56,9 @@ fn every_field_of_a_scene_is_documented_with_its_range() {
             && name != "record"
         {
             fields += 1;
+            let known =
+                |text: &String| [": ", "="].iter().any(|end| text.contains(&format!("\"{name}{end}")));
+            assert!(dictionaries.iter().all(known), "fuzz/dictionaries do not hold `{name}`");
             let rows: Vec<&str> =
                 SCENE.lines().filter(|row| row.starts_with("| `") && says(row, name)).collect();
             assert!(!rows.is_empty(), "docs/scene.md has no row for `{name}`");

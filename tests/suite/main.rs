@@ -27,6 +27,7 @@ mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
 mod source_text;
+mod stroboscopic;
 mod studies;
 mod support;
 mod untrusted;

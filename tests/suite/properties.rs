@@ -7,6 +7,7 @@
 //!   listed, and its ledger closes to the tolerance (`sound`, `runs`);
 //! - its mirror image runs as its mirror image does, bit for bit (`mirror`, `runs`);
 //! - a stop that is never reached, samples, events, a ledger and threads change no bit (`runs`, `sweep`);
+//! - the determinant of its stroboscopic map is that of damping and impacts (`determinant`);
 //! - its error is at most a constant times its conditioning times its tolerance, plus rounding (`bound`);
 //! - nothing panics or goes on without end, and no number is silently not finite (`extremes`).
 //!
@@ -16,6 +17,7 @@
 //! and printed as a scene file, with the files that it names and with the seed.
 
 mod bound;
+mod determinant;
 mod extremes;
 mod harness;
 mod mechanisms;

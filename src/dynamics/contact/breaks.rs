@@ -23,7 +23,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let a = &self.stepper.series.a;
         let rates = [-(sign * (force + a[0])), -(sign * a[1]), -(sign * a[2])];
         let rounding = rounding + a[0].abs() * T::of(4.0 * T::EPSILON);
-        self.state.v = T::zero();
+        self.state.v += T::zero(); // makes a 0 of -0
         self.state.touch = Some(Touch { end, multiplicity: HELD });
         for (multiplicity, rate) in (BY_ACCELERATION..).zip(rates) {
             let size = if multiplicity == BY_ACCELERATION { rounding } else { T::zero() };

@@ -43,7 +43,7 @@ pub struct Model {
     pub(in crate::dynamics) crossing_level: Option<f64>,
     pub(in crate::dynamics) one_well: bool,
     /// Cycles of the clock in a forcing period.
-    cycles_per_period: i64,
+    pub(in crate::dynamics) cycles_per_period: i64,
     pub(in crate::dynamics) rhythm: Rhythm,
 }
 
@@ -164,7 +164,7 @@ impl Model {
     pub(crate) fn is_symmetric(&self) -> bool {
         let (left, right) = self.stops.map_or((None, None), |pair| (pair.left, pair.right));
         let alike = match (left, right) {
-            (Some(left), Some(right)) => left.x == -right.x && left.restitution == right.restitution,
+            (Some(left), Some(right)) => right == StopAt { x: -left.x, ..left },
             (None, None) => true,
             _ => false,
         };

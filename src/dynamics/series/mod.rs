@@ -167,7 +167,7 @@ impl<T: Scalar> Series<T> {
     #[inline]
     pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
         let [step] =
-            natural_steps(self.known - 1, |k| [self.y[k].to_f64()], &[speed_log2], tolerance_log2, &[cap]);
+            natural_steps(self.known - 1, |k| [self.y[k].magnitude()], &[speed_log2], tolerance_log2, &[cap]);
         step
     }
 

@@ -184,7 +184,7 @@ impl<T: Scalar> Penetration<T> {
         let first = self.order.saturating_sub(3).max(1);
         let mut radius = f64::INFINITY;
         for (k, c) in (first..).zip(&self.speed[first..=self.order]) {
-            let size = c.to_f64().abs();
+            let size = c.magnitude();
             if size > 1e-300 {
                 radius = radius.min((speed_log2 - fast_log2(size)) / k as f64);
             } else if !size.is_finite() {

@@ -103,14 +103,18 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if y.iter().rev().fold(zero, |gap, c| gap * flight - sign * *c) > zero {
             return None;
         }
-        let mut t = -(y[0] / y[1]);
-        for _ in 0..MOST_STEPS {
+        let gap = |t: T| {
             let (mut value, mut slope, mut bend) = (zero, zero, zero);
             for c in y.iter().rev() {
                 bend = bend * t + slope;
                 slope = slope * t + value;
                 value = value * t - sign * *c;
             }
+            (value, slope, bend)
+        };
+        let mut t = -(y[0] / y[1]);
+        for _ in 0..MOST_STEPS {
+            let (value, slope, bend) = gap(t);
             let newton = value / slope;
             let bend_share = newton * bend / slope;
             let change = newton + newton * bend_share;
@@ -120,7 +124,11 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             }
             let close = T::of(T::ROUGH);
             if change.abs() <= t * close && bend_share.abs() <= close {
-                return Some(t); // what is left is the third power of that
+                // what is left is the third power of that
+                return Some(T::at_root(t, |t| {
+                    let (value, slope, _) = gap(t);
+                    (value, slope)
+                }));
             }
         }
         None

@@ -1,0 +1,148 @@
+//! Derivatives of the map against finite differences in double-double arithmetic, on every kind of event.
+
+use std::sync::Arc;
+
+use super::{Jacobian, Kernel, StroboscopicMap};
+use crate::dynamics::model::Model;
+use crate::dynamics::result::EventKind;
+use crate::mechanics::{ForceCurve, Mechanism, Piece};
+use crate::numeric::{DoubleDouble, Number, Scalar};
+use crate::scene::{Document, Files};
+
+/// The model of a unit mass with these fields.
+fn model(fields: &str) -> Model {
+    let run = "run: (duration_s: 1, tolerance: 1e-13)";
+    let text = format!("(title: \"test\", mass_g: 1000, {fields}, start: At(x_mm: 0, v_m_per_s: 0), {run})");
+    let document = Document::from_text("test", &text, Files::default()).unwrap();
+    let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+    Model::build(&document.scene, Arc::new(mechanism)).unwrap()
+}
+
+/// The derivatives by central differences.
+fn differences(model: &Model, seconds: f64, (x, v): (f64, f64)) -> Jacobian {
+    let map = StroboscopicMap::over(&model.with_tolerance(1e-29), seconds);
+    let kernel = Kernel::<DoubleDouble>::new(&map.model);
+    let unit = model.scales.unit();
+    let dd = DoubleDouble::of;
+    // The error of a central difference is of the order of its square.
+    let step = dd(1e-9);
+    let end = |dx: DoubleDouble, dv: DoubleDouble| {
+        let start = (dd(x) + dx, (dd(v) + dv) * dd(unit));
+        let (x, v) = map.trace(&kernel, start, 1).end;
+        (x, v / dd(unit))
+    };
+    let zero = dd(0.0);
+    let slope = |(dx, dv): (DoubleDouble, DoubleDouble)| {
+        let (above, below) = (end(dx, dv), end(zero - dx, zero - dv));
+        let over = |a: DoubleDouble, b: DoubleDouble| ((a - b) / (step + step)).to_f64();
+        [over(above.0, below.0), over(above.1, below.1)]
+    };
+    let (by_x, by_v) = (slope((step, zero)), slope((zero, step)));
+    Jacobian { rows: [[by_x[0], by_v[0]], [by_x[1], by_v[1]]] }
+}
+
+/// Asserts that both agree to a share of the largest derivative, and that what must happen happens.
+#[track_caller]
+fn agree(fields: &str, seconds: f64, start: (f64, f64), must: &[EventKind], share: f64) {
+    let model = model(fields);
+    let (passage, own) = StroboscopicMap::over(&model, seconds).pass_with_jacobian(start, 1);
+    let other = differences(&model, seconds, start);
+    for kind in must {
+        assert!(passage.events.iter().any(|event| event.kind == *kind), "{kind:?} {:?}", passage.events);
+    }
+    let largest = other.rows.iter().flatten().fold(0.0_f64, |most, own| most.max(own.abs()));
+    for (own, other) in own.rows.iter().flatten().zip(other.rows.iter().flatten()) {
+        assert!((own - other).abs() <= share * largest, "{own:e} {other:e}, of {largest:e}");
+    }
+    if let Some(exact) = passage.determinant {
+        let rounding = share * largest * largest;
+        assert!((own.determinant() - exact).abs() <= rounding, "{} {exact}", own.determinant());
+    }
+}
+
+const WELL: &str = "mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1)";
+const SINE: &str = "excitation: Sine(frequency_hz: 0.2, amplitude_g: 0.05)";
+const DAMPED: &str = "damping: Coefficient(c_n_s_per_m: 0.2)";
+
+#[test]
+fn free_flight() {
+    agree(&format!("{WELL}, {SINE}, {DAMPED}"), 5.0, (0.4, -0.3), &[EventKind::Crossing], 1e-10);
+    let tones =
+        "Sum([Sine(frequency_hz: 0.2, amplitude_g: 0.05), Sine(frequency_hz: 0.3, amplitude_g: 0.02)])";
+    agree(&format!("{WELL}, excitation: {tones}, {DAMPED}"), 10.0, (0.4, -0.3), &[], 1e-9);
+}
+
+#[test]
+fn impacts() {
+    let stops = "stops: Rigid(travel_limit_mm: 800, restitution: 0.6)";
+    agree(&format!("{WELL}, {SINE}, {DAMPED}, {stops}"), 5.0, (0.1, 0.9), &[EventKind::Impact], 1e-10);
+    let uneven = "stops: Uneven(right_mm: 500, restitution_right: 1)";
+    agree(&format!("{WELL}, {SINE}, {uneven}"), 5.0, (0.1, 0.9), &[EventKind::Impact], 1e-10);
+}
+
+#[test]
+fn a_plastic_impact_that_leaves_at_once() {
+    // The constant acceleration of the base pulls the mass off its stop.
+    let fields = format!(
+        "{WELL}, excitation: Constant(accel_g: 0.2), {DAMPED}, \
+         stops: Rigid(travel_limit_mm: 800, restitution: 0)"
+    );
+    agree(&fields, 1.5, (0.1, 1.9), &[EventKind::Impact], 1e-10);
+}
+
+#[test]
+fn a_chatter_that_does_not_end_in_rest_by_then() {
+    let fields = format!(
+        "mechanism: Polynomial(coefficients_si: [-1]), {DAMPED}, \
+         stops: Uneven(right_mm: 100, restitution_right: 0.7)"
+    );
+    agree(&fields, 1.3, (0.0, 0.2), &[EventKind::Impact], 1e-9);
+}
+
+#[test]
+fn a_rest_forgets_where_it_came_from() {
+    let stops = "stops: Rigid(travel_limit_mm: 500, restitution: 0.3)";
+    let weak = "excitation: Sine(frequency_hz: 0.2, amplitude_g: 0.04)";
+    let model = model(&format!("{WELL}, {weak}, {DAMPED}, {stops}"));
+    for seconds in [4.0, 6.0, 20.0] {
+        let map = StroboscopicMap::over(&model, seconds);
+        let (passage, own) = map.pass_with_jacobian((0.3, 0.2), 1);
+        assert!(passage.rests() > 0);
+        assert_eq!((own.rows, passage.determinant), ([[0.0; 2]; 2], Some(0.0)), "{seconds}");
+    }
+}
+
+#[test]
+fn breaks_of_the_curve() {
+    // straight lines through (-1, 0), (0, 0.1), (1, 0), (2, 3)
+    let line = |origin: f64, force: f64, slope: f64| Piece {
+        origin,
+        coefficients: vec![force, slope],
+        potential_at_origin: 0.0,
+    };
+    let pieces = vec![line(-1.0, 0.0, 3.0), line(0.0, 0.1, 0.1), line(0.0, 0.1, -0.1), line(1.0, 0.0, 3.0)];
+    let infinity = f64::INFINITY;
+    let curve = ForceCurve::from_pieces(pieces, vec![-1.0, 0.0, 1.0], (-infinity, infinity), false, None);
+    let own = model(&format!("{WELL}, {SINE}, {DAMPED}"));
+    let model = Model { mechanism: Arc::new(Mechanism::new(curve)), ..own };
+    let start = (0.4, -0.9);
+    let (passage, own) = StroboscopicMap::over(&model, 6.0).pass_with_jacobian(start, 1);
+    assert!(passage.crossings() == 2 && passage.state.0 > 1.0, "{passage:?}");
+    let other = differences(&model, 6.0, start);
+    for (own, other) in own.rows.iter().flatten().zip(other.rows.iter().flatten()) {
+        assert!((own - other).abs() < 1e-10, "{own:e} {other:e}");
+    }
+}
+
+#[test]
+fn compliant_stops() {
+    let stops = |loss: &str| {
+        format!("stops: Hertz(travel_limit_mm: 500, stiffness_n_per_m1_5: 1e5, loss_s_per_m: {loss})")
+    };
+    let kinds = [EventKind::Contact, EventKind::Separate];
+    for loss in ["0", "0.4", "3"] {
+        agree(&format!("{WELL}, {SINE}, {DAMPED}, {}", stops(loss)), 2.0, (0.3, 0.6), &kinds, 1e-8);
+    }
+    // it ends within the contact
+    agree(&format!("{WELL}, {SINE}, {}", stops("0.4")), 0.33, (0.3, 0.6), &kinds[..1], 1e-8);
+}

@@ -1,0 +1,92 @@
+//! Derivatives of a state by an earlier one, and their eigenvalues.
+
+/// Derivatives of displacement and velocity (rows) by displacement and velocity at an earlier time (columns),
+/// in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jacobian {
+    /// By rows: the unit of the second column is s, that of the second row 1/s.
+    pub rows: [[f64; 2]; 2],
+}
+
+/// A complex number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Multiplier {
+    /// Real part.
+    pub re: f64,
+    /// Imaginary part.
+    pub im: f64,
+}
+
+impl Multiplier {
+    /// Magnitude.
+    pub fn magnitude(self) -> f64 {
+        self.re.hypot(self.im)
+    }
+}
+
+impl Jacobian {
+    /// No change.
+    pub const IDENTITY: Self = Self { rows: [[1.0, 0.0], [0.0, 1.0]] };
+
+    /// Determinant.
+    pub fn determinant(&self) -> f64 {
+        let [[a, b], [c, d]] = self.rows;
+        a * d - b * c
+    }
+
+    /// Trace.
+    pub fn trace(&self) -> f64 {
+        self.rows[0][0] + self.rows[1][1]
+    }
+
+    /// The derivatives of a change of this state by an earlier one, of which `earlier` are its derivatives.
+    #[must_use]
+    pub fn after(&self, earlier: &Self) -> Self {
+        let (own, other) = (&self.rows, &earlier.rows);
+        let entry = |i: usize, j: usize| own[i][0] * other[0][j] + own[i][1] * other[1][j];
+        Self { rows: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]] }
+    }
+
+    /// Eigenvalues, the larger magnitude first, of a pair of conjugates the one above the real axis. The
+    /// smaller real one is `determinant` over the larger: known apart, it keeps its digits however small it
+    /// is.
+    pub fn multipliers(&self, determinant: f64) -> [Multiplier; 2] {
+        let half = 0.5 * self.trace();
+        // (a - d)^2 / 4 + b c loses no digits where the eigenvalues are close
+        let [[a, b], [c, d]] = self.rows;
+        let discriminant = 0.25 * (a - d) * (a - d) + b * c;
+        if discriminant < 0.0 {
+            let im = (-discriminant).sqrt();
+            return [Multiplier { re: half, im }, Multiplier { re: half, im: -im }];
+        }
+        let larger = half + discriminant.sqrt().copysign(half);
+        let smaller = if larger == 0.0 { 0.0 } else { determinant / larger };
+        [Multiplier { re: larger, im: 0.0 }, Multiplier { re: smaller, im: 0.0 }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn eigenvalues_of_both_kinds() {
+        let real = Jacobian { rows: [[2.0, 1.0], [1.0, 2.0]] };
+        assert_eq!(
+            real.multipliers(real.determinant()).map(|own| (own.re, own.im)),
+            [(3.0, 0.0), (1.0, 0.0)]
+        );
+        let turned = Jacobian { rows: [[0.0, -0.5], [0.5, 0.0]] };
+        assert_eq!(
+            turned.multipliers(turned.determinant()).map(|own| (own.re, own.im)),
+            [(0.0, 0.5), (0.0, -0.5)]
+        );
+        assert!((turned.multipliers(0.25)[0].magnitude() - 0.5).abs() < 1e-15);
+        let nothing = Jacobian { rows: [[0.0, 0.0], [0.0, 0.0]] };
+        assert!(nothing.multipliers(0.0).iter().all(|own| own.magnitude() == 0.0));
+        let twice = real.after(&turned);
+        assert_eq!(twice.rows, [[0.5, -1.0], [1.0, -0.5]]);
+        let stiff = Jacobian { rows: [[-1e9, 0.0], [1e9, -1e-12]] };
+        assert_eq!(stiff.multipliers(1e-3).map(|own| own.re), [-1e9, -1e-12]);
+    }
+}

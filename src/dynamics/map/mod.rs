@@ -1,0 +1,138 @@
+//! Stroboscopic map: the state once a forcing period, and its derivatives through every event.
+//!
+//! The stepper is written for any number type. With [`Dual`] numbers a stretch of motion comes with the
+//! derivatives of its end by its beginning. Those of a step follow from the arithmetic of its series. The
+//! instant of an event is a root, and one step of Newton's method there gives its derivatives; what they make
+//! of the state at an impact is the saltation matrix (Müller 1995; Kong et al. 2024). A mass that rests has
+//! no derivatives left, since its release depends on the drive alone.
+
+#[cfg(test)]
+mod differences;
+mod jacobian;
+mod passage;
+
+use super::clock::{Clock, Instant};
+use super::drive::form::{Form, clock, form};
+use super::equation::Equation;
+use super::model::Model;
+use crate::numeric::{Dual, Scalar};
+
+pub use jacobian::{Jacobian, Multiplier};
+pub use passage::Passage;
+use passage::Traced;
+
+/// Equation, clock and drive of a model in numbers of one type.
+#[derive(Debug)]
+struct Kernel<T> {
+    equation: Equation<T>,
+    clock: Clock<T>,
+    drive: Form<T>,
+}
+
+impl<T: Scalar> Kernel<T> {
+    fn new(model: &Model) -> Self {
+        let unit = model.scales.unit();
+        let clock = clock(model, unit);
+        Self { equation: Equation::new(model, unit), drive: form(model, &clock), clock }
+    }
+}
+
+/// How long one application of the map takes.
+#[derive(Debug, Clone, Copy)]
+enum Length {
+    /// Cycles of the clock.
+    Cycles(i64),
+    /// Time in s.
+    Seconds(f64),
+}
+
+/// The map of a state to that one forcing period later.
+#[derive(Debug)]
+pub struct StroboscopicMap {
+    model: Model,
+    plain: Kernel<f64>,
+    dual: Kernel<Dual>,
+    /// Cycles of the clock up to the strobe, whole and not.
+    phase: (i64, f64),
+    length: Length,
+    /// Time in s that one application takes.
+    period: f64,
+}
+
+impl Model {
+    /// The map of the state at a phase of the drive, in forcing periods from 0 to 1, to that one forcing
+    /// period later. None where the drive has no period.
+    pub fn stroboscopic_map(&self, phase: f64) -> Option<StroboscopicMap> {
+        let period = self.forcing_period.filter(|_| self.repeats())?;
+        let cycles = self.cycles_per_period;
+        let turns = phase.rem_euclid(1.0) * cycles as f64;
+        Some(StroboscopicMap {
+            phase: (turns.floor() as i64, turns - turns.floor()),
+            length: Length::Cycles(cycles),
+            ..StroboscopicMap::over(self, period)
+        })
+    }
+}
+
+impl StroboscopicMap {
+    /// The map of the state at time 0 to that after `seconds`, whatever the drive.
+    pub fn over(model: &Model, seconds: f64) -> Self {
+        Self {
+            plain: Kernel::new(model),
+            dual: Kernel::new(model),
+            // nothing is judged, so that the settled window is empty
+            model: model.with_duration(seconds, seconds),
+            phase: (0, 0.0),
+            length: Length::Seconds(seconds),
+            period: seconds,
+        }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Time in s that one application takes: the forcing period.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// What becomes of a displacement in m and a velocity in m/s over so many forcing periods.
+    ///
+    /// A displacement beyond a stop or the curve is the caller's error: the motion then begins there.
+    pub fn pass(&self, (x, v): (f64, f64), periods: u32) -> Passage {
+        let unit = self.model.scales.unit();
+        self.trace(&self.plain, (x, v * unit), periods).passage
+    }
+
+    /// The same with the derivatives of the state at the end by that at the start. All are 0 where the mass
+    /// has rested on a stop. Some are infinite or not a number where it has touched one without speed. Those
+    /// of a mass that stands on a stop or a break of the curve are of one side alone.
+    pub fn pass_with_jacobian(&self, (x, v): (f64, f64), periods: u32) -> (Passage, Jacobian) {
+        let unit = self.model.scales.unit();
+        // Changes of the size of the scales, so that the length of a step suits them as it suits the state.
+        let scales = [self.model.scales.length, self.model.scales.speed * unit];
+        let start =
+            (Dual { value: x, slopes: [scales[0], 0.0] }, Dual { value: v * unit, slopes: [0.0, scales[1]] });
+        let Traced { passage, end } = self.trace(&self.dual, start, periods);
+        let in_si = [1.0, unit];
+        let row = |own: Dual, out: f64| std::array::from_fn(|j| own.slopes[j] / scales[j] * in_si[j] / out);
+        (passage, Jacobian { rows: [row(end.0, 1.0), row(end.1, unit)] })
+    }
+
+    fn trace<T: Scalar>(&self, kernel: &Kernel<T>, start: (T, T), periods: u32) -> Traced<T> {
+        let Kernel { equation, clock, drive } = kernel;
+        let from = Instant { cycle: self.phase.0, phase: T::of(self.phase.1) * clock.period() };
+        let to = match self.length {
+            Length::Cycles(cycles) => Instant { cycle: from.cycle + i64::from(periods) * cycles, ..from },
+            Length::Seconds(seconds) => clock.at(seconds * f64::from(periods)),
+        };
+        let span = (from, to);
+        match drive {
+            Form::Still(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
+            Form::Sine(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
+            Form::Composite(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
+        }
+    }
+}

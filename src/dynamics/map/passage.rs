@@ -1,0 +1,163 @@
+//! A stretch of motion between two strobes, and what happened on it.
+
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::drive::Drive;
+use crate::dynamics::equation::{End, EndKind, Equation};
+use crate::dynamics::model::Model;
+use crate::dynamics::motion::Motion;
+use crate::dynamics::record::barrier::side_of;
+use crate::dynamics::result::{Event, EventKind, Outcome, Request, Side};
+use crate::dynamics::state::{Contact, MotionState};
+use crate::numeric::{PolynomialRoots, Scalar};
+
+/// What happens between two strobes.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Passage {
+    /// Displacement in m and velocity in m/s at the end.
+    pub state: (f64, f64),
+    /// Events in order of time, in s from the start of the drive. A mass that is at rest on a stop from the
+    /// beginning has no event for that.
+    pub events: Vec<Event>,
+    /// Determinant of the map from the start to here, without integration: exp(-c t/m), times the squared
+    /// restitution of each impact, 0 where the mass has rested. None with compliant stops, whose loss depends
+    /// on the motion.
+    pub determinant: Option<f64>,
+    /// Smallest distance in m between a stop and a place where the mass turned back without touching it; none
+    /// where it never did.
+    pub nearest_miss: Option<f64>,
+    /// `Done`, or how the motion ended before.
+    pub outcome: Outcome,
+}
+
+impl Passage {
+    fn count(&self, kinds: [EventKind; 2]) -> u64 {
+        self.events.iter().filter(|event| kinds.contains(&event.kind)).count() as u64
+    }
+
+    /// Impacts, the contacts of compliant stops among them.
+    pub fn impacts(&self) -> u64 {
+        self.count([EventKind::Impact, EventKind::Contact])
+    }
+
+    /// Times the mass came to rest on a stop.
+    pub fn rests(&self) -> u64 {
+        self.count([EventKind::Rest; 2])
+    }
+
+    /// Crossings of the barrier.
+    pub fn crossings(&self) -> u64 {
+        self.count([EventKind::Crossing; 2])
+    }
+
+    /// Speed in m/s of the slowest impact; none without one.
+    pub fn gentlest_impact(&self) -> Option<f64> {
+        let hits = |event: &&Event| matches!(event.kind, EventKind::Impact | EventKind::Contact);
+        self.events.iter().filter(hits).map(|event| event.v_in.abs()).reduce(f64::min)
+    }
+
+    /// What happened at the stops, in order: impacts, rests and releases by side.
+    pub fn sequence(&self) -> impl Iterator<Item = (EventKind, Side)> {
+        let at_a_stop = |event: &&Event| event.kind != EventKind::Crossing;
+        self.events.iter().filter(at_a_stop).map(|event| (event.kind, event.side))
+    }
+}
+
+/// A passage, and the state at its end in kernel units.
+pub(super) struct Traced<T> {
+    pub passage: Passage,
+    pub end: (T, T),
+}
+
+/// Follows the motion from a state in kernel units at an instant to another.
+pub(super) fn trace<T: Scalar, D: Drive<T>>(
+    model: &Model,
+    equation: &Equation<T>,
+    clock: Clock<T>,
+    drive: &D,
+    (x, v): (T, T),
+    (from, to): (Instant<T>, Instant<T>),
+) -> Traced<T> {
+    let request = Request { events: true, ..Request::default() };
+    let mut motion = Motion::<T, D, false>::new(model, &request, model.tolerance, equation, clock, drive);
+    motion.stepper.end = to;
+    motion.record.next_strobe = None;
+    let mode = equation.mode_at(x, model.mechanism.curve.piece_index(x.to_f64()));
+    motion.state = MotionState { at: from, ..MotionState::new((x, v), mode, Contact::Free) };
+    motion.record.barrier_side = motion.record.barrier.map_or(0, |barrier| side_of(x, barrier));
+    motion.place_at_start();
+    if matches!(motion.state.contact, Contact::Resting(_)) {
+        motion.record.events = Some(Vec::new());
+        motion.state.v = T::zero();
+    }
+    let mut nearest_miss: Option<f64> = None;
+    let outcome = loop {
+        let left = motion.stepper.left(&motion.state);
+        if !(left > T::zero()) {
+            break Outcome::Done;
+        }
+        let (before, steps, sums) = (motion.state, motion.steps, motion.record.counts.sums);
+        let flow = motion.proceed(left);
+        let flown = before.contact == Contact::Free
+            && motion.steps > steps
+            && motion.record.counts.sums == sums
+            && flow.is_none();
+        if flown && let Some(miss) = miss(&motion, &before) {
+            nearest_miss = Some(nearest_miss.map_or(miss, |least| least.min(miss)));
+        }
+        if let Some(outcome) = flow.or_else(|| motion.spent()) {
+            break outcome;
+        }
+    };
+    let MotionState { at, x, v, .. } = motion.state;
+    let rested = motion.record.counts.rests > 0;
+    let events = motion.record.events.take().unwrap_or_default();
+    let time = clock.between(&from, &at).to_f64() * equation.unit;
+    let determinant = equation.compliant.is_none().then(|| match rested {
+        true => 0.0,
+        false => (-model.damping * time / model.mass).exp() * squared_restitutions(model, &events),
+    });
+    let state = (x.to_f64(), v.to_f64() / equation.unit);
+    Traced { passage: Passage { state, events, determinant, nearest_miss, outcome }, end: (x, v) }
+}
+
+/// The product of the squared restitution of each impact.
+fn squared_restitutions(model: &Model, events: &[Event]) -> f64 {
+    let restitution = |side: Side| {
+        let stop = model.stops.and_then(|pair| if side == Side::Left { pair.left } else { pair.right });
+        stop.map_or(1.0, |stop| stop.restitution)
+    };
+    let impacts = events.iter().filter(|event| event.kind == EventKind::Impact);
+    impacts.map(|event| restitution(event.side).powi(2)).product()
+}
+
+/// The smallest distance in m from a stop at which the mass turned back on the step that was just taken from
+/// the state `before`.
+fn miss<T: Scalar, D: Drive<T>>(motion: &Motion<'_, T, D, false>, before: &MotionState<T>) -> Option<f64> {
+    let mode = motion.stepper.mode(before);
+    let is_stop = |end: End| matches!(mode.end(end).1, EndKind::Stop | EndKind::Compliant);
+    if !is_stop(End::Low) && !is_stop(End::High) {
+        return None;
+    }
+    let series = &motion.stepper.series;
+    let length = motion.stepper.clock.between(&before.at, &motion.state.at).to_f64();
+    let (mut velocity, mut power) = (Vec::with_capacity(series.known), 1.0);
+    for (k, c) in series.y[..series.known].iter().enumerate().skip(1) {
+        velocity.push(k as f64 * c.to_f64() * power);
+        power *= length;
+    }
+    let mut least: Option<f64> = None;
+    let mut rises = velocity[0] > 0.0 || velocity[0] == 0.0 && velocity.get(1).is_some_and(|own| *own > 0.0);
+    PolynomialRoots::new(&velocity).each_sign_change(|s| {
+        let end = if rises { End::High } else { End::Low };
+        rises = !rises;
+        let t = s * length;
+        let y = series.y[..series.known].iter().rev().fold(0.0, |sum, c| sum * t + c.to_f64());
+        let gap = (mode.end(end).0.to_f64() - (mode.origin.to_f64() + y)).abs();
+        if s < 1.0 && gap > 0.0 && is_stop(end) {
+            least = Some(least.map_or(gap, |own| own.min(gap)));
+        }
+        true
+    });
+    least
+}

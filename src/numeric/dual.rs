@@ -1,0 +1,218 @@
+//! Dual numbers: a value with its derivatives by two quantities.
+//!
+//! A number x + x1 e1 + x2 e2 with e1^2 = e1 e2 = e2^2 = 0 (Clifford 1873). What is computed with such
+//! numbers comes with its derivatives, exact to rounding. The value is computed as in doubles alone, bit for
+//! bit, and decides every comparison.
+
+use std::cmp::Ordering;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+use super::double_double::DoubleDouble;
+use super::number::Number;
+use super::quadrature::{GaussLegendre, Rules};
+use super::scalar::Scalar;
+
+/// A value and its derivatives by two quantities.
+#[derive(Debug, Clone, Copy)]
+pub struct Dual {
+    /// The value.
+    pub value: f64,
+    /// Its derivatives.
+    pub slopes: [f64; 2],
+}
+
+impl Dual {
+    /// The derivatives of `a` times it and `b` times another number, `a` and `b` held.
+    #[inline(always)]
+    fn slopes_of(self, a: f64, other: Self, b: f64) -> [f64; 2] {
+        std::array::from_fn(|i| a * self.slopes[i] + b * other.slopes[i])
+    }
+}
+
+impl PartialEq for Dual {
+    fn eq(&self, other: &Self) -> bool {
+        self.value == other.value
+    }
+}
+
+impl PartialOrd for Dual {
+    #[inline(always)]
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        self.value.partial_cmp(&other.value)
+    }
+}
+
+impl Add for Dual {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self { value: self.value + o.value, slopes: self.slopes_of(1.0, o, 1.0) }
+    }
+}
+
+impl Sub for Dual {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self { value: self.value - o.value, slopes: self.slopes_of(1.0, o, -1.0) }
+    }
+}
+
+impl Mul for Dual {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        Self { value: self.value * o.value, slopes: self.slopes_of(o.value, o, self.value) }
+    }
+}
+
+impl Div for Dual {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        let (value, inverse) = (self.value / o.value, 1.0 / o.value);
+        Self { value, slopes: self.slopes_of(inverse, o, -(value * inverse)) }
+    }
+}
+
+impl Neg for Dual {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { value: -self.value, slopes: self.slopes.map(|slope| -slope) }
+    }
+}
+
+impl AddAssign for Dual {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+
+impl SubAssign for Dual {
+    #[inline(always)]
+    fn sub_assign(&mut self, o: Self) {
+        *self = *self - o;
+    }
+}
+
+impl Number for Dual {
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        Self { value, slopes: [0.0; 2] }
+    }
+    #[inline(always)]
+    fn ratio(over: f64, under: f64) -> Self {
+        Self::of(over / under)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        let slopes = if self.value < 0.0 { self.slopes.map(|slope| -slope) } else { self.slopes };
+        Self { value: self.value.abs(), slopes }
+    }
+}
+
+impl Scalar for Dual {
+    const EPSILON: f64 = f64::EPSILON;
+    const ROUGH: f64 = f64::ROUGH;
+
+    fn tau() -> Self {
+        Self::of(f64::tau())
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self.value
+    }
+    /// The value alone.
+    fn to_pair(self) -> DoubleDouble {
+        DoubleDouble::of(self.value)
+    }
+    fn of_pair(pair: DoubleDouble) -> Self {
+        Self::of(pair.to_f64())
+    }
+    fn floor(self) -> Self {
+        Self::of(self.value.floor())
+    }
+    /// That of 0 has no derivatives here.
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        let by = if root > 0.0 { 0.5 / root } else { 0.0 };
+        Self { value: root, slopes: self.slopes.map(|slope| slope * by) }
+    }
+    #[inline(always)]
+    fn sin_cos_turns(u: Self) -> (Self, Self) {
+        let (s, c) = f64::sin_cos_turns(u.value);
+        let angle = u.slopes.map(|slope| slope * std::f64::consts::TAU);
+        let sine = Self { value: s, slopes: angle.map(|own| c * own) };
+        (sine, Self { value: c, slopes: angle.map(|own| -s * own) })
+    }
+
+    /// The largest of value and derivatives, which change as fast where the value is small or 0; without
+    /// derivatives that are infinite, as those of a grazing impact.
+    #[inline(always)]
+    fn magnitude(self) -> f64 {
+        let all = self.slopes.iter().fold(self.value.abs(), |largest, slope| largest.max(slope.abs()));
+        if all.is_finite() { all } else { self.value.abs() }
+    }
+
+    fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self> {
+        static RULES: Rules<Dual> = Rules::new();
+        RULES.of(points)
+    }
+
+    /// An iteration ends when the value stands still, its derivatives possibly one step before: one more
+    /// step of Newton's method at the root gives theirs.
+    #[inline(always)]
+    fn at_root(root: Self, value_and_slope: impl FnOnce(Self) -> (Self, Self)) -> Self {
+        let (value, slope) = value_and_slope(Self::of(root.value));
+        Self { value: root.value, slopes: (-(value / slope)).slopes }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::PolynomialRoots;
+    use super::*;
+
+    fn near(a: f64, b: f64) -> bool {
+        (a - b).abs() <= 4e-15 * (1.0 + b.abs())
+    }
+
+    #[test]
+    fn derivatives_follow_the_rules_of_calculus() {
+        let x = Dual { value: 0.7, slopes: [1.0, 0.0] };
+        let y = Dual { value: -1.3, slopes: [0.0, 1.0] };
+        let check = |own: Dual, value: f64, by_x: f64, by_y: f64| {
+            assert_eq!(own.value, value);
+            assert!(near(own.slopes[0], by_x) && near(own.slopes[1], by_y), "{own:?} {by_x} {by_y}");
+        };
+        check(x + y, 0.7 + -1.3, 1.0, 1.0);
+        check(x - y, 0.7 - -1.3, 1.0, -1.0);
+        check(x * y, 0.7 * -1.3, -1.3, 0.7);
+        check(x / y, 0.7 / -1.3, -1.0 / 1.3, -0.7 / 1.69);
+        check(-x, -0.7, -1.0, 0.0);
+        check(y.abs(), 1.3, 0.0, -1.0);
+        check(x.sqrt(), 0.7_f64.sqrt(), 0.5 / 0.7_f64.sqrt(), 0.0);
+        let (s, c) = Dual::sin_cos_turns(x * y);
+        let tau = std::f64::consts::TAU;
+        let (sine, cosine) = f64::sin_cos_turns(0.7 * -1.3);
+        check(s, sine, cosine * tau * -1.3, cosine * tau * 0.7);
+        check(c, cosine, sine * tau * 1.3, -sine * tau * 0.7);
+    }
+
+    #[test]
+    fn a_root_comes_with_its_derivatives() {
+        // (s - a) (s^2 + b): the root is a, whatever b
+        for k in 1..40 {
+            let a = Dual { value: f64::from(k) / 41.0, slopes: [1.0, 0.0] };
+            let b = Dual { value: 0.4, slopes: [0.0, 1.0] };
+            let g = [-(a * b), b, -a, Dual::of(1.0)].map(|c| -c);
+            let root = PolynomialRoots::new(&g).first().unwrap();
+            assert!(near(root.value, a.value));
+            assert!((root.slopes[0] - 1.0).abs() < 1e-13 && root.slopes[1].abs() < 1e-13, "{root:?}");
+            let plain = g.map(|c| c.value);
+            assert_eq!(PolynomialRoots::new(&plain).first().unwrap().to_bits(), root.value.to_bits());
+        }
+    }
+}
