@@ -17,7 +17,7 @@ const EXAMPLES: &str = "\
 Examples:
   interwell --headless basins paper --x-mm -1.5:1.5:101 --v -0.5:0.5:101 --out basins.csv --plot basins.png
   interwell --headless basins duffing --x-mm -2000:2000:200 --v -2:2:200 --attractors - --out /dev/null
-  interwell --headless basins paper-unconstrained --x-mm -9:9 --v -0.5:0.5 --random 1000 --attractors -";
+  interwell --headless basins paper-unconstrained --x-mm -8:8 --v -0.5:0.5 --random 1000 --attractors -";
 
 /// What it takes.
 #[derive(Debug, Args)]
@@ -29,11 +29,11 @@ pub struct Arguments {
 
     /// Displacements in mm from which the mass starts: N from A to B, both included; A:B with --random
     #[arg(long, value_name = "A:B:N", allow_hyphen_values = true)]
-    pub x_mm: String,
+    pub x_mm: Option<String>,
 
     /// Velocities in m/s with which it starts, likewise
     #[arg(long, value_name = "A:B:N", allow_hyphen_values = true)]
-    pub v: String,
+    pub v: Option<String>,
 
     /// Draw so many starts uniformly from the two ranges A:B, in place of a grid: the shares of the
     /// attractors are then their basin stability
@@ -76,7 +76,9 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let basins = Basins::new(&document.scene, mechanism, starts);
     let mut basins = basins.map_err(|problem| match problem {
         NoBasins::Faults(faults) => document.error_from(faults).into(),
-        NoBasins::Beyond { .. } => Failure::argument(format!("--x-mm {}: {problem}", options.x_mm)),
+        NoBasins::Beyond { .. } => {
+            Failure::argument(format!("--x-mm {}: {problem}", options.x_mm.as_deref().unwrap_or("")))
+        }
         _ => Failure::argument(format!("{}: {problem}", document.name)),
     })?;
     let pool = pool(common)?;
@@ -148,11 +150,18 @@ fn told(answer: &Answer, count: u64, seconds: f64) -> String {
     text
 }
 
+/// How values are given.
+const AS_EVEN: &str = "write A:B:N, the first value, the last and how many, such as -5:5:101";
+
 /// The starts that were asked for.
 fn starts(options: &Arguments) -> Result<Starts, Failure> {
-    let texts = [("--x-mm", &options.x_mm), ("--v", &options.v)];
+    let given = |option: &'static str, text: &Option<String>| {
+        let missing = || Failure::argument(format!("{option} is missing: {AS_EVEN}"));
+        text.clone().map(|text| (option, text)).ok_or_else(missing)
+    };
+    let texts = [given("--x-mm", &options.x_mm)?, given("--v", &options.v)?];
     let Some(text) = &options.random else {
-        let [x_mm, v] = texts.map(|(option, text)| even(option, text));
+        let [x_mm, v] = texts.map(|(option, text)| even(option, &text));
         let (x_mm, v) = (x_mm?, v?);
         return Starts::grid(&x_mm, &v).map_err(|problem| wrong("--x-mm and --v", "", &problem));
     };
@@ -164,12 +173,12 @@ fn starts(options: &Arguments) -> Result<Starts, Failure> {
     let count = whole("--random", text)?;
     let seed = options.seed.as_deref().map_or(Ok(0), |text| whole("--seed", text))?;
     let [x_mm, v] = texts.map(|(option, text)| {
-        let ends = numbers(option, text)?;
+        let ends = numbers(option, &text)?;
         let [from, to] = ends[..] else {
             let message = "with --random write A:B; --random says how many";
             return Err(Failure::argument(format!("{option} {text}: {message}")));
         };
-        Starts::random((from, to), (0.0, 0.0), 1, 0).map_err(|problem| wrong(option, text, &problem))?;
+        Starts::random((from, to), (0.0, 0.0), 1, 0).map_err(|problem| wrong(option, &text, &problem))?;
         Ok((from, to))
     });
     Starts::random(x_mm?, v?, count, seed).map_err(|problem| wrong("--random", text, &problem))
@@ -185,13 +194,12 @@ fn numbers(option: &str, text: &str) -> Result<Vec<f64>, Failure> {
 
 /// The values `A:B:N` as given to `option`.
 fn even(option: &str, text: &str) -> Result<EvenRange, Failure> {
-    let message = "write A:B:N, the first value, the last and how many, such as -5:5:101";
     let parts: Vec<&str> = text.split(':').map(str::trim).collect();
     let [_, _, count] = parts[..] else {
-        return Err(Failure::argument(format!("{option} {text}: {message}")));
+        return Err(Failure::argument(format!("{option} {text}: {AS_EVEN}")));
     };
     let Ok(count) = count.parse::<u64>() else {
-        return Err(Failure::argument(format!("{option} {text}: N is not a whole number; {message}")));
+        return Err(Failure::argument(format!("{option} {text}: N is not a whole number; {AS_EVEN}")));
     };
     let ends = numbers(option, text)?;
     let range = EvenRange { from: ends[0], to: ends[1], count };

@@ -45,7 +45,7 @@ fn well(rest: &str) -> Document {
 }
 
 /// The states of the attractor of a row.
-fn attractor<'a>(answer: &'a Answer, row: usize) -> &'a Attractor {
+fn attractor(answer: &Answer, row: usize) -> &Attractor {
     &answer.attractors[answer.rows[row].unwrap().0 as usize - 1]
 }
 

@@ -17,7 +17,8 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 7] = ["presets", "check", "curve", "simulate", "sweep", "threshold", "accuracy"];
+const COMMANDS: [&str; 8] =
+    ["presets", "check", "curve", "simulate", "sweep", "threshold", "basins", "accuracy"];
 
 /// The program with these arguments, given in one line.
 pub fn plain(line: &str) -> Command {

@@ -6,20 +6,15 @@
 //! everything; without a solution the orbit is unstable, as that of a transient near a saddle is. How far
 //! from the orbit the map itself shrinks in that norm is then measured, on circles of growing radius, and the
 //! largest one up to which all do is the ellipse: every motion that enters it goes to the orbit.
-//!
-//! The Jacobian is taken by differences of runs; errors of these reach the norm alone, which is measured.
 
 use super::stroboscopic::Stroboscope;
-use crate::dynamics::Capture;
+use crate::dynamics::{Capture, Jacobian, Outcome};
 
 /// A displacement and a velocity in units of the scene's scales.
 type Point = [f64; 2];
 
 /// Two rows.
 type Matrix = [[f64; 2]; 2];
-
-/// Share of the scales by which a start is moved for a difference.
-const DIFFERENCE: f64 = 1e-5;
 
 /// Steps of Newton's method, the longest of one, and the one that ends it, in units of the scales.
 const MOST_STEPS: usize = 12;
@@ -67,10 +62,7 @@ pub(super) fn find(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Optio
 }
 
 fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Found> {
-    let Some(root) = newton(scope, period, scope.point(state))? else {
-        let departs = departs(scope, period, scope.point(state))?;
-        return Some(if departs { Found::Unstable(state) } else { Found::Nothing });
-    };
+    let Some(root) = newton(scope, period, scope.point(state)) else { return Some(Found::Nothing) };
     let after: Vec<(Point, u32)> = (1..=period).map(|periods| (root, periods)).collect();
     let Some(states) = scope.map(&after)?.into_iter().collect::<Option<Vec<Point>>>() else {
         return Some(Found::Nothing);
@@ -81,7 +73,7 @@ fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Foun
     let mut orbit = vec![root];
     orbit.extend_from_slice(&states[..period as usize - 1]);
     for own in orbit {
-        let Some((_, jacobian)) = jacobian(scope, period, own)? else { return Some(Found::Nothing) };
+        let Some((_, jacobian)) = jacobian(scope, period, own) else { return Some(Found::Nothing) };
         let Some(norm) = lyapunov(&jacobian) else { return Some(Found::Unstable(scope.state(root))) };
         let Some(radius) = radius(scope, period, own, &norm)? else { return Some(Found::Nothing) };
         captures.push(capture(scope, own, &norm, radius));
@@ -93,21 +85,11 @@ fn distance(a: &Point, b: &Point) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// Whether a point comes back, and one beside it has come to rest meanwhile.
-fn departs(scope: &Stroboscope, period: u32, at: Point) -> Option<bool> {
-    let beside = [[DIFFERENCE, 0.0], [-DIFFERENCE, 0.0], [0.0, DIFFERENCE], [0.0, -DIFFERENCE]];
-    let beside = beside.map(|[x, v]| [at[0] + x, at[1] + v]).into_iter().filter(|own| scope.has(*own));
-    let starts: Vec<(Point, u32)> = [at].into_iter().chain(beside).map(|own| (own, period)).collect();
-    let images = scope.map(&starts)?;
-    let back = images[0].is_some_and(|image| distance(&image, &at) < SAME);
-    Some(back && images.iter().any(Option::is_none))
-}
-
 /// A fixed point of the map of `period` forcing periods near `from`.
-fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Option<Point>> {
+fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Point> {
     let mut point = from;
     for _ in 0..MOST_STEPS {
-        let Some((image, [[a, b], [c, d]])) = jacobian(scope, period, point)? else { return Some(None) };
+        let (image, [[a, b], [c, d]]) = jacobian(scope, period, point)?;
         let (a, d, rest) = (a - 1.0, d - 1.0, [point[0] - image[0], point[1] - image[1]]);
         let determinant = a * d - b * c;
         let step = [(d * rest[0] - b * rest[1]) / determinant, (a * rest[1] - c * rest[0]) / determinant];
@@ -117,33 +99,19 @@ fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Option<Point>
         }
         point = [point[0] + step[0], point[1] + step[1]];
         if length < LAST_STEP {
-            return Some(Some(point));
+            return Some(point);
         }
     }
-    Some(None)
+    None
 }
 
-/// The image of a point and the derivative of the map there by central differences, of first order at a stop.
-fn jacobian(scope: &Stroboscope, period: u32, at: Point) -> Option<Option<(Point, Matrix)>> {
-    let beside = |axis: usize, by: f64| {
-        let mut own = at;
-        own[axis] += by;
-        if scope.has(own) { own } else { at }
-    };
-    let (high, low) =
-        ([0, 1].map(|axis| beside(axis, DIFFERENCE)), [0, 1].map(|axis| beside(axis, -DIFFERENCE)));
-    if !scope.has(at) || high.iter().zip(&low).any(|(high, low)| high == low) {
-        return Some(None);
-    }
-    let starts = [at, high[0], low[0], high[1], low[1]].map(|own| (own, period));
-    let Some(images) = scope.map(&starts)?.into_iter().collect::<Option<Vec<Point>>>() else {
-        return Some(None);
-    };
-    let slope = |row: usize, axis: usize| {
-        let (above, below) = (images[1 + 2 * axis][row], images[2 + 2 * axis][row]);
-        (above - below) / (high[axis][axis] - low[axis][axis])
-    };
-    Some(Some((images[0], [[slope(0, 0), slope(0, 1)], [slope(1, 0), slope(1, 1)]])))
+/// The image of a point and the derivative of the map there, in units of the scales; none where the motion
+/// ends early.
+fn jacobian(scope: &Stroboscope, period: u32, at: Point) -> Option<(Point, Matrix)> {
+    let ((length, speed), map) = (scope.units(), scope.model.stroboscopic_map(0.0)?);
+    let (passage, Jacobian { rows: [[a, b], [c, d]] }) = map.pass_with_jacobian(scope.state(at), period);
+    let whole = scope.has(at) && passage.outcome == Outcome::Done;
+    whole.then(|| (scope.point(passage.state), [[a, b * speed / length], [c * length / speed, d]]))
 }
 
 /// M = sum of (J^k)^T J^k over all k from 0 on, where the sum is finite: a, b and c of the rows (a, b) and
