@@ -17,7 +17,7 @@ const EXAMPLES: &str = "\
 Examples:
   interwell --headless basins paper --x-mm -1.5:1.5:101 --v -0.5:0.5:101 --out basins.csv --plot basins.png
   interwell --headless basins duffing --x-mm -2000:2000:200 --v -2:2:200 --attractors - --out /dev/null
-  interwell --headless basins paper-unconstrained --x-mm -8:8 --v -0.5:0.5 --random 1000 --attractors -";
+  interwell --headless basins paper-unconstrained --x-mm -8:8 --v -0.5:0.5 --random 1000 --out starts.csv";
 
 /// What it takes.
 #[derive(Debug, Args)]
