@@ -1,6 +1,7 @@
 //! The command line: reads arguments, runs a study, writes its table. Nothing is computed here.
 
 mod accuracy;
+mod basins;
 mod check;
 mod curve;
 mod failure;

@@ -6,6 +6,7 @@
 
 pub mod accuracy;
 mod amplitudes;
+mod basins;
 mod cell;
 mod cells;
 mod contact;
@@ -36,6 +37,7 @@ mod watch;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use amplitudes::{Thresholds, stops_that_cross, thresholds};
+pub use basins::{Answer, Attractor, Basins, EvenRange, MAX_STARTS, NoBasins, Shares, Starts, StartsError};
 pub use cell::{Cell, CellFaults, SweepEnd, Tally};
 pub use cells::Direction;
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod bad_input;
+mod basins;
 mod curve;
 mod flexure_numbers;
 mod flexures;
@@ -17,8 +18,18 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 9] =
-    ["presets", "check", "curve", "simulate", "sweep", "section", "threshold", "spectrum", "accuracy"];
+const COMMANDS: [&str; 10] = [
+    "presets",
+    "check",
+    "curve",
+    "simulate",
+    "sweep",
+    "section",
+    "threshold",
+    "spectrum",
+    "basins",
+    "accuracy",
+];
 
 /// The program with these arguments, given in one line.
 pub fn plain(line: &str) -> Command {

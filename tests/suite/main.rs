@@ -3,6 +3,7 @@
 mod absent;
 mod accuracy;
 mod accuracy_scene;
+mod basins;
 #[path = "../../benches/by_hand/mod.rs"]
 mod by_hand;
 mod cli;

@@ -95,6 +95,12 @@ impl Model {
         Self { tolerance, ..self.clone() }
     }
 
+    /// The same model with another start, displacement in m and velocity in m/s, and the scales that it has.
+    /// Precondition: the start lies in the curve and between the stops.
+    pub fn with_start(&self, start: (f64, f64)) -> Self {
+        Self { start, motionless: false, ..self.clone() }
+    }
+
     /// The same model with recurrence on or off.
     pub fn with_recurrence(&self, recurrence: bool) -> Self {
         Self { recurrence, ..self.clone() }

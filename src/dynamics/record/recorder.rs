@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use super::barrier::side_of;
+use super::goal::Goal;
 use super::listing::{Listings, MOST_STROBES};
 use super::regime::Judge;
 use super::sums::{Counts, Sums};
@@ -41,6 +42,8 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     /// -1, 0 (on it since the start) or 1.
     pub barrier_side: i8,
     pub judge: Judge,
+    /// What the motion is followed to, where it is pursued.
+    pub goal: Option<Goal<'a>>,
     /// The first instant of the run at the window's phase.
     pub origin: Instant<T>,
     pub next_strobe: Option<Instant<T>>,
@@ -111,6 +114,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             barrier,
             barrier_side: side,
             judge: Judge::new(model.rhythm, scales, periods, first),
+            goal: None,
             origin,
             next_strobe: (periods > 0).then_some(origin),
             listings: Listings::new(request, &clock, from, (periods, cycles), model.start_phase),

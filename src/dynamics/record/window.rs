@@ -37,6 +37,9 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         }
         let state = Strobe { x: x.to_f64(), v: v.to_f64() / self.unit };
         self.judge.strobe(state, self.settled.squared_velocity.value().to_f64(), self.counts.crossings);
+        if let Some(goal) = &mut self.goal {
+            goal.strobe(&self.judge, (state.x, state.v));
+        }
     }
 
     /// Passes over stroboscopic states of a mass that stands still up to `until`, all like the last ones, but

@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod axis;
+mod basins;
 mod contact;
 mod curve;
 mod figure;
@@ -27,6 +28,7 @@ use std::path::Path;
 
 pub use accuracy::accuracy_figure;
 pub use axis::{PlotAxis, Ranges};
+pub use basins::{basins_figure, can_show_starts};
 pub use contact::contact_figure;
 pub use curve::curve_figure;
 pub use figure::Figure;

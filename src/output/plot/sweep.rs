@@ -36,6 +36,9 @@ pub enum NoPicture {
         "--plot shows at most {MAX_PICTURE_CELLS} cells, not {0}: take longer steps, or sweep without --plot"
     )]
     Cells(u64),
+    /// More starts than a picture tells apart.
+    #[error("--plot shows at most {MAX_PICTURE_CELLS} starts, not {0}: take fewer, or leave --plot out")]
+    Starts(u64),
     /// No column that can be shown.
     #[error("--quantity {asked}: the rows have no such column to show; they have: {known}")]
     Quantity {
