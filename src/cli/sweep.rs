@@ -97,7 +97,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
 
-    let bar = bar(sweep.rows(), common.quiet, common.out());
+    let bar = bar(sweep.rows(), "cells", common.quiet, common.out());
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let watch = Watch::start();
     let result = (|| {
@@ -122,20 +122,23 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let tally = result?;
     if let Some((picture, rows)) = picture.zip(shown) {
         let grid = sweep.grid();
-        let overlay = Overlay {
-            release: mechanism.and_then(|own| release_line(&document.scene, &own, grid)),
-            first_crossing: first_crossing(grid, &rows),
+        // They are about runs from rest.
+        let overlay = match carry {
+            Some(_) => Overlay::default(),
+            None => Overlay {
+                release: mechanism.and_then(|own| release_line(&document.scene, &own, grid)),
+                first_crossing: first_crossing(grid, &rows),
+            },
         };
         let (rows, scene, quantity) = (&rows, &document.scene, &*options.quantity);
         let shown = SweepPicture { rows, grid, scene, quantity, overlay, ranges: axes };
         picture.write(&mut sinks[1], sweep_figure(&shown, &caption(&document), picture.theme)?)?;
     }
     if sinks[2].is_some() {
-        let data =
-            common.out().file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let data = file_name(common.out());
         let grid = sweep.grid();
         let origin = watch.origin(pool.count());
-        let text = manifest(&document, grid, &tally, &origin, &data);
+        let text = manifest(("sweep", &document), grid, &tally, &origin, &data);
         write_text(&mut sinks[2], &text)?;
     }
     finish(sinks)?;
@@ -202,12 +205,17 @@ fn first_mechanism(document: &Document, sweep: &Sweep) -> Result<Option<Arc<Mech
 }
 
 /// Where the manifest of the rows at `out` goes: beside them, where they are a regular file.
-fn manifest_path(out: &Path) -> Option<PathBuf> {
+pub fn manifest_path(out: &Path) -> Option<PathBuf> {
     is_regular(out).then(|| {
         let mut name = out.as_os_str().to_owned();
         name.push(".json");
         name.into()
     })
+}
+
+/// The name of the file with the rows.
+pub fn file_name(out: &Path) -> String {
+    out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
 /// As many threads as were asked for.
@@ -222,16 +230,17 @@ pub fn located(document: &Document, cell: interwell::study::CellFaults) -> Failu
     wrong_cell(&cell, error)
 }
 
-/// A bar with rate and time left, where standard error is a terminal that the rows do not go to too.
-fn bar(cells: u64, quiet: bool, out: &Path) -> ProgressBar {
+/// A bar of so many parts, called `unit`, with rate and time left, where standard error is a terminal that
+/// the rows do not go to too.
+pub fn bar(parts: u64, unit: &str, quiet: bool, out: &Path) -> ProgressBar {
     let rows_on_terminal = out == Path::new("-") && std::io::stdout().is_terminal();
     if quiet || rows_on_terminal || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let template = "{wide_bar} {human_pos}/{human_len} cells  {rate}  {eta} left";
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {unit}  {{rate}}  {{eta}} left");
+    let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
         let _ = write!(text, "{:.0}/s", state.per_sec());
     };
-    ProgressBar::new(cells).with_style(style.with_key("rate", rate))
+    ProgressBar::new(parts).with_style(style.with_key("rate", rate))
 }

@@ -6,6 +6,7 @@
 
 pub mod accuracy;
 mod amplitudes;
+mod basins;
 mod cell;
 mod cells;
 mod contact;
@@ -22,8 +23,10 @@ mod map;
 mod models;
 mod orbit;
 mod push;
+mod section;
 mod settled;
 mod simulate;
+mod spectrum;
 mod sweep;
 mod table;
 mod thresholds;
@@ -35,6 +38,7 @@ mod watch;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use amplitudes::{Thresholds, stops_that_cross, thresholds};
+pub use basins::{Answer, Attractor, Basins, EvenRange, MAX_STARTS, NoBasins, Shares, Starts, StartsError};
 pub use cell::{Cell, CellFaults, SweepEnd, Tally};
 pub use cells::Direction;
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
@@ -55,8 +59,10 @@ pub use models::Held;
 pub use orbit::{
     Branch, BranchEnd, BranchEvent, Family, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table,
 };
+pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use settled::{Standing, lasts, settled, standing};
 pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};
+pub use spectrum::{NoSpectrum, Signal, Spectrum, SpectrumOptions, spectrum};
 pub use sweep::{DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepOptions};
 pub use table::{Column, Table, Values};
 pub use thresholds::{Found, Onset, Scan, threshold, threshold_table};

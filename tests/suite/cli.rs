@@ -2,11 +2,13 @@
 
 mod accuracy;
 mod bad_input;
+mod basins;
 mod curve;
 mod flexure_numbers;
 mod flexures;
 mod options;
 mod outputs;
+mod section;
 mod simulate;
 mod sweep;
 mod verdicts;
@@ -16,7 +18,18 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 7] = ["presets", "check", "curve", "simulate", "sweep", "threshold", "accuracy"];
+const COMMANDS: [&str; 10] = [
+    "presets",
+    "check",
+    "curve",
+    "simulate",
+    "sweep",
+    "section",
+    "threshold",
+    "spectrum",
+    "basins",
+    "accuracy",
+];
 
 /// The program with these arguments, given in one line.
 pub fn plain(line: &str) -> Command {
@@ -48,7 +61,7 @@ pub fn refused(mut command: Command, words: &[&str]) {
     }
 }
 
-fn column(csv: &str, name: &str) -> Vec<String> {
+pub fn column(csv: &str, name: &str) -> Vec<String> {
     let mut lines = csv.lines();
     let place = lines.next().unwrap().split(',').position(|own| own == name).unwrap();
     lines.map(|line| line.split(',').nth(place).unwrap().to_owned()).collect()

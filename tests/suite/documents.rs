@@ -106,6 +106,11 @@ fn every_column_and_word_of_the_output_is_documented() {
         "curve paper --out /dev/null --shapes - --points 3".to_owned(),
         format!("curve paper --out /dev/null --contact - {hertz}"),
         "threshold paper --of release".to_owned(),
+        "spectrum paper --rate-hz 30 --quiet".to_owned(),
+        "section paper --over excitation.amplitude_g=1 --carry up --quiet".to_owned(),
+        "section paper --at impacts".to_owned(),
+        "basins paper --x-mm 0:1:2 --v 0:0:1 --quiet".to_owned(),
+        "basins paper --x-mm 0:1:2 --v 0:0:1 --quiet --out /dev/null --attractors -".to_owned(),
         "accuracy --case grazing --out - --quiet".to_owned(),
         "accuracy nominal-cubic --out - --quiet".to_owned(),
         "sweep paper --over excitation.amplitude_g=1 --columns all --out - --quiet".to_owned(),
@@ -134,10 +139,15 @@ fn the_keys_of_a_manifest_are_documented() {
     let folder = tempfile::tempdir().unwrap();
     let data = folder.path().join("map.csv");
     headless("sweep paper --over excitation.amplitude_g=1 --quiet --out").arg(&data).assert().success();
-    let text = fs::read_to_string(folder.path().join("map.csv.json")).unwrap();
-    let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
-    for key in manifest.as_object().unwrap().keys() {
-        assert!(says(OUTPUT, key), "docs/output.md does not say `{key}`");
+    let starts = folder.path().join("starts.csv");
+    let line = "basins paper --x-mm 0:1:2 --v 0:0:1 --quiet --out";
+    headless(line).arg(&starts).assert().success();
+    for name in ["map.csv.json", "starts.csv.json"] {
+        let text = fs::read_to_string(folder.path().join(name)).unwrap();
+        let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
+        for key in manifest.as_object().unwrap().keys() {
+            assert!(says(OUTPUT, key), "docs/output.md does not say `{key}` of {name}");
+        }
     }
 }
 

@@ -109,7 +109,13 @@ impl StroboscopicMap {
     /// A displacement beyond a stop or the curve is the caller's error: the motion then begins there.
     pub fn pass(&self, (x, v): (f64, f64), periods: u32) -> Passage {
         let unit = self.model.scales.unit();
-        self.trace(&self.plain, (x, v * unit), periods).passage
+        self.trace(&self.plain, (x, v * unit), f64::from(periods)).passage
+    }
+
+    /// The same over a part of the forcing period, from 0 to 1.
+    pub fn pass_part(&self, (x, v): (f64, f64), part: f64) -> Passage {
+        let unit = self.model.scales.unit();
+        self.trace(&self.plain, (x, v * unit), part).passage
     }
 
     /// The same with the derivatives of the state at the end by that at the start. All are 0 where the mass
@@ -121,18 +127,22 @@ impl StroboscopicMap {
         let scales = [self.model.scales.length, self.model.scales.speed * unit];
         let start =
             (Dual { value: x, slopes: [scales[0], 0.0] }, Dual { value: v * unit, slopes: [0.0, scales[1]] });
-        let Traced { passage, end } = self.trace(&self.dual, start, periods);
+        let Traced { passage, end } = self.trace(&self.dual, start, f64::from(periods));
         let in_si = [1.0, unit];
         let row = |own: Dual, out: f64| std::array::from_fn(|j| own.slopes[j] / scales[j] * in_si[j] / out);
         (passage, Jacobian { rows: [row(end.0, 1.0), row(end.1, unit)] })
     }
 
-    fn trace<T: Scalar>(&self, kernel: &Kernel<T>, start: (T, T), periods: u32) -> Traced<T> {
+    fn trace<T: Scalar>(&self, kernel: &Kernel<T>, start: (T, T), periods: f64) -> Traced<T> {
         let Kernel { equation, clock, drive } = kernel;
         let from = Instant { cycle: self.phase.0, phase: T::of(self.phase.1) * clock.period() };
         let to = match self.length {
-            Length::Cycles(cycles) => Instant { cycle: from.cycle + i64::from(periods) * cycles, ..from },
-            Length::Seconds(seconds) => clock.at(seconds * f64::from(periods)),
+            Length::Cycles(cycles) => {
+                let cycles = periods * cycles as f64;
+                let later = Instant { cycle: from.cycle + cycles.floor() as i64, ..from };
+                clock.advance(&later, T::of(cycles - cycles.floor()) * clock.period())
+            }
+            Length::Seconds(seconds) => clock.at(seconds * periods),
         };
         let span = (from, to);
         match drive {

@@ -49,18 +49,6 @@ impl Passage {
     pub fn crossings(&self) -> u64 {
         self.count([EventKind::Crossing; 2])
     }
-
-    /// Speed in m/s of the slowest impact; none without one.
-    pub fn gentlest_impact(&self) -> Option<f64> {
-        let hits = |event: &&Event| matches!(event.kind, EventKind::Impact | EventKind::Contact);
-        self.events.iter().filter(hits).map(|event| event.v_in.abs()).reduce(f64::min)
-    }
-
-    /// What happened at the stops, in order: impacts, rests and releases by side.
-    pub fn sequence(&self) -> impl Iterator<Item = (EventKind, Side)> {
-        let at_a_stop = |event: &&Event| event.kind != EventKind::Crossing;
-        self.events.iter().filter(at_a_stop).map(|event| (event.kind, event.side))
-    }
 }
 
 /// A passage, and the state at its end in kernel units.

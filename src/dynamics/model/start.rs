@@ -1,41 +1,11 @@
 //! State at which a run begins.
 
-use super::Model;
 use super::stops::StopPair;
 use crate::mechanics::{Hertz, Mechanism};
 use crate::scene::{Fault, Scene, Start};
 
 pub(crate) fn fault(field: &str, value: impl ToString, problem: impl Into<String>) -> Fault {
     Fault { field: field.into(), value: value.to_string(), problem: problem.into() }
-}
-
-impl Model {
-    /// The same model, whose run goes on from a state of a run of `before`: displacement in m and velocity in
-    /// m/s, as [`Run::carried`](crate::dynamics::Run::carried) has them. A stop of this model that lies on the
-    /// other side of the mass carries it along, as the end of the known curve does, and takes its speed.
-    #[must_use]
-    pub fn carried_on(mut self, before: &Self, state: (f64, f64)) -> Self {
-        let pressed = before.compliant.and(self.compliant).and_then(|_| before.pressed_depth(state.0));
-        self.start = self.held_within(state, pressed.map_or(0.0, |own| own.0));
-        self.motionless = false;
-        self
-    }
-
-    /// A state (m, m/s) with the mass between the stops, or pressed in by up to `depth` in m, and within the
-    /// known curve; where it had to be carried there, it has no speed.
-    pub fn held_within(&self, (x, v): (f64, f64), depth: f64) -> (f64, f64) {
-        let domain = self.mechanism.curve.domain();
-        let (left, right) = self.stop_positions();
-        let low = left.map_or(domain.0, |stop| (stop - depth).max(domain.0));
-        let high = right.map_or(domain.1, |stop| (stop + depth).min(domain.1));
-        if !(x <= high) {
-            (high, 0.0)
-        } else if x < low {
-            (low, 0.0)
-        } else {
-            (x, v)
-        }
-    }
 }
 
 /// Displacement in m and velocity in m/s.

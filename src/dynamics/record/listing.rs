@@ -1,14 +1,16 @@
 //! Stroboscopic states that a run lists: those of its settled window at a phase of the drive, and the last at
 //! the phase of its start.
 
-use super::recorder::{MOST_STROBES, Recorder};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::result::{Request, SectionPoint};
-use crate::dynamics::step::path::{Path, StepView};
 use crate::numeric::Scalar;
 
 /// Instants closer than this share of a forcing period are the same: more than rounding can set apart.
-const SAME: f64 = 1e-9;
+pub(super) const SAME: f64 = 1e-9;
+
+/// The most stroboscopic states that are recorded one by one: some tenths of a second of one core, and more
+/// than a run makes whose steps are shorter than a forcing period. Later ones are not judged.
+pub(crate) const MOST_STROBES: u32 = 1 << 22;
 
 /// States once a forcing period.
 #[derive(Debug, Clone)]
@@ -39,7 +41,8 @@ pub(crate) struct Listed<T> {
 }
 
 impl<T: Scalar> Listing<T> {
-    fn add(&mut self, (x, v): (f64, f64)) {
+    /// Adds the state at the next instant.
+    pub fn add(&mut self, (x, v): (f64, f64)) {
         if self.last_only {
             self.states.clear();
         }
@@ -48,8 +51,16 @@ impl<T: Scalar> Listing<T> {
         self.next.cycle += self.cycles;
     }
 
+    /// Passes over states of a mass that stands still up to `until`, where only the last is kept.
+    pub fn skip_still(&mut self, clock: &Clock<T>, period: T, until: &Instant<T>) {
+        if self.last_only {
+            let periods = (clock.between(&self.next, until) / period).floor().to_f64();
+            self.next.cycle += (periods as i64 - 1).max(0) * self.cycles;
+        }
+    }
+
     /// The next instant, where one is still to be listed.
-    fn due(&self) -> Option<Instant<T>> {
+    pub fn due(&self) -> Option<Instant<T>> {
         (self.left > 0).then_some(self.next)
     }
 }
@@ -101,7 +112,7 @@ impl<T: Scalar> Listings<T> {
         self.section.is_none() && self.carried.is_none()
     }
 
-    fn each(&mut self) -> impl Iterator<Item = &mut Listing<T>> {
+    pub fn each(&mut self) -> impl Iterator<Item = &mut Listing<T>> {
         self.section.iter_mut().chain(&mut self.carried)
     }
 
@@ -141,56 +152,15 @@ impl<T: Scalar> Listings<T> {
             own.left = periods.min(MOST_STROBES.into());
         }
     }
-}
 
-impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
-    /// Lists the states within a step.
-    pub(crate) fn list_states<P: Path<T>>(&mut self, step: &StepView<T, P>) {
-        for own in self.listings.each() {
-            while let Some(next) = own.due() {
-                let into = self.clock.between(&step.at, &next).larger(T::zero());
-                if into >= step.duration {
-                    break;
-                }
-                let into = step.path.parameter(into, step.length);
-                own.add((step.x_at(into).to_f64(), step.path.velocity(into).to_f64() / self.unit));
-            }
-        }
-    }
-
-    /// Lists the states of a mass that stands still at `x` up to `until`.
-    pub(crate) fn list_still(&mut self, x: T, until: &Instant<T>) {
-        for own in self.listings.each() {
-            if own.last_only {
-                let periods = (self.clock.between(&own.next, until) / self.period).floor().to_f64();
-                own.next.cycle += (periods as i64 - 1).max(0) * own.cycles;
-            }
-            while own.due().is_some_and(|next| self.clock.between(&next, until) > T::zero()) {
-                own.add((x.to_f64(), 0.0));
-            }
-        }
-    }
-
-    /// Closes the listings at `end`, the end of the run: the section, and the state that is carried.
-    pub(crate) fn listed(
-        &mut self,
-        end: &Instant<T>,
-        (x, v): (f64, f64),
-    ) -> (Vec<SectionPoint>, Option<(f64, f64)>) {
-        let same = self.period * T::of(SAME);
-        for own in self.listings.each() {
-            if own.due().is_some_and(|next| self.clock.between(&next, end).abs() <= same) {
-                own.add((x, v));
-            }
-        }
-        let Listings { section, carried } = std::mem::take(&mut self.listings);
-        let points = section.into_iter().flat_map(|Listing { first, cycles, states, .. }| {
-            let clock = self.clock;
+    /// The section, and the state that is carried.
+    pub fn finish(self, clock: &Clock<T>) -> (Vec<SectionPoint>, Option<(f64, f64)>) {
+        let points = self.section.into_iter().flat_map(|Listing { first, cycles, states, .. }| {
             states.into_iter().zip(0..).map(move |((x, v), number)| {
                 let at = Instant { cycle: first.cycle + number * cycles, phase: first.phase };
                 SectionPoint { t: clock.seconds(&at), x, v }
             })
         });
-        (points.collect(), carried.and_then(|own| own.states.last().copied()))
+        (points.collect(), self.carried.and_then(|own| own.states.last().copied()))
     }
 }

@@ -3,17 +3,14 @@
 use std::sync::atomic::AtomicBool;
 
 use super::barrier::side_of;
-use super::listing::Listings;
+use super::goal::Goal;
+use super::listing::{Listings, MOST_STROBES};
 use super::regime::Judge;
 use super::sums::{Counts, Sums};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Event, EventKind, Request, Sample, Side};
 use crate::numeric::{CompensatedSum, Scalar};
-
-/// The most stroboscopic states that are recorded one by one: some tenths of a second of one core, and more
-/// than a run makes whose steps are shorter than a forcing period. Later ones are not judged.
-pub(crate) const MOST_STROBES: u32 = 1 << 22;
 
 pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub model: &'a Model,
@@ -45,6 +42,8 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     /// -1, 0 (on it since the start) or 1.
     pub barrier_side: i8,
     pub judge: Judge,
+    /// What the motion is followed to, where it is pursued.
+    pub goal: Option<Goal<'a>>,
     /// The first instant of the run at the window's phase.
     pub origin: Instant<T>,
     pub next_strobe: Option<Instant<T>>,
@@ -115,6 +114,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             barrier,
             barrier_side: side,
             judge: Judge::new(model.rhythm, scales, periods, first),
+            goal: None,
             origin,
             next_strobe: (periods > 0).then_some(origin),
             listings: Listings::new(request, &clock, from, (periods, cycles), model.start_phase),

@@ -1,10 +1,12 @@
 //! What a run is asked for and what it returns: samples, events, statistics, outcome and ledger. All SI.
 
+mod arrival;
 mod event;
 mod outcome;
 mod request;
 mod summary;
 
+pub use arrival::{Arrival, Capture, Pursuit, Region, ReleaseIdentity};
 pub use event::{Event, EventKind, Phase, Sample, SectionPoint, Side};
 pub use outcome::{Outcome, Place, Regime};
 pub use request::Request;

@@ -22,6 +22,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::laps::Totals;
 use crate::dynamics::record::log::{Later, Log};
+use crate::dynamics::result::ReleaseIdentity;
 use crate::dynamics::state::Label;
 use crate::dynamics::step::work::TOLD;
 use crate::numeric::Scalar;
@@ -54,8 +55,13 @@ struct Lap<T> {
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// The mass has just been released with this label: completes the run where a release had the same label
-    /// before.
+    /// before. Where it is pursued, it has arrived.
     pub fn let_go(&mut self, label: Label<T>) {
+        let Label { end, turn, phase } = label;
+        let identity = ReleaseIdentity { side: end.side(), cycle: turn, phase: phase.to_f64() };
+        if self.record.released(&self.state.at, identity) {
+            return;
+        }
         let Some(log) = self.log.take().filter(|log| log.has_room()) else {
             self.keep_from(Box::new(Log::new()), label);
             return;

@@ -6,7 +6,7 @@ use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Theme};
-use super::sweep::{BOTTOM, LEFT, TOP, label};
+use super::swept::{BOTTOM, LEFT, TOP, label};
 use crate::numeric::short;
 use crate::study::{Branch, BranchEvent};
 

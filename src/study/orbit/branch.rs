@@ -5,7 +5,7 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::corrector::{Corrector, Point, Units};
-use super::events::{BranchEvent, between, differ};
+use super::events::{BranchEvent, between, differ, grazes};
 use super::family::Family;
 use super::{NoOrbit, Orbit, orbit, with_orbits};
 use crate::study::{Table, Task};
@@ -76,12 +76,6 @@ impl Branch {
         let name = |event: &Option<BranchEvent>| event.map_or("", BranchEvent::name);
         with_orbits(table, &self.orbits).each("event", &self.events, name)
     }
-
-    fn add(&mut self, event: Option<BranchEvent>, point: &Point) {
-        self.values.push(point.value);
-        self.orbits.push(point.orbit.clone());
-        self.events.push(event);
-    }
 }
 
 /// The branch of periodic motions of a family over `field` from one value towards another, on from the motion
@@ -112,20 +106,23 @@ pub fn branch(
         end: BranchEnd::Points,
     };
     let ends = [from.min(to), from.max(to)].map(|own| own / units.range);
-    let mut walk = Walk { corrector, branch, ends, start: (point.clone(), along), at: (point, along) };
-    walk.branch.add(None, &walk.at.0.clone());
+    let mut walk = Walk { corrector, branch, ends, phase, start, at: (point, along) };
+    walk.add(None, &walk.at.0.clone());
     walk.branch.end = walk.to_the_end(task)?;
     Ok(walk.branch)
 }
 
 /// A walk along a branch.
 struct Walk<'a> {
+    /// At a phase of the drive away from impacts, where a state has no derivative by the field.
     corrector: Corrector<'a>,
     branch: Branch,
     /// The ends of the range in its unit.
     ends: [f64; 2],
-    /// The first point and the last, with the direction there.
-    start: (Point, Vector3<f64>),
+    /// The phase at which motions are told, in forcing periods, and the first one there.
+    phase: f64,
+    start: Vector3<f64>,
+    /// The last point, and the direction there.
     at: (Point, Vector3<f64>),
 }
 
@@ -137,6 +134,7 @@ impl Walk<'_> {
                 return Err(NoOrbit::Cancelled);
             }
             (task.tick)();
+            self.keep_clear();
             let (point, along) = &self.at;
             let guess = point.at + along * step;
             let beyond = self.ends.into_iter().find(|end| (guess.z - end) * (point.at.z - end) < 0.0);
@@ -158,20 +156,17 @@ impl Walk<'_> {
                     }
                     step = (step * 1.3).min(LONGEST);
                 }
-                None => { if std::env::var("DBG").is_ok() { eprintln!("halve {step:e} at {:?} along {:?}", point.at, along); } step *= 0.5 }
+                None => step *= 0.5,
             }
             if step < SHORTEST {
                 let Some(next) = self.past_a_grazing() else {
-                    let passage = &self.at.0.orbit.passage;
-                    let units = self.corrector.units;
-                    let grazes = passage.nearest_miss.is_some_and(|miss| miss < 1e-5 * units.length)
-                        || passage.gentlest_impact().is_some_and(|speed| speed < 1e-2 * units.speed);
+                    let grazes = grazes(&self.at.0, &self.corrector.units);
                     return Ok(if grazes { BranchEnd::Grazing } else { BranchEnd::Lost });
                 };
                 if let Some(event) = self.branch.events.last_mut() {
                     *event = Some(BranchEvent::Grazing);
                 }
-                self.branch.add(None, &next.0);
+                self.add(None, &next.0);
                 self.at = next;
                 step = FIRST * 0.1;
             }
@@ -192,16 +187,42 @@ impl Walk<'_> {
     fn go_to(&mut self, next: (Point, Vector3<f64>)) {
         let (point, along) = &self.at;
         for (event, there) in between(&self.corrector, (point, along.z), (&next.0, next.1.z)) {
-            self.branch.add(Some(event), &there);
+            self.add(Some(event), &there);
         }
-        self.branch.add(None, &next.0);
+        self.add(None, &next.0);
         self.at = next;
     }
 
-    fn is_closed(&self, step: f64) -> bool {
+    /// Adds a motion, told at the phase that was asked for.
+    fn add(&mut self, event: Option<BranchEvent>, point: &Point) {
+        let told = self.corrector.at_phase(&point.orbit, point.value, self.phase);
+        self.branch.values.push(point.value);
+        self.branch.orbits.push(told.unwrap_or_else(|| point.orbit.clone()));
+        self.branch.events.push(event);
+    }
+
+    /// Takes states at another phase of the drive where an impact comes near to the present one.
+    fn keep_clear(&mut self) {
         let (point, along) = &self.at;
-        let (first, began) = &self.start;
-        self.branch.values.len() > 10 && (point.at - first.at).norm() < step && along.dot(began) > STRAIGHT
+        let Some(later) = self.corrector.clear_phase(point) else { return };
+        let phase = (self.corrector.phase + later).rem_euclid(1.0);
+        let Some(orbit) = self.corrector.at_phase(&point.orbit, point.value, phase) else { return };
+        let upwards = Vector3::new(0.0, 0.0, along.z.signum());
+        let corrector = Corrector { phase, ..self.corrector };
+        let next = corrector.correct(corrector.at(orbit.state, point.value), &upwards);
+        if let Some(next) = next
+            && let Some(onward) = corrector.tangent(&next, &upwards)
+        {
+            (self.corrector, self.at) = (corrector, (next, onward));
+        }
+    }
+
+    fn is_closed(&self, step: f64) -> bool {
+        let (Some(last), Some(value)) = (self.branch.orbits.last(), self.branch.values.last()) else {
+            return false;
+        };
+        let far = (self.corrector.at(last.state, *value) - self.start).norm();
+        far < 0.5 * step && self.branch.values.len() > 10
     }
 
     /// A motion that touches the stops otherwise, near the last one, and the direction away from it.

@@ -5,10 +5,10 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::family::Family;
 use super::{Orbit, allowed, map_of};
-use crate::dynamics::{Outcome, StroboscopicMap};
+use crate::dynamics::{EventKind, Outcome, StroboscopicMap};
 
 /// The most steps to a point.
-const MOST_STEPS: usize = 9;
+const MOST_STEPS: usize = 24;
 
 /// Half the distance over which the map is differenced by the field, as a share of its range. Where the
 /// motion stretches what is near to it a thousandfold, the direction of the branch is what is left of large
@@ -16,14 +16,19 @@ const MOST_STEPS: usize = 9;
 /// that of the map's rounding with its inverse.
 const DIFFERENCE: f64 = 3e-8;
 
+/// The time in forcing periods up to which an event at a stop is near, and the phases that are looked at.
+const NEAR_AN_EVENT: f64 = 0.02;
+const CHOICES: u32 = 64;
+
 /// The largest correction of a predicted point.
 const LARGEST: f64 = 0.2;
 
 /// The change of a point by the map, in its units, that is left to rounding.
 const CLOSE: f64 = 1e-10;
+const ROUNDING: f64 = 1e-12;
 
 /// The step below which nothing is gained any more.
-const SMALLEST_STEP: f64 = 1e-12;
+const SMALLEST_STEP: f64 = 1e-10;
 
 /// What a point's coordinates are measured in: length in m, speed in m/s, and the range of the field.
 #[derive(Debug, Clone, Copy)]
@@ -58,6 +63,34 @@ impl Corrector<'_> {
         map_of(&self.family.model(value)?, self.phase)
     }
 
+    /// The same motion at another phase of the drive; none where it ends early.
+    pub fn at_phase(&self, orbit: &Orbit, value: f64, phase: f64) -> Option<Orbit> {
+        if phase == self.phase {
+            return Some(orbit.clone());
+        }
+        let passage = self.map(value)?.pass_part(orbit.state, (phase - self.phase).rem_euclid(1.0));
+        (passage.outcome == Outcome::Done).then(|| Orbit { state: passage.state, ..orbit.clone() })
+    }
+
+    /// How much later in forcing periods states should be taken, where an event at a stop is near to where
+    /// they are: as far from all of them as can be.
+    pub fn clear_phase(&self, point: &Point) -> Option<f64> {
+        let map = self.map(point.value)?;
+        let whole = f64::from(self.periods);
+        let events = point.orbit.passage.events.iter().filter(|event| event.kind != EventKind::Crossing);
+        let times: Vec<f64> = events.map(|event| (event.t - map.first_strobe()) / map.period()).collect();
+        let room = |later: f64| {
+            let far = times.iter().map(|time| (time - later).rem_euclid(whole));
+            far.map(|far| far.min(whole - far)).fold(f64::INFINITY, f64::min)
+        };
+        if room(0.0) > NEAR_AN_EVENT {
+            return None;
+        }
+        let choices = (1..CHOICES).map(|own| f64::from(own) / f64::from(CHOICES));
+        let best = choices.max_by(|a, b| room(*a).total_cmp(&room(*b)))?;
+        (room(best) > 2.0 * room(0.0)).then_some(best)
+    }
+
     /// The coordinates of a state at a value of the field.
     pub fn at(&self, state: (f64, f64), value: f64) -> Vector3<f64> {
         let Units { length, speed, range } = self.units;
@@ -82,9 +115,13 @@ impl Corrector<'_> {
     fn by_field(&self, state: (f64, f64), value: f64) -> Option<[f64; 2]> {
         let step = DIFFERENCE * self.units.range;
         let side = |value: f64| self.map(value).and_then(|map| Some((self.change(&map, state)?, value)));
-        let ends = [side(value + step), side(value), side(value - step)];
-        let mut known = ends.into_iter().flatten();
-        let (above, below) = (known.next()?, known.last()?);
+        let here = || side(value);
+        let (above, below) = match (side(value + step), side(value - step)) {
+            (Some(above), Some(below)) => (above, below),
+            (Some(above), None) => (above, here()?),
+            (None, Some(below)) => (here()?, below),
+            (None, None) => return None,
+        };
         let over = (above.1 - below.1) / self.units.range;
         Some([(above.0[0] - below.0[0]) / over, (above.0[1] - below.0[1]) / over])
     }
@@ -112,7 +149,6 @@ impl Corrector<'_> {
             if passage.outcome != Outcome::Done
                 || !jacobian.rows.as_flattened().iter().all(|own| own.is_finite())
             {
-                if std::env::var("DBG").is_ok() { eprintln!("ended {:?} {jacobian:?}", passage.outcome); }
                 return None;
             }
             let off = self.off(passage.state, state);
@@ -126,17 +162,16 @@ impl Corrector<'_> {
             let step = matrix.lu().solve(&right)?;
             let length = step.amax();
             let close = off.iter().all(|own| own.abs() <= CLOSE);
-            if length <= SMALLEST_STEP || (close || length <= CLOSE) && length >= 0.5 * best {
+            let exact = off.iter().all(|own| own.abs() <= ROUNDING);
+            if exact || length <= SMALLEST_STEP || (close || length <= CLOSE) && length >= 0.5 * best {
                 return Some(Point { at, value, orbit, by_field: slopes });
             }
             if !(length.is_finite() && (at + step - guess).amax() <= LARGEST) {
-                if std::env::var("DBG").is_ok() { eprintln!("large {length:e} off {off:?} at {at:?}"); }
                 return None;
             }
             best = best.min(length);
             at += step;
         }
-        if std::env::var("DBG").is_ok() { eprintln!("steps out best {best:e} at {at:?}"); }
         None
     }
 

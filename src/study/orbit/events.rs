@@ -1,7 +1,6 @@
 //! Events on a branch between two of its points: where they are, to some 1e-9 of the range.
 
-use super::corrector::{Corrector, Point};
-use crate::dynamics::{EventKind, Side};
+use super::corrector::{Corrector, Point, Units};
 
 /// What happens to a periodic motion at a value of the field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,27 +31,29 @@ impl BranchEvent {
 /// How close in the units of the branch an event is located.
 const LOCATED: f64 = 1e-10;
 
+/// The distance from a stop and the speed of an impact, as shares of the units, below which a motion grazes
+/// the stop: the speed is as the root of the distance.
+const NEAR: f64 = 1e-5;
+const SLOW: f64 = 1e-2;
+
 /// The most points for it.
 const MOST_POINTS: usize = 80;
 
-/// What happens at the stops in order, without the impacts of a chatter that ends in rest: they are without
-/// end, and how many of them are told apart from their sum means nothing.
-fn contacts(point: &Point) -> Vec<(EventKind, Side)> {
-    let mut kept: Vec<(EventKind, Side)> = Vec::new();
-    for (kind, side) in point.orbit.passage.sequence() {
-        if kind == EventKind::Rest {
-            while kept.last() == Some(&(EventKind::Impact, side)) {
-                kept.pop();
-            }
-        }
-        kept.push((kind, side));
-    }
-    kept
-}
-
 /// Whether two motions touch the stops in another order or number.
 pub(super) fn differ(a: &Point, b: &Point) -> bool {
-    contacts(a) != contacts(b)
+    let contacts = |point: &Point| {
+        let all = point.orbit.contacts().into_iter();
+        all.map(|event| (event.kind, event.side)).collect::<Vec<_>>()
+    };
+    let (a, b) = (contacts(a), contacts(b));
+    // they begin anywhere on the motion
+    a.len() != b.len() || !a.is_empty() && !(0..a.len()).any(|from| a[from..].iter().chain(&a[..from]).eq(&b))
+}
+
+/// Whether a motion all but touches a stop, or touches one with hardly any speed.
+pub(super) fn grazes(point: &Point, units: &Units) -> bool {
+    point.orbit.passage.nearest_miss.is_some_and(|miss| miss < NEAR * units.length)
+        || point.orbit.gentlest_impact().is_some_and(|speed| speed < SLOW * units.speed)
 }
 
 /// What changes sign at a fold: the direction of the field; at a flip, and where a multiplier is 1, the
@@ -98,12 +99,7 @@ pub(super) fn between(
             }
         }
         let before = before.unwrap_or_else(|| from.clone());
-        let grazes = |point: &Point| {
-            let passage = &point.orbit.passage;
-            let units = corrector.units;
-            passage.nearest_miss.is_some_and(|miss| miss < 1e-5 * units.length)
-                || passage.gentlest_impact().is_some_and(|speed| speed < 1e-2 * units.speed)
-        };
+        let grazes = |point: &Point| grazes(point, &corrector.units);
         if grazes(&before) || after.as_ref().is_some_and(grazes) {
             found.push((low, BranchEvent::Grazing, before));
         }
@@ -142,8 +138,11 @@ fn root(
     let mut last = None;
     for _ in 0..MOST_POINTS {
         let middle = low + (high - low) * (below / (below - above)).clamp(1e-9, 1.0 - 1e-9);
-        let point = at(middle)?;
-        let value = of(&point)?;
+        // where the method does not converge right there, it may do so beside it
+        let beside = [middle, 0.5 * (low + high), low + 0.3 * (high - low), low + 0.7 * (high - low)];
+        let found = beside.into_iter().find_map(|share| at(share).map(|point| (share, point)));
+        let Some((middle, point)) = found else { break };
+        let Some(value) = of(&point) else { break };
         let moved = last.as_ref().map_or(f64::INFINITY, |(before, _): &(f64, Point)| (middle - before).abs());
         last = Some((middle, point));
         if value == 0.0 || moved * length <= LOCATED || (high - low) * length <= LOCATED {

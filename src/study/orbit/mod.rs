@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::settled::settled;
 use super::table::Table;
-use crate::dynamics::{Jacobian, Model, Multiplier, Outcome, Passage, StroboscopicMap};
+use crate::dynamics::{Event, EventKind, Jacobian, Model, Multiplier, Outcome, Passage, StroboscopicMap};
 
 pub use branch::{Branch, BranchEnd, branch};
 pub use events::BranchEvent;
@@ -101,6 +101,36 @@ impl Orbit {
     /// Product of the multipliers.
     pub fn determinant(&self) -> f64 {
         self.passage.determinant.unwrap_or_else(|| self.jacobian.determinant())
+    }
+
+    /// Events at the stops in their order around the motion, without the impacts of a chatter that ends in
+    /// rest but its first: of those there is no end, and how many are told from their sum means nothing.
+    pub fn contacts(&self) -> Vec<Event> {
+        let mut all: Vec<Event> =
+            self.passage.events.iter().filter(|event| event.kind != EventKind::Crossing).copied().collect();
+        // so that no chatter is cut in two
+        if let Some(place) = all.iter().position(|event| event.kind == EventKind::Release) {
+            all.rotate_left(place);
+        }
+        let mut kept: Vec<Event> = Vec::new();
+        for event in all {
+            let hits = |own: &Event| (own.kind, own.side) == (EventKind::Impact, event.side);
+            if event.kind == EventKind::Rest {
+                while kept.len() > 1 && kept[kept.len() - 2..].iter().all(hits) {
+                    kept.pop();
+                }
+            }
+            kept.push(event);
+        }
+        kept
+    }
+
+    /// Speed in m/s of the slowest impact, those after the first of a chatter that ends in rest left out;
+    /// none without one.
+    pub fn gentlest_impact(&self) -> Option<f64> {
+        let hits = |event: &Event| matches!(event.kind, EventKind::Impact | EventKind::Contact);
+        let all = self.contacts().into_iter().filter(hits);
+        all.map(|event| event.v_in.abs()).reduce(f64::min)
     }
 
     /// Whether what is near to it comes nearer.
@@ -210,6 +240,6 @@ fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
         .each("stable", orbits, |own| if own.is_stable() { "true" } else { "false" })
         .each("impacts", orbits, |own| Some(own.passage.impacts()))
         .each("rests", orbits, |own| Some(own.passage.rests()))
-        .each("gentlest_impact_m_per_s", orbits, |own| own.passage.gentlest_impact().unwrap_or(f64::NAN))
+        .each("gentlest_impact_m_per_s", orbits, |own| own.gentlest_impact().unwrap_or(f64::NAN))
         .each("nearest_miss_m", orbits, |own| own.passage.nearest_miss.unwrap_or(f64::NAN))
 }
