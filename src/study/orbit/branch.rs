@@ -20,7 +20,7 @@ const SHORTEST: f64 = 1e-9;
 const STRAIGHT: f64 = 0.9;
 
 /// The most points.
-const MOST_POINTS: usize = 20_000;
+const MOST_POINTS: usize = 5000;
 
 /// Distances at which another motion is looked for where the branch ends at a grazing.
 const AROUND: [f64; 3] = [3e-3, 3e-4, 3e-5];
@@ -48,7 +48,7 @@ impl fmt::Display for BranchEnd {
             Self::Closed => "where it began",
             Self::Grazing => "where the motion touches a stop without speed, and none near to it goes on",
             Self::Lost => "where the motion no longer lasts for its period, or changes too fast",
-            Self::Points => "after 20000 motions",
+            Self::Points => "after 5000 motions",
         })
     }
 }
@@ -137,14 +137,19 @@ impl Walk<'_> {
             self.keep_clear();
             let (point, along) = &self.at;
             let guess = point.at + along * step;
-            let beyond = self.ends.into_iter().find(|end| (guess.z - end) * (point.at.z - end) < 0.0);
-            let next = match beyond {
-                Some(end) => self.last(end),
-                None => self.corrector.correct(guess, along).and_then(|next| {
-                    let onward = self.corrector.tangent(&next, along)?;
-                    (onward.dot(along) > STRAIGHT).then_some((next, onward))
-                }),
-            };
+            let leaves = |to: f64| self.ends.into_iter().find(|end| (to - end) * (point.at.z - end) < 0.0);
+            let mut beyond = leaves(guess.z);
+            let mut next = None;
+            if beyond.is_none()
+                && let Some(point) = self.corrector.correct(guess, along)
+            {
+                beyond = leaves(point.at.z);
+                let onward = self.corrector.tangent(&point, along);
+                next = onward.filter(|own| own.dot(along) > STRAIGHT).map(|onward| (point, onward));
+            }
+            if let Some(end) = beyond {
+                next = self.last(end);
+            }
             match next {
                 Some(next) => {
                     self.go_to(next);

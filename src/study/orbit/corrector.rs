@@ -138,7 +138,6 @@ impl Corrector<'_> {
     /// not converge.
     pub fn correct(&self, guess: Vector3<f64>, across: &Vector3<f64>) -> Option<Point> {
         let mut at = guess;
-        let mut by_field = None;
         let mut best = f64::INFINITY;
         for _ in 0..MOST_STEPS {
             let value = at.z * self.units.range;
@@ -152,10 +151,7 @@ impl Corrector<'_> {
                 return None;
             }
             let off = self.off(passage.state, state);
-            let slopes = match by_field {
-                Some(slopes) => slopes,
-                None => *by_field.insert(self.by_field(state, value)?),
-            };
+            let slopes = self.by_field(state, value)?;
             let orbit = Orbit { period: self.periods, state, passage, jacobian };
             let matrix = self.matrix(&orbit, slopes, across);
             let right = Vector3::new(-off[0], -off[1], -across.dot(&(at - guess)));

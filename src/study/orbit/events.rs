@@ -81,7 +81,9 @@ pub(super) fn between(
     let direction = chord / length;
     let at = |share: f64| corrector.correct(from.at + chord * share, &direction);
     let mut found: Vec<(f64, BranchEvent, Point)> = Vec::new();
-    let touches = differ(from, to);
+    // A mass that rests forgets its past: what it does between two rests changes without a bifurcation.
+    let forgets = |point: &Point| point.orbit.determinant() == 0.0;
+    let touches = differ(from, to) && !(forgets(from) && forgets(to));
     if touches {
         // A motion with fewer contacts is on the side on which it misses the stop.
         let changed = |point: &Point| differ(from, point);
@@ -104,7 +106,7 @@ pub(super) fn between(
             found.push((low, BranchEvent::Grazing, before));
         }
     }
-    // Across a grazing the multipliers jump: nothing passes through the unit circle there.
+    // Across a grazing the multipliers jump: none passes through the unit circle there.
     let mut add = |event: BranchEvent, ends: (f64, f64), of: &dyn Fn(&Point) -> Option<f64>| {
         if touches || !(ends.0 * ends.1 < 0.0) {
             return false;
