@@ -3,6 +3,7 @@
 mod accuracy;
 mod check;
 mod curve;
+mod exponents;
 mod failure;
 mod interrupt;
 mod options;

@@ -17,6 +17,7 @@ Examples:
   interwell --headless simulate elastic-box --at 0,0.5,1 --events - --out /dev/null
   interwell --headless sweep --out map.csv --plot map.png
   interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
+  interwell --headless exponents duffing-chaos --quiet
   interwell --headless accuracy --plot accuracy.png
   interwell --headless accuracy nominal-cubic --method rk4 --step-s 1/60,1/600
 
@@ -104,6 +105,8 @@ commands! {
     sweep Sweep " [SCENE]";
     /// The least value of a field from which on a motion from rest is released, crosses or is interwell
     threshold Threshold " [SCENE]";
+    /// Lyapunov exponents of the settled motion, with their standard errors, sum and dimension
+    exponents Exponents " [SCENE]";
     /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed
     /// against error beside other methods, and the hard cases with the digits that they allow and reach
     accuracy Accuracy " [SCENE]";

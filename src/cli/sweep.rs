@@ -216,7 +216,7 @@ pub fn located(document: &Document, cell: interwell::study::CellFaults) -> Failu
 }
 
 /// A bar with rate and time left, where standard error is a terminal that the rows do not go to too.
-fn bar(cells: u64, quiet: bool, out: &Path) -> ProgressBar {
+pub fn bar(cells: u64, quiet: bool, out: &Path) -> ProgressBar {
     let rows_on_terminal = out == Path::new("-") && std::io::stdout().is_terminal();
     if quiet || rows_on_terminal || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

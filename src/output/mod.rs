@@ -15,9 +15,10 @@ pub use json::{landscape, summary};
 pub use manifest::{Provenance, manifest};
 pub use number::push_number;
 pub use plot::{
-    Caption, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, PlotAxis, RMS, Ranges,
-    SweepPicture, Theme, UnknownFormat, accuracy_figure, can_show, contact_figure, curve_figure, quantities,
-    run_figure, speed_unit, sweep_about, sweep_figure, viridis,
+    Caption, ExponentPicture, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError,
+    PlotAxis, RMS, Ranges, SweepPicture, Theme, UnknownFormat, accuracy_figure, can_show, can_show_exponents,
+    contact_figure, curve_figure, exponents_figure, quantities, run_figure, speed_unit, sweep_about,
+    sweep_figure, viridis,
 };
 pub use text::aligned;
 

@@ -311,7 +311,7 @@ impl Sweep {
 
     /// The model of a cell, or its faults; none where its mechanism was not solved, or the task was cancelled
     /// meanwhile.
-    fn model(&self, index: u64, scene: &mut Scene, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
+    pub fn model(&self, index: u64, scene: &mut Scene, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
         self.grid.apply(index, scene);
         match self.mechanism(index, scene, task.cancel)? {
             Ok(mechanism) => Some(Model::build(scene, mechanism)),

@@ -64,10 +64,13 @@ fn without_headless_it_says_what_to_write() {
         let text = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
         assert!(text.contains("--headless") && text.lines().count() == 1, "{text}");
     }
-    for command in ["presets", "check", "curve", "simulate", "sweep", "threshold", "accuracy"] {
+    for command in ["presets", "check", "curve", "simulate", "sweep", "threshold", "exponents", "accuracy"] {
         refused(plain(command), &["--headless", command]);
     }
-    refused(plain("--headless"), &["presets, check, curve, simulate, sweep, threshold or accuracy"]);
+    refused(
+        plain("--headless"),
+        &["presets, check, curve, simulate, sweep, threshold, exponents or accuracy"],
+    );
     refused(headless("swep"), &["`swep`", "sweep"]);
     refused(headless("sweep --bogus"), &["--bogus"]);
     refused(headless("check --plot a.png"), &["--plot"]);
@@ -77,7 +80,7 @@ fn without_headless_it_says_what_to_write() {
 #[test]
 fn help_and_version() {
     plain("--version").assert().success().stdout(format!("interwell {}\n", env!("CARGO_PKG_VERSION")));
-    let commands = ["presets", "check", "curve", "simulate", "sweep", "threshold", "accuracy"];
+    let commands = ["presets", "check", "curve", "simulate", "sweep", "threshold", "exponents", "accuracy"];
     for word in commands.into_iter().chain(["Examples", "Exit status"]) {
         plain("--help").assert().success().stdout(contains(word));
     }

@@ -95,6 +95,7 @@ fn every_column_and_word_of_the_output_is_documented() {
         "curve paper --out /dev/null --shapes - --points 3".to_owned(),
         format!("curve paper --out /dev/null --contact - {hertz}"),
         "threshold paper --of release".to_owned(),
+        "exponents paper --quiet".to_owned(),
         "accuracy --case grazing --out - --quiet".to_owned(),
         "accuracy nominal-cubic --out - --quiet".to_owned(),
         "sweep paper --over excitation.amplitude_g=1 --columns all --out - --quiet".to_owned(),

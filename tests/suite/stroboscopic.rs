@@ -97,6 +97,15 @@ fn a_pressed_rest_makes_both_multipliers_zero() {
 }
 
 #[test]
+fn a_mass_that_rests_throughout_has_no_derivatives_left() {
+    let own = preset("paper", &["excitation.amplitude_g=0.1"]);
+    let map = own.stroboscopic_map(0.0).unwrap();
+    let (passage, jacobian) = map.pass_with_jacobian((1.5e-3, 0.0), 2);
+    assert_eq!((passage.state, passage.events.len()), ((1.5e-3, 0.0), 0));
+    assert_eq!((passage.determinant, jacobian.rows), (Some(0.0), [[0.0; 2]; 2]));
+}
+
+#[test]
 fn a_drive_without_a_period_has_no_map() {
     for drive in [
         "None",

@@ -86,9 +86,9 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
     motion.state = MotionState { at: from, ..MotionState::new((x, v), mode, Contact::Free) };
     motion.record.barrier_side = motion.record.barrier.map_or(0, |barrier| side_of(x, barrier));
     motion.place_at_start();
-    if matches!(motion.state.contact, Contact::Resting(_)) {
+    if let Contact::Resting(end) = motion.state.contact {
         motion.record.events = Some(Vec::new());
-        motion.state.v = T::zero();
+        (motion.state.x, motion.state.v) = (motion.stepper.mode(&motion.state).end(end).0, T::zero());
     }
     let mut nearest_miss: Option<f64> = None;
     let outcome = loop {
