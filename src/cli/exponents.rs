@@ -87,7 +87,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     write_table(&mut sinks[0], &exponents_row(&found))?;
     finish(sinks)?;
     if !common.quiet {
-        say(&format!("{}: {}", document.name, about(&found, model.is_shaken())));
+        say(&format!("{}: {}", document.name, about(&found, model.forcing_period().is_some())));
     }
     Ok(())
 }
@@ -104,9 +104,9 @@ fn asked(
 }
 
 /// What the numbers of one motion are, in a sentence.
-fn about(found: &Exponents, shaken: bool) -> String {
-    let unit = if shaken { "forcing period" } else { "period of small oscillations" };
-    let units = if shaken { "forcing periods" } else { "periods of small oscillations" };
+fn about(found: &Exponents, forced: bool) -> String {
+    let unit = if forced { "forcing period" } else { "period of small oscillations" };
+    let units = if forced { "forcing periods" } else { "periods of small oscillations" };
     let over = format!("averages over {} {units}", found.span.0);
     match found.period {
         _ if found.rests() => "the mass rests on a stop, after which nothing is left of a change: both \

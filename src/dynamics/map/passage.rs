@@ -63,10 +63,11 @@ impl Passage {
     }
 }
 
-/// A passage, and the state at its end in kernel units.
+/// A passage, the state at its end in kernel units, and whether the mass has rested on a stop on the way.
 pub(super) struct Traced<T> {
     pub passage: Passage,
     pub end: (T, T),
+    pub rested: bool,
 }
 
 /// Follows the motion from a state in kernel units at an instant to another.
@@ -86,9 +87,9 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
     motion.state = MotionState { at: from, ..MotionState::new((x, v), mode, Contact::Free) };
     motion.record.barrier_side = motion.record.barrier.map_or(0, |barrier| side_of(x, barrier));
     motion.place_at_start();
-    if let Contact::Resting(end) = motion.state.contact {
+    if matches!(motion.state.contact, Contact::Resting(_)) {
         motion.record.events = Some(Vec::new());
-        (motion.state.x, motion.state.v) = (motion.stepper.mode(&motion.state).end(end).0, T::zero());
+        motion.state.v = T::zero();
     }
     let mut nearest_miss: Option<f64> = None;
     let outcome = loop {
@@ -118,7 +119,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
         false => (-model.damping * time / model.mass).exp() * squared_restitutions(model, &events),
     });
     let state = (x.to_f64(), v.to_f64() / equation.unit);
-    Traced { passage: Passage { state, events, determinant, nearest_miss, outcome }, end: (x, v) }
+    Traced { passage: Passage { state, events, determinant, nearest_miss, outcome }, end: (x, v), rested }
 }
 
 /// The product of the squared restitution of each impact.

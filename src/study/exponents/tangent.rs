@@ -97,7 +97,7 @@ impl Tangent {
         let least = exact.unwrap_or(self.damped).exp().min(determinant);
         let measured = match rested {
             true => f64::NEG_INFINITY,
-            false if least < LOST * products => f64::NAN,
+            false if least <= LOST * products => f64::NAN,
             false => determinant.ln(),
         };
         Ok(Passed { state: passage.state, jacobian, measured, exact })
