@@ -70,16 +70,16 @@
 //! | [`scene`] | what a person writes: fields, units, ranges, files, presets |
 //! | [`mechanics`] | the restoring force and its landscape of wells and barrier |
 //! | [`dynamics`] | motion: Taylor steps, contacts, rest, release, statistics, ledger |
-//! | [`study`] | questions: one run, a sweep, a curve; a table comes out |
+//! | [`study`] | questions: one run, a sweep, thresholds, accuracy; a table comes out |
 //! | [`output`] | a table in, bytes out |
 //!
 //! The command line is the binary's own, and the window is the feature `app`; neither computes anything.
 //!
 //! # Accuracy
 //!
-//! The tolerance of a scene is the one knob: the local error of a step, relative to the scene's own length,
-//! speed and time ([`dynamics::Scales`]). Contacts are roots of the step's polynomial, found with none
-//! missed and located to rounding. A run can be repeated in some 31 digits
+//! The tolerance of a scene is the one setting: the local error of a step, relative to the scene's own
+//! length, speed and time ([`dynamics::Scales`]). Contacts are roots of the step's polynomial, found with
+//! none missed and located to rounding. A run can be repeated in some 31 digits
 //! ([`dynamics::Model::run_reference`]) to see what its error was.
 
 #[cfg(feature = "app")]

@@ -82,13 +82,12 @@ pub fn command_line(session: &Session) -> Option<(String, Runs)> {
     let editor = &session.editor;
     let mut line = format!("interwell --headless simulate {}", quoted(&editor.origin()?));
     let here = || continued_scene(editor.scene(), &session.player.watch().from_here()?);
-    let (scene, runs) = match (session.is_continued(), session.fault()) {
+    let (mut scene, runs) = match (session.is_continued(), session.fault()) {
         (true, None) => {
             here().map_or((editor.scene().clone(), Runs::Another), |scene| (scene, Runs::FromNow))
         }
         _ => (editor.scene().clone(), Runs::Whole),
     };
-    let mut scene = scene;
     keep_start_inside(&mut scene);
     line += &settings(editor.saved(), &scene);
     Some((line, runs))

@@ -14,7 +14,7 @@
 //! | [`export`] | files and command lines that leave the window |
 //! | [`ui`] | colours and widths, widgets, settings |
 //! | [`panels`] | controls, status line, transport, hints |
-//! | [`views`] | the plots and drawings, a file each |
+//! | [`views`] | the plots and drawings, a file or folder each |
 //! | [`window`] | layouts, menus, keys, files, dialogs: the `eframe::App` |
 
 pub mod export;

@@ -150,6 +150,13 @@ impl<T: Send + 'static> Latest<T> {
         true
     }
 
+    /// Takes in an answer that has come and hands it over, if it is one to the present question.
+    pub fn take(&mut self) -> Option<T> {
+        self.poll();
+        let present = self.generation;
+        self.answer.take_if(|answer| answer.0 == present).map(|answer| answer.1)
+    }
+
     fn finish(&mut self, answer: Option<T>) {
         self.job = None;
         if let Some(answer) = answer {

@@ -87,7 +87,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     write_table(&mut sinks[0], &exponents_row(&found))?;
     finish(sinks)?;
     if !common.quiet {
-        say(&format!("{}: {}", document.name, about(&found, model.forcing_period().is_some())));
+        say(&format!("{}: {}", document.name, about(&found, model.repeats())));
     }
     Ok(())
 }
@@ -136,14 +136,14 @@ fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
     let task = Task { tick: &|| (), cancel: interrupt::listen() };
     let pool = pool(common)?;
     cells.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
-    let first = cells.sweep().first_model(&task).and_then(Result::ok);
+    let first = cells.first_model(&task).and_then(Result::ok);
     let asked = asked(options, &document, first.as_ref())?;
-    warn(&document, common, &warnings, cells.sweep().first_mechanism().ok().as_deref());
+    warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
     let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
-    let grid = cells.sweep().grid();
-    let bar = bar(grid.cells(), common.quiet, common.out());
+    let grid = cells.grid();
+    let bar = bar(grid.cells(), "cells", common.quiet, common.out());
     let task = Task { tick: &|| bar.inc(1), ..task };
     let watch = Watch::start();
     write_text(&mut sinks[0], &header(&cells.empty_table()))?;

@@ -1,6 +1,7 @@
 //! The command line: reads arguments, runs a study, writes its table. Nothing is computed here.
 
 mod accuracy;
+mod basins;
 mod check;
 mod curve;
 mod exponents;
@@ -10,7 +11,9 @@ mod options;
 mod picture;
 mod presets;
 mod scene_accuracy;
+mod section;
 mod simulate;
+mod spectrum;
 mod support;
 mod sweep;
 mod threshold;

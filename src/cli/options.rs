@@ -17,6 +17,9 @@ Examples:
   interwell --headless simulate elastic-box --at 0,0.5,1 --events - --out /dev/null
   interwell --headless sweep --out map.csv --plot map.png
   interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
+  interwell --headless sweep paper --over excitation.amplitude_g=0:2:0.02 --carry both --plot hysteresis.png
+  interwell --headless section paper --over excitation.amplitude_g=0.5:1.5:0.005 --plot diagram.png
+  interwell --headless basins --x-mm -1.5:1.5:101 --v -0.5:0.5:101 --out basins.csv --plot basins.png
   interwell --headless exponents duffing-chaos --quiet
   interwell --headless accuracy --plot accuracy.png
   interwell --headless accuracy nominal-cubic --method rk4 --step-s 1/60,1/600
@@ -103,8 +106,14 @@ commands! {
     simulate Simulate " [SCENE]";
     /// Run a grid of scenes: CSV with a row for each cell
     sweep Sweep " [SCENE]";
+    /// The state once a forcing period or at every impact; over a field the bifurcation diagram
+    section Section " [SCENE]";
     /// The least value of a field from which on a motion from rest is released, crosses or is interwell
     threshold Threshold " [SCENE]";
+    /// Amplitude and power spectral density of the settled motion over frequency: CSV
+    spectrum Spectrum " [SCENE]";
+    /// The attractor that each of many starts goes to: CSV with a row for each start
+    basins Basins " [SCENE] --x-mm A:B:N --v A:B:N";
     /// Lyapunov exponents of the settled motion, with their standard errors, sum and dimension
     exponents Exponents " [SCENE]";
     /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed

@@ -165,13 +165,15 @@ pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> 
 /// What the manifest of a sweep is called among its outputs.
 pub const MANIFEST: &str = "the manifest of --out";
 
-/// Opens the outputs, each given with its option, before any work is done for them. None may be one of the
-/// `inputs` (a scene's file, or a table or record that it names) or any other scene, the manifest replaces no
-/// file that is none, and no two are the same.
+/// Opens the outputs, each given with its option, before any work is done for them, and before that listens
+/// for Ctrl-C, which would leave their unfinished files behind. None may be one of the `inputs` (a scene's
+/// file, or a table or record that it names) or any other scene, the manifest replaces no file that is none,
+/// and no two are the same.
 pub fn open<const N: usize>(
     inputs: &[PathBuf],
     outputs: [Option<(&str, &Path)>; N],
 ) -> Result<[Option<Sink>; N], Failure> {
+    interrupt::listen();
     let inputs: Vec<_> = inputs.iter().filter_map(|input| canonical(input)).collect();
     let mut sinks = [const { None::<Sink> }; N];
     for (i, output) in outputs.iter().enumerate() {

@@ -10,8 +10,8 @@ use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Overlay, SweepPicture, can_show, header, is_regular, manifest, rows, sweep_figure};
 use interwell::scene::Document;
 use interwell::study::{
-    Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, SummaryField, Sweep, SweepEnd, SweepOptions, Table, Task,
-    first_crossing, release_line,
+    Carry, DIRECTION, Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, SummaryField, Sweep, SweepEnd, SweepOptions,
+    Table, Task, first_crossing, release_line,
 };
 
 use interwell::system::threads::{Pool, processors};
@@ -43,6 +43,11 @@ pub struct Arguments {
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
+    /// Walk the last --over field in its order (up), backwards (down) or both ways: each cell begins in the
+    /// state of the one before, only the first at the scene's start. Needs a drive that repeats
+    #[arg(long, value_name = "up|down|both", value_parser = ["up", "down", "both"])]
+    pub carry: Option<String>,
+
     /// With --plot: the column that is shown, any one with numbers, or regime
     #[arg(long, value_name = "COLUMN", requires = "plot", default_value = "rms_velocity_m_per_s")]
     pub quantity: String,
@@ -73,14 +78,15 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     }
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
     let mechanism = first_mechanism(&document, &sweep)?;
-    let columns = columns(&options.columns, sweep.grid())?;
+    let carry = options.carry.as_deref().and_then(Carry::named);
+    let columns = columns(&options.columns, sweep.grid(), carry)?;
     let looked_at = Task { tick: &|| (), cancel: interrupt::listen() };
     let until_settled = match &sweep.first_model(&looked_at).and_then(Result::ok) {
         Some(model) => until_settled(options.until_settled.as_deref(), &document, model)?,
         None => None, // said below, cell by cell
     };
     let fields = columns.iter().filter_map(|name| SummaryField::find(name)).collect();
-    let sweep = sweep.with(SweepOptions { columns: fields, until_settled });
+    let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry });
     warn(&document, common, &warnings, mechanism.as_deref());
     if picture.is_some() {
         can_show(sweep.grid(), &options.quantity, &sweep.empty_table())?;
@@ -91,7 +97,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
 
-    let bar = bar(sweep.grid().cells(), common.quiet, common.out());
+    let bar = bar(sweep.rows(), "cells", common.quiet, common.out());
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let watch = Watch::start();
     let result = (|| {
@@ -116,25 +122,28 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let tally = result?;
     if let Some((picture, rows)) = picture.zip(shown) {
         let grid = sweep.grid();
-        let overlay = Overlay {
-            release: mechanism.and_then(|own| release_line(&document.scene, &own, grid)),
-            first_crossing: first_crossing(grid, &rows),
+        // They are about runs from rest.
+        let overlay = match carry {
+            Some(_) => Overlay::default(),
+            None => Overlay {
+                release: mechanism.and_then(|own| release_line(&document.scene, &own, grid)),
+                first_crossing: first_crossing(grid, &rows),
+            },
         };
         let (rows, scene, quantity) = (&rows, &document.scene, &*options.quantity);
         let shown = SweepPicture { rows, grid, scene, quantity, overlay, ranges: axes };
         picture.write(&mut sinks[1], sweep_figure(&shown, &caption(&document), picture.theme)?)?;
     }
     if sinks[2].is_some() {
-        let data =
-            common.out().file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let data = file_name(common.out());
         let grid = sweep.grid();
         let origin = watch.origin(pool.count());
-        let text = manifest(&document, grid, &tally, &origin, &data);
+        let text = manifest(("sweep", &document), grid, &tally, &origin, &data);
         write_text(&mut sinks[2], &text)?;
     }
     finish(sinks)?;
     // Fewer cells than there are: the reader of a pipe has gone, which is no news to anyone.
-    if !common.quiet && tally.cells == sweep.grid().cells() {
+    if !common.quiet && tally.cells == sweep.rows() {
         let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
         let early = match (tally.ended_early, tally.not_converged) {
             (0, 0) => String::new(),
@@ -155,9 +164,10 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The columns of the rows: those of the swept fields, and what was asked for.
-fn columns(asked: &[String], grid: &Grid) -> Result<Vec<String>, Failure> {
+/// The columns of the rows: those of the swept fields, the direction of a walk, and what was asked for.
+fn columns(asked: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<String>, Failure> {
     let mut names = grid.columns().to_vec();
+    names.extend(carry.map(|_| DIRECTION.to_owned()));
     match asked {
         [] => names.extend(STANDARD_COLUMNS.map(str::to_owned)),
         [all] if all == "all" => {
@@ -195,12 +205,17 @@ fn first_mechanism(document: &Document, sweep: &Sweep) -> Result<Option<Arc<Mech
 }
 
 /// Where the manifest of the rows at `out` goes: beside them, where they are a regular file.
-fn manifest_path(out: &Path) -> Option<PathBuf> {
+pub fn manifest_path(out: &Path) -> Option<PathBuf> {
     is_regular(out).then(|| {
         let mut name = out.as_os_str().to_owned();
         name.push(".json");
         name.into()
     })
+}
+
+/// The name of the file with the rows.
+pub fn file_name(out: &Path) -> String {
+    out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
 /// As many threads as were asked for.
@@ -215,16 +230,17 @@ pub fn located(document: &Document, cell: interwell::study::CellFaults) -> Failu
     wrong_cell(&cell, error)
 }
 
-/// A bar with rate and time left, where standard error is a terminal that the rows do not go to too.
-pub fn bar(cells: u64, quiet: bool, out: &Path) -> ProgressBar {
+/// A bar of so many parts, called `unit`, with rate and time left, where standard error is a terminal that
+/// the rows do not go to too.
+pub fn bar(parts: u64, unit: &str, quiet: bool, out: &Path) -> ProgressBar {
     let rows_on_terminal = out == Path::new("-") && std::io::stdout().is_terminal();
     if quiet || rows_on_terminal || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let template = "{wide_bar} {human_pos}/{human_len} cells  {rate}  {eta} left";
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {unit}  {{rate}}  {{eta}} left");
+    let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
         let _ = write!(text, "{:.0}/s", state.per_sec());
     };
-    ProgressBar::new(cells).with_style(style.with_key("rate", rate))
+    ProgressBar::new(parts).with_style(style.with_key("rate", rate))
 }

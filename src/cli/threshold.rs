@@ -1,17 +1,29 @@
 //! `threshold`: thresholds of a field, a row for each cell of a grid.
 
 use clap::Args;
+use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_figure};
 use interwell::scene::{Axis, Document};
-use interwell::study::{Grid, Onset, Scan, Task, threshold_table};
+use interwell::study::{CellFaults, Grid, Onset, Scan, Task, threshold_table};
 
 use super::failure::Failure;
 use super::interrupt;
-use super::options::Common;
-use super::support::{finish, inputs, load_with_mechanism, open, write_table};
-use super::sweep::{located, pool};
+use super::options::{Common, PlotOptions, RangeOptions};
+use super::picture::{Picture, caption, ranges};
+use super::support::{finish, inputs, load, mechanism, open, warn, write_table};
+use super::sweep::{bar, located, pool};
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless threshold paper
+  interwell --headless threshold paper --of release --over stops.travel_limit_mm=0.5:6.5:0.5 --plot free.png
+  interwell --headless threshold paper --over stops.travel_limit_mm=0.5:6.5:0.25 --plot cross.png
+  interwell --headless threshold paper --field stops.travel_limit_mm=0.5:3:0.05 --of interwell
+  interwell --headless threshold paper --over excitation.frequency_hz=2,3,4 \\
+      --over stops.travel_limit_mm=0.5:6:0.25 --plot lines.png";
 
 /// What it takes.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// Scene file or built-in scene; each run begins at rest
     #[arg(value_name = "SCENE", default_value = "paper")]
@@ -40,6 +52,15 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
+    /// The picture: over one field of --over a line, over two a line for each value of the one that has few,
+    /// or a map.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// Its axes.
+    #[command(flatten)]
+    pub ranges: RangeOptions,
+
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -48,14 +69,21 @@ pub struct Arguments {
 /// Steps of a scan whose step was left out.
 const STEPS: f64 = 200.0;
 
+/// The most wrong cells that are named.
+const MOST_NAMED: usize = 8;
+
 /// Searches and writes the table.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
-    let (document, _) = load_with_mechanism(&options.scene, common)?;
+    let picture = Picture::asked(&options.plot)?;
+    let axes = ranges(&options.ranges, "--plot-x")?;
+    // without --over no cell of the scene's own sweep is run
+    let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
+    let (document, warnings) = load(&options.scene, common, over)?;
     let scan = scan(options, &document)?;
-    let grid = match options.over.as_slice() {
-        [] => None,
-        over => Some(Grid::new(document.axes(over)?)?),
+    let grid = match over {
+        None => None,
+        Some(over) => Some(Grid::new(document.axes(over)?)?),
     };
     if let Some(axis) = grid.iter().flat_map(|grid| grid.axes()).find(|axis| axis.field == scan.field) {
         let field = &axis.field;
@@ -64,14 +92,40 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         )));
     }
     let onset = Onset::ALL.into_iter().find(|onset| onset.name() == options.of).unwrap_or(Onset::Crossing);
+    if picture.is_some() {
+        can_show_thresholds(grid.as_ref())?;
+    }
+    let same = grid.as_ref().is_none_or(|grid| !grid.changes_mechanism());
+    let own = same.then(|| mechanism(&document)).transpose()?;
+    warn(&document, common, &warnings, own.as_deref());
     let pool = pool(common)?;
-    let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", common.out()))])?;
-    let task = Task { tick: &|| (), cancel: interrupt::listen() };
+    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let values = scan.values.len() as u64;
+    let bar = bar(grid.as_ref().map_or(1, Grid::cells) * values, "values", common.quiet, common.out());
+    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let found =
         threshold_table((&document.scene, &document.files), grid.as_ref(), (&scan, onset), &pool, &task);
-    let table = found.ok_or_else(Failure::interrupted)?.map_err(|cell| located(&document, cell))?;
+    bar.finish_and_clear();
+    let table = found.ok_or_else(Failure::interrupted)?.map_err(|cells| wrong(&document, cells))?;
     write_table(&mut sinks[0], &table)?;
+    if let Some((picture, grid)) = picture.zip(grid.as_ref()) {
+        let scene = &document.scene;
+        let shown = ThresholdPicture { rows: &table, grid, scene, field: &scan.field, onset, ranges: axes };
+        picture.write(&mut sinks[1], threshold_figure(&shown, &caption(&document), picture.theme)?)?;
+    }
     finish(sinks)
+}
+
+/// An error that names the cells that are wrong.
+fn wrong(document: &Document, cells: Vec<CellFaults>) -> Failure {
+    let more = cells.len().saturating_sub(MOST_NAMED);
+    let mut text: Vec<String> =
+        cells.into_iter().take(MOST_NAMED).map(|cell| located(document, cell).to_string()).collect();
+    if more > 0 {
+        text.push(format!("and {more} more cells are wrong"));
+    }
+    Failure::argument(text.join("\n"))
 }
 
 /// What is searched over.
@@ -90,8 +144,11 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
                     "write FIELD=FROM:TO or FIELD=FROM:TO:STEP, such as excitation.amplitude_g=0:2".into(),
                 ));
             };
-            if low >= high {
-                return Err(wrong("TO must be above FROM".into()));
+            if low == high {
+                return Err(wrong(format!("FROM and TO are both {low}; give a range, such as 0:2")));
+            }
+            if low > high {
+                return Err(wrong(format!("TO must be above FROM; write {high}:{low}")));
             }
             format!("{argument}:{}", (high - low) / STEPS)
         }
@@ -100,8 +157,14 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     let axis = Axis::parse(&full, &document.scene).map_err(wrong)?;
     let mut values = axis.values;
     values.sort_by(f64::total_cmp);
+    values.dedup();
+    if values.len() < 2 {
+        return Err(wrong(
+            "it is a single value; give a range of which STEP is a part, such as 0:2:0.1".into(),
+        ));
+    }
     let span = values.last().copied().unwrap_or(0.0) - values.first().copied().unwrap_or(0.0);
-    let step = span / (values.len().max(2) - 1) as f64;
+    let step = span / (values.len() - 1) as f64;
     let resolution = match &options.resolution {
         None => 1e-3 * step,
         Some(text) => {

@@ -1,6 +1,6 @@
 //! Motion: the equation of motion and its exact, event-driven integration.
 //!
-//! How the parts hang together, lowest first; each uses only those above it, and no two files use each other:
+//! The parts, lowest first; each uses only those above it, and no two files use each other:
 //!
 //! - `clock`: time as whole cycles and a phase.
 //! - `result`: what a run is asked for and what it returns, in SI.
@@ -15,7 +15,7 @@
 //! - `contact`: events of a motion: impact, rest, release, compliant contact, breaks.
 //! - `run`: the loop from event to event, the fast path of event-free steps, recurrence, and the verdict.
 //! - `map`: the stroboscopic map with its derivatives, through every event.
-//! - `lanes`: several runs batched, step by step in the same instructions.
+//! - `lanes`: batches: event-free steps of several runs by the same instructions.
 //! - `live`: a run without an end, which may be changed while it goes on.
 //!
 //! [`Model::run`] is defined in `run`, [`Model::run_all`] in `lanes`: a method stands where its work is done.

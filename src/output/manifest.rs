@@ -1,4 +1,4 @@
-//! Manifest of a sweep, and the origin of a result.
+//! Manifests of a sweep and of a map of basins, and the origin of a result.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::json::pretty;
 use crate::scene::{Document, PROGRAM, Scene};
-use crate::study::{Grid, Tally};
+use crate::study::{Answer, Basins, Grid, Tally};
 
 /// Where a result came from, besides its scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,13 +23,19 @@ pub struct Provenance {
     pub jobs: usize,
 }
 
-/// The manifest of a sweep as text: itself, or a scene file with `scene_ron` as its text beside the `files`,
-/// is swept to the same rows again. `scene_ron` has every argument applied, the swept fields at their unswept
-/// values, and the grid that ran as its `sweep`; `files` are the texts of the tables and records that the
-/// scene reads, by their paths in it.
+/// The manifest of what `command` swept as text: itself, or a scene file with `scene_ron` as its text beside
+/// the `files`, is swept to the same rows again. `scene_ron` has every argument applied, the swept fields at
+/// their unswept values, and the grid that ran as its `sweep`; `files` are the texts of the tables and
+/// records that the scene reads, by their paths in it.
 ///
 /// `document` has its files held; `data` is the name of the file with the rows.
-pub fn manifest(document: &Document, grid: &Grid, tally: &Tally, origin: &Provenance, data: &str) -> String {
+pub fn manifest(
+    (command, document): (&str, &Document),
+    grid: &Grid,
+    tally: &Tally,
+    origin: &Provenance,
+    data: &str,
+) -> String {
     let axes: Vec<Value> = grid
         .axes()
         .iter()
@@ -38,33 +44,74 @@ pub fn manifest(document: &Document, grid: &Grid, tally: &Tally, origin: &Proven
         .collect();
     let sweep = grid.axes().iter().map(|axis| axis.to_scene(&document.scene)).collect();
     let scene = &Scene { sweep, ..document.scene.clone() };
-    // null where it cannot be written, and never an empty scene
-    let text = crate::scene::write(scene).ok();
     let counts = |counts: &BTreeMap<&'static str, u64>| -> Value {
         counts.iter().map(|(word, n)| ((*word).to_owned(), json!(n))).collect::<Map<_, _>>().into()
     };
-    pretty(&json!({
+    let own = json!({
+        "grid": axes,
+        "cells": tally.cells,
+        "mechanisms": tally.mechanisms,
+        "outcomes": counts(&tally.outcomes),
+        "regimes": counts(&tally.regimes),
+    });
+    written((document, scene), command, own, origin, data)
+}
+
+/// The manifest of a map of basins as text: as that of a sweep, with the starts in place of the grid.
+pub fn basins_manifest(
+    document: &Document,
+    basins: &Basins,
+    answer: &Answer,
+    origin: &Provenance,
+    data: &str,
+) -> String {
+    let (length, speed) = (basins.model().scales().length, basins.model().scales().speed);
+    let own = json!({
+        "starts": answer.rows.len(),
+        "attractors": answer.attractors.len(),
+        "outside": answer.outside,
+        "ended_early": answer.lost,
+        "undecided": answer.undecided,
+        "length_scale_m": length,
+        "speed_scale_m_per_s": speed,
+    });
+    written((document, &document.scene), "basins", own, origin, data)
+}
+
+/// A manifest with what a command has of its `own`; `scene` is what ran of the document.
+fn written(
+    (document, scene): (&Document, &Scene),
+    command: &str,
+    own: Value,
+    origin: &Provenance,
+    data: &str,
+) -> String {
+    let mut all = json!({
         "program": PROGRAM,
         "version": origin.version,
-        "command": "sweep",
+        "command": command,
         "arguments": origin.arguments,
         "data": data,
         "scene_name": document.name,
         "title": scene.title,
         "tolerance": scene.run.tolerance,
         "seed": seed(scene),
-        "grid": axes,
-        "cells": tally.cells,
-        "mechanisms": tally.mechanisms,
-        "outcomes": counts(&tally.outcomes),
-        "regimes": counts(&tally.regimes),
+    });
+    let end = json!({
         "jobs": origin.jobs,
         "wall_s": origin.wall_s,
         "cpu_s": origin.cpu_s,
         "scene": serde_json::to_value(scene).unwrap_or(Value::Null),
-        "scene_ron": text,
+        // null where it cannot be written, and never an empty scene
+        "scene_ron": crate::scene::write(scene).ok(),
         "files": document.files.held,
-    }))
+    });
+    for part in [own, end] {
+        if let (Value::Object(all), Value::Object(part)) = (&mut all, part) {
+            all.extend(part);
+        }
+    }
+    pretty(&all)
 }
 
 /// The seed of the scene's random numbers: null where it has none, a list where it has several.

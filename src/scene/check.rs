@@ -8,6 +8,7 @@ use super::axis::{Axis, MOST_AXES, repeated};
 use super::data::*;
 use super::error::Fault;
 use super::fields::{Field, FieldPath, for_each};
+use super::mechanism::Mechanism;
 use super::ranges::{HIGH_HZ, LOW_HZ, MAX_COEFFICIENTS, number_text};
 use super::shape;
 use super::stops::Stops;

@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::mechanism::Mechanism;
 use super::record::Record;
 use super::stops::Stops;
 
@@ -51,84 +52,6 @@ pub struct Scene {
     /// Hints for the window; the command line ignores them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub app: Option<AppHints>,
-}
-
-/// Where the restoring force comes from.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum Mechanism {
-    /// Flexures: thin strips, clamped at both ends, between the frame and a shuttle that carries the proof
-    /// mass. The parallel ones guide the shuttle; the buckling ones lie in line with them and are compressed
-    /// by the preload until they buckle, which makes the two wells.
-    Flexures {
-        /// Shortening in mm that parallel and buckling flexures share where the shuttle is at x = 0, 0 to
-        /// 1e15 and at most half of the shorter flexure. 0 makes one well.
-        preload_mm: f64,
-        /// Thickness of every flexure in mm, 1e-15 to 1e15, at most a tenth of the shorter flexure.
-        thickness_mm: f64,
-        /// Young's modulus in GPa, 1e-60 to 1e60.
-        young_gpa: f64,
-        /// The flexures that guide the shuttle.
-        parallel: FlexureGroup,
-        /// The flexures that buckle.
-        buckling: FlexureGroup,
-        /// Poisson's ratio, 0 to 0.49.
-        #[serde(default = "default_poisson")]
-        poisson: f64,
-        /// Whether E/(1 - poisson^2) takes the place of E in stretching and bending, as for strips much wider
-        /// than thick; the shear modulus stays.
-        #[serde(default)]
-        plane_strain: bool,
-        /// Stress-free bow of the buckling flexures at their middle in mm, 0 to 1e15 and at most a twentieth
-        /// of their length.
-        #[serde(default)]
-        initial_bow_mm: f64,
-        /// Bending stress in GPa above which `curve --full` warns, 1e-60 to 1e60; it has no part in the
-        /// force.
-        #[serde(default = "default_yield")]
-        yield_gpa: f64,
-    },
-    /// F = linear x + cubic x^3.
-    Cubic {
-        /// Linear stiffness in N/m, -1e200 to 1e200.
-        linear_n_per_m: f64,
-        /// Cubic stiffness in N/m^3, -1e200 to 1e200.
-        cubic_n_per_m3: f64,
-    },
-    /// The quartic potential with two wells at +-equilibrium, a barrier between them.
-    DoubleWell {
-        /// Distance of the stable equilibria from the middle in mm, 1e-15 to 1e15.
-        equilibrium_mm: f64,
-        /// Height of the barrier in mJ, 1e-60 to 1e60.
-        barrier_mj: f64,
-    },
-    /// F = c0 + c1 x + c2 x^2 + ...
-    Polynomial {
-        /// 1 to 16 coefficients from the constant up, in N/m^i, each -1e200 to 1e200. All zeros are a
-        /// free mass.
-        coefficients_si: Vec<f64>,
-    },
-    /// A measured or computed curve: CSV with columns `x_m,force_n`.
-    Table {
-        /// Path relative to the scene file, or the name of an embedded table.
-        path: String,
-        /// Error allowed to the fitted curve, relative to the force maximum between the wells, 1e-10
-        /// to 0.1.
-        #[serde(default = "default_table_tolerance")]
-        tolerance: f64,
-    },
-}
-
-/// Equal flexures side by side.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FlexureGroup {
-    /// How many there are; whole, 1 to 64.
-    pub count: u64,
-    /// Length of each between its clamps in mm, 1e-15 to 1e15.
-    pub length_mm: f64,
-    /// Width of each in mm, 1e-15 to 1e15.
-    pub width_mm: f64,
 }
 
 /// Viscous damping.
@@ -369,18 +292,6 @@ fn paragraphs<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
 /// once written: both read as `None`.
 fn some_stops<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Stops>, D::Error> {
     Ok(Option::<Stops>::deserialize(from)?.filter(|stops| *stops != Stops::None))
-}
-
-fn default_poisson() -> f64 {
-    0.34
-}
-
-fn default_yield() -> f64 {
-    2.0
-}
-
-fn default_table_tolerance() -> f64 {
-    1e-4
 }
 
 fn default_lines() -> u64 {

@@ -49,7 +49,9 @@ presets! {
     "elastic-box": "a free mass between two perfect stops: no energy is lost";
     "duffing": "the periodically forced double well, with its published periods: 1, 2, 4, 5, chaos, 2";
     "duffing-chaos": "the same double well where no period is found: chaos, and averages that hold";
-    "period-adding": "the same double well just touching a stop: one impact in 6, 5, 4, 3, 2, 1 periods";
+    "duffing-cascade": "the double well with more damping: periods 1, 2, 4, 8 and chaos, all in one well";
+    "period-adding": "the well of duffing just touching a stop: one impact in 6, 5, 4, 3, 2, 1 periods";
+    "impact-oscillator": "a linear spring and one stop: where a swing first touches it, and what follows";
 }
 
 /// The embedded tables and records.

@@ -1,6 +1,6 @@
 //! Valid ranges of the numbers in a scene, with a remedy for each.
 //!
-//! One row a field. `data.rs` repeats the range in the field's documentation; a test compares them.
+//! One row a field. The field's documentation repeats the range; a test compares them.
 
 use std::fmt;
 
@@ -154,11 +154,10 @@ specs! {
 mod tests {
     use super::*;
 
-    /// Every occurrence of a numeric field in data.rs carries, in its documentation, a range that is
-    /// checked for a field of that name.
+    /// Every numeric field carries, in its documentation, a range that is checked for a field of that name.
     #[test]
     fn documented_ranges_are_the_checked_ones() {
-        let source = concat!(include_str!("data.rs"), include_str!("stops.rs"));
+        let source = concat!(include_str!("data.rs"), include_str!("mechanism.rs"), include_str!("stops.rs"));
         let mut doc = String::new();
         let mut seen = Vec::new();
         for line in source.lines().map(str::trim) {

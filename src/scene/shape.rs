@@ -4,7 +4,7 @@
 //! absolute size: a drawing that is scaled stays valid.
 
 use super::check::{Checked, known_bad};
-use super::data::{FlexureGroup, Mechanism};
+use super::mechanism::{FlexureGroup, Mechanism};
 use super::ranges::number_text;
 
 /// The shorter flexure over the largest preload. Not far beyond it the loops of a flexure touch each other.

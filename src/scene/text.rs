@@ -9,6 +9,7 @@ use ron::extensions::Extensions;
 use super::clip::clip;
 use super::data::*;
 use super::locate::{Place, Places};
+use super::mechanism::Mechanism;
 use super::stops::Stops;
 
 /// The largest scene text that is read: some thousand times a long scene, and parsed at once.

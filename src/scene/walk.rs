@@ -10,6 +10,7 @@ use std::fmt;
 use serde::de::DeserializeOwned;
 
 use super::data::*;
+use super::mechanism::{FlexureGroup, Mechanism};
 use super::ranges::{self, Spec};
 use super::stops::Stops;
 use super::text;

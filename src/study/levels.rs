@@ -21,14 +21,19 @@ pub struct Levels {
 impl Levels {
     /// The levels of a grid.
     pub fn of(grid: &Grid) -> Self {
-        let lengths: Vec<usize> = grid.axes().iter().map(|axis| axis.values.len()).collect();
-        let mut order = Vec::with_capacity(grid.cells() as usize);
+        Self::of_lengths(grid.axes().iter().map(|axis| axis.values.len()).collect())
+    }
+
+    /// The levels of a grid with axes of these lengths, slowest first.
+    pub fn of_lengths(lengths: Vec<usize>) -> Self {
+        let cells: u64 = lengths.iter().map(|length| *length as u64).product();
+        let mut order = Vec::with_capacity(cells as usize);
         let mut ends = [0; STRIDES.len()];
         for (level, stride) in STRIDES.iter().enumerate() {
             let on = |index: &u64, stride: usize| places(&lengths, *index).all(|p| p.is_multiple_of(stride));
             let before = level.checked_sub(1).map(|coarser| STRIDES[coarser]);
             let new = |index: &u64| on(index, *stride) && before.is_none_or(|coarser| !on(index, coarser));
-            order.extend((0..grid.cells()).filter(new));
+            order.extend((0..cells).filter(new));
             ends[level] = order.len();
         }
         Self { order, ends, lengths }

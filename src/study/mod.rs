@@ -6,6 +6,9 @@
 
 pub mod accuracy;
 mod amplitudes;
+mod basins;
+mod cell;
+mod cells;
 mod contact;
 mod continued;
 mod curve;
@@ -19,20 +22,25 @@ mod inspect;
 mod levels;
 mod map;
 mod models;
-mod periodic;
 mod push;
+mod section;
 mod settled;
 mod simulate;
+mod spectrum;
 mod sweep;
 mod table;
 mod thresholds;
 mod times;
 mod trace;
+mod walk;
 mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use amplitudes::{Thresholds, stops_that_cross, thresholds};
+pub use basins::{Answer, Attractor, Basins, EvenRange, MAX_STARTS, NoBasins, Shares, Starts, StartsError};
+pub use cell::{Cell, CellFaults, SweepEnd, Tally};
+pub use cells::Direction;
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
 pub use continued::continued_scene;
 pub use curve::{
@@ -52,13 +60,16 @@ pub use inspect::inspect;
 pub use levels::{Levels, STRIDES};
 pub use map::{first_crossing, release_line};
 pub use models::Held;
+pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use settled::{Standing, lasts, settled, standing};
 pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};
-pub use sweep::{Cell, CellFaults, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally};
+pub use spectrum::{NoSpectrum, Signal, Spectrum, SpectrumOptions, spectrum};
+pub use sweep::{DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepOptions};
 pub use table::{Column, Table, Values};
 pub use thresholds::{Found, Onset, Scan, threshold, threshold_table};
 pub use times::{MAX_SAMPLES, SamplingStep, TimesError, even_times, listed_times};
 pub use trace::{Trace, simulate_with_trace};
+pub use walk::Carry;
 pub use watch::Watch;
 
 /// How a study that takes long is watched and stopped.

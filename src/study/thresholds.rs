@@ -8,13 +8,13 @@
 use std::sync::Arc;
 
 use super::Task;
+use super::cell::CellFaults;
 use super::grid::Grid;
 use super::push::{AMPLITUDE, frees_at};
-use super::sweep::CellFaults;
 use super::table::Table;
 use crate::dynamics::{Model, Regime, Summary};
 use crate::mechanics::{BuildError, Mechanism};
-use crate::scene::{FieldPath, Files, Scene, Start};
+use crate::scene::{Fault, FieldPath, Files, Scene, Start};
 use crate::system::threads::Pool;
 
 /// What begins at a threshold.
@@ -98,14 +98,7 @@ pub fn threshold(
     (scan, onset): (&Scan, Onset),
     task: &Task,
 ) -> Option<Found> {
-    let mut search = Search {
-        trial: Scene { start: Start::Rest, ..scene.clone() },
-        mechanism,
-        files,
-        path: FieldPath::new(&scan.field),
-        onset,
-        task,
-    };
+    let mut search = Search::new(scene, mechanism, files, (scan, onset), task);
     if onset == Onset::Release
         && scan.field == AMPLITUDE
         && let Some(value) = frees_at(scene, mechanism)
@@ -116,6 +109,7 @@ pub fn threshold(
             .zip(scan.values.last())
             .filter(|(low, high)| value >= **low && value <= **high);
         let value = inside.map(|_| value);
+        scan.values.iter().for_each(|_| (task.tick)());
         return Some(Found { value, windows: 0, without_gap: value });
     }
     let mut found = Found { value: None, windows: 0, without_gap: None };
@@ -123,6 +117,7 @@ pub fn threshold(
     for values in scan.values.chunks(TOGETHER) {
         let does = search.ask(values)?;
         for (value, does) in values.iter().zip(does) {
+            (task.tick)();
             match (does, found.value) {
                 (true, None) => {
                     let located = search.locate(before, *value, scan.resolution)?;
@@ -143,7 +138,9 @@ pub fn threshold(
 }
 
 /// The thresholds of every cell of `grid` over `scene`, in order: the swept fields, then `of,value,windows`.
-/// A value that is not found is missing, as is that of a cell whose mechanism is not solved. None where the
+/// A value that is not found is missing, as is that of a cell whose mechanism is not solved. Ticks as often
+/// as there are cells and values of the scan. An error has every cell in which no value makes a valid model,
+/// or for interwell motion none under a drive that repeats, and then nothing has been run. None where the
 /// search was cancelled.
 pub fn threshold_table(
     (scene, files): (&Scene, &Files),
@@ -151,34 +148,51 @@ pub fn threshold_table(
     asked: (&Scan, Onset),
     pool: &Pool,
     task: &Task,
-) -> Option<Result<Table, CellFaults>> {
-    let unsolved = Found { value: None, windows: 0, without_gap: None };
-    let cell = |scene: &mut Scene, index: usize| {
+) -> Option<Result<Table, Vec<CellFaults>>> {
+    let cells = grid.map_or(1, Grid::cells) as usize;
+    let one = grid.is_none_or(|grid| !grid.changes_mechanism()).then(|| build(scene, files));
+    let prepared = |scene: &mut Scene, index: usize| {
         grid.inspect(|grid| grid.apply(index as u64, scene));
-        let mechanism = match Mechanism::build(&scene.mechanism, files) {
-            Ok(mechanism) => Arc::new(mechanism),
-            Err(BuildError::Unsolved(_)) => return Ok(unsolved),
-            Err(BuildError::Wrong(fault)) => {
-                let cell = grid.map_or_else(String::new, |grid| grid.describe(index as u64));
-                return Err(Some(CellFaults { cell, faults: vec![fault] }));
-            }
+        one.clone().unwrap_or_else(|| build(scene, files))
+    };
+    let check = |scene: &mut Scene, index: usize| {
+        if task.is_cancelled() {
+            return Err(());
+        }
+        let faults = match prepared(scene, index) {
+            Ok(mechanism) => Search::new(scene, &mechanism, files, asked, task).faults(&asked.0.values),
+            Err(BuildError::Unsolved(_)) => return Ok(None),
+            Err(BuildError::Wrong(fault)) => Some(vec![fault]),
         };
-        threshold(scene, &mechanism, files, asked, task).ok_or(None)
+        let cell = || grid.map_or_else(String::new, |grid| grid.describe(index as u64));
+        Ok(faults.map(|faults| CellFaults { cell: cell(), faults }))
     };
-    let cells = grid.map_or(1, Grid::cells);
-    let found = match pool.map(cells as usize, || scene.clone(), cell) {
-        Ok(found) => found,
-        Err(ended) => return ended.map(Err),
+    let wrong: Vec<CellFaults> =
+        pool.map(cells, || scene.clone(), check).ok()?.into_iter().flatten().collect();
+    if !wrong.is_empty() {
+        return Some(Err(wrong));
+    }
+    let cell = |scene: &mut Scene, index: usize| match prepared(scene, index) {
+        Ok(mechanism) => threshold(scene, &mechanism, files, asked, task).ok_or(()),
+        Err(_) => {
+            asked.0.values.iter().for_each(|_| (task.tick)());
+            Ok(Found { value: None, windows: 0, without_gap: None })
+        }
     };
+    let found = pool.map(cells, || scene.clone(), cell).ok()?;
     let mut table = Table::new();
     for (place, column) in grid.iter().flat_map(|grid| grid.columns()).enumerate() {
         let value = |index: u64| grid.and_then(|grid| grid.values(index).nth(place)).unwrap_or(f64::NAN);
-        table = table.with(column, (0..cells).map(value).collect());
+        table = table.with(column, (0..cells as u64).map(value).collect());
     }
     Some(Ok(table
         .each("of", &found, |_| asked.1.name())
         .each("value", &found, |own| own.value.unwrap_or(f64::NAN))
         .each("windows", &found, |own| own.value.map(|_| own.windows))))
+}
+
+fn build(scene: &Scene, files: &Files) -> Result<Arc<Mechanism>, BuildError> {
+    Mechanism::build(&scene.mechanism, files).map(Arc::new)
 }
 
 struct Search<'a> {
@@ -190,7 +204,18 @@ struct Search<'a> {
     task: &'a Task<'a>,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(
+        scene: &Scene,
+        mechanism: &'a Arc<Mechanism>,
+        files: &'a Files,
+        (scan, onset): (&Scan, Onset),
+        task: &'a Task<'a>,
+    ) -> Self {
+        let trial = Scene { start: Start::Rest, ..scene.clone() };
+        Self { trial, mechanism, files, path: FieldPath::new(&scan.field), onset, task }
+    }
+
     /// Which of the values do it.
     fn ask(&mut self, values: &[f64]) -> Option<Vec<bool>> {
         let mut does = vec![false; values.len()];
@@ -199,7 +224,7 @@ impl Search<'_> {
             if self.task.is_cancelled() {
                 return None;
             }
-            if let Some(model) = self.model(*value) {
+            if let Some(Ok(model)) = self.model(*value) {
                 models.push(model);
                 places.push(place);
             }
@@ -209,23 +234,49 @@ impl Search<'_> {
             places.into_iter().zip(Model::run_all(&models, Some(until), Some(self.task.cancel)))
         {
             does[place] = self.onset.is_in(&run.summary);
-            (self.task.tick)();
         }
         (!self.task.is_cancelled()).then_some(does)
     }
 
-    fn model(&mut self, value: f64) -> Option<Model> {
+    /// The model at a value, or its faults; none where its mechanism is not solved.
+    fn model(&mut self, value: f64) -> Option<Result<Model, Vec<Fault>>> {
         let before = self.trial.mechanism.clone();
         if !self.path.set(&mut self.trial, value) {
             return None;
         }
         let mechanism = match self.trial.mechanism == before {
-            true => Arc::clone(self.mechanism),
-            false => Arc::new(Mechanism::build(&self.trial.mechanism, self.files).ok()?),
+            true => Ok(Arc::clone(self.mechanism)),
+            false => build(&self.trial, self.files),
         };
-        let model = Model::build(&self.trial, mechanism).ok();
+        let model = match mechanism {
+            Ok(mechanism) => Some(Model::build(&self.trial, mechanism)),
+            Err(BuildError::Wrong(fault)) => Some(Err(vec![fault])),
+            Err(BuildError::Unsolved(_)) => None,
+        };
         self.trial.mechanism = before;
         model
+    }
+
+    /// The faults of the model at the first of the values, where none of them makes one that can do it.
+    fn faults(&mut self, values: &[f64]) -> Option<Vec<Fault>> {
+        let mut first = None;
+        for value in values {
+            let faults = match self.model(*value)? {
+                Ok(model) if self.onset != Onset::Interwell || model.repeats() => return None,
+                Ok(_) => vec![self.no_period()],
+                Err(faults) => faults,
+            };
+            first = first.or(Some(faults));
+        }
+        first
+    }
+
+    fn no_period(&self) -> Fault {
+        let kind = format!("{:?}", self.trial.excitation);
+        let kind = kind.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned();
+        let problem = "does not repeat, so no motion can be said to repeat with it (interwell): ask for \
+                       crossing, or take a Sine, or a Sum of sines whose frequencies have a common period";
+        Fault { field: "excitation".into(), value: kind, problem: problem.into() }
     }
 
     /// The least multiple of the resolution, as far as bisection tells, that does it, between a value that

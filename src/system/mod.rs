@@ -1,4 +1,4 @@
-//! The machine that the program runs on: threads, clocks and files, which nothing else names.
+//! Threads, clocks and files of the machine; no other folder uses the standard library's own.
 
 pub mod clock;
 pub mod files;

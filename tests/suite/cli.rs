@@ -2,11 +2,13 @@
 
 mod accuracy;
 mod bad_input;
+mod basins;
 mod curve;
 mod flexure_numbers;
 mod flexures;
 mod options;
 mod outputs;
+mod section;
 mod simulate;
 mod sweep;
 mod verdicts;
@@ -14,6 +16,21 @@ mod verdicts;
 use assert_cmd::Command;
 use predicates::prelude::*;
 use predicates::str::contains;
+
+/// The words of all commands, in the order of `--help`.
+const COMMANDS: [&str; 11] = [
+    "presets",
+    "check",
+    "curve",
+    "simulate",
+    "sweep",
+    "section",
+    "threshold",
+    "spectrum",
+    "basins",
+    "exponents",
+    "accuracy",
+];
 
 /// The program with these arguments, given in one line.
 pub fn plain(line: &str) -> Command {
@@ -45,7 +62,7 @@ pub fn refused(mut command: Command, words: &[&str]) {
     }
 }
 
-fn column(csv: &str, name: &str) -> Vec<String> {
+pub fn column(csv: &str, name: &str) -> Vec<String> {
     let mut lines = csv.lines();
     let place = lines.next().unwrap().split(',').position(|own| own == name).unwrap();
     lines.map(|line| line.split(',').nth(place).unwrap().to_owned()).collect()
@@ -64,13 +81,11 @@ fn without_headless_it_says_what_to_write() {
         let text = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
         assert!(text.contains("--headless") && text.lines().count() == 1, "{text}");
     }
-    for command in ["presets", "check", "curve", "simulate", "sweep", "threshold", "exponents", "accuracy"] {
+    for command in COMMANDS {
         refused(plain(command), &["--headless", command]);
     }
-    refused(
-        plain("--headless"),
-        &["presets, check, curve, simulate, sweep, threshold, exponents or accuracy"],
-    );
+    let (last, others) = COMMANDS.split_last().unwrap();
+    refused(plain("--headless"), &[&format!("{} or {last}", others.join(", "))]);
     refused(headless("swep"), &["`swep`", "sweep"]);
     refused(headless("sweep --bogus"), &["--bogus"]);
     refused(headless("check --plot a.png"), &["--plot"]);
@@ -80,8 +95,7 @@ fn without_headless_it_says_what_to_write() {
 #[test]
 fn help_and_version() {
     plain("--version").assert().success().stdout(format!("interwell {}\n", env!("CARGO_PKG_VERSION")));
-    let commands = ["presets", "check", "curve", "simulate", "sweep", "threshold", "exponents", "accuracy"];
-    for word in commands.into_iter().chain(["Examples", "Exit status"]) {
+    for word in COMMANDS.into_iter().chain(["Examples", "Exit status"]) {
         plain("--help").assert().success().stdout(contains(word));
     }
     for word in ["--out", "--set", "--tolerance", "--jobs", "--quiet", "--over", "--plot", "--dark"] {

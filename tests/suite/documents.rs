@@ -28,7 +28,15 @@ fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
 fn every_field_of_a_scene_is_documented_with_its_range() {
     // a field is declared as `name: Type,`, its range in the comment above
     let (mut fields, mut range) = (0, None);
-    let sources = [include_str!("../../src/scene/data.rs"), include_str!("../../src/scene/stops.rs")];
+    let sources = [
+        include_str!("../../src/scene/data.rs"),
+        include_str!("../../src/scene/mechanism.rs"),
+        include_str!("../../src/scene/stops.rs"),
+    ];
+    let dictionaries = ["scene.dict", "arguments.dict"].map(|name| {
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/dictionaries").join(name))
+            .unwrap()
+    });
     for line in
         sources.iter().flat_map(|text| text.split("#[cfg(test)]").next()).flat_map(str::lines).map(str::trim)
     {
@@ -48,6 +56,9 @@ fn every_field_of_a_scene_is_documented_with_its_range() {
             && name != "record"
         {
             fields += 1;
+            let known =
+                |text: &String| [": ", "="].iter().any(|end| text.contains(&format!("\"{name}{end}")));
+            assert!(dictionaries.iter().all(known), "fuzz/dictionaries do not hold `{name}`");
             let rows: Vec<&str> =
                 SCENE.lines().filter(|row| row.starts_with("| `") && says(row, name)).collect();
             assert!(!rows.is_empty(), "docs/scene.md has no row for `{name}`");
@@ -96,6 +107,11 @@ fn every_column_and_word_of_the_output_is_documented() {
         format!("curve paper --out /dev/null --contact - {hertz}"),
         "threshold paper --of release".to_owned(),
         "exponents paper --quiet".to_owned(),
+        "spectrum paper --rate-hz 30 --quiet".to_owned(),
+        "section paper --over excitation.amplitude_g=1 --carry up --quiet".to_owned(),
+        "section paper --at impacts".to_owned(),
+        "basins paper --x-mm 0:1:2 --v 0:0:1 --quiet".to_owned(),
+        "basins paper --x-mm 0:1:2 --v 0:0:1 --quiet --out /dev/null --attractors -".to_owned(),
         "accuracy --case grazing --out - --quiet".to_owned(),
         "accuracy nominal-cubic --out - --quiet".to_owned(),
         "sweep paper --over excitation.amplitude_g=1 --columns all --out - --quiet".to_owned(),
@@ -124,10 +140,15 @@ fn the_keys_of_a_manifest_are_documented() {
     let folder = tempfile::tempdir().unwrap();
     let data = folder.path().join("map.csv");
     headless("sweep paper --over excitation.amplitude_g=1 --quiet --out").arg(&data).assert().success();
-    let text = fs::read_to_string(folder.path().join("map.csv.json")).unwrap();
-    let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
-    for key in manifest.as_object().unwrap().keys() {
-        assert!(says(OUTPUT, key), "docs/output.md does not say `{key}`");
+    let starts = folder.path().join("starts.csv");
+    let line = "basins paper --x-mm 0:1:2 --v 0:0:1 --quiet --out";
+    headless(line).arg(&starts).assert().success();
+    for name in ["map.csv.json", "starts.csv.json"] {
+        let text = fs::read_to_string(folder.path().join(name)).unwrap();
+        let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
+        for key in manifest.as_object().unwrap().keys() {
+            assert!(says(OUTPUT, key), "docs/output.md does not say `{key}` of {name}");
+        }
     }
 }
 

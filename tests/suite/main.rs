@@ -3,6 +3,7 @@
 mod absent;
 mod accuracy;
 mod accuracy_scene;
+mod basins;
 #[path = "../../benches/by_hand/mod.rs"]
 mod by_hand;
 mod cli;
@@ -24,9 +25,11 @@ mod presets;
 mod properties;
 mod recurrence;
 mod scene;
+mod section;
 #[path = "../shared/mod.rs"]
 mod shared;
 mod source_text;
+mod spectrum;
 mod stroboscopic;
 mod studies;
 mod support;

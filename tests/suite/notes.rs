@@ -5,6 +5,7 @@
 //! as the text has. Numbers that depend on rounding, those of irregular motion, are held within what the
 //! words allow.
 
+mod impact_oscillator;
 mod prototype;
 mod textbook;
 
@@ -87,7 +88,9 @@ texts! {
     "elastic-box": textbook::elastic_box;
     "duffing": textbook::duffing;
     "duffing-chaos": textbook::duffing_chaos;
+    "duffing-cascade": textbook::duffing_cascade;
     "period-adding": textbook::period_adding;
+    "impact-oscillator": impact_oscillator::impact_oscillator;
 }
 
 #[test]

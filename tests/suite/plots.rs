@@ -3,6 +3,7 @@
 mod asked;
 mod lines;
 mod manifests;
+mod studies;
 
 use std::path::{Path, PathBuf};
 

@@ -35,7 +35,7 @@ const fn known(
 use Regime::{Crossing, Interwell, Intrawell, OneWell};
 
 /// All but the two that never repeat.
-const KNOWN: [Known; 13] = [
+const KNOWN: [Known; 15] = [
     known("paper", Interwell, Some(1), (30, 600), 0.049_494_877_83, 0.0015),
     known("paper-table", Interwell, Some(1), (30, 600), 0.049_140_721_78, 0.0015),
     known("paper-unconstrained", Intrawell, Some(1), (0, 0), 0.017_170_973_36, 0.007_239_045_314),
@@ -48,6 +48,8 @@ const KNOWN: [Known; 13] = [
     known("bouncing-ball", OneWell, None, (0, 52), 0.488_221_014_7, 1.0),
     known("elastic-box", OneWell, None, (0, 25), 0.05, 0.01),
     known("duffing", Interwell, Some(5), (40, 0), 0.423_469_345_5, 1.443_458_460),
+    known("duffing-cascade", Intrawell, Some(4), (0, 0), 0.427_491_292_4, 1.400_760_188_5),
+    known("impact-oscillator", OneWell, Some(1), (240, 600), 0.458_346_788_6, 1.0),
     known("period-adding", Intrawell, Some(4), (0, 75), 0.182_484_741_4, 1.2),
 ];
 

@@ -9,14 +9,14 @@ use crate::scene::{Excitation, Stops};
 
 use super::fields::{field_ui, fields_ui};
 
-/// Draws it. Whether something changed.
-pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    let mut changed = kind_ui(ui, session);
-    changed |= excitation_ui(ui, session, width);
+/// Draws it.
+pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    kind_ui(ui, session);
+    excitation_ui(ui, session, width);
     ui.separator();
-    changed |= uneven_ui(ui, session, width);
+    uneven_ui(ui, session, width);
     ui.separator();
-    changed | run_ui(ui, session, width)
+    run_ui(ui, session, width);
 }
 
 /// Kinds that can be chosen, as they are called.
@@ -62,7 +62,7 @@ fn of_kind(name: &str, from: &Excitation, suiting: &Excitation) -> Excitation {
     }
 }
 
-fn kind_ui(ui: &mut Ui, session: &mut Session) -> bool {
+fn kind_ui(ui: &mut Ui, session: &mut Session) {
     let present = kind(&session.scene().excitation);
     let mut wanted = present;
     let name = ui.label("kind of shaking");
@@ -78,12 +78,13 @@ fn kind_ui(ui: &mut Ui, session: &mut Session) -> bool {
         }
     });
     combo.response.labelled_by(name.id).on_hover_text("What moves the base.");
-    let suiting = session.suiting_sine();
-    wanted != present
-        && session.edit_once(|scene| scene.excitation = of_kind(wanted, &scene.excitation, &suiting))
+    if wanted != present {
+        let suiting = session.suiting_sine();
+        session.edit_once(|scene| scene.excitation = of_kind(wanted, &scene.excitation, &suiting));
+    }
 }
 
-fn excitation_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+fn excitation_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let paths: &[&'static str] = match &session.scene().excitation {
         Excitation::Constant { .. } => &["excitation.accel_g"],
         Excitation::Sine { .. } => &["excitation.phase_deg"],
@@ -94,10 +95,10 @@ fn excitation_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
         Excitation::Noise { .. } => &["excitation.low_hz", "excitation.high_hz"],
         _ => &[],
     };
-    fields_ui(ui, session, paths, width)
+    fields_ui(ui, session, paths, width);
 }
 
-fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let stops = session.scene().stops;
     let mut uneven = matches!(stops, Stops::Uneven { .. });
     let tick = egui::Checkbox::new(&mut uneven, "different stops left and right");
@@ -109,9 +110,10 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
         Stops::None => "There are no stops: switch them on first.",
         _ => "These stops are compliant, and compliant stops are equal.",
     };
-    let switched = response.on_disabled_hover_text(why).changed();
-    let mut changed = switched && session.edit_once(|scene| scene.stops = other_kind(scene.stops));
-    let Stops::Uneven { left_mm, right_mm, .. } = session.scene().stops else { return changed };
+    if response.on_disabled_hover_text(why).changed() {
+        session.edit_once(|scene| scene.stops = other_kind(scene.stops));
+    }
+    let Stops::Uneven { left_mm, right_mm, .. } = session.scene().stops else { return };
     for (name, right, own, other) in
         [("left stop is there", false, left_mm, right_mm), ("right stop is there", true, right_mm, left_mm)]
     {
@@ -122,14 +124,14 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
         let response = response.on_hover_text("An open side limits nothing.");
         let why = "One side has to have a stop; the switch Stops takes both away.";
         if response.on_disabled_hover_text(why).changed() {
-            changed |= session.edit_once(|scene| {
+            session.edit_once(|scene| {
                 if let Stops::Uneven { left_mm, right_mm, .. } = &mut scene.stops {
                     *(if right { right_mm } else { left_mm }) = there.then_some(other.unwrap_or(1.5));
                 }
             });
         }
     }
-    changed | fields_ui(ui, session, &["stops.restitution_left", "stops.restitution_right"], width)
+    fields_ui(ui, session, &["stops.restitution_left", "stops.restitution_right"], width);
 }
 
 /// Equal stops as stops that may differ, and back; back, both are as the right one, where it is there.
@@ -149,8 +151,8 @@ fn other_kind(stops: Stops) -> Stops {
 /// Tolerances that can be chosen, as they are called.
 const TOLERANCES: [(f64, &str); 4] = [(1e-6, "1e-6"), (1e-9, "1e-9"), (1e-12, "1e-12"), (1e-14, "1e-14")];
 
-fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    let mut changed = field_ui(ui, session, "run.duration_s", width);
+fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    field_ui(ui, session, "run.duration_s", width);
     let present = session.scene().run.tolerance;
     let mut wanted = present;
     let name = ui.label("tolerance");
@@ -162,8 +164,9 @@ fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     let hover = "Error allowed in a step. Smaller: a little slower; a motion without rhythm takes another \
                  course, and its averages stay.";
     combo.response.labelled_by(name.id).on_hover_text(hover);
-    changed |= wanted != present && session.edit_once(|scene| scene.run.tolerance = wanted);
-    changed
+    if wanted != present {
+        session.edit_once(|scene| scene.run.tolerance = wanted);
+    }
 }
 
 #[cfg(test)]

@@ -6,38 +6,37 @@ use crate::app::session::Session;
 use crate::app::ui::widgets::hover_beside;
 use crate::scene::{Damping, Excitation, Stops};
 
-use super::fields::{field_ui, fields_ui};
+use super::fields::{absent_ui, field_ui, fields_ui};
 use super::{advanced, geometry};
 
 /// Width in points of a row of controls that has no room for a heading.
 const NARROW: f32 = 640.0;
 
-/// The controls as a column. Whether something changed.
-pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) -> bool {
+/// What stands under More.
+const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass.";
+
+/// The controls as a column.
+pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     let width = (ui.available_width() - 84.0).max(80.0);
     heading_ui(ui, "Shaking");
-    let mut changed = shaking_ui(ui, session, width);
+    shaking_ui(ui, session, width);
     ui.add_space(14.0);
-    changed |= stops_switch_ui(ui, session);
-    changed |= limit_ui(ui, session, width);
+    stops_switch_ui(ui, session);
+    limit_ui(ui, session, width);
     ui.add_space(14.0);
-    let arrow = if *more { "Less" } else { "More" };
-    let hover = "Restitution, preload, frequency, damping and mass.";
-    if ui.selectable_label(*more, RichText::new(arrow).strong()).on_hover_text(hover).clicked() {
+    let name = RichText::new(if *more { "Less" } else { "More" }).strong();
+    if ui.selectable_label(*more, name).on_hover_text(MORE_HOVER).clicked() {
         *more = !*more;
     }
     if *more {
-        changed |= more_ui(ui, session, width);
+        more_ui(ui, session, width);
     }
-    changed
 }
 
-/// Shaking and stops as one row, where room is short; the rest opens beside the views. Whether something
-/// changed.
-pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) -> bool {
+/// Shaking and stops as one row, where room is short; the rest opens beside the views.
+pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        let hover = "Restitution, preload, frequency, damping and mass.";
-        let button = ui.selectable_label(*more, "More").on_hover_text(hover);
+        let button = ui.selectable_label(*more, "More").on_hover_text(MORE_HOVER);
         let escaped = *more && ui.input(|input| input.key_pressed(egui::Key::Escape));
         if button.clicked() || escaped {
             *more = !*more;
@@ -54,36 +53,36 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) -> bool {
             if !is_narrow {
                 heading_ui(ui, "Shaking");
             }
-            let mut changed = shaking_ui(ui, session, width);
+            shaking_ui(ui, session, width);
             ui.separator();
-            changed |= stops_switch_ui(ui, session);
-            changed | limit_ui(ui, session, width)
-        })
-        .inner
-    })
-    .inner
+            stops_switch_ui(ui, session);
+            limit_ui(ui, session, width);
+        });
+    });
 }
 
-/// What is changed less often, as a column beside the views. Whether something changed.
-pub fn more_column_ui(ui: &mut Ui, session: &mut Session) -> bool {
-    egui::ScrollArea::vertical().show(ui, |ui| more_ui(ui, session, 150.0)).inner
+/// What is changed less often, as a column beside the views.
+pub fn more_column_ui(ui: &mut Ui, session: &mut Session) {
+    egui::ScrollArea::vertical().show(ui, |ui| more_ui(ui, session, 150.0));
 }
 
 fn heading_ui(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).heading());
 }
 
-fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let text = match &session.scene().excitation {
         Excitation::Sine { .. } | Excitation::Chirp { .. } | Excitation::Noise { .. } => {
             return fields_ui(ui, session, &["excitation.amplitude_g", "excitation.rms_g"], width);
         }
         Excitation::None => {
             let own = session.suiting_sine();
-            let Excitation::Sine { frequency_hz, amplitude_g, .. } = own else { return false };
+            let Excitation::Sine { frequency_hz, amplitude_g, .. } = own else { return };
             let hover = format!("A sine of {frequency_hz} Hz and {amplitude_g} g.");
-            return ui.button("Shake it").on_hover_text(hover).clicked()
-                && session.edit_once(|scene| scene.excitation = own);
+            if ui.button("Shake it").on_hover_text(hover).clicked() {
+                session.edit_once(|scene| scene.excitation = own);
+            }
+            return;
         }
         Excitation::AmplitudeRamp { from_g, to_g, over_s, .. } => {
             format!("{from_g} to {to_g} g over {over_s} s")
@@ -93,44 +92,44 @@ fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
         Excitation::Sum(terms) => format!("sum of {} parts", terms.len()),
     };
     ui.label(text);
-    false
 }
 
-fn stops_switch_ui(ui: &mut Ui, session: &mut Session) -> bool {
+fn stops_switch_ui(ui: &mut Ui, session: &mut Session) {
     let mut on = session.scene().stops != Stops::None;
     let text = RichText::new("Stops").heading();
     let hover =
         "Rigid walls that limit the travel of the mass on both sides. A mass beyond them is set on the stop.";
-    hover_beside(ui.checkbox(&mut on, text), hover).changed() && session.switch_stops(on)
+    if hover_beside(ui.checkbox(&mut on, text), hover).changed() {
+        session.switch_stops(on);
+    }
 }
 
 /// The distance of the stops, or of each of them; while they are off, of those that come: moving it switches
 /// them on.
-fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"], width)
 }
 
-fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
-    let mut changed = restitution_ui(ui, session, width);
-    changed |= geometry::preload_ui(ui, session, width);
+fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    restitution_ui(ui, session, width);
+    geometry::preload_ui(ui, session, width);
     if matches!(session.scene().excitation, Excitation::Sine { .. }) {
-        changed |= field_ui(ui, session, "excitation.frequency_hz", width);
+        field_ui(ui, session, "excitation.frequency_hz", width);
     }
-    changed |= damping_ui(ui, session, width);
-    changed |= field_ui(ui, session, "mass_g", width);
+    damping_ui(ui, session, width);
+    field_ui(ui, session, "mass_g", width);
     ui.add_space(8.0);
     let hover = "What is changed seldom: sizes of the flexures, kind of shaking, uneven stops, run.";
     let heading = RichText::new("Advanced").strong();
     let advanced = egui::CollapsingHeader::new(heading).id_salt("advanced").show_unindented(ui, |ui| {
-        changed |= geometry::sizes_ui(ui, session, width);
+        geometry::sizes_ui(ui, session, width);
         ui.separator();
-        changed |= advanced::advanced_ui(ui, session, width);
+        advanced::advanced_ui(ui, session, width);
     });
     advanced.header_response.on_hover_text(hover);
-    changed
 }
 
-fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let why = match session.scene().stops {
         Stops::Rigid { .. } => return field_ui(ui, session, "stops.restitution", width),
         Stops::None => "There are no stops to rebound from: switch them on first.",
@@ -139,14 +138,12 @@ fn restitution_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
         }
         Stops::Uneven { .. } => "The two stops have a restitution each, under Advanced.",
     };
-    ui.add_enabled(false, egui::Label::new("restitution")).on_disabled_hover_text(why);
-    false
+    absent_ui(ui, "restitution", why);
 }
 
-fn damping_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+fn damping_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     if session.scene().damping == Damping::None {
-        let label = ui.add_enabled(false, egui::Label::new("no damping"));
-        label.on_disabled_hover_text("The scene has none.");
+        absent_ui(ui, "no damping", "The scene has none.");
     }
     fields_ui(ui, session, &["damping.xi", "damping.c_n_s_per_m"], width)
 }

@@ -1,14 +1,14 @@
 //! Controls of the flexures: preload, thickness, lengths, widths.
 
-use eframe::egui::{self, Ui};
+use eframe::egui::Ui;
 
 use crate::app::session::Session;
 use crate::scene::Mechanism;
 
-use super::fields::{field_ui, fields_ui};
+use super::fields::{absent_ui, field_ui, fields_ui};
 
-/// The slider of the preload; for a mechanism without one greyed, with the reason. Whether something changed.
-pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+/// The slider of the preload; for a mechanism without one greyed, with the reason.
+pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     match session.scene().mechanism {
         Mechanism::Flexures { .. } => field_ui(ui, session, "mechanism.preload_mm", width),
         Mechanism::Table { .. } => {
@@ -18,8 +18,8 @@ pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
     }
 }
 
-/// The sliders of the other sizes. Whether something changed.
-pub fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
+/// The sliders of the other sizes.
+pub fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     if !matches!(session.scene().mechanism, Mechanism::Flexures { .. }) {
         let why = "The mechanism of this scene is a force without flexures behind it.";
         return absent_ui(ui, "sizes of flexures", why);
@@ -32,9 +32,4 @@ pub fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) -> bool {
         "mechanism.buckling.width_mm",
     ];
     fields_ui(ui, session, &sizes, width)
-}
-
-fn absent_ui(ui: &mut Ui, name: &str, why: &str) -> bool {
-    ui.add_enabled(false, egui::Label::new(name)).on_disabled_hover_text(why);
-    false
 }

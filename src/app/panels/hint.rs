@@ -3,7 +3,6 @@
 use eframe::egui::{RichText, Ui};
 
 use crate::app::session::Session;
-use crate::app::ui::style::strong_family;
 use crate::app::words::status::grams;
 use crate::dynamics::EventKind;
 use crate::scene::Excitation;
@@ -57,16 +56,10 @@ impl Hint {
         }
         // Crossings are rare and recent: a look at the last events is enough. One by hand does not count.
         let since = session.changed_at();
+        let mut last = session.player.watch().events().iter().rev().take(50);
         let crossed = since > 0.0
             && !session.is_by_hand()
-            && session
-                .player
-                .watch()
-                .events()
-                .iter()
-                .rev()
-                .take(50)
-                .any(|event| event.kind == EventKind::Crossing && event.t >= since);
+            && last.any(|event| event.kind == EventKind::Crossing && event.t >= since);
         let limit_mm = limit_mm(session);
         let as_opened = self.is_as_opened(session);
         self.stage = match (self.stage, limit_mm) {
@@ -157,8 +150,7 @@ impl Hint {
     pub fn ui(&mut self, ui: &mut Ui, session: &Session) {
         let (first, then) = self.text(session);
         ui.horizontal_wrapped(|ui| {
-            let font = eframe::egui::FontId::new(crate::app::ui::style::BODY, strong_family());
-            ui.label(RichText::new(first).font(font));
+            ui.label(RichText::new(first).heading());
             ui.label(then);
             if ui.small_button("Dismiss").clicked() {
                 self.stage = Stage::Done;

@@ -56,12 +56,8 @@ pub fn status_ui(
     let size = if compact { STATUS_COMPACT } else { STATUS };
     ui.horizontal_centered(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(size + 6.0), Sense::hover());
-        ui.painter().extend(kind_shapes(
-            sentence.kind,
-            rect.center(),
-            size * 0.42,
-            style.kind(sentence.kind),
-        ));
+        let (kind, color) = (sentence.kind, style.kind(sentence.kind));
+        ui.painter().extend(kind_shapes(kind, rect.center(), size * 0.42, color));
         let settling = match session.was_set_on_stop() {
             true => Some("The mass was set on the stop".to_owned()),
             false => session.settling().map(|(gone, of)| format!("settling: {:.1} s to go", of - gone)),

@@ -11,6 +11,7 @@ use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::{Icon, arrows, icon_button_ui};
 use crate::app::words::meanings::{explained, meaning};
+use crate::app::words::status::{Kind, speed};
 use crate::dynamics::{Event, EventKind};
 
 /// How far ahead in s of the motion an event is looked for.
@@ -47,56 +48,49 @@ const TICK: f32 = 5.0;
 const ROWS: [f32; 3] = [4.5, 13.5, 27.5];
 const BAR: f32 = 20.0;
 
-/// Draws the transport; where results are covered, without what happened when. Whether something changed.
-pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
+/// Draws the transport; where results are covered, without what happened when.
+pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     ui.horizontal_centered(|ui| {
-        let mut changed = false;
         if icon_button_ui(ui, Icon::Restart, BUTTON, "restart", "From the start again").clicked() {
             session.restart();
-            changed = true;
         }
         let previous = "To the event before: a release, a crossing, an impact (PageUp)";
         if icon_button_ui(ui, Icon::PreviousEvent, BUTTON, "previous event", previous).clicked() {
-            changed |= session.player.seek_event(false, EVENT_AHEAD);
+            session.player.seek_event(false, EVENT_AHEAD);
         }
         let playing = session.player.is_playing();
         let (icon, name) = if playing { (Icon::Pause, "pause") } else { (Icon::Play, "play") };
         let button = icon_button_ui(ui, icon, BUTTON + 6.0, name, "Play and pause (space)");
         if button.clicked() {
             session.play_or_pause();
-            changed = true;
         }
         let next = "To the next event (PageDown)";
         if icon_button_ui(ui, Icon::NextEvent, BUTTON, "next event", next).clicked() {
-            changed |= session.player.seek_event(true, EVENT_AHEAD);
+            session.player.seek_event(true, EVENT_AHEAD);
         }
         if icon_button_ui(ui, Icon::Step, BUTTON, "step", "A little further, then stand (full stop)")
             .clicked()
         {
             session.player.step();
-            changed = true;
         }
-        changed |= speed_ui(ui, session);
-        changed |= scrub_ui(ui, session, style, covered);
-        changed | time_ui(ui, session, style, covered)
-    })
-    .inner
+        speed_ui(ui, session);
+        scrub_ui(ui, session, style, covered);
+        time_ui(ui, session, style, covered);
+    });
 }
 
-fn speed_ui(ui: &mut Ui, session: &mut Session) -> bool {
+fn speed_ui(ui: &mut Ui, session: &mut Session) {
     let speed = session.player.speed;
     let name =
         SPEEDS.iter().find(|own| own.0 == speed).map_or_else(|| format!("{speed}"), |own| own.1.to_owned());
-    let mut changed = false;
     let combo = ComboBox::from_id_salt("speed").width(96.0).selected_text(name).show_ui(ui, |ui| {
         for (key, (value, name)) in (1..).zip(SPEEDS) {
             let text = format!("{name}  ({key})");
-            changed |= ui.selectable_value(&mut session.player.speed, value, text).changed();
+            ui.selectable_value(&mut session.player.speed, value, text);
         }
     });
     let response = combo.response.on_hover_text("Speed of the motion on the screen (keys 1 to 7)");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "speed"));
-    changed
 }
 
 /// The row of the bar in which an event stands: crossings over releases over the bar, impacts below it.
@@ -131,7 +125,7 @@ fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
     };
     match row(kind) {
         0 => {
-            let color = style.kind(crate::app::words::status::Kind::Interwell);
+            let color = style.kind(Kind::Interwell);
             convex(&[(0.0, -4.0), (3.5, 0.0), (0.0, 4.0), (-3.5, 0.0)], color)
         }
         1 => convex(&[(0.0, -3.5), (3.5, 3.0), (-3.5, 3.0)], style.stop()),
@@ -153,7 +147,7 @@ fn legend(painter: &Painter, style: &Style, row: Rect) {
 
 /// The remembered past as a bar with a sign for every event; dragging, or with the keyboard's focus the arrow
 /// keys, look at it.
-fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
+fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     let time = (TIME_SHARE * ui.available_width()).clamp(LEAST_TIME, TIME);
     let width = (ui.available_width() - time).max(40.0);
     let explains = !covered && ui.available_height() >= HIGH;
@@ -195,11 +189,10 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) ->
         }
     }
     response.on_hover_text(hover);
-    wanted.is_some()
 }
 
 /// The time that is shown, and below it what happens then or what is looked for; the way back from the past.
-fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> bool {
+fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     let player = &session.player;
     let note = match player.goal() {
         Some(Goal::Time(_)) => "going on; any key stops".to_owned(),
@@ -232,13 +225,12 @@ fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) -> 
     if back {
         session.player.to_present();
     }
-    back
 }
 
 /// What happened, in words: which side, how fast.
 fn words(event: &Event) -> String {
     let side = event.side.name();
-    let speed = |v: f64| crate::app::words::status::speed(v.abs());
+    let speed = |v: f64| speed(v.abs());
     match event.kind {
         EventKind::Impact => format!("impact, {side}, {} to {} mm/s", speed(event.v_in), speed(event.v_out)),
         EventKind::Contact => format!("contact, {side}, {} mm/s", speed(event.v_in)),

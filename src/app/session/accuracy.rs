@@ -184,12 +184,8 @@ impl Accuracy {
     /// Waits for what is being computed, at most so long.
     pub(super) fn wait(&mut self, most: Duration) {
         self.trust.wait(most);
-        if self.tolerances.is_running() {
-            self.tolerances.wait(most);
-        }
-        if self.stepped.is_running() {
-            self.stepped.wait(most);
-        }
+        self.tolerances.wait(most);
+        self.stepped.wait(most);
     }
 
     /// What each digit costs, and whether that is of `model`.

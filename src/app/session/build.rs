@@ -25,15 +25,15 @@ pub(super) fn unbuilt(document: &Document, error: BuildError) -> CannotRun {
     }
 }
 
-/// The mechanism of a scene that can be run with it.
-pub(super) fn solved(document: &Document, tolerance: f64) -> Result<Arc<Mechanism>, CannotRun> {
+/// The mechanism of a scene, and the model of the scene with it.
+pub(super) fn solved(document: &Document, tolerance: f64) -> Result<(Arc<Mechanism>, Model), CannotRun> {
     document.check()?;
     let scene = &document.scene;
     let mechanism = Mechanism::build_with(&scene.mechanism, &document.files, tolerance)
         .map_err(|error| unbuilt(document, error))?;
     let mechanism = Arc::new(mechanism);
-    Model::build(scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
-    Ok(mechanism)
+    let model = Model::build(scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
+    Ok((mechanism, model))
 }
 
 /// The first thing that is wrong, with the names that stand on the screen and without the place in a file,

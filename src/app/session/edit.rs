@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::app::words::fields::{in_words, name_and_unit};
-use crate::dynamics::{Model, STANDARD_GRAVITY};
+use crate::dynamics::STANDARD_GRAVITY;
 use crate::mechanics::FLEXURE_TOLERANCE;
 use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
 
@@ -41,7 +41,7 @@ impl Session {
         }
         let wanted = document.scene.mechanism.clone();
         match solved(&document, HANDLED_TOLERANCE) {
-            Ok(mechanism) => {
+            Ok((mechanism, _)) => {
                 (self.mechanism, self.mechanism_of, self.hurried) = (mechanism, wanted.clone(), true);
                 self.refused = None;
                 self.edit(|scene| scene.mechanism = wanted)
@@ -74,14 +74,11 @@ impl Session {
         if !std::mem::take(&mut self.hurried) {
             return;
         }
-        let Ok(mechanism) = solved(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
-        self.mechanism = mechanism;
-        if let Ok(model) = Model::build(self.scene(), Arc::clone(&self.mechanism)) {
-            self.model = Arc::new(model);
-            self.player.change(&self.model);
-            self.continued = true;
-            self.ask_settled();
-        }
+        let Ok((mechanism, model)) = solved(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
+        (self.mechanism, self.model) = (mechanism, Arc::new(model));
+        self.player.change(&self.model);
+        self.continued = true;
+        self.ask_settled();
     }
 
     /// Changes the scene by one gesture of its own.
@@ -199,12 +196,12 @@ impl Session {
     }
 
     /// Switches the stops; the ones that were there are remembered.
-    pub fn switch_stops(&mut self, on: bool) -> bool {
+    pub fn switch_stops(&mut self, on: bool) {
         let stops = if on { self.remembered_stops } else { Stops::None };
         if !on && self.scene().stops != Stops::None {
             self.remembered_stops = self.scene().stops;
         }
-        self.edit_once(|scene| scene.stops = stops)
+        self.edit_once(|scene| scene.stops = stops);
     }
 
     /// The stops that come when they are switched on.

@@ -20,12 +20,12 @@ use std::time::Duration;
 
 use crate::app::task::{Latest, Wake};
 use crate::dynamics::Model;
-use crate::mechanics::Mechanism;
+use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
 use crate::study;
 
 use accuracy::Accuracy;
 pub use build::CannotRun;
-use build::{differ_in_amplitude_alone, unbuilt, why};
+use build::{differ_in_amplitude_alone, solved, unbuilt, why};
 use editor::Editor;
 use map::Mapping;
 use player::{Player, fitting_speed};
@@ -45,13 +45,8 @@ impl Session {
     /// A session on a scene; `wake` is called from other threads when something has come.
     pub fn new(editor: Editor, wake: Wake) -> Result<Self, CannotRun> {
         let document = editor.document();
-        document.check()?;
+        let (mechanism, model) = solved(document, FLEXURE_TOLERANCE)?;
         let scene = editor.scene().clone();
-        let mechanism =
-            Mechanism::build(&scene.mechanism, &document.files).map_err(|error| unbuilt(document, error))?;
-        let mechanism = Arc::new(mechanism);
-        let model =
-            Model::build(&scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
         let hints = scene.app.clone().unwrap_or_default();
         let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.characteristic_time()));
         let player = Player::new(&model, speed);
@@ -208,12 +203,8 @@ impl Session {
     /// Waits for what is being computed, at most so long.
     pub fn wait(&mut self, most: Duration) {
         self.wait_settled(most);
-        if self.thresholds.is_running() {
-            self.thresholds.wait(most);
-        }
-        if self.stops_that_cross.is_running() {
-            self.stops_that_cross.wait(most);
-        }
+        self.thresholds.wait(most);
+        self.stops_that_cross.wait(most);
         self.follow_accuracy();
         self.accuracy.wait(most);
     }

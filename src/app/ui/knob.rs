@@ -67,9 +67,8 @@ impl Knob<'_> {
         let least = decimals(self.reach.step);
         // arrow keys are consumed by what they act on
         let pressed = ui.input(|input| {
-            [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown]
-                .iter()
-                .any(|key| input.key_pressed(*key))
+            let arrows = [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown];
+            arrows.iter().any(|key| input.key_pressed(*key))
         });
         let name = hover_beside(ui.label(self.name), self.hover);
         let mut turned = value;
@@ -130,15 +129,14 @@ impl Knob<'_> {
 
     /// The number beside the slider. Its response, and whether a number was typed that can be taken.
     fn number_ui(&self, ui: &mut Ui, value: &mut f64, least: usize, free: bool) -> (Response, bool) {
-        let (present, unit) = (*value, self.unit);
+        let present = *value;
         let editing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
         let write = |own: f64| if editing { exact(own, least) } else { shown(own, least) };
         let entered = RefCell::new(None);
-        let suffix = if unit.is_empty() || unit == "°" { unit.to_owned() } else { format!(" {unit}") };
         let mut own = present;
         let field = DragValue::new(&mut own)
             .speed(self.reach.step)
-            .suffix(suffix)
+            .suffix(self.suffix())
             .custom_formatter(|own, _| write(own))
             .update_while_editing(false)
             .custom_parser(|text| {
@@ -165,12 +163,17 @@ impl Knob<'_> {
         (response, typed)
     }
 
+    /// The unit as it stands behind a number.
+    fn suffix(&self) -> String {
+        let space = if self.unit.is_empty() || self.unit == "°" { "" } else { " " };
+        format!("{space}{}", self.unit)
+    }
+
     /// A typed text as a number that may be taken, or why it is none.
     fn parsed(&self, text: &str, present: f64) -> Result<f64, String> {
-        let unit = self.unit;
-        let space = if unit.is_empty() || unit == "°" { "" } else { " " };
-        let number = text.strip_suffix(unit).unwrap_or(text).trim().replace('−', "-");
-        let stays = format!("{} stays {}{space}{unit}.", self.name, shown(present, 0));
+        let unit = self.suffix();
+        let number = text.strip_suffix(self.unit).unwrap_or(text).trim().replace('−', "-");
+        let stays = format!("{} stays {}{unit}.", self.name, shown(present, 0));
         if number.is_empty() {
             return Err(format!("No number was typed: {stays}"));
         }
@@ -186,7 +189,7 @@ impl Knob<'_> {
         let (low, high) = (self.typed.0.min(present), self.typed.1.max(present));
         if !(low..=high).contains(&value) {
             return Err(format!(
-                "{}{space}{unit} was not taken: {} may be {} to {}{space}{unit}.",
+                "{}{unit} was not taken: {} may be {} to {}{unit}.",
                 shown(value, 0),
                 self.name,
                 shown(low, 0),

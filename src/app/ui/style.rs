@@ -314,6 +314,6 @@ pub fn install(ctx: &egui::Context) {
 }
 
 /// The family of headings and of what is to be read first.
-pub fn strong_family() -> FontFamily {
+fn strong_family() -> FontFamily {
     FontFamily::Name("strong".into())
 }

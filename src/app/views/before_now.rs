@@ -4,12 +4,12 @@ use eframe::egui::{self, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
 
 use crate::app::session::Card;
 use crate::app::ui::widgets::kind_shapes;
-use crate::app::words::fields::name_and_unit;
+use crate::app::words::fields::{mechanism_name, name_and_unit};
 use crate::app::words::meanings::{explained, meaning};
 use crate::app::words::numbers::{decimals_for, exact, shown};
 use crate::app::words::status::{Kind, grams, mm_beside, seconds, speed};
 use crate::dynamics::{Outcome, Summary};
-use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Scene, Start, Stops, numeric_fields};
+use crate::scene::{Damping, Excitation, FieldPath, Scene, Start, numeric_fields};
 
 use super::ViewContext;
 
@@ -20,8 +20,8 @@ const APART: (f32, f32) = (6.0, 1.0);
 /// Rows that are always there: the heading, motion, RMS velocity, reach, and from where it crosses.
 const ALWAYS: usize = 5;
 
-/// Draws it. Whether something changed.
-pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
     ground.show(ui, |ui| {
@@ -29,7 +29,6 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         // what has no room for every row can be scrolled
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| card_ui(ui, context));
     });
-    false
 }
 
 fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
@@ -74,24 +73,14 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
             regime_ui(ui, context, card.and_then(|card| card.settled.as_ref()));
         }
         ui.end_row();
-        let both = |name: &str, text: &dyn Fn(&Card) -> String| Row {
+        let both = |name: &str, text: fn(&Card) -> String| Row {
             name: name.to_owned(),
             before: before.map_or_else(dash, text),
             now: text(&now),
         };
-        row_ui(
-            ui,
-            &both(RMS, &|card| value(card, |s| s.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))),
-        );
-        row_ui(
-            ui,
-            &both("reach", &|card| {
-                let [left, right] = card.scene.stops.limits_mm();
-                let stops = (left.map(|mm| -mm * 1e-3), right.map(|mm| mm * 1e-3));
-                value(card, |s| s.max_abs_x.map(|reach| format!("{} mm", mm_beside(reach, stops))))
-            }),
-        );
-        row_ui(ui, &both("crosses from", &crosses_from));
+        row_ui(ui, &both(RMS, rms));
+        row_ui(ui, &both("reach", reach));
+        row_ui(ui, &both("crosses from", crosses_from));
     });
     // only where there is room for it
     if before.is_none() && ui.available_height() > 28.0 {
@@ -130,7 +119,7 @@ fn changes(before: &Scene, now: &Scene) -> Vec<Row> {
         row("shaking", shaking),
         row("stops", stops),
         row("damping", damping),
-        row("mechanism", mechanism),
+        row("mechanism", |scene| mechanism_name(&scene.mechanism)),
         row("start", start),
     ];
     let mut rows: Vec<Row> = whole.into_iter().filter(|row| row.before != row.now).collect();
@@ -176,6 +165,16 @@ fn in_shaking(excitation: &Excitation, number: &str) -> bool {
     all.contains(&number)
 }
 
+fn rms(card: &Card) -> String {
+    value(card, |settled| settled.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))
+}
+
+fn reach(card: &Card) -> String {
+    let [left, right] = card.scene.stops.limits_mm();
+    let stops = (left.map(|mm| -mm * 1e-3), right.map(|mm| mm * 1e-3));
+    value(card, |settled| settled.max_abs_x.map(|reach| format!("{} mm", mm_beside(reach, stops))))
+}
+
 /// The least shaking that crosses, as far as it was searched for.
 fn crosses_from(card: &Card) -> String {
     let found = card.thresholds.and_then(|found| found.crosses_from);
@@ -215,17 +214,14 @@ fn shaking(scene: &Scene) -> String {
 }
 
 fn stops(scene: &Scene) -> String {
-    let mm = |value: f64| format!("{} mm", shown(value, decimals_for(value).min(2)));
-    match scene.stops {
-        Stops::None => "none".to_owned(),
-        Stops::Rigid { travel_limit_mm, .. } => format!("±{}", mm(travel_limit_mm)),
-        Stops::Hertz { travel_limit_mm, .. } => format!("±{}, compliant", mm(travel_limit_mm)),
-        Stops::Uneven { left_mm, right_mm, .. } => {
-            let side = |own: Option<f64>, sign: &str| {
-                own.map_or("open".to_owned(), |own| format!("{sign}{}", mm(own)))
-            };
-            format!("{}, {}", side(left_mm, "-"), side(right_mm, "+"))
-        }
+    let (stops, mm) = (&scene.stops, |value: f64| format!("{} mm", shown(value, decimals_for(value).min(2))));
+    let side =
+        |own: Option<f64>, sign: &str| own.map_or("open".to_owned(), |own| format!("{sign}{}", mm(own)));
+    match (stops.travel_limit_mm(), stops.limits_mm()) {
+        (Some(limit), _) if stops.restitutions() == [None; 2] => format!("±{}, compliant", mm(limit)),
+        (Some(limit), _) => format!("±{}", mm(limit)),
+        (None, [None, None]) => "none".to_owned(),
+        (None, [left, right]) => format!("{}, {}", side(left, "-"), side(right, "+")),
     }
 }
 
@@ -237,17 +233,6 @@ fn damping(scene: &Scene) -> String {
         Damping::Coefficient { .. } => "by coefficient",
     }
     .to_owned()
-}
-
-/// What kind of mechanism it is; its numbers have rows of their own.
-fn mechanism(scene: &Scene) -> String {
-    match &scene.mechanism {
-        Mechanism::Flexures { .. } => "flexures".to_owned(),
-        Mechanism::Cubic { .. } => "cubic".to_owned(),
-        Mechanism::DoubleWell { .. } => "double well".to_owned(),
-        Mechanism::Polynomial { coefficients_si } => format!("polynomial of {}", coefficients_si.len()),
-        Mechanism::Table { path, .. } => path.clone(),
-    }
 }
 
 fn start(scene: &Scene) -> String {

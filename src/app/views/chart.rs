@@ -12,7 +12,6 @@ use super::ViewContext;
 use super::labels::{haloed, plated};
 use super::legend::{LEGEND, Sign, legend};
 use super::span::{Span, ticks};
-use super::well::x_axis;
 
 /// How far outside the picture in points is far enough.
 const FAR: f32 = 4000.0;
@@ -138,6 +137,24 @@ impl Chart {
             let fill = if equilibrium.stable { style.ink() } else { style.ground() };
             painter.circle(at, MARK, fill, Stroke::new(1.5, style.ink()));
         }
+    }
+}
+
+/// Ticks in mm below `rect`.
+pub fn x_axis(painter: &Painter, context: &ViewContext<'_>, rect: Rect) {
+    let style = context.style;
+    let (ticks, decimals) = context.span.ticks(f64::from(rect.width()) / 55.0);
+    let last = ticks.len().saturating_sub(1);
+    for (i, x) in ticks.iter().enumerate() {
+        let at = context.span.screen_from_world(*x, rect);
+        painter.vline(at, rect.y_range(), style.grid_stroke());
+        let unit = if i == last { " mm" } else { "" };
+        let text = format!("{:.decimals$}{unit}", x * 1e3 + 0.0);
+        let galley = painter.layout_no_wrap(text, style.small(), style.faint());
+        let half = 0.5 * galley.size().x + 2.0;
+        // whole, also where a tick is at the edge
+        let middle = at.clamp(rect.left() + half, (rect.right() - half).max(rect.left() + half));
+        painter.galley(pos2(middle - half, rect.bottom() + 4.0), galley, style.faint());
     }
 }
 

@@ -70,15 +70,14 @@ fn accounted(residual: f64) -> String {
     if missing < 0.005 { "100".to_owned() } else { format!("{:.2}", 100.0 - missing) }
 }
 
-/// Draws it. Whether something changed.
-pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
     let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
     // less than every row and the bar below them
     if area.width() < NAMES + NUMBERS + 40.0 || area.height() < ROWS.0 * (COUNT - 2.0) {
-        too_small_ui(ui, &style, ui.max_rect());
-        return false;
+        return too_small_ui(ui, &style, ui.max_rect());
     }
     context.session.player.want_ledgers();
     let session = &context.session;
@@ -115,26 +114,16 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
             let rect = cell(area.left() + NAMES + column * i as f32, y, column, row);
             let numbers = Rect::from_min_max(pos2(rect.right() - NUMBERS, rect.top()), rect.max);
             let Some(ledger) = ledger else {
-                put_ui(
-                    ui,
-                    numbers,
-                    RichText::new("-").color(style.faint()),
-                    Align::Max,
-                    "Not kept: a whole period has to pass while this view is open.",
-                );
+                let hover = "Not kept: a whole period has to pass while this view is open.";
+                put_ui(ui, numbers, RichText::new("-").color(style.faint()), Align::Max, hover);
                 continue;
             };
             let most = LEDGER.iter().map(|row| row.2(ledger).abs()).fold(0.0, f64::max);
             let bars =
                 Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(numbers.left() - 4.0, rect.bottom()));
             bar(ui, &style, bars, value(ledger), most, color(&style));
-            put_ui(
-                ui,
-                numbers,
-                RichText::new(written(value(ledger), unit, decimals(ledger, unit))),
-                Align::Max,
-                hover,
-            );
+            let number = written(value(ledger), unit, decimals(ledger, unit));
+            put_ui(ui, numbers, RichText::new(number), Align::Max, hover);
         }
         y += row;
     }
@@ -152,7 +141,6 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     y += 1.3 * row;
     let rest = Rect::from_min_max(pos2(area.left(), y), area.max);
     present_ui(ui, context, rest, (unit, name));
-    false
 }
 
 fn cell(x: f32, y: f32, width: f32, height: f32) -> Rect {
@@ -198,7 +186,7 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
         (potential - bottom).max(0.0),
         landscape.barrier.map(|barrier| model.mechanism().curve.potential(barrier.x) - bottom),
     );
-    let most = axis_end((kinetic_room).max(1.3 * barrier.unwrap_or(0.0)).max(1e-300));
+    let most = axis_end(kinetic_room.max(1.3 * barrier.unwrap_or(0.0)).max(1e-300));
     if rect.height() < 34.0 {
         return;
     }
@@ -214,27 +202,17 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     let below = track.bottom() + 3.0;
     let legend =
         painter.text(pos2(track.left(), below), Align2::LEFT_TOP, "potential", style.small(), style.ink());
-    painter.text(
-        pos2(legend.right() + 8.0, below),
-        Align2::LEFT_TOP,
-        "+ kinetic now",
-        style.small(),
-        style.mass_ink(),
-    );
+    let at = pos2(legend.right() + 8.0, below);
+    painter.text(at, Align2::LEFT_TOP, "+ kinetic now", style.small(), style.mass_ink());
     let end = format!("{} {name}", short(most / unit));
     painter.text(pos2(track.right(), below), Align2::RIGHT_TOP, end, style.small(), style.faint());
     if let Some(barrier) = barrier {
         let x = screen_from_energy(barrier);
-        let heights = track.top() - 3.0..=track.bottom() + 3.0;
+        let heights = track.y_range().expand(3.0);
         painter.vline(x, heights, Stroke::new(style.tray_stroke().width + 2.0, style.ground()));
-        painter.vline(x, track.top() - 3.0..=track.bottom() + 3.0, style.barrier_stroke());
-        painter.text(
-            pos2(x, track.top() - 2.0),
-            Align2::CENTER_BOTTOM,
-            "barrier",
-            style.small(),
-            style.faint(),
-        );
+        painter.vline(x, heights, style.barrier_stroke());
+        let at = pos2(x, track.top() - 2.0);
+        painter.text(at, Align2::CENTER_BOTTOM, "barrier", style.small(), style.faint());
     }
     response.on_hover_text(format!(
         "Now: potential {} and kinetic energy {} {name}, counted from the bottom of the deeper well, or \

@@ -15,7 +15,7 @@ use super::chart::Chart;
 use super::labels::plated;
 use super::legend::Sign;
 use super::ranges::{axis_end, room_for_push};
-use super::stops::stops_beside_ui;
+use super::stops::stops_ui;
 use super::{ViewContext, too_small_ui};
 
 /// Room above the largest force of the wells, as a factor.
@@ -31,12 +31,11 @@ const LINE: f32 = 8.0;
 const BESIDE: f32 = 16.0;
 const LABEL: f32 = 110.0;
 
-/// Draws it. Whether something changed.
-pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if area.width() < 60.0 || area.height() < 80.0 {
-        too_small_ui(ui, &context.style, area);
-        return false;
+        return too_small_ui(ui, &context.style, area);
     }
     let style = context.style;
     let own = end_of_axis(context);
@@ -46,7 +45,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let painter = ui.painter().with_clip_rect(chart.rect);
     curve(&painter, context, &chart);
     let edges = (chart.rect.top(), chart.rect.bottom());
-    let changed = stops_beside_ui(ui, context, chart.rect, edges, 0.0);
+    stops_ui(ui, context, chart.rect, edges, 0.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
     let model = context.session.shown();
     let (landscape, own) = (&model.mechanism().landscape, &model.mechanism().curve);
@@ -81,7 +80,6 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
             chart.readout(ui, &style, &text);
         }
     }
-    changed
 }
 
 /// As far up as the forces between the wells and the pushes that the scene may have.
@@ -98,18 +96,14 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
         .fold(0.0, f64::max);
     if wells.is_none() {
         // without a pair of wells the whole axis is of interest
-        let (domain, curve) = (model.mechanism().curve.domain(), &model.mechanism().curve);
+        let curve = &model.mechanism().curve;
+        let domain = curve.domain();
         for x in [context.span.low, context.span.high] {
             most = most.max(curve.force(x.clamp(domain.0, domain.1)).abs());
         }
     }
-    let push = if model.is_shaken() {
-        model.mass()
-            * room_for_push(context.session.shown().largest_base_acceleration())
-                .min(1.1 * context.session.shown().largest_base_acceleration())
-    } else {
-        0.0
-    };
+    let hardest = model.largest_base_acceleration();
+    let push = if model.is_shaken() { model.mass() * room_for_push(hardest).min(1.1 * hardest) } else { 0.0 };
     axis_end((ROOM * most).max(1.1 * push))
 }
 
@@ -122,9 +116,8 @@ fn curve(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
     let (inner, outer) = (left.unwrap_or(low).clamp(low, high), right.unwrap_or(high).clamp(low, high));
     let force = |x: f64| own.force(x);
-    let faint = Stroke::new(style.ghost_stroke().width, style.faint());
     for (from, to) in [(low, inner), (outer, high)] {
-        painter.extend(Shape::dashed_line(&chart.curve(from, to, force), faint, 5.0, 5.0));
+        painter.extend(Shape::dashed_line(&chart.curve(from, to, force), style.ghost_stroke(), 5.0, 5.0));
     }
     painter.add(Shape::line(chart.curve(inner, outer, force), style.tray_stroke()));
 }
@@ -141,9 +134,8 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
             continue;
         }
         let at = chart.screen_from_world(x, force);
-        let stroke = Stroke::new(style.stop_stroke().width, style.stop());
         let inwards = -MARK * way as f32;
-        painter.line_segment([at, at + vec2(LINE * inwards, 0.0)], stroke);
+        painter.line_segment([at, at + vec2(LINE * inwards, 0.0)], style.stop_stroke());
         // beyond the wall, out of the way of the mass; on the inner side where the picture ends
         let text = format!("frees at {} g", three(force.abs() / (model.mass() * STANDARD_GRAVITY)));
         let room = if way > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };

@@ -13,7 +13,7 @@ const KEY_STEPS: f64 = 2.0;
 
 /// Lets the mass be grabbed: it is held where the hand is, and the clock stands. With the keyboard's focus on
 /// it the arrow keys take hold of it and move it, and Enter lets go.
-pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect) -> bool {
+pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect) {
     let grab = Rect::from_center_size(at, egui::Vec2::splat(2.0 * GRAB));
     let response = ui
         .interact(grab.intersect(rect.expand(GRAB)), ui.scope_id().with("mass"), Sense::drag())
@@ -30,9 +30,7 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
     if response.drag_stopped() {
         context.session.player.let_go();
         context.session.moved_by_hand();
-        return true;
-    }
-    if !response.dragged() && response.has_focus() {
+    } else if !response.dragged() && response.has_focus() {
         ui.painter().circle_stroke(at, BALL + 5.0, context.style.focus_stroke());
         let moved = arrows(ui, response.id);
         if moved != 0.0 {
@@ -44,12 +42,8 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
         if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
             response.surrender_focus();
         }
-        return moved != 0.0;
-    }
-    if response.lost_focus() && context.session.player.is_held() && !response.dragged() {
+    } else if response.lost_focus() && context.session.player.is_held() && !response.dragged() {
         context.session.player.let_go();
         context.session.moved_by_hand();
-        return true;
     }
-    response.dragged()
 }

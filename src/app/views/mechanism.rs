@@ -17,7 +17,7 @@ use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, stat
 use super::labels::{ago, plated};
 use super::memory::Ring;
 use super::schematic::{Schematic, schematic};
-use super::stops::{WALL, stops_beside_ui};
+use super::stops::{WALL, stops_ui};
 use super::{ViewContext, mass::mass_ui, too_small_ui};
 
 /// The least size in points of a drawing whose parts are named.
@@ -32,21 +32,19 @@ const ARROW_HEAD: f32 = 12.0;
 /// Room in points that the base's own motion needs.
 const INSET: f32 = 184.0;
 
-/// Draws it. Whether something changed.
-pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (rect, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if rect.width() < 60.0 || rect.height() < 60.0 {
-        too_small_ui(ui, &context.style, rect);
-        return false;
+        return too_small_ui(ui, &context.style, rect);
     }
     // an axis of its own only where no other view stands on it
     let shared = context.span;
-    let changed = drawing_ui(ui, context, rect);
+    drawing_ui(ui, context, rect);
     context.span = shared;
-    changed
 }
 
-fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
+fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let style = context.style;
     let painter = ui.painter().with_clip_rect(rect);
     painter.rect_filled(rect, 0.0, style.ground());
@@ -68,13 +66,12 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) -> bool {
     let edge = Stroke::new(1.5, style.mass_edge());
     painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     let heights = (middle - half.y - 4.0, middle + half.y + 4.0);
-    let mut changed = stops_beside_ui(ui, context, rect, heights, BALL);
-    changed |= mass_ui(ui, context, pos2(x, middle), rect);
+    stops_ui(ui, context, rect, heights, BALL);
+    mass_ui(ui, context, pos2(x, middle), rect);
     rings(ui, context, rect, middle);
     push_arrow(&painter, context, body, state.base_accel, rect);
     names(&painter, context, rect, (top, heights), body);
     words_ui(ui, &painter, context, rect, &words, state.base_accel);
-    changed
 }
 
 /// What the parts are called, each once: a flexure at its clamp and the mass, each on the side to which the

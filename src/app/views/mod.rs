@@ -1,7 +1,7 @@
-//! The views, each in a file of its own.
+//! The views of the window.
 //!
-//! A new view is an entry of [`View`], a file with a function `..._ui(ui, &mut ViewContext)`, and a place in
-//! a layout of the window. Views share the x axis of [`Span`], so that mechanism and well stand above each
+//! A view is a row in the table of [`View`] and a function `..._ui(ui, &mut ViewContext)` in a file or folder
+//! of its own. Views share the x axis of [`Span`], so that mechanism and well stand above each
 //! other, and keep what they must remember between frames in [`Memory`].
 
 mod accuracy;
@@ -39,14 +39,14 @@ pub use span::Span;
 pub use trace::TraceQuantity;
 pub use view::View;
 
-/// Draws one view. Whether it changed something.
-pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
+/// Draws one view.
+pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
     // what is left of the panel: over a filled window stand a title and a button
     let rect = ui.available_rect_before_wrap();
     if ui.rect_contains_pointer(rect) {
         context.memory.hovered = Some(view);
     }
-    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| drawn_ui(ui, view, context)).inner
+    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| drawn_ui(ui, view, context));
 }
 
 /// What stands in the place of a view while the motion and all results are covered.
@@ -58,10 +58,9 @@ fn covered_ui(ui: &mut Ui, style: &Style) {
     });
 }
 
-fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) -> bool {
+fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
     if context.covered {
-        covered_ui(ui, &context.style);
-        return false;
+        return covered_ui(ui, &context.style);
     }
     match view {
         View::Mechanism => mechanism::mechanism_ui(ui, context),

@@ -18,7 +18,7 @@ use crate::study::between;
 use super::chart::Chart;
 use super::labels::rests;
 use super::legend::{LEGEND, Sign};
-use super::stops::stops_beside_ui;
+use super::stops::stops_ui;
 use super::{ViewContext, too_small_ui};
 
 /// Length of the trail in forcing periods; without a period, in swings of the scene's own time scale.
@@ -44,12 +44,11 @@ const MOST_STROBES: f64 = 300.0;
 const STATE: f32 = 6.0;
 const STROBE: f32 = 3.0;
 
-/// Draws it. Whether something changed.
-pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
     if area.width() < 60.0 || area.height() < 80.0 {
-        too_small_ui(ui, &context.style, area);
-        return false;
+        return too_small_ui(ui, &context.style, area);
     }
     let style = context.style;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "states of the mass"));
@@ -63,7 +62,7 @@ pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     }
     chart.equilibria(&painter, &style, &context.session.shown().mechanism().landscape);
     let edges = (chart.rect.top(), chart.rect.bottom());
-    let changed = stops_beside_ui(ui, context, chart.rect, edges, 0.0);
+    stops_ui(ui, context, chart.rect, edges, 0.0);
     let painter = ui.painter().with_clip_rect(chart.rect.expand(STATE));
     let is_periodic = context.session.shown().forcing_period().is_some();
     let points_only = context.memory.points_only && is_periodic;
@@ -88,7 +87,7 @@ pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     chart.numbers(ui, &style, "velocity (mm/s)", 1e-3);
     let right = if is_periodic { points_ui(ui, area, &mut context.memory.points_only) } else { area.right() };
     chart.legend(ui, &style, right, &legend);
-    changed | start_ui(ui, &response, context, &chart)
+    start_ui(ui, &response, context, &chart);
 }
 
 /// The choice whether the path is drawn, in the row of the legend. Its left end.
@@ -112,12 +111,11 @@ fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) -> f32 {
 }
 
 /// A click starts the motion at that state.
-fn start_ui(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, chart: &Chart) -> bool {
-    let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return false };
+fn start_ui(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, chart: &Chart) {
+    let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return };
     let (x, v) = chart.world_from_screen(pointer);
     let inside = within(context, x);
-    let placed = response.clicked();
-    if placed {
+    if response.clicked() {
         context.session.player.place(x, if inside { v } else { 0.0 });
         context.session.moved_by_hand();
     }
@@ -125,7 +123,6 @@ fn start_ui(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, c
     if rests(ui) {
         response.clone().on_hover_text_at_pointer("Click: the motion goes on from here.");
     }
-    placed
 }
 
 /// Whether the mass can be at `x` in m.
@@ -152,7 +149,7 @@ fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bo
         for i in 1..=400 {
             let square = square(place(i));
             if !(square > 0.0) {
-                let turn = turning(&square_at(curve, top), place(i - 1), place(i));
+                let turn = turning(|x| top - curve.potential(x), place(i - 1), place(i));
                 path.push((turn, 0.0));
                 break;
             }
@@ -166,12 +163,8 @@ fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bo
     true
 }
 
-fn square_at(curve: &crate::mechanics::ForceCurve, top: f64) -> impl Fn(f64) -> f64 {
-    move |x| top - curve.potential(x)
-}
-
 /// Where `height` comes to 0 between a place where it is above and one where it is not, as near as is seen.
-fn turning(height: &impl Fn(f64) -> f64, above: f64, below: f64) -> f64 {
+fn turning(height: impl Fn(f64) -> f64, above: f64, below: f64) -> f64 {
     let (above, below) = bisect(above, below, 20, |x| height(x) > 0.0);
     0.5 * (above + below)
 }
@@ -199,10 +192,8 @@ fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let mut drawn = FADES;
     let finish = |line: &mut Vec<Pos2>, level: usize| {
         if line.len() > 1 {
-            painter.add(Shape::line(
-                std::mem::take(line),
-                Stroke::new(motion.width, shade(motion.color, level)),
-            ));
+            let stroke = Stroke::new(motion.width, shade(motion.color, level));
+            painter.add(Shape::line(std::mem::take(line), stroke));
         }
         line.clear();
     };
@@ -296,6 +287,6 @@ mod tests {
 
     #[test]
     fn a_turning_point_is_found() {
-        assert!((turning(&|x| 1.0 - x, 0.0, 4.0) - 1.0).abs() < 1e-5);
+        assert!((turning(|x| 1.0 - x, 0.0, 4.0) - 1.0).abs() < 1e-5);
     }
 }

@@ -21,12 +21,6 @@ pub(super) fn key_step(session: &Session) -> f64 {
 /// Thickness of a wall in points.
 pub(super) const WALL: f32 = 10.0;
 
-/// Draws the stops over `rect` between the heights `top` and `bottom`, each with its face at the travel
-/// limit, and lets them be dragged. Whether they were.
-pub fn stops_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, top: f32, bottom: f32) -> bool {
-    stops_beside_ui(ui, context, rect, (top, bottom), 0.0)
-}
-
 /// The stops of what is shown in mm, and whether a hand can move them: those of the past, where they were
 /// others, it cannot.
 fn shown_stops(session: &Session) -> ([Option<f64>; 2], bool) {
@@ -44,20 +38,20 @@ fn shown_stops(session: &Session) -> ([Option<f64>; 2], bool) {
     (then, alike(then[0], present[0]) && alike(then[1], present[1]))
 }
 
-/// The same for a mass whose sides are `radius` points from its place: a stop's face is as far outside its
-/// travel limit, so that the mass touches it when it should.
-pub fn stops_beside_ui(
+/// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged. The sides of
+/// the mass are `radius` points from its place, and a stop's face is as far outside its travel limit, so that
+/// the mass touches it when it should.
+pub fn stops_ui(
     ui: &mut Ui,
     context: &mut ViewContext<'_>,
     rect: Rect,
     (top, bottom): (f32, f32),
     radius: f32,
-) -> bool {
+) {
     let (stops, movable) = shown_stops(context.session);
     let step = key_step(context.session);
     let fine = FINE * step;
     let words = |mm: f64| format!("{} mm", shown(mm, decimals(fine)));
-    let mut changed = false;
     for (mm, way) in stops.into_iter().zip([-1.0_f32, 1.0]) {
         let Some(mm) = mm else { continue };
         let x = context.span.screen_from_world(mm / 1e3, rect) + way * radius;
@@ -91,7 +85,7 @@ pub fn stops_beside_ui(
             let place = context.span.world_from_screen(pointer.x - way * (radius + 0.5 * WALL), rect) * 1e3;
             // of the prototype a hundredth of a millimetre, which is finer than a hand
             let distance = decimal((f64::from(way) * place / fine).round() * fine).max(step);
-            changed |= context.session.edit(|scene| scene.stops.set_limit(way > 0.0, distance));
+            context.session.edit(|scene| scene.stops.set_limit(way > 0.0, distance));
             let text = words(distance);
             let align = if way > 0.0 { egui::Align2::LEFT_TOP } else { egui::Align2::RIGHT_TOP };
             let at = pos2(x + way * (WALL + 5.0), top);
@@ -104,14 +98,13 @@ pub fn stops_beside_ui(
             if moved != 0.0 {
                 let distance = decimal(((mm.abs() / step).round() + moved) * step).max(step);
                 context.session.press(name, ui.input(|input| input.time));
-                changed |= context.session.edit(|scene| scene.stops.set_limit(way > 0.0, distance));
+                context.session.edit(|scene| scene.stops.set_limit(way > 0.0, distance));
             }
         }
         if response.drag_stopped() {
             context.session.end_gesture();
         }
     }
-    changed
 }
 
 /// Strokes that tell a wall from a bar.

@@ -18,8 +18,8 @@ use super::ranges::room_for_push;
 use super::span::ticks;
 use super::timeline::{zoom, zoom_up};
 
-/// Forcing periods that are shown; without a period multiples of the motion's pace. No more swings of the
-/// mechanism than are told apart.
+/// Forcing periods that are shown; without a period multiples of the motion's characteristic time. No more
+/// swings of the mechanism than are told apart.
 const PERIODS: f64 = 6.0;
 const SWINGS: f64 = 8.0;
 const MOST_SWINGS: f64 = 200.0;
@@ -107,8 +107,8 @@ impl TraceQuantity {
     }
 }
 
-/// Draws it. Whether something changed.
-pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ends = quantity.ends(context);
     let (low, high) = context.memory.timeline.vertical[quantity as usize].unwrap_or(ends);
@@ -125,9 +125,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let stride = ((last.max(first) - first) / MOST_POINTS).max(1);
     let samples: Vec<Sample> =
         shown.range(first..last.max(first)).step_by(stride).copied().chain([state]).collect();
-    let paths = paths(&samples, quantity == TraceQuantity::Displacement, |sample| {
-        PlotPoint::new(sample.t, quantity.seen(watch, sample))
-    });
+    let is_displacement = quantity == TraceQuantity::Displacement;
+    let paths =
+        paths(&samples, is_displacement, |sample| PlotPoint::new(sample.t, quantity.seen(watch, sample)));
     let rests = rests(&samples);
     let impacts: Vec<f64> = watch
         .events()
@@ -137,8 +137,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         .filter(|event| matches!(event.kind, EventKind::Impact | EventKind::Contact))
         .map(|event| event.t)
         .collect();
-    let stops =
-        if quantity == TraceQuantity::Displacement { stop_lines(watch, from, to) } else { Vec::new() };
+    let stops = if is_displacement { stop_lines(watch, from, to) } else { Vec::new() };
     let pass = ui.ctx().cumulative_pass_nr();
     let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass).map(|cursor| cursor.0);
     let tick = 0.035 * (high - low);
@@ -161,7 +160,6 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         entries.push((Sign::Dashed(style.stop_stroke()), "stops"));
     }
     let axis = format!("{} ({})", quantity.name(), quantity.unit());
-    // the title of the view says what it is
     // a number at the very end of the axis would be cut off
     let edge = 0.02 * (high - low);
     let is_low = ui.available_height() < LOW;
@@ -212,7 +210,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
             for path in paths {
                 let own = Line::new(quantity.name(), PlotPoints::Owned(path)).stroke(line);
                 // a band reaches beyond the ends of a steep line
-                plot.line(own.allow_band(quantity != TraceQuantity::Displacement));
+                plot.line(own.allow_band(!is_displacement));
             }
             if let Some(t) = cursor {
                 let dashed = LineStyle::dashed_dense();
@@ -225,9 +223,10 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let painter = ui.painter().with_clip_rect(area);
     let mut right = area.right();
     if let Some(at) = response.hover_pos() {
-        let t = transform.value_from_position(at).x.clamp(watch_begin(context).min(now), now);
-        context.memory.timeline.cursor = Some((t, pass));
+        let t = transform.value_from_position(at).x;
         let watch = context.session.player.watch();
+        let t = t.clamp(watch.begin().min(now), now);
+        context.memory.timeline.cursor = Some((t, pass));
         let value = quantity.seen(watch, &watch.state_at(t));
         let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
         let text = format!(
@@ -238,17 +237,12 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }
     legend(&ui, &style, area, right, &entries);
-    false
 }
 
 /// How many seconds are shown of a motion by a model.
 fn stretch(model: &Model) -> f64 {
     let most = MOST_SWINGS * model.natural_time();
     model.forcing_period().map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(most))
-}
-
-fn watch_begin(context: &ViewContext<'_>) -> f64 {
-    context.session.player.watch().begin()
 }
 
 /// The path as lines. A line that turns on the spot is drawn with a tip that reaches beyond it: between stops

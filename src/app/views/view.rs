@@ -1,124 +1,90 @@
-//! Names of the views, and what each shows.
+//! Table of the views: names, and what each shows.
 
-/// What can be seen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-pub enum View {
+/// The views in the order of the menu: variant, name, and what it shows and a hand can do in it.
+macro_rules! views {
+    ($($(#[doc = $doc:literal])+ $variant:ident $name:literal $about:literal;)*) => {
+        /// What can be seen.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+        pub enum View {
+            $($(#[doc = $doc])+ $variant,)*
+        }
+
+        impl View {
+            /// All of them, in the order of the menu.
+            pub const ALL: [Self; [$(Self::$variant),*].len()] = [$(Self::$variant),*];
+
+            /// What it is called.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)*
+                }
+            }
+
+            /// What it shows and what a hand can do in it.
+            pub fn about(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $about,)*
+                }
+            }
+        }
+    };
+}
+
+views! {
     /// The mechanism as a drawing.
-    Mechanism,
+    Mechanism "Mechanism"
+        "The mass between its stops, seen from the base that shakes, with its flexures or a spring in \
+         their place. The arrow is the push that the mass feels. Drag the mass or a stop.";
     /// The potential with the mass on it.
-    Well,
+    Well "Well"
+        "The mass rides on the potential like a ball on a tray that the push tips. Drag the ball or a \
+         stop.";
     /// Displacement over time.
-    Displacement,
+    Displacement "Displacement"
+        "Where the mass is, seen from the base, over time. The wheel zooms in time; with Shift, or over \
+         the numbers of the axis, in displacement. A double click is back.";
     /// The state before the last gesture against the present one.
-    BeforeNow,
+    BeforeNow "Before / now"
+        "What your last change did: the state before it, and the one after it.";
     /// Velocity over displacement.
-    PhasePortrait,
+    PhasePortrait "Phase portrait"
+        "Velocity over displacement: a moving mass runs clockwise. An impact is a jump of the velocity. \
+         The separatrix needs just the energy to stand on the barrier. Click to let the motion go on from \
+         a state.";
     /// The force that holds the mass against the mechanism, over displacement.
-    ForceCurve,
+    ForceCurve "Force curve"
+        "The force that would hold the mass at a place, positive to the right; the mechanism pulls with as \
+         much the other way. Where the push is above the curve it drives the mass to the right, below it \
+         to the left; a mass on a stop is freed when the push passes the mark there. Filled: stable. \
+         Hollow: unstable. Diamond: a kink, where the stiffness jumps.";
     /// Where the energy went.
-    Energy,
+    Energy "Energy"
+        "Where the energy came from, where it went, and what is there against the barrier.";
     /// Velocity over time.
-    Velocity,
+    Velocity "Velocity"
+        "Velocity of the mass, seen from the base, over time. An impact turns it round and leaves a part \
+         of it. The wheel zooms in time, a double click is back.";
     /// Acceleration of the base over time.
-    BaseAcceleration,
+    BaseAcceleration "Base acceleration"
+        "Acceleration of the base over time. The mass feels the opposite of it, as one does in a bus that \
+         brakes. The wheel zooms in time, a double click is back.";
     /// Work of the base in a second, over time.
-    Power,
+    Power "Power"
+        "Work of the base on the mass in a second. Below zero the mass gives energy back to the base. The \
+         wheel zooms in time, a double click is back.";
     /// What every combination of two fields comes to.
-    Map,
+    Map "Map"
+        "What every combination of two settings comes to, each in a run of its own. Click to take the \
+         scene there.";
     /// What digits cost, and what a fixed step makes of the scene.
-    Accuracy,
+    Accuracy "Accuracy"
+        "How far the computed motion is from the true one: what each digit costs, and what becomes of the \
+         scene in fixed steps, as a game or a small applet takes them. From the scene's start.";
 }
 
 impl View {
-    /// All of them, in the order of the menu.
-    pub const ALL: [Self; 12] = [
-        Self::Mechanism,
-        Self::Well,
-        Self::Displacement,
-        Self::BeforeNow,
-        Self::PhasePortrait,
-        Self::ForceCurve,
-        Self::Energy,
-        Self::Velocity,
-        Self::BaseAcceleration,
-        Self::Power,
-        Self::Map,
-        Self::Accuracy,
-    ];
-
     /// Whether the displacement runs along it.
     pub fn is_along_x(self) -> bool {
         matches!(self, Self::Mechanism | Self::Well | Self::PhasePortrait | Self::ForceCurve)
-    }
-
-    /// What it shows and what a hand can do in it.
-    pub fn about(self) -> &'static str {
-        match self {
-            Self::Mechanism => {
-                "The mass between its stops, seen from the base that shakes, with its flexures or a spring \
-                 in their place. The arrow is the push that the mass feels. Drag the mass or a stop."
-            }
-            Self::Well => {
-                "The mass rides on the potential like a ball on a tray that the push tips. Drag the ball or \
-                 a stop."
-            }
-            Self::Displacement => {
-                "Where the mass is, seen from the base, over time. The wheel zooms in time; with Shift, or \
-                 over the numbers of the axis, in displacement. A double click is back."
-            }
-            Self::BeforeNow => "What your last change did: the state before it, and the one after it.",
-            Self::PhasePortrait => {
-                "Velocity over displacement: a moving mass runs clockwise. An impact is a jump of the \
-                 velocity. The separatrix needs just the energy to stand on the barrier. Click to let the \
-                 motion go on from a state."
-            }
-            Self::ForceCurve => {
-                "The force that would hold the mass at a place, positive to the right; the mechanism pulls \
-                 with as much the other way. Where the push is above the curve it drives the mass to the \
-                 right, below it to the left; a mass on a stop is freed when the push passes the mark there. \
-                 Filled: stable. Hollow: unstable. Diamond: a kink, where the stiffness jumps."
-            }
-            Self::Energy => {
-                "Where the energy came from, where it went, and what is there against the barrier."
-            }
-            Self::Velocity => {
-                "Velocity of the mass, seen from the base, over time. An impact turns it round and leaves a \
-                 part of it. The wheel zooms in time, a double click is back."
-            }
-            Self::BaseAcceleration => {
-                "Acceleration of the base over time. The mass feels the opposite of it, as one does in a bus \
-                 that brakes. The wheel zooms in time, a double click is back."
-            }
-            Self::Power => {
-                "Work of the base on the mass in a second. Below zero the mass gives energy back to the \
-                 base. The wheel zooms in time, a double click is back."
-            }
-            Self::Map => {
-                "What every combination of two settings comes to, each in a run of its own. Click to take \
-                 the scene there."
-            }
-            Self::Accuracy => {
-                "How far the computed motion is from the true one: what each digit costs, and what becomes \
-                 of the scene in fixed steps, as a game or a small applet takes them. From the scene's start."
-            }
-        }
-    }
-
-    /// What it is called.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Mechanism => "Mechanism",
-            Self::Well => "Well",
-            Self::Displacement => "Displacement",
-            Self::BeforeNow => "Before / now",
-            Self::PhasePortrait => "Phase portrait",
-            Self::ForceCurve => "Force curve",
-            Self::Energy => "Energy",
-            Self::Velocity => "Velocity",
-            Self::BaseAcceleration => "Base acceleration",
-            Self::Power => "Power",
-            Self::Map => "Map",
-            Self::Accuracy => "Accuracy",
-        }
     }
 }

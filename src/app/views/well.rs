@@ -9,6 +9,7 @@ use eframe::egui::{self, Align2, Pos2, Rangef, Rect, Sense, Shape, Stroke, Ui, p
 
 use crate::app::ui::style::BALL;
 
+use super::chart::{CURVE_STEP, x_axis};
 use super::labels::{ago, free_place, haloed};
 use super::legend::{LEGEND, Sign};
 use super::mass::mass_ui;
@@ -16,15 +17,11 @@ use super::ranges::room_for_push;
 use super::stops::{WALL, stops_ui};
 use super::{ViewContext, too_small_ui};
 
-/// Points between two points of a curve.
-const CURVE_STEP: f32 = 2.0;
-
-/// Draws it. Whether something changed.
-pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if area.width() < 60.0 || area.height() < 60.0 {
-        too_small_ui(ui, &context.style, area);
-        return false;
+        return too_small_ui(ui, &context.style, area);
     }
     let style = context.style;
     let rect = Rect::from_min_max(area.min + vec2(0.0, LEGEND), area.max - vec2(0.0, 22.0));
@@ -56,19 +53,16 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let between = |x: f64| left.is_none_or(|stop| x >= stop) && right.is_none_or(|stop| x <= stop);
     let reachable: Vec<Pos2> =
         (0..=count).map(place).filter(|x| between(*x)).map(|x| height(x, tilt)).collect();
-    let faint = Stroke::new(style.ghost_stroke().width, style.faint());
-    clipped.extend(Shape::dashed_line(&line(tilt), faint, 5.0, 5.0));
+    clipped.extend(Shape::dashed_line(&line(tilt), style.ghost_stroke(), 5.0, 5.0));
     clipped.add(Shape::line(reachable, style.tray_stroke()));
 
     landmarks(&clipped, context, rect);
     let ball = height(state.x, tilt) - vec2(0.0, BALL);
-    let (top, bottom) = (rect.top() + 4.0, rect.bottom());
-    let mut changed = stops_ui(ui, context, rect, top, bottom);
-    changed |= mass_ui(ui, context, ball, rect);
+    stops_ui(ui, context, rect, (rect.top() + 4.0, rect.bottom()), 0.0);
+    mass_ui(ui, context, ball, rect);
     let painter = ui.painter().with_clip_rect(rect);
     painter.circle(ball, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     legend(ui, context, area);
-    changed
 }
 
 /// Names of the wells and the barrier in a row below the curve, each at its place along x; what has no room
@@ -108,8 +102,8 @@ struct Heights {
 impl Heights {
     /// From a little below the deepest to a little above the highest place that the mass gets to.
     fn of(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect) -> Self {
-        let room = room_for_push(context.session.shown().largest_base_acceleration());
         let model = context.session.shown();
+        let room = room_for_push(model.largest_base_acceleration());
         let curve = &model.mechanism().curve;
         let landscape = &model.mechanism().landscape;
         let tilt = model.mass() * room;
@@ -151,24 +145,6 @@ impl Heights {
     fn screen_from_world(&self, energy: f64) -> f32 {
         let share = (energy - self.low) / (self.high - self.low);
         self.rect.bottom() - (share * f64::from(self.rect.height())) as f32
-    }
-}
-
-/// Ticks in mm below `rect`.
-pub(super) fn x_axis(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
-    let style = context.style;
-    let (ticks, decimals) = context.span.ticks(f64::from(rect.width()) / 55.0);
-    let last = ticks.len().saturating_sub(1);
-    for (i, x) in ticks.iter().enumerate() {
-        let at = context.span.screen_from_world(*x, rect);
-        painter.vline(at, rect.y_range(), style.grid_stroke());
-        let unit = if i == last { " mm" } else { "" };
-        let text = format!("{:.decimals$}{unit}", x * 1e3 + 0.0);
-        let galley = painter.layout_no_wrap(text, style.small(), style.faint());
-        let half = 0.5 * galley.size().x + 2.0;
-        // whole, also where a tick is at the edge
-        let middle = at.clamp(rect.left() + half, (rect.right() - half).max(rect.left() + half));
-        painter.galley(pos2(middle - half, rect.bottom() + 4.0), galley, style.faint());
     }
 }
 

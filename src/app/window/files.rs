@@ -13,13 +13,10 @@ use crate::system::clock::WallClock;
 use crate::system::files;
 
 use super::Window;
-use super::command::Command;
 use super::leave::{self, Answer, Next};
+use super::messages::CANNOT_OPEN;
 use super::path_dialog::{Ended, PathDialog};
 use super::wanted::{Chosen, Wanted};
-
-/// How many of the scenes opened last are kept.
-const MOST_RECENT: usize = 8;
 
 /// A dialog that is gone sooner than this in ms was never seen by anyone.
 const UNSEEN: u128 = 300;
@@ -44,27 +41,14 @@ impl Window {
                     written: std::mem::replace(&mut self.written, channel()),
                     run: std::mem::take(&mut self.run),
                     covered: self.covered,
-                    told: self.told.take(),
+                    messages: self.messages.short_only(),
                     applied: self.applied,
                     ..window
                 };
                 self.remember_file();
             }
-            Err(error) => self.say("This scene cannot be opened", error.to_string()),
+            Err(error) => self.messages.say(CANNOT_OPEN, error.to_string()),
         }
-    }
-
-    pub(super) fn say(&mut self, title: &str, text: String) {
-        self.message = Some((title.to_owned(), text));
-    }
-
-    /// Puts the scene's file first among the recent ones.
-    pub fn remember_file(&mut self) {
-        let Some(path) = self.session.editor.path() else { return };
-        let whole = files::canonical(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
-        self.recent.retain(|own| *own != whole);
-        self.recent.insert(0, whole);
-        self.recent.truncate(MOST_RECENT);
     }
 
     /// Goes on to what is next, once the changes of the present scene are saved or given up.
@@ -77,7 +61,7 @@ impl Window {
         }
     }
 
-    pub(super) fn go_on(&mut self, ctx: &egui::Context, next: Next) {
+    fn go_on(&mut self, ctx: &egui::Context, next: Next) {
         match next {
             Next::Open(spec) => self.open_another(&spec),
             Next::Text(text) => self.open_editor(Editor::from_text(&text).map_err(CannotRun::from)),
@@ -89,12 +73,34 @@ impl Window {
         }
     }
 
+    /// Saves to the scene's own file, or asks for one.
+    pub(super) fn save(&mut self, ctx: &egui::Context) {
+        match self.session.editor.path().map(PathBuf::from) {
+            Some(path) => self.save_to(ctx, &path),
+            None => self.choose(Wanted::Save),
+        }
+    }
+
+    /// Saves to a file; one that was written by hand with comments only once it is said that they go.
+    pub fn save_to(&mut self, ctx: &egui::Context, path: &Path) {
+        let own = self.session.editor.path() == Some(path);
+        if own && self.session.editor.has_comments() {
+            self.over_comments = Some(path.to_owned());
+        } else {
+            self.save_over(ctx, path);
+        }
+    }
+
+    /// Saves to a file, and goes on to what waited for that.
+    fn save_over(&mut self, ctx: &egui::Context, path: &Path) {
+        if let Some(next) = self.write_scene(path) {
+            self.go_on(ctx, next);
+        }
+    }
+
     /// Takes in the answer of a dialog.
     pub(super) fn take_choice(&mut self, ctx: &egui::Context) {
-        if self.dialog.poll()
-            && let Some(chosen) = self.dialog.current().cloned()
-        {
-            self.dialog.clear();
+        if let Some(chosen) = self.dialog.take() {
             match chosen {
                 Chosen::File(wanted, path) => self.take_file(ctx, wanted, path),
                 Chosen::NoDialog(wanted, path) => self.typed = Some(PathDialog::new(wanted, &path)),
@@ -132,7 +138,7 @@ impl Window {
         match dropped.as_slice() {
             [] => {}
             [one] => self.leave_for(ctx, Next::Open(one.to_string_lossy().into_owned())),
-            _ => self.say("One scene at a time", "Drop a single scene file (.ron) on the window.".to_owned()),
+            _ => self.messages.say("One scene at a time", "Drop a single scene file (.ron) on the window."),
         }
         if !self.waits_for_answer() && !ctx.text_edit_focused() {
             let (mut copied, mut pasted) = (false, None);
@@ -152,15 +158,7 @@ impl Window {
                 self.leave_for(ctx, Next::Text(text));
             }
         }
-        if self.run.poll()
-            && let Some(written) = self.run.current().cloned()
-        {
-            self.run.clear();
-            self.tell_written(written);
-        }
-        while let Ok(written) = self.written.1.try_recv() {
-            self.tell_written(written);
-        }
+        self.tell_written();
         let dirty = if self.session.editor.is_dirty() { "* " } else { "" };
         let title = format!("{dirty}{} - interwell", self.session.scene().title);
         if title != self.titled {
@@ -177,7 +175,7 @@ impl Window {
             match answer {
                 Answer::Save => {
                     self.after_save = Some(next);
-                    self.carry_out(ctx, Command::Save);
+                    self.save(ctx);
                 }
                 Answer::DontSave => self.go_on(ctx, next),
                 Answer::Cancel => {}
@@ -189,7 +187,7 @@ impl Window {
             && let Some(path) = self.over_comments.take()
         {
             match answer {
-                Answer::Save => self.write_scene(ctx, &path),
+                Answer::Save => self.save_over(ctx, &path),
                 Answer::DontSave => self.choose(Wanted::Save),
                 Answer::Cancel => self.after_save = None,
             }

@@ -6,6 +6,7 @@ use egui_tiles::{
 };
 
 use crate::app::ui::style::{BODY, COMPACT_BELOW, LARGE_FROM};
+use crate::app::ui::widgets::{Icon, icon_button_ui};
 use crate::app::views::{View, ViewContext, view_ui};
 use crate::scene::Layout;
 
@@ -171,13 +172,8 @@ impl Tiling {
     fn title_size(&self, ui: &Ui) -> f32 {
         let width = |id: &TileId| {
             let view = self.tree.tiles.get_pane(id).filter(|_| self.tree.is_visible(*id))?;
-            let font = egui::FontId::proportional(BODY);
-            Some(
-                ui.painter()
-                    .layout_no_wrap(view.name().to_owned(), font, egui::Color32::PLACEHOLDER)
-                    .size()
-                    .x,
-            )
+            let (name, font) = (view.name().to_owned(), egui::FontId::proportional(BODY));
+            Some(ui.painter().layout_no_wrap(name, font, egui::Color32::PLACEHOLDER).size().x)
         };
         let fitting = |(id, tile): (&TileId, &Tile<View>)| {
             let Tile::Container(Container::Tabs(tabs)) = tile else { return None };
@@ -189,12 +185,11 @@ impl Tiling {
         least.max(LEAST_TITLE)
     }
 
-    /// Draws the views. Whether one changed something; `fill` is set where a view asks for the whole window.
-    pub fn ui(&mut self, ui: &mut Ui, context: &mut ViewContext<'_>, fill: &mut Option<View>) -> bool {
+    /// Draws the views; `fill` is set where a view asks for the whole window.
+    pub fn ui(&mut self, ui: &mut Ui, context: &mut ViewContext<'_>, fill: &mut Option<View>) {
         let title = self.title_size(ui);
-        let mut behavior = Behavior { context, changed: false, fill, title };
+        let mut behavior = Behavior { context, fill, title };
         self.tree.ui(&mut behavior, ui);
-        behavior.changed
     }
 }
 
@@ -297,7 +292,6 @@ fn pair(tiles: &mut Tiles<View>, direction: LinearDir, first: TileId, second: Ti
 
 struct Behavior<'a, 'b> {
     context: &'a mut ViewContext<'b>,
-    changed: bool,
     fill: &'a mut Option<View>,
     /// Size of the titles.
     title: f32,
@@ -313,7 +307,7 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
     }
 
     fn pane_ui(&mut self, ui: &mut Ui, _: TileId, view: &mut View) -> UiResponse {
-        self.changed |= view_ui(ui, *view, self.context);
+        view_ui(ui, *view, self.context);
         UiResponse::None
     }
 
@@ -344,15 +338,7 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
         let Some(view) = tabs.active.and_then(|id| tiles.get_pane(&id)) else { return };
         let name = format!("fill the window with {}", view.name());
         let hover = "This view over the whole window (Z)";
-        if crate::app::ui::widgets::icon_button_ui(
-            ui,
-            crate::app::ui::widgets::Icon::Fill,
-            22.0,
-            &name,
-            hover,
-        )
-        .clicked()
-        {
+        if icon_button_ui(ui, Icon::Fill, 22.0, &name, hover).clicked() {
             *self.fill = Some(*view);
         }
     }

@@ -22,7 +22,7 @@ pub enum Next {
 pub enum Answer {
     /// Save first.
     Save,
-    /// Let the changes go.
+    /// Let the changes go, or save to another file.
     DontSave,
     /// Stay.
     Cancel,
@@ -31,11 +31,7 @@ pub enum Answer {
 /// Asks; none while there is no answer. The keyboard begins on Save, Escape stays.
 pub fn question_ui(ui: &Ui, title: &str) -> Option<Answer> {
     let text = format!("{title} has changes that are not saved.");
-    choice_ui(ui, "unsaved", "Save the changes?", &text, ["Save", "Don't save"]).map(|choice| match choice {
-        Some(0) => Answer::Save,
-        Some(_) => Answer::DontSave,
-        None => Answer::Cancel,
-    })
+    choice_ui(ui, "unsaved", "Save the changes?", &text, "Don't save")
 }
 
 /// Asks before a file that was written by hand is written over; none while there is no answer. Its comments
@@ -45,16 +41,11 @@ pub fn comments_ui(ui: &Ui, path: &str) -> Option<Answer> {
         "{path} has comments. They are no part of the scene, and saving over the file does not keep them; \
          its title and notes stay."
     );
-    let choice = choice_ui(ui, "comments", "Save without the comments?", &text, ["Save", "Save as..."]);
-    choice.map(|choice| match choice {
-        Some(0) => Answer::Save,
-        Some(_) => Answer::DontSave,
-        None => Answer::Cancel,
-    })
+    choice_ui(ui, "comments", "Save without the comments?", &text, "Save as...")
 }
 
-/// Two ways on, and Cancel, which is `Some(None)`.
-fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, ways: [&str; 2]) -> Option<Option<usize>> {
+/// A question with three answers, of which the second one is called `second`.
+fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, second: &str) -> Option<Answer> {
     let answer = dialog(ui.ctx(), id).show(ui.ctx(), |ui: &mut Ui| {
         ui.set_max_width(dialog_width(ui, 460.0));
         ui.heading(heading);
@@ -63,21 +54,20 @@ fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, ways: [&str; 2]) -> O
         ui.add_space(10.0);
         ui.horizontal(|ui| {
             let mut chosen = None;
-            for (i, way) in ways.into_iter().enumerate() {
+            for (way, means) in
+                [("Save", Answer::Save), (second, Answer::DontSave), ("Cancel", Answer::Cancel)]
+            {
                 let button = ui.button(way);
-                if i == 0 && ui.memory(|memory| memory.focused().is_none()) {
+                if means == Answer::Save && ui.memory(|memory| memory.focused().is_none()) {
                     button.request_focus();
                 }
                 if button.clicked() {
-                    chosen = Some(Some(i));
+                    chosen = Some(means);
                 }
-            }
-            if ui.button("Cancel").clicked() {
-                chosen = Some(None);
             }
             chosen
         })
         .inner
     });
-    if answer.inner.is_none() && answer.should_close() { Some(None) } else { answer.inner }
+    answer.inner.or_else(|| answer.should_close().then_some(Answer::Cancel))
 }

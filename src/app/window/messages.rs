@@ -5,34 +5,53 @@ use eframe::egui::{self, Align2, Area, Id, Order, Ui, accesskit::Live, vec2};
 use crate::app::session::player::Reached;
 use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
 
-use super::Window;
+/// What is said of a scene that cannot be opened.
+pub(super) const CANNOT_OPEN: &str = "This scene cannot be opened";
 
 /// Seconds for which a short message stands, and its distance in points from the lower edge.
 const STANDS: f64 = 4.0;
 const ABOVE: f32 = 72.0;
 
+/// What was written, in words, or why it was not.
+pub(super) type Written = Result<String, String>;
+
 /// A short message, and since when it stands.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Notice {
+#[derive(Debug)]
+struct Notice {
     text: String,
     since: Option<f64>,
 }
 
-impl Window {
-    /// Says something for some seconds.
-    pub(super) fn tell(&mut self, text: impl Into<String>) {
+/// The messages over the window.
+#[derive(Debug, Default)]
+pub(super) struct Messages {
+    /// The title and text of one that waits to be read.
+    waiting: Option<(String, String)>,
+    /// A short one that goes by itself.
+    told: Option<Notice>,
+}
+
+impl Messages {
+    /// Shows a message until it is closed.
+    pub fn say(&mut self, title: impl Into<String>, text: impl Into<String>) {
+        self.waiting = Some((title.into(), text.into()));
+    }
+
+    /// Shows a message for some seconds.
+    pub fn tell(&mut self, text: impl Into<String>) {
         self.told = Some(Notice { text: text.into(), since: None });
     }
 
-    /// What was said last, while it stands.
-    pub fn told(&self) -> Option<&str> {
-        self.told.as_ref().map(|told| told.text.as_str())
+    /// Says what was written, or why it was not.
+    pub fn tell_written(&mut self, written: Written) {
+        match written {
+            Ok(text) => self.tell(text),
+            Err(error) => self.say("Not written", error),
+        }
     }
 
-    /// Says where the motion has come to, where it was sent.
-    pub(super) fn tell_reached(&mut self) {
-        let Some(reached) = self.session.player.take_reached().filter(|_| !self.covered) else { return };
-        let time = self.session.player.time();
+    /// Says where the motion has come to, where it was sent; the time in s.
+    pub fn tell_reached(&mut self, reached: Reached, time: f64) {
         match reached {
             // the transport names it
             Reached::Event(_) => {}
@@ -42,7 +61,33 @@ impl Window {
         }
     }
 
-    pub(super) fn told_ui(&mut self, ui: &Ui) {
+    /// The text of the message that waits to be read.
+    pub fn waiting(&self) -> Option<&str> {
+        self.waiting.as_ref().map(|message| message.1.as_str())
+    }
+
+    /// The short message, while it stands.
+    pub fn told(&self) -> Option<&str> {
+        self.told.as_ref().map(|told| told.text.as_str())
+    }
+
+    /// Drops the short message.
+    pub fn drop_told(&mut self) {
+        self.told = None;
+    }
+
+    /// Takes the short message along to another scene; the other one goes.
+    pub fn short_only(&mut self) -> Self {
+        Self { waiting: None, told: self.told.take() }
+    }
+
+    /// Draws both.
+    pub fn ui(&mut self, ui: &Ui) {
+        self.waiting_ui(ui);
+        self.told_ui(ui);
+    }
+
+    fn told_ui(&mut self, ui: &Ui) {
         let Some(told) = &mut self.told else { return };
         let now = ui.input(|input| input.time);
         let left = *told.since.get_or_insert(now) + STANDS - now;
@@ -61,8 +106,8 @@ impl Window {
         }
     }
 
-    pub(super) fn message_ui(&mut self, ui: &Ui) {
-        let Some((title, text)) = &self.message else { return };
+    fn waiting_ui(&mut self, ui: &Ui) {
+        let Some((title, text)) = &self.waiting else { return };
         let answer = dialog(ui.ctx(), "message").show(ui.ctx(), |ui| {
             ui.set_max_width(dialog_width(ui, 560.0));
             ui.heading(title);
@@ -73,7 +118,7 @@ impl Window {
             close_ui(ui)
         });
         if answer.inner || answer.should_close() {
-            self.message = None;
+            self.waiting = None;
         }
     }
 }

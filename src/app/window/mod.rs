@@ -2,27 +2,15 @@
 //!
 //! [`Window::ui`] needs no graphics and no display: tests drive it as it is.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
-
 use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
-use egui_tiles::Tree;
 
 use crate::app::panels::status_line::{self, covered_ui, status_ui};
-use crate::app::panels::{controls, hint, notes, transport};
-use crate::app::session::editor::Editor;
-use crate::app::session::{CannotRun, Session};
-use crate::app::task::{Latest, Wake};
-use crate::app::ui::settings::Settings;
+use crate::app::panels::{controls, notes, transport};
 use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
-use crate::app::views::{self, Memory, View, ViewContext};
-use crate::app::words::announce::Announcer;
-use crate::scene::{Layout, PRESETS};
+use crate::app::views::{self, ViewContext};
 
-use layouts::{Arrangement, Room, Tiling};
-use leave::Next;
+use layouts::{Arrangement, Room};
 
 /// Height in points of the controls as a row, and width of the column that opens beside the views.
 const ROW: f32 = 28.0;
@@ -46,132 +34,15 @@ mod messages;
 mod path_dialog;
 mod perform;
 mod size;
+mod state;
 mod wanted;
 mod writing;
 
 pub use command::Command;
-use deferred::DeferredInput;
-use messages::Notice;
-use path_dialog::PathDialog;
-use size::WindowSize;
-use wanted::Chosen;
+pub use state::Window;
 pub use wanted::Wanted;
 
-/// Everything that the window shows.
-pub struct Window {
-    /// The open scene.
-    pub session: Session,
-    /// What a person wants whatever the scene.
-    pub settings: Settings,
-    tiling: Tiling,
-    arrangement: Arrangement,
-    /// A person's own arrangement, kept between two starts.
-    own: Option<Tree<View>>,
-    memory: Memory,
-    more: bool,
-    filled: Option<View>,
-    covered: bool,
-    /// A message that waits to be read: an error of a file, the notes of the scene, or what this program is.
-    message: Option<(String, String)>,
-    /// A short message that goes by itself.
-    told: Option<Notice>,
-    /// Scene files that were opened or saved, the latest first.
-    pub recent: Vec<String>,
-    /// What waits for an answer about unsaved changes.
-    asked: Option<Next>,
-    /// What comes once the scene is saved.
-    after_save: Option<Next>,
-    /// A file with comments that is about to be written over.
-    over_comments: Option<PathBuf>,
-    /// The list of keys is shown, since this time in s.
-    shortcuts: Option<f64>,
-    /// What it would take to cross is shown.
-    ways: bool,
-    announcer: Announcer,
-    /// The changes may go: the window closes without another question.
-    leaving: bool,
-    /// What became of what is written elsewhere than in this thread: what was written, or the error.
-    written: (Sender<writing::Written>, Receiver<writing::Written>),
-    /// A whole run that is computed and written.
-    run: Latest<writing::Written>,
-    /// The size of the window on the screen.
-    place: WindowSize,
-    /// The title that the window has.
-    titled: String,
-    dialog: Latest<Chosen>,
-    /// Whether files are asked for.
-    dialogs: bool,
-    /// A path that is typed where there is no dialog.
-    typed: Option<PathDialog>,
-    /// Input that waits for the next frame.
-    deferred: DeferredInput,
-    hint: hint::Hint,
-    /// The line of the first minute has been there.
-    hint_row: bool,
-    wake: Wake,
-    /// What was applied last, to be applied again only where it changes.
-    applied: Option<Settings>,
-}
-
 impl Window {
-    /// A window on a scene file or a built-in scene; the first preset where none is given.
-    pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
-        let first = PRESETS.first().map_or("paper", |preset| preset.name);
-        Self::on(Editor::open(spec.unwrap_or(first))?, settings, wake)
-    }
-
-    /// The same; where the scene cannot be opened, on the first preset, with a message that says why.
-    pub fn start(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
-        Self::open(spec, settings, Arc::clone(&wake)).or_else(|error| {
-            let mut window = Self::open(None, settings, wake)?;
-            window.say("This scene cannot be opened", error.to_string());
-            Ok(window)
-        })
-    }
-
-    fn on(editor: Editor, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
-        let session = Session::new(editor, Arc::clone(&wake))?;
-        let layout = session.scene().app.as_ref().and_then(|app| app.layout).unwrap_or(Layout::Look);
-        Ok(Self {
-            hint: hint::Hint::for_scene(&session),
-            session,
-            settings,
-            tiling: Tiling::new(layout, Room::Wide),
-            arrangement: Arrangement::Layout(layout),
-            own: None,
-            memory: Memory::default(),
-            more: false,
-            filled: None,
-            covered: false,
-            message: None,
-            told: None,
-            recent: Vec::new(),
-            asked: None,
-            after_save: None,
-            over_comments: None,
-            leaving: false,
-            shortcuts: None,
-            ways: false,
-            announcer: Announcer::default(),
-            written: channel(),
-            run: Latest::default(),
-            place: WindowSize::default(),
-            titled: String::new(),
-            dialog: Latest::default(),
-            dialogs: true,
-            typed: None,
-            deferred: DeferredInput::default(),
-            hint_row: false,
-            wake,
-            applied: None,
-        })
-    }
-
-    /// The message that waits to be read.
-    pub fn message(&self) -> Option<&str> {
-        self.message.as_ref().map(|message| message.1.as_str())
-    }
-
     /// What was done since the last frame, before it is drawn.
     pub fn logic(&mut self, ctx: &egui::Context) {
         if self.applied != Some(self.settings) {
@@ -201,7 +72,9 @@ impl Window {
         }
         let seconds = ctx.input(|input| f64::from(input.stable_dt));
         self.session.player.tick(seconds);
-        self.tell_reached();
+        if let Some(reached) = self.session.player.take_reached().filter(|_| !self.covered) {
+            self.messages.tell_reached(reached, self.session.player.time());
+        }
         if self.session.player.is_playing() {
             ctx.request_repaint();
         }
@@ -221,7 +94,7 @@ impl Window {
         }
         let fill = ui.visuals().panel_fill;
         let frame = |x: i8, y: i8| Frame::new().fill(fill).inner_margin(Margin::symmetric(x, y));
-        let (bar, line, feet) = (frame(8, 2), frame(12, 4), frame(12, 4));
+        let (bar, line) = (frame(8, 2), frame(12, 4));
         let mut asked = Vec::new();
         Panel::top("menu").frame(bar).exact_size(32.0).show(ui, |ui| {
             asked = menu::menu_ui(ui, &self.session, &self.tiling, self.settings, &self.recent);
@@ -234,7 +107,7 @@ impl Window {
                 status_ui(ui, &mut self.session, &mut self.announcer, &style, compact);
             }
         });
-        Panel::bottom("transport").frame(feet).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
+        Panel::bottom("transport").frame(line).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
             transport::transport_ui(ui, &mut self.session, &style, self.covered);
         });
         if compact {
@@ -288,8 +161,7 @@ impl Window {
         }
         self.questions_ui(ui, &ctx);
         self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened));
-        self.message_ui(ui);
-        self.told_ui(ui);
+        self.messages.ui(ui);
         focus_ui(&ctx, &style);
     }
 
@@ -329,21 +201,6 @@ impl Window {
         if close {
             self.filled = None;
         }
-    }
-
-    /// What the traces share.
-    pub fn timeline(&self) -> &views::Timeline {
-        &self.memory.timeline
-    }
-
-    /// Whether the phase portrait shows a point a period and no path.
-    pub fn points_only(&self) -> bool {
-        self.memory.points_only
-    }
-
-    /// The views and where they stand.
-    pub fn tiling(&self) -> &Tiling {
-        &self.tiling
     }
 }
 

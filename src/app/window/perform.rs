@@ -1,7 +1,5 @@
 //! Execution of the commands.
 
-use std::path::PathBuf;
-
 use eframe::egui;
 
 use crate::app::export::{self, Runs};
@@ -17,21 +15,19 @@ use super::command::{Command, UNDO};
 use super::keys;
 use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::Next;
-use super::wanted::Wanted;
 
 /// How many periods of the motion an event is looked for.
 const PERIODS_AHEAD: f64 = 300.0;
 
-impl Window {
-    /// Whether something over the window waits for an answer: no key acts behind it.
-    pub(super) fn waits_for_answer(&self) -> bool {
-        self.message.is_some()
-            || self.asked.is_some()
-            || self.over_comments.is_some()
-            || self.typed.is_some()
-            || self.shortcuts.is_some()
-    }
+/// What this program is.
+const ABOUT: &str = concat!(
+    "Version ",
+    env!("CARGO_PKG_VERSION"),
+    ". Bistable mechanisms with travel limits: what they do when they are shaken.\n\n\
+     Every number comes from a run of the integrator; the motion on the screen is such a run, continued."
+);
 
+impl Window {
     /// Does what the keyboard asks for. On the way to a goal every key gives it up, and does nothing else.
     pub(super) fn keys(&mut self, ctx: &egui::Context) {
         let is_pressed = |event: &egui::Event| matches!(event, egui::Event::Key { pressed: true, .. });
@@ -53,17 +49,14 @@ impl Window {
             Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
             Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
             Command::Open => self.leave_for(ctx, Next::Choose),
-            Command::Save => match self.session.editor.path().map(PathBuf::from) {
-                Some(path) => self.save_to(ctx, &path),
-                None => self.choose(Wanted::Save),
-            },
+            Command::Save => self.save(ctx),
             Command::SaveAs(wanted) => self.choose(wanted),
             Command::CopyScene => self.copy_scene(ctx),
             Command::PasteScene => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Command::CopyCommand => match export::command_line(&self.session) {
                 Some((line, runs)) => {
                     ctx.copy_text(line);
-                    self.tell(match runs {
+                    self.messages.tell(match runs {
                         Runs::Whole => "Copied: the command line of this motion, from its start",
                         Runs::FromNow => "Copied: the command line of this motion, from its present state on",
                         Runs::Another => {
@@ -77,7 +70,7 @@ impl Window {
             Command::CopyMapCommand => match export::map_command_line(&self.session) {
                 Some(line) => {
                     ctx.copy_text(line);
-                    self.tell("Copied: the command line of the map");
+                    self.messages.tell("Copied: the command line of the map");
                 }
                 None if self.session.map.map().is_some() => self.say_nameless(),
                 None => {}
@@ -94,19 +87,19 @@ impl Window {
                 self.ways = false;
                 if changed {
                     let undo = ctx.format_shortcut(&UNDO);
-                    self.tell(format!("Your changes are discarded; {undo} brings them back"));
+                    self.messages.tell(format!("Your changes are discarded; {undo} brings them back"));
                 }
                 self.arrange(self.tiling.room());
             }
             Command::PlayPause => self.session.play_or_pause(),
             Command::Step => self.session.player.step(),
-            Command::PreviousEvent => _ = self.session.player.seek_event(false, EVENT_AHEAD),
-            Command::NextEvent => _ = self.session.player.seek_event(true, EVENT_AHEAD),
+            Command::PreviousEvent => self.session.player.seek_event(false, EVENT_AHEAD),
+            Command::NextEvent => self.session.player.seek_event(true, EVENT_AHEAD),
             Command::NextRelease => self.go_to_first(EventKind::Release),
             Command::NextCrossing => self.go_to_first(EventKind::Crossing),
             Command::RunToEnd => match self.session.end_of_run() {
                 end if end > self.session.player.time() => self.session.player.go_to(Goal::Time(end)),
-                end => self.tell(format!("The run ends at {end:.2} s, which is behind")),
+                end => self.messages.tell(format!("The run ends at {end:.2} s, which is behind")),
             },
             Command::Speed(index) => {
                 if let Some(speed) = SPEEDS.get(index) {
@@ -147,9 +140,9 @@ impl Window {
             }
             Command::Grab => self.memory.grab = true,
             Command::Ways => self.ways = !self.ways,
-            Command::Notes => self.message = Some(self.notes()),
+            Command::Notes => self.say_notes(),
             Command::Shortcuts => self.shortcuts = Some(ctx.input(|input| input.time)),
-            Command::About => self.message = Some(about()),
+            Command::About => self.messages.say("interwell", ABOUT),
         }
     }
 
@@ -162,37 +155,27 @@ impl Window {
         };
         if !can_be {
             let why = if name == "crossing" { "there is no barrier" } else { "there are no stops" };
-            return self.tell(format!("No {name} can come: {why}"));
+            return self.messages.tell(format!("No {name} can come: {why}"));
         }
         let ahead = model.duration().max(PERIODS_AHEAD * model.characteristic_time());
         let until = self.session.player.watch().time() + ahead;
         self.session.player.go_to(Goal::First(kind, until));
     }
 
-    /// The notes of the scene as a message.
-    fn notes(&self) -> (String, String) {
+    /// Shows the notes of the scene.
+    fn say_notes(&mut self) {
         let scene = self.session.scene();
         let notes = scene.notes.trim();
         let notes = if notes.is_empty() { "This scene has no notes." } else { notes };
         let changed = if self.session.editor.is_dirty() { " (before changes)" } else { "" };
-        (format!("{}{changed}", scene.title), notes.to_owned())
+        self.messages.say(format!("{}{changed}", scene.title), notes);
     }
 
     fn say_nameless(&mut self) {
-        self.say(
+        self.messages.say(
             "There is no command line yet",
-            "A pasted scene has no name that the command line could open: save it first.".to_owned(),
+            "A pasted scene has no name that the command line could open: save it first.",
         );
-    }
-
-    pub(super) fn copy_scene(&mut self, ctx: &egui::Context) {
-        match self.session.editor.text() {
-            Ok(text) => {
-                ctx.copy_text(text);
-                self.tell("Copied: the scene as text");
-            }
-            Err(error) => self.say("The scene was not copied", error),
-        }
     }
 
     /// Puts the views where the arrangement has them.
@@ -204,13 +187,4 @@ impl Window {
             (Arrangement::Layout(layout), _) => Tiling::new(layout, room),
         };
     }
-}
-
-fn about() -> (String, String) {
-    let text = format!(
-        "Version {}. Bistable mechanisms with travel limits: what they do when they are shaken.\n\n\
-         Every number comes from a run of the integrator; the motion on the screen is such a run, continued.",
-        env!("CARGO_PKG_VERSION")
-    );
-    ("interwell".to_owned(), text)
 }

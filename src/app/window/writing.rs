@@ -10,22 +10,12 @@ use crate::app::session::map::Map;
 use crate::output::write_file;
 
 use super::Window;
-
-/// What was written, in words, or why it was not.
-pub(super) type Written = Result<String, String>;
+use super::leave::Next;
+use super::messages::Written;
 
 impl Window {
-    /// Saves to a file; one that was written by hand with comments only once it is said that they go.
-    pub fn save_to(&mut self, ctx: &egui::Context, path: &Path) {
-        let own = self.session.editor.path() == Some(path);
-        if own && self.session.editor.has_comments() {
-            self.over_comments = Some(path.to_owned());
-        } else {
-            self.write_scene(ctx, path);
-        }
-    }
-
-    pub(super) fn write_scene(&mut self, ctx: &egui::Context, path: &Path) {
+    /// Writes the scene; what was to come once it is saved.
+    pub(super) fn write_scene(&mut self, path: &Path) -> Option<Next> {
         let next = self.after_save.take();
         match self.session.editor.save_to(path) {
             Ok(brought) => {
@@ -34,25 +24,37 @@ impl Window {
                     [] => String::new(),
                     names => format!(" and, beside it, what it needs: {}", names.join(", ")),
                 };
-                self.tell(format!("Saved {}{also}", file_name(path)));
-                if let Some(next) = next {
-                    self.go_on(ctx, next);
-                }
+                self.messages.tell(format!("Saved {}{also}", file_name(path)));
+                next
             }
-            Err(error) => self.say("The scene was not saved", error),
+            Err(error) => {
+                self.messages.say("The scene was not saved", error);
+                None
+            }
         }
     }
 
-    /// Says what was written, or why it was not.
-    pub(super) fn tell_written(&mut self, written: Written) {
-        match written {
-            Ok(text) => self.tell(text),
-            Err(error) => self.say("Not written", error),
+    /// Copies the scene as text.
+    pub(super) fn copy_scene(&mut self, ctx: &egui::Context) {
+        match self.session.editor.text() {
+            Ok(text) => {
+                ctx.copy_text(text);
+                self.messages.tell("Copied: the scene as text");
+            }
+            Err(error) => self.messages.say("The scene was not copied", error),
+        }
+    }
+
+    /// Says what was written on other threads.
+    pub(super) fn tell_written(&mut self) {
+        let run = self.run.take();
+        for written in run.into_iter().chain(self.written.1.try_iter()) {
+            self.messages.tell_written(written);
         }
     }
 
     fn put(&mut self, path: &Path, text: &str) {
-        self.tell_written(put(path, text));
+        self.messages.tell_written(put(path, text));
     }
 
     /// Writes the motion that is remembered as CSV.
@@ -64,23 +66,19 @@ impl Window {
     pub fn write_run(&mut self, path: PathBuf) {
         let (scene, model) = (self.session.scene().clone(), self.session.model().clone());
         if let Some(fault) = self.session.fault() {
-            return self.say("The run was not written", fault.to_owned());
+            return self.messages.say("The run was not written", fault);
         }
         self.run.ask(&self.wake, move |cancel| {
             let text = export::run_csv(&scene, &model, cancel)?;
             Some(text.and_then(|text| put(&path, &text)))
         });
-        self.tell("Computing the run");
+        self.messages.tell("Computing the run");
     }
 
     /// Waits until a run is written, at most so long.
     pub fn wait_for_run(&mut self, most: std::time::Duration) {
-        if self.run.wait(most)
-            && let Some(written) = self.run.current().cloned()
-        {
-            self.run.clear();
-            self.tell_written(written);
-        }
+        self.run.wait(most);
+        self.tell_written();
     }
 
     /// Writes the events that are remembered as CSV.
@@ -91,7 +89,7 @@ impl Window {
     /// Writes the force curve as CSV.
     pub fn write_curve(&mut self, path: &Path) {
         let text = export::curve_csv(&self.session).map_err(|error| error.to_string());
-        self.tell_written(text.and_then(|text| put(path, &text)));
+        self.messages.tell_written(text.and_then(|text| put(path, &text)));
     }
 
     /// Writes the map as the rows of a sweep.
@@ -104,7 +102,7 @@ impl Window {
     pub(super) fn write_picture(&mut self, ctx: &egui::Context, path: PathBuf) {
         let (written, wake) = (self.written.0.clone(), Arc::clone(&self.wake));
         // nothing that goes by itself is in the picture
-        self.told = None;
+        self.messages.drop_told();
         ctx.request_screenshot(move |image| {
             let bytes = export::png(&image);
             let saved = bytes.and_then(|bytes| write_file(&path, &bytes));

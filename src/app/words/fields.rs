@@ -1,6 +1,6 @@
 //! Table of the numeric fields of a scene: name on the screen, unit, limits, range of the slider.
 
-use crate::scene::Scene;
+use crate::scene::{Mechanism, Scene};
 
 /// What sets how far a slider goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -138,7 +138,7 @@ pub static FIELDS: &[FieldInfo] = &[
 ];
 
 /// Fields that have no slider: what they are called.
-const OTHERS: [(&str, &str, &str); 13] = [
+const OTHERS: &[(&str, &str, &str)] = &[
     ("mechanism.young_gpa", "Young's modulus", "GPa"),
     ("mechanism.linear_n_per_m", "linear stiffness", "N/m"),
     ("mechanism.cubic_n_per_m3", "cubic stiffness", "N/m³"),
@@ -153,6 +153,17 @@ const OTHERS: [(&str, &str, &str); 13] = [
     ("run.settle_s", "settling time", "s"),
     ("run.tolerance", "tolerance", ""),
 ];
+
+/// What kind of mechanism it is.
+pub fn mechanism_name(mechanism: &Mechanism) -> String {
+    match mechanism {
+        Mechanism::Flexures { .. } => "flexures".to_owned(),
+        Mechanism::Cubic { .. } => "cubic".to_owned(),
+        Mechanism::DoubleWell { .. } => "double well".to_owned(),
+        Mechanism::Polynomial { coefficients_si } => format!("polynomial of {}", coefficients_si.len()),
+        Mechanism::Table { path, .. } => path.clone(),
+    }
+}
 
 /// The control of a field; none where it has none.
 pub fn info(path: &str) -> Option<&'static FieldInfo> {

@@ -15,11 +15,6 @@ const MEANINGS: &[(&str, &str)] = &[
     ("drawn", "How many times more the drawing is stretched across the flexures than along them."),
     ("true scale", "Lengths along and across the flexures are drawn alike."),
     (
-        "schematic",
-        "Places along x are true; the shape of the flexures is only a sketch, as the scene gives no \
-         flexures.",
-    ),
-    (
         "push",
         "The force that the mass feels because the base accelerates, as in a bus that brakes; in \
          multiples of its weight.",
@@ -88,7 +83,6 @@ const MEANINGS: &[(&str, &str)] = &[
         "The force that would hold the mass at each place, positive to the right. The mechanism pulls with \
          as much the other way.",
     ),
-    ("push of the base", "What the mass feels because the base accelerates, positive to the right."),
 ];
 
 /// What a label means, by its first words: whatever follows, such as a number, does not count.

@@ -87,6 +87,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 self.stand(later, phase);
             }
             ReleaseRoot::Never => {
+                if until == self.stepper.end {
+                    self.record.rests_forever(&self.state.at, end.side());
+                }
                 self.stand(until, phase);
                 if self.stepper.pass_segment_end(&mut self.state) {
                     let acceleration = self.stepper.contact_acceleration(&self.state, end)[0];

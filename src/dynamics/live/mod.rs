@@ -222,7 +222,7 @@ impl Live {
             return;
         }
         let next = self.model.clone();
-        if !energy(&next, held_within(&next, (x, v), 0.0)).is_finite() {
+        if !energy(&next, next.held_within((x, v), 0.0)).is_finite() {
             return;
         }
         self.go_on(next, (x, v), Phase::Free, into);
@@ -235,7 +235,7 @@ impl Live {
         // Where a stop was pressed in, it stays so: only what a stop is moved over is carried along.
         let depth = self.model.pressed_depth(wanted.0).filter(|_| was != Phase::Free);
         let depth = depth.filter(|_| next.compliant.is_some()).map_or(0.0, |own| own.0);
-        next.start = held_within(&next, wanted, depth);
+        next.start = next.held_within(wanted, depth);
         next.motionless = false;
         self.past.by_hand_j += energy(&next, next.start) - before;
         let (gave, gives) = (self.model.compliant.is_some(), next.compliant.is_some());
@@ -274,6 +274,8 @@ impl Live {
         let mut model = self.model.clone();
         (model.duration, model.settle) = self.asked;
         phase::advance(&mut model.excitation, self.now);
+        let turns = model.forcing_period.map_or(0.0, |period| self.now / period);
+        model.start_phase = (model.start_phase + turns).rem_euclid(1.0);
         let (carried, _) = self.present();
         model.start = (carried.state.x, carried.state.v / self.kernel.unit());
         model.motionless = carried.state.contact == Contact::Motionless;
@@ -328,20 +330,4 @@ fn without_end(mut model: Model) -> Model {
 fn energy(model: &Model, (x, v): (f64, f64)) -> f64 {
     let (kinetic, potential) = model.energies(x, v);
     kinetic + potential
-}
-
-/// A state with the mass between the stops, or pressed in by up to `depth`, and within the known curve; where
-/// it had to be carried there, it has no speed.
-fn held_within(model: &Model, (x, v): (f64, f64), depth: f64) -> (f64, f64) {
-    let domain = model.mechanism.curve.domain();
-    let stops = model.stops;
-    let low = stops.and_then(|s| s.left).map_or(domain.0, |stop| (stop.x - depth).max(domain.0));
-    let high = stops.and_then(|s| s.right).map_or(domain.1, |stop| (stop.x + depth).min(domain.1));
-    if !(x <= high) {
-        (high, 0.0)
-    } else if x < low {
-        (low, 0.0)
-    } else {
-        (x, v)
-    }
 }

@@ -191,6 +191,11 @@ impl ExcitationParts {
             && self.records.iter().all(|r| r.peak() == 0.0)
     }
 
+    /// Whether nothing of it changes.
+    pub(crate) fn is_constant(&self) -> bool {
+        Self { constant: 0.0, ..self.clone() }.is_still()
+    }
+
     /// Whether it repeats; `common` are its [`common_cycles`](Self::common_cycles).
     pub(crate) fn rhythm(&self, common: Option<u64>) -> Rhythm {
         let empty = self.tones.is_empty() && self.chirps.is_empty() && self.records.is_empty();

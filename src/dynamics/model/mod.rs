@@ -11,7 +11,7 @@ pub(crate) mod stops;
 use std::sync::Arc;
 
 use crate::mechanics::{Hertz, Mechanism};
-use crate::scene::{Damping, Fault, Scene, Start};
+use crate::scene::{Damping, Excitation, Fault, Scene, Start};
 use excitation::{ExcitationParts, Rhythm};
 use scales::{Scales, scales};
 use start::{fault, start_state};
@@ -45,6 +45,8 @@ pub struct Model {
     /// Cycles of the clock in a forcing period.
     pub(in crate::dynamics) cycles_per_period: i64,
     pub(in crate::dynamics) rhythm: Rhythm,
+    /// Phase of the drive at the start in turns: the argument of a sine, 0 of a sum.
+    pub(in crate::dynamics) start_phase: f64,
 }
 
 impl Model {
@@ -133,6 +135,10 @@ impl Model {
             crossing_level,
             one_well: barrier.is_none(),
             cycles_per_period: common.map_or(0, |c| c as i64),
+            start_phase: match scene.excitation {
+                Excitation::Sine { phase_deg, .. } => phase_deg.rem_euclid(360.0) / 360.0,
+                _ => 0.0,
+            },
             mechanism,
         })
     }
@@ -164,7 +170,7 @@ impl Model {
     pub(crate) fn is_symmetric(&self) -> bool {
         let (left, right) = self.stops.map_or((None, None), |pair| (pair.left, pair.right));
         let alike = match (left, right) {
-            (Some(left), Some(right)) => left.x == -right.x && left.restitution == right.restitution,
+            (Some(left), Some(right)) => right == StopAt { x: -left.x, ..left },
             (None, None) => true,
             _ => false,
         };

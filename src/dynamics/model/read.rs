@@ -7,6 +7,7 @@ use super::excitation::ExcitationParts;
 use super::scales::Scales;
 use super::stops::StopPair;
 use crate::mechanics::{Hertz, Mechanism};
+use crate::numeric::{DoubleDouble, Number, Scalar};
 
 impl Model {
     /// Proof mass in kg.
@@ -64,6 +65,16 @@ impl Model {
         self.forcing_period
     }
 
+    /// Phase of the drive at a time in s, in turns: the argument of its sine; of a sum, the share of the
+    /// common period since the start. None where it does not repeat.
+    pub fn drive_phase(&self, t: f64) -> Option<f64> {
+        let frequency = self.excitation.fastest().filter(|_| self.repeats())?;
+        let cycles = DoubleDouble::of(self.window_periods().1 as f64);
+        let turns = DoubleDouble::product(t, frequency) / cycles + DoubleDouble::of(self.start_phase);
+        let share = (turns - turns.floor()).to_f64();
+        Some(if share < 1.0 { share } else { 0.0 })
+    }
+
     /// Length, speed and time that the tolerance is relative to.
     pub fn scales(&self) -> Scales {
         self.scales
@@ -84,6 +95,12 @@ impl Model {
         Self { tolerance, ..self.clone() }
     }
 
+    /// The same model with another start, displacement in m and velocity in m/s, and the scales that it has.
+    /// Precondition: the start lies in the curve and between the stops.
+    pub fn with_start(&self, start: (f64, f64)) -> Self {
+        Self { start, motionless: false, ..self.clone() }
+    }
+
     /// The same model with recurrence on or off.
     pub fn with_recurrence(&self, recurrence: bool) -> Self {
         Self { recurrence, ..self.clone() }
@@ -92,5 +109,32 @@ impl Model {
     /// The same model with a run of another duration in s, whose settled window begins at `settle` in s.
     pub fn with_duration(&self, duration: f64, settle: f64) -> Self {
         Self { duration, settle, ..self.clone() }
+    }
+
+    /// The same model, whose run goes on from a state of a run of `before`: displacement in m and velocity in
+    /// m/s, as [`Run::carried`](crate::dynamics::Run::carried) has them. A stop of this model that lies on
+    /// the other side of the mass carries it along, as the end of the known curve does, and takes its speed.
+    #[must_use]
+    pub fn carried_on(mut self, before: &Self, state: (f64, f64)) -> Self {
+        let pressed = before.compliant.and(self.compliant).and_then(|_| before.pressed_depth(state.0));
+        self.start = self.held_within(state, pressed.map_or(0.0, |own| own.0));
+        self.motionless = false;
+        self
+    }
+
+    /// A state with the mass between the stops, or pressed in by up to `depth`, and within the known curve;
+    /// where it had to be carried there, it has no speed.
+    pub(in crate::dynamics) fn held_within(&self, (x, v): (f64, f64), depth: f64) -> (f64, f64) {
+        let domain = self.mechanism.curve.domain();
+        let (left, right) = self.stop_positions();
+        let low = left.map_or(domain.0, |stop| (stop - depth).max(domain.0));
+        let high = right.map_or(domain.1, |stop| (stop + depth).min(domain.1));
+        if !(x <= high) {
+            (high, 0.0)
+        } else if x < low {
+            (low, 0.0)
+        } else {
+            (x, v)
+        }
     }
 }

@@ -39,9 +39,9 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         let (from, to) = (&self.window.0, &self.window.1);
         let mut border = *end;
         let ahead = [from, to].into_iter().filter(|border| until(border) > T::zero());
-        for own in ahead.chain(&self.next_strobe) {
-            if until(own) < until(&border) {
-                border = *own;
+        for own in ahead.copied().chain(self.next_strobe).chain(self.listings.due()) {
+            if until(&own) < until(&border) {
+                border = own;
             }
         }
         let inside = until(from) <= T::zero() && until(to) > T::zero();

@@ -119,6 +119,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 self.skip_strobes(until);
             }
         }
+        self.list_still(x, until);
         if self.next_time < self.times.len() {
             let (begin, end) = (self.clock.seconds(at), self.clock.seconds(until));
             while let Some(t) = self.next_sample(end) {

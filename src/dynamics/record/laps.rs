@@ -1,5 +1,6 @@
 //! Laps of a recurrent motion, added to sums and counts by multiplication.
 
+use super::listing::Listed;
 use super::recorder::Recorder;
 use super::sums::{Counts, Sums};
 use crate::dynamics::clock::Instant;
@@ -19,6 +20,7 @@ pub(crate) struct Totals<T> {
     /// What the judge has kept.
     taped: usize,
     next_strobe: Option<Instant<T>>,
+    listed: Listed<T>,
 }
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
@@ -31,6 +33,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             counts: self.counts,
             taped: self.judge.taped(),
             next_strobe: self.next_strobe,
+            listed: self.listings.listed(),
         }
     }
 
@@ -90,5 +93,6 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         if let Some(strobe) = &mut self.next_strobe {
             strobe.cycle += laps * cycles;
         }
+        self.listings.repeat(&before.listed, &after.listed, laps, cycles);
     }
 }

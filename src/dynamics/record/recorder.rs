@@ -3,16 +3,14 @@
 use std::sync::atomic::AtomicBool;
 
 use super::barrier::side_of;
+use super::goal::Goal;
+use super::listing::{Listings, MOST_STROBES};
 use super::regime::Judge;
 use super::sums::{Counts, Sums};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Event, EventKind, Request, Sample, Side};
 use crate::numeric::{CompensatedSum, Scalar};
-
-/// The most stroboscopic states that are recorded one by one: some tenths of a second of one core, and more
-/// than a run makes whose steps are shorter than a forcing period. Later ones are not judged.
-pub(crate) const MOST_STROBES: u32 = 1 << 22;
 
 pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub model: &'a Model,
@@ -44,9 +42,12 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     /// -1, 0 (on it since the start) or 1.
     pub barrier_side: i8,
     pub judge: Judge,
+    /// What the motion is followed to, where it is pursued.
+    pub goal: Option<Goal<'a>>,
     /// The first instant of the run at the window's phase.
     pub origin: Instant<T>,
     pub next_strobe: Option<Instant<T>>,
+    pub listings: Listings<T>,
     /// Cycles of the clock in a forcing period.
     pub period_cycles: i64,
     /// How many stroboscopic states may still be recorded one by one.
@@ -113,8 +114,10 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             barrier,
             barrier_side: side,
             judge: Judge::new(model.rhythm, scales, periods, first),
+            goal: None,
             origin,
             next_strobe: (periods > 0).then_some(origin),
+            listings: Listings::new(request, &clock, from, (periods, cycles), model.start_phase),
             period_cycles: cycles,
             strobes_left: MOST_STROBES,
             periods,

@@ -114,6 +114,18 @@ impl Judge {
         }
     }
 
+    /// One like this, before the run has begun, of another window.
+    pub fn anew(&self, periods: u64, from: u64) -> Self {
+        let mut strobes = self.strobes.clone();
+        strobes.begin_window(periods, from);
+        Self { periods, from, strobes, crossings: Crossings::new(periods), ..self.clone() }
+    }
+
+    /// The stroboscopic states so far.
+    pub fn strobes(&self) -> &Strobes {
+        &self.strobes
+    }
+
     /// Whether the instants of crossings outside the window matter too: under a drive that changes the first
     /// ones are reported.
     pub fn times_all_crossings(&self) -> bool {

@@ -56,6 +56,20 @@ impl Strobes {
         Self { scales, longest, seen: 0, recent, since: [0; LONGEST], opening: Vec::new(), from }
     }
 
+    /// Of another window, before the first state. All periods are looked for, however short it is.
+    pub fn begin_window(&mut self, periods: u64, from: u64) {
+        *self = Self { longest: LONGEST, ..Self::new(self.scales, periods, from) };
+    }
+
+    /// The smallest number of states after which those of the last two periods, and so many `more`, have come
+    /// back.
+    pub fn repeats_for(&self, more: u64) -> Option<u32> {
+        (1..=self.longest as u64).find_map(|q| {
+            let back = self.since[q as usize - 1] + q + 2 * q + more < self.seen;
+            back.then_some(q as u32)
+        })
+    }
+
     /// The number of states so far.
     pub fn seen(&self) -> u64 {
         self.seen

@@ -72,6 +72,9 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         if self.next_strobe.is_some() {
             self.strobes(step);
         }
+        if !self.listings.is_empty() {
+            self.list_states(step);
+        }
         if self.next_time < self.times.len() {
             let end = self.clock.seconds(&self.clock.advance(&step.at, step.duration));
             while let Some(t) = self.next_sample(end) {

@@ -44,6 +44,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             self.next_time += 1;
         }
         self.last_strobe(&end, (x, v));
+        let (section, carried) = self.listed(&end, (final_x, final_v));
         let m = self.model.mass;
         let energy = m / (self.unit * self.unit);
         let value = |sum: &CompensatedSum<T>| sum.value().to_f64();
@@ -111,6 +112,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         Run {
             samples: std::mem::take(&mut self.samples),
             events: self.events.take().unwrap_or_default(),
+            section,
+            carried,
             summary: Summary {
                 final_x,
                 final_v,

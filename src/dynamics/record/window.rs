@@ -1,10 +1,12 @@
 //! The settled window of a record: its borders, the stroboscopic states within and before it, and the next
-//! one.
+//! one; those that a run lists.
 
+use super::listing::SAME;
 use super::recorder::Recorder;
 use super::repeats::Strobe;
 use super::sums::Sums;
 use crate::dynamics::clock::Instant;
+use crate::dynamics::result::SectionPoint;
 use crate::dynamics::step::path::{Path, StepView};
 use crate::numeric::{CompensatedSum, Scalar};
 
@@ -35,6 +37,9 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         }
         let state = Strobe { x: x.to_f64(), v: v.to_f64() / self.unit };
         self.judge.strobe(state, self.settled.squared_velocity.value().to_f64(), self.counts.crossings);
+        if let Some(goal) = &mut self.goal {
+            goal.strobe(&self.judge, (state.x, state.v));
+        }
     }
 
     /// Passes over stroboscopic states of a mass that stands still up to `until`, all like the last ones, but
@@ -108,6 +113,46 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         self.impact_speed = T::zero();
         (self.counts.crossings, self.counts.impacts, self.counts.releases) = (0, 0, 0);
         self.judge.open_window();
+        self.listings.next_window(self.periods);
         Some(to)
+    }
+
+    /// Lists the states within a step.
+    pub(crate) fn list_states<P: Path<T>>(&mut self, step: &StepView<T, P>) {
+        for own in self.listings.each() {
+            while let Some(next) = own.due() {
+                let into = self.clock.between(&step.at, &next).larger(T::zero());
+                if into >= step.duration {
+                    break;
+                }
+                let into = step.path.parameter(into, step.length);
+                own.add((step.x_at(into).to_f64(), step.path.velocity(into).to_f64() / self.unit));
+            }
+        }
+    }
+
+    /// Lists the states of a mass that stands still at `x` up to `until`.
+    pub(crate) fn list_still(&mut self, x: T, until: &Instant<T>) {
+        for own in self.listings.each() {
+            own.skip_still(&self.clock, self.period, until);
+            while own.due().is_some_and(|next| self.clock.between(&next, until) > T::zero()) {
+                own.add((x.to_f64(), 0.0));
+            }
+        }
+    }
+
+    /// Closes the listings at `end`, the end of the run: the section, and the state that is carried.
+    pub(crate) fn listed(
+        &mut self,
+        end: &Instant<T>,
+        (x, v): (f64, f64),
+    ) -> (Vec<SectionPoint>, Option<(f64, f64)>) {
+        let same = self.period * T::of(SAME);
+        for own in self.listings.each() {
+            if own.due().is_some_and(|next| self.clock.between(&next, end).abs() <= same) {
+                own.add((x, v));
+            }
+        }
+        std::mem::take(&mut self.listings).finish(&self.clock)
     }
 }

@@ -119,3 +119,15 @@ pub struct Event {
     /// Velocity after it in m/s, signed.
     pub v_out: f64,
 }
+
+/// A state of a motion at a phase of the drive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct SectionPoint {
+    /// Time in s.
+    pub t: f64,
+    /// Displacement in m.
+    pub x: f64,
+    /// Velocity in m/s; right after an event at this instant.
+    pub v: f64,
+}

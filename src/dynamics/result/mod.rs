@@ -1,11 +1,13 @@
 //! What a run is asked for and what it returns: samples, events, statistics, outcome and ledger. All SI.
 
+mod arrival;
 mod event;
 mod outcome;
 mod request;
 mod summary;
 
-pub use event::{Event, EventKind, Phase, Sample, Side};
+pub use arrival::{Arrival, Capture, Pursuit, Region, ReleaseIdentity};
+pub use event::{Event, EventKind, Phase, Sample, SectionPoint, Side};
 pub use outcome::{Outcome, Place, Regime};
 pub use request::Request;
 pub use summary::{First, Firsts, Ledger, Summary};
@@ -18,6 +20,12 @@ pub struct Run {
     pub samples: Vec<Sample>,
     /// Events in order of time, where they were asked for.
     pub events: Vec<Event>,
+    /// The states of the settled window at the phase asked for, one a forcing period, where they were asked
+    /// for and the drive repeats; at most some 4 million, and up to the end of the run.
+    pub section: Vec<SectionPoint>,
+    /// Displacement in m and velocity in m/s at the last instant that is a whole number of forcing periods
+    /// after the start, where it was asked for and the drive repeats.
+    pub carried: Option<(f64, f64)>,
     /// Statistics, outcome and ledger.
     pub summary: Summary,
 }

@@ -17,4 +17,9 @@ pub struct Request<'a> {
     /// s. Under a drive that does not repeat, and where the window holds less than two forcing periods,
     /// nothing changes.
     pub until_settled: Option<f64>,
+    /// Phase of the drive in turns at which the states of the settled window are kept, one a forcing period
+    /// ([`Run::section`](super::Run::section)).
+    pub section: Option<f64>,
+    /// Whether to keep the state from which another run may go on ([`Run::carried`](super::Run::carried)).
+    pub carry: bool,
 }

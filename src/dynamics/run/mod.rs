@@ -4,6 +4,7 @@ mod balance;
 pub(crate) mod ending;
 pub(crate) mod event_free;
 mod flight;
+pub(crate) mod pursue;
 mod recurrence;
 
 use crate::dynamics::clock::Clock;
@@ -71,13 +72,19 @@ fn with_drive<T: Scalar, D: Drive<T>>(
 }
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
-    /// Goes on from event to event, up to the end of the run.
+    /// Runs from its start to its end.
     fn run(mut self, model: &Model) -> Run {
         let begun = self.begin(model);
-        let outcome = loop {
+        let outcome = self.go_on();
+        self.finish(model, &begun, outcome)
+    }
+
+    /// Goes on from event to event until the run has ended.
+    fn go_on(&mut self) -> Outcome {
+        loop {
             let left = match self.left() {
                 Ok(left) => left,
-                Err(outcome) => break outcome,
+                Err(outcome) => return outcome,
             };
             let flow = match self.event_free_steps() {
                 FastPath::Paused => None,
@@ -90,10 +97,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 FastPath::NotTaken => self.proceed(left),
             };
             if let Some(outcome) = flow.or_else(|| self.spent()) {
-                break outcome;
+                return outcome;
             }
-        };
-        self.finish(model, &begun, outcome)
+        }
     }
 
     /// The time to the end of the run, or how it has ended. A motion that has come back is completed first.
@@ -101,6 +107,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     pub fn left(&mut self) -> Result<T, Outcome> {
         if let Some(label) = self.label.take() {
             self.let_go(label);
+        }
+        if self.record.has_arrived() {
+            return Err(Outcome::Done);
         }
         let mut left = self.stepper.left(&self.state);
         if !(left > T::zero()) {

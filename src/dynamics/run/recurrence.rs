@@ -22,6 +22,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::laps::Totals;
 use crate::dynamics::record::log::{Later, Log};
+use crate::dynamics::result::ReleaseIdentity;
 use crate::dynamics::state::Label;
 use crate::dynamics::step::work::TOLD;
 use crate::numeric::Scalar;
@@ -54,8 +55,13 @@ struct Lap<T> {
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// The mass has just been released with this label: completes the run where a release had the same label
-    /// before.
+    /// before. Where it is pursued, it has arrived.
     pub fn let_go(&mut self, label: Label<T>) {
+        let Label { end, turn, phase } = label;
+        let identity = ReleaseIdentity { side: end.side(), cycle: turn, phase: phase.to_f64() };
+        if self.record.released(&self.state.at, identity) {
+            return;
+        }
         let Some(log) = self.log.take().filter(|log| log.has_room()) else {
             self.keep_from(Box::new(Log::new()), label);
             return;
@@ -174,7 +180,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// depend on what is listed. A replay is work: the number of laps for which it was done.
     fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) -> i64 {
         let (sums, judge) = (self.record.totals(), self.record.judge.clone());
-        self.record.next_strobe = None; // it has no part in what is listed
+        // The stroboscopic states are those of the lap.
+        self.record.next_strobe = None;
+        let listings = std::mem::take(&mut self.record.listings);
         let start = self.state.at;
         let length = self.stepper.clock.period() * T::of(lap.cycles as f64);
         let begin =
@@ -189,7 +197,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             }
             if self.stepper.work.is_cancelled() || self.stepper.work.is_spent() {
                 self.record.take_back(&sums);
-                self.record.judge = judge;
+                (self.record.judge, self.record.listings) = (judge, listings);
                 return told;
             }
             if self.stepper.clock.between(&next, &begin(number)) >= T::zero() {
@@ -200,7 +208,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             told = number;
         }
         self.record.take_back(&sums);
-        self.record.judge = judge;
+        (self.record.judge, self.record.listings) = (judge, listings);
         laps
     }
 

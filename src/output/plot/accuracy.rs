@@ -5,7 +5,7 @@ use super::figure::{Area, Figure, Point, Text};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Ink, Theme};
-use super::sweep::words;
+use super::swept::words;
 use crate::study::Table;
 use crate::study::accuracy::{OWN, PROBLEMS};
 

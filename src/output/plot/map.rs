@@ -1,82 +1,123 @@
 //! Picture of a sweep over two fields: a quantity as colour, and where motion begins as lines.
 
-use super::axis::PlotAxis;
+use super::axis::{PlotAxis, Ranges};
 use super::figure::{Align, Area, Figure, Text};
 use super::font;
 use super::frame::Frame;
 use super::mark::{REGIMES, Sample, cross, legend};
 use super::quantity::Quantity;
-use super::style::{self, Theme, viridis};
-use super::sweep::{BOTTOM, LEFT, SweepPicture, TOP, label, missing_words, words};
+use super::style::{self, Ink, Theme, viridis};
+use super::swept::{BOTTOM, LEFT, Overlay, SweepPicture, TOP, label, missing_words, words};
 use crate::study::{Edges, Table, first_crossing_edge};
-
-/// The lines over a map, each where it makes sense.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Overlay {
-    /// The release in closed form, with the swept columns of the map.
-    pub release: Option<Table>,
-    /// The first crossing cell along the amplitude.
-    pub first_crossing: Option<Table>,
-}
 
 /// What a cell of a map shows.
 #[derive(Clone, Copy, PartialEq)]
-enum Cell {
+pub(super) enum Cell {
     Missing,
     Rest,
     Value(f64),
+}
+
+/// The cells of a map in columns, with their edges.
+#[derive(Clone)]
+pub(super) struct Mosaic {
+    pub across: Edges,
+    pub up: Edges,
+    pub cells: Vec<Cell>,
+}
+
+impl Mosaic {
+    /// Of those rows over the fields `x` and `y` that are to be `shown`.
+    pub fn new(
+        rows: &Table,
+        (x, y): (&str, &str),
+        quantity: &Quantity,
+        shown: impl Fn(usize) -> bool,
+    ) -> Self {
+        let (xs, ys) = (rows.numbers(x).unwrap_or_default(), rows.numbers(y).unwrap_or_default());
+        let (across, up) = (Edges::new(xs), Edges::new(ys));
+        let regimes = words(rows, "regime");
+        let mut cells = vec![Cell::Missing; across.values.len() * up.values.len()];
+        for i in (0..rows.rows()).filter(|i| shown(*i)) {
+            if let (Some(column), Some(row)) = (across.place(xs[i]), up.place(ys[i])) {
+                cells[column * up.values.len() + row] = match regimes.get(i) {
+                    _ if !quantity.values[i].is_finite() => Cell::Missing,
+                    Some(&"rest") if quantity.velocity => Cell::Rest,
+                    _ => Cell::Value(quantity.values[i]),
+                };
+            }
+        }
+        Self { across, up, cells }
+    }
+
+    /// A frame at `area` over all of it, with these labels or in these ranges.
+    pub fn frame(&self, area: Area, labels: (&str, &str), ranges: Ranges) -> Frame {
+        let axis = |ends: (f64, f64), given, count, label: &str| {
+            PlotAxis::between(ends.0, ends.1, count, label).or_given(given, count, label)
+        };
+        let many = if area.right - area.left > 600.0 { 8 } else { 4 };
+        let x = axis(self.across.ends(), ranges.x, many, labels.0);
+        Frame::new(area, x, axis(self.up.ends(), ranges.y, 7, labels.1))
+    }
+
+    /// Paints the cells, each value in its colour.
+    pub fn paint(&self, figure: &mut Figure, frame: &Frame, theme: &Theme, colour: impl Fn(f64) -> Ink) {
+        let Self { across, up, cells } = self;
+        for column in 0..across.values.len() {
+            let own = &cells[column * up.values.len()..][..up.values.len()];
+            let mut row = 0;
+            for run in own.chunk_by(|a, b| a == b) {
+                let (left, right) =
+                    (frame.across(across.edges[column]), frame.across(across.edges[column + 1]));
+                let (low, high) = (frame.down(up.edges[row]), frame.down(up.edges[row + run.len()]));
+                row += run.len();
+                let Some(area) = Area::new(left, high, right, low).common(frame.area) else { continue };
+                match run[0] {
+                    Cell::Value(value) => figure.rect(area, colour(value)),
+                    Cell::Rest => {
+                        figure.rect(area, theme.rest);
+                        figure.hatch(area, style::HATCH, theme.rest_hatch);
+                    }
+                    Cell::Missing => {
+                        figure.rect(area, theme.paper);
+                        cross(figure, area, theme.soft);
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// The quantity as colour over two fields.
 pub(super) fn map(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &str), theme: &Theme) {
     const RIGHT: f64 = 1310.0;
     let SweepPicture { rows, ranges, overlay, .. } = picture;
-    let (xs, ys) = (rows.numbers(x).unwrap_or_default(), rows.numbers(y).unwrap_or_default());
-    let (across, up) = (Edges::new(xs), Edges::new(ys));
     let quantity = Quantity::of(rows, picture.quantity);
-    let regimes = words(rows, "regime");
-    let mut cells = vec![Cell::Missing; across.values.len() * up.values.len()];
-    for i in 0..rows.rows() {
-        if let (Some(column), Some(row)) = (across.place(xs[i]), up.place(ys[i])) {
-            cells[column * up.values.len() + row] = match regimes.get(i) {
-                _ if !quantity.values[i].is_finite() => Cell::Missing,
-                Some(&"rest") if quantity.velocity => Cell::Rest,
-                _ => Cell::Value(quantity.values[i]),
-            };
-        }
-    }
-    let axis = |ends: (f64, f64), given, count, name| {
-        let label = label(rows, name);
-        PlotAxis::between(ends.0, ends.1, count, &label).or_given(given, count, &label)
-    };
-    let frame = Frame::new(
-        Area::new(LEFT, TOP, RIGHT, BOTTOM),
-        axis(across.ends(), ranges.x, 8, x),
-        axis(up.ends(), ranges.y, 7, y),
-    );
+    let mosaic = Mosaic::new(rows, (x, y), &quantity, |_| true);
+    let frame =
+        mosaic.frame(Area::new(LEFT, TOP, RIGHT, BOTTOM), (&label(rows, x), &label(rows, y)), *ranges);
     let bar = quantity.axis(0.0, 6);
-    for column in 0..across.values.len() {
-        let own = &cells[column * up.values.len()..][..up.values.len()];
-        let mut row = 0;
-        for run in own.chunk_by(|a, b| a == b) {
-            let (left, right) = (frame.across(across.edges[column]), frame.across(across.edges[column + 1]));
-            let (low, high) = (frame.down(up.edges[row]), frame.down(up.edges[row + run.len()]));
-            row += run.len();
-            let Some(area) = Area::new(left, high, right, low).common(frame.area) else { continue };
-            match run[0] {
-                Cell::Value(place) if quantity.regimes => figure.rect(area, theme.regimes[place as usize]),
-                Cell::Value(value) => figure.rect(area, viridis(bar.share(value))),
-                Cell::Rest => {
-                    figure.rect(area, theme.rest);
-                    figure.hatch(area, style::HATCH, theme.rest_hatch);
-                }
-                Cell::Missing => {
-                    figure.rect(area, theme.paper);
-                    cross(figure, area, theme.soft);
-                }
-            }
-        }
+    mosaic.paint(figure, &frame, theme, |value| match quantity.regimes {
+        true => theme.regimes[value as usize],
+        false => viridis(bar.share(value)),
+    });
+    let Mosaic { across, up, cells } = &mosaic;
+    let mut entries = meanings(rows, &quantity, cells, theme);
+    entries.extend(over(figure, &frame, (x, y), across, up, overlay));
+    frame.axes(figure, theme);
+    if !quantity.regimes {
+        colour_bar(figure, Area::new(1370.0, TOP, 1410.0, BOTTOM), &bar, theme, viridis);
     }
+    legend(figure, theme, &entries, LEFT, 1560.0, 146.0);
+}
+
+/// What a legend says of cells that no colour bar explains.
+pub(super) fn meanings(
+    rows: &Table,
+    quantity: &Quantity,
+    cells: &[Cell],
+    theme: &Theme,
+) -> Vec<(Sample, &'static str)> {
     let mut entries = Vec::new();
     if quantity.regimes {
         let there = |place: &usize| cells.contains(&Cell::Value(*place as f64));
@@ -90,12 +131,7 @@ pub(super) fn map(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &s
         let why = if quantity.velocity { missing_words(words(rows, "outcome")) } else { "no value" };
         entries.push((Sample::Crossed(theme.paper, theme.soft), why));
     }
-    entries.extend(over(figure, &frame, (x, y), &across, &up, overlay));
-    frame.axes(figure, theme);
-    if !quantity.regimes {
-        colour_bar(figure, bar, theme);
-    }
-    legend(figure, theme, &entries, LEFT, 1560.0, 146.0);
+    entries
 }
 
 /// The lines over the map; what the legend says of them.
@@ -129,14 +165,20 @@ fn over(
     entries
 }
 
-fn colour_bar(figure: &mut Figure, axis: PlotAxis, theme: &Theme) {
+/// A bar at `area` with the colours of the shares from 0 to 1.
+pub(super) fn colour_bar(
+    figure: &mut Figure,
+    area: Area,
+    axis: &PlotAxis,
+    theme: &Theme,
+    colour: impl Fn(f64) -> Ink,
+) {
     const STEPS: usize = 256;
-    let area = Area::new(1370.0, TOP, 1410.0, BOTTOM);
     let height = (area.bottom - area.top) / STEPS as f64;
     for i in 0..STEPS {
         let bottom = area.bottom - i as f64 * height;
         let step = Area::new(area.left, bottom - height, area.right, bottom);
-        figure.rect(step, viridis((i as f64 + 0.5) / STEPS as f64));
+        figure.rect(step, colour((i as f64 + 0.5) / STEPS as f64));
     }
     let Area { left, top, right, bottom } = area;
     let outline = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];

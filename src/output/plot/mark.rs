@@ -37,11 +37,12 @@ pub fn regime(word: &str, theme: &Theme) -> (Marker, Ink) {
 /// Draws a marker with an outline of `edge`; `size` is half its height.
 pub fn marker(figure: &mut Figure, marker: Marker, at: Point, size: f64, ink: Ink, edge: Ink) {
     for (size, ink) in [(size + 2.0, edge), (size, ink)] {
-        plain(figure, marker, at, size, ink);
+        dot(figure, marker, at, size, ink);
     }
 }
 
-fn plain(figure: &mut Figure, marker: Marker, (x, y): Point, size: f64, ink: Ink) {
+/// Draws a marker without an outline.
+pub fn dot(figure: &mut Figure, marker: Marker, (x, y): Point, size: f64, ink: Ink) {
     let flat = 0.86 * size;
     let polygon = |points: &[Point]| points.iter().map(|(dx, dy)| (x + dx, y + dy)).collect::<Vec<Point>>();
     match marker {

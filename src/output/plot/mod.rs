@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod axis;
+mod basins;
 mod contact;
 mod curve;
 mod exponents;
@@ -16,24 +17,33 @@ mod mark;
 mod paint;
 mod quantity;
 mod run;
+mod section;
+mod spectrum;
 mod style;
 mod sweep;
+mod swept;
+mod threshold;
+mod walk;
 
 use std::path::Path;
 
 pub use accuracy::accuracy_figure;
 pub use axis::{PlotAxis, Ranges};
+pub use basins::{basins_figure, can_show_starts};
 pub use contact::contact_figure;
 pub use curve::curve_figure;
 pub use exponents::{ExponentPicture, can_show_exponents, exponents_figure};
 pub use figure::Figure;
-pub use map::Overlay;
 pub use mark::Caption;
 pub use paint::PaintError;
 pub use quantity::{RMS, quantities};
 pub use run::{run_figure, speed_unit};
+pub use section::{SectionPicture, section_figure};
+pub use spectrum::{SpectrumQuantity, spectrum_figure};
 pub use style::{Ink, Theme, viridis};
-pub use sweep::{MAX_PICTURE_CELLS, NoPicture, SweepPicture, can_show, sweep_about, sweep_figure};
+pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_figure};
+pub use swept::{Overlay, SweepPicture};
+pub use threshold::{ThresholdPicture, can_show_thresholds, threshold_figure};
 
 /// A kind of file that holds a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,15 +1,17 @@
 //! Picture of a sweep: lines over one field, drawn here; over two a [`map`](super::map).
 
-use super::axis::{PlotAxis, Ranges};
+use super::axis::PlotAxis;
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
-use super::map::{Overlay, map};
+use super::map::map;
 use super::mark::{Caption, REGIMES, Sample, legend, marker, regime};
 use super::quantity::{Quantity, quantities};
 use super::style::{self, Theme};
+use super::swept::{BOTTOM, LEFT, MARKER_ROOM, SweepPicture, TOP, label, missing_words, thinned, words};
+use super::walk::{walked_both, walked_lines, walked_maps};
 use crate::numeric::short;
 use crate::scene::{Excitation, Scene, Start};
-use crate::study::{Column, Grid, Table, Values};
+use crate::study::{DIRECTION, Grid, Table};
 
 /// The most cells that a picture shows: more than it has pixels to tell apart.
 pub const MAX_PICTURE_CELLS: u64 = 500_000;
@@ -23,6 +25,12 @@ pub enum NoPicture {
          take the others out, or sweep without --plot"
     )]
     Fields(usize),
+    /// One threshold.
+    #[error(
+        "--plot shows thresholds over another field (a line) or two (a map), and there is one threshold: add \
+         --over FIELD=FROM:TO:STEP, or leave --plot out"
+    )]
+    SingleThreshold,
     /// Exponents of a single motion, or over several fields.
     #[error("--plot shows exponents over one field, not over {0}: name it with --over FIELD=FROM:TO:STEP")]
     Exponents(usize),
@@ -31,6 +39,9 @@ pub enum NoPicture {
         "--plot shows at most {MAX_PICTURE_CELLS} cells, not {0}: take longer steps, or sweep without --plot"
     )]
     Cells(u64),
+    /// More starts than a picture tells apart.
+    #[error("--plot shows at most {MAX_PICTURE_CELLS} starts, not {0}: take fewer, or leave --plot out")]
+    Starts(u64),
     /// No column that can be shown.
     #[error("--quantity {asked}: the rows have no such column to show; they have: {known}")]
     Quantity {
@@ -40,10 +51,6 @@ pub enum NoPicture {
         known: String,
     },
 }
-
-pub(super) const LEFT: f64 = 160.0;
-pub(super) const TOP: f64 = 185.0;
-pub(super) const BOTTOM: f64 = 868.0;
 
 /// Whether the column `quantity` of a sweep of this grid can be shown; `table` is that of its rows, which may
 /// be missing.
@@ -59,23 +66,6 @@ pub fn can_show(grid: &Grid, quantity: &str, table: &Table) -> Result<(), NoPict
     }
 }
 
-/// What the picture of a sweep is drawn from.
-#[derive(Debug, Clone)]
-pub struct SweepPicture<'a> {
-    /// All rows.
-    pub rows: &'a Table,
-    /// Of which grid.
-    pub grid: &'a Grid,
-    /// Over which scene.
-    pub scene: &'a Scene,
-    /// The column that is shown.
-    pub quantity: &'a str,
-    /// The lines over a map.
-    pub overlay: Overlay,
-    /// The axes of the fields, and over one field that of the quantity upward.
-    pub ranges: Ranges,
-}
-
 /// A field with at most so many values, each with many of the other field, is a line a value and not a map.
 const FEW: usize = 6;
 const MANY: usize = 3;
@@ -86,38 +76,49 @@ pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) ->
     let SweepPicture { rows, grid, scene, .. } = *picture;
     can_show(grid, picture.quantity, rows)?;
     let mut figure = Figure::new(theme.paper);
-    let few = |of: usize, beside: usize| {
-        let count = |i: usize| distinct(rows.numbers(&grid.columns()[i]).unwrap_or_default()).len();
-        count(of) <= FEW && count(beside) >= MANY * count(of)
-    };
-    match grid.columns() {
-        [x] => lines(&mut figure, picture, x, None, theme),
-        [x, y] if few(1, 0) => lines(&mut figure, picture, x, Some(y), theme),
-        [x, y] if few(0, 1) => lines(&mut figure, picture, y, Some(x), theme),
-        [x, y] => map(&mut figure, picture, (x, y), theme),
-        other => return Err(NoPicture::Fields(other.len())),
+    match (grid.columns(), few_lines(rows, grid)) {
+        ([x], _) if walked_both(rows) => walked_lines(&mut figure, picture, x, theme),
+        ([x, y], _) if walked_both(rows) => walked_maps(&mut figure, picture, (x, y), theme),
+        ([x], _) => lines(&mut figure, picture, x, None, theme),
+        (_, Some((x, each))) => lines(&mut figure, picture, x, Some(each), theme),
+        ([x, y], None) => map(&mut figure, picture, (x, y), theme),
+        (other, None) => return Err(NoPicture::Fields(other.len())),
     }
-    caption.draw(&mut figure, theme, &sweep_about(grid, scene), LEFT);
+    caption.draw(&mut figure, theme, &sweep_about(grid, scene, rows.column(DIRECTION).is_some()), LEFT);
     Ok(figure)
 }
 
+/// Of two swept fields the one to the right and the one of which each value has a line, where one has few.
+pub(super) fn few_lines<'a>(rows: &Table, grid: &'a Grid) -> Option<(&'a str, &'a str)> {
+    let [a, b] = grid.columns() else { return None };
+    let count = |name: &str| distinct(rows.numbers(name).unwrap_or_default()).len();
+    let few = |of: &str, beside: &str| count(of) <= FEW && count(beside) >= MANY * count(of);
+    match (few(b, a), few(a, b)) {
+        (true, _) => Some((a, b)),
+        (false, true) => Some((b, a)),
+        _ => None,
+    }
+}
+
 /// The values in ascending order, each once.
-fn distinct(values: &[f64]) -> Vec<f64> {
+pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
     let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);
     values.dedup();
     values
 }
 
-/// What was run, in one line.
-pub fn sweep_about(grid: &Grid, scene: &Scene) -> String {
+/// What was run, in one line; `walked`, where each run went on from the one before.
+pub fn sweep_about(grid: &Grid, scene: &Scene, walked: bool) -> String {
     let counts: Vec<String> = grid.axes().iter().map(|axis| axis.values.len().to_string()).collect();
     let swept = |field: &str| grid.axes().iter().any(|axis| axis.field == field);
     let mut parts = vec![format!("{} runs", counts.join(" \u{d7} "))];
     if !swept("run.duration_s") {
         parts[0] += &format!(" of {} s", short(scene.run.duration_s));
     }
-    if scene.start == Start::Rest {
+    if walked {
+        parts.push("each from where the one before was".to_owned());
+    } else if scene.start == Start::Rest {
         parts.push("each from rest".to_owned());
     }
     if let Excitation::Sine { frequency_hz, .. } = scene.excitation
@@ -126,29 +127,6 @@ pub fn sweep_about(grid: &Grid, scene: &Scene) -> String {
         parts.push(format!("shaken at {} Hz", short(frequency_hz)));
     }
     parts.join(", ")
-}
-
-pub(super) fn words<'a>(rows: &'a Table, name: &str) -> &'a [&'static str] {
-    match rows.column(name).map(|column| &column.values) {
-        Some(Values::Words(words)) => words,
-        _ => &[],
-    }
-}
-
-pub(super) fn label(rows: &Table, name: &str) -> String {
-    rows.column(name).map_or_else(|| name.to_owned(), Column::label)
-}
-
-/// What a legend says of cells without a speed, by the outcomes of all cells.
-pub(super) fn missing_words(outcomes: &[&'static str]) -> &'static str {
-    let is = |word: &&&str| **word == "not_converged";
-    let unsolved = outcomes.iter().filter(is).count();
-    let early = outcomes.iter().filter(|word| !is(word) && **word != "done").count();
-    match (unsolved, early) {
-        (0, _) => "ended early",
-        (_, 0) => "flexures not solved",
-        _ => "ended early or not solved",
-    }
 }
 
 /// The quantity over the field `x`, each value marked with its regime; a line for each value of `series`.
@@ -243,47 +221,3 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
 /// long.
 const MOST_LINES: usize = 20;
 const TICK: f64 = 18.0;
-
-/// So many times its half height apart, markers on a line are told from each other.
-const MARKER_ROOM: f64 = 5.0;
-
-/// The marks of a line that stand `apart` from the one before; where the word changes, `close` is enough.
-fn thinned<'a>(marks: &[(Point, &'a str)], apart: f64, close: f64) -> Vec<(Point, &'a str)> {
-    let mut kept: Vec<(Point, &str)> = Vec::new();
-    for (at, word) in marks {
-        let stands = kept.last().is_none_or(|(last, own)| {
-            (at.0 - last.0).hypot(at.1 - last.1) >= if own == word { apart } else { close.min(apart) }
-        });
-        if stands {
-            kept.push((*at, word));
-        }
-    }
-    kept
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn markers_on_a_line_stand_apart_and_a_change_is_seen() {
-        let marks: Vec<(Point, &str)> = (0..100)
-            .map(|i| ((f64::from(i) * 4.0, 0.0), if i < 50 { "rest" } else { "interwell" }))
-            .collect();
-        let kept = thinned(&marks, 40.0, 10.0);
-        assert!(kept.windows(2).all(|pair| {
-            let step = pair[1].0.0 - pair[0].0.0;
-            step >= 40.0 || (pair[0].1 != pair[1].1 && step >= 10.0)
-        }));
-        let first = kept.iter().find(|own| own.1 == "interwell").unwrap();
-        assert!(first.0.0 <= 200.0 + 10.0, "{first:?}");
-        assert_eq!(thinned(&marks, 0.0, 10.0), marks);
-    }
-
-    #[test]
-    fn a_legend_says_why_a_cell_has_no_speed() {
-        assert_eq!(missing_words(&["done", "left_table"]), "ended early");
-        assert_eq!(missing_words(&["done", "not_converged"]), "flexures not solved");
-        assert_eq!(missing_words(&["step_budget", "not_converged"]), "ended early or not solved");
-    }
-}

@@ -1,10 +1,12 @@
 //! Accuracy of runs, and its cost.
 //!
-//! Of any scene: the error of its run, up to when its path is to be trusted, and what a fixed step would make
-//! of it ([`scene`]). Of the program, in two halves: [`PROBLEMS`]: work against precision on three problems,
-//! beside what people use instead ([`methods`]), error measured against the program's own integrator in
-//! double-double arithmetic. [`HARD_CASES`]: problems that break integrators of impacts, each with its answer
-//! ([`exact`] where there is a closed form) and the digits that its conditioning allows.
+//! - Of any scene ([`scene`]): the error of its run, up to when its path is to be trusted, and what a fixed
+//!   step would make of it.
+//! - Of the program on three problems ([`PROBLEMS`]): work against precision, beside the methods that people
+//!   use instead ([`methods`]). The error is measured against the program's own integrator in double-double
+//!   arithmetic.
+//! - Of the program on hard cases ([`HARD_CASES`]), which break integrators of impacts: each has its answer
+//!   ([`exact`] where there is a closed form) and the digits that its conditioning allows.
 
 mod cases;
 pub mod exact;

@@ -4,9 +4,10 @@ use super::result::{ExponentOptions, Exponents, NoExponents};
 use super::settle::exponents;
 use crate::dynamics::Model;
 use crate::scene::{Fault, Files, Scene};
-use crate::study::periodic::without_a_period;
-use crate::study::sweep::{CellFaults, Sweep, SweepEnd};
+use crate::study::cell::{CellFaults, SweepEnd};
+use crate::study::cells::{Built, Cells};
 use crate::study::table::Table;
+use crate::study::walk::without_a_period;
 use crate::study::{Grid, Task};
 use crate::system::threads::Pool;
 
@@ -16,8 +17,7 @@ const CELLS_PER_THREAD: u64 = 32;
 /// A scene and the grid over it whose exponents are asked for.
 #[derive(Debug)]
 pub struct ExponentCells {
-    base: Scene,
-    sweep: Sweep,
+    cells: Cells,
 }
 
 /// What the cells of a grid came to.
@@ -38,12 +38,22 @@ type Found = Option<Exponents>;
 impl ExponentCells {
     /// The exponents of `grid` over `base`.
     pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
-        Self { base: base.clone(), sweep: Sweep::new(base, files, grid) }
+        Self { cells: Cells::new(base, files, grid) }
     }
 
-    /// The cells as those of a sweep.
-    pub fn sweep(&self) -> &Sweep {
-        &self.sweep
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        &self.cells.grid
+    }
+
+    /// The mechanism of the first cell, or why it has none.
+    pub fn first_mechanism(&self) -> Built {
+        self.cells.first_mechanism()
+    }
+
+    /// The model of the first cell, or its faults; none where its mechanism was not solved.
+    pub fn first_model(&self, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
+        self.cells.model(0, &mut self.cells.base.clone(), task)
     }
 
     /// The table without rows.
@@ -57,13 +67,13 @@ impl ExponentCells {
             if task.is_cancelled() {
                 return None;
             }
-            let faults = match self.sweep.model(index, scene, task)? {
-                Ok(model) => vec![without_a_period(&model, scene, WHAT)?],
+            let faults = match self.cells.model(index, scene, task)? {
+                Ok(model) => vec![drive_fault(&model, scene)?],
                 Err(faults) => faults,
             };
-            Some(CellFaults { cell: self.sweep.grid().describe(index), faults })
+            Some(CellFaults { cell: self.cells.grid.describe(index), faults })
         };
-        pool.find_first(self.sweep.grid().cells(), || self.base.clone(), faults).map_or(Ok(()), Err)
+        pool.find_first(self.cells.grid.cells(), || self.cells.base.clone(), faults).map_or(Ok(()), Err)
     }
 
     /// Measures every cell on `pool` and hands the rows to `write`, chunk by chunk in order. `write` answers
@@ -75,13 +85,13 @@ impl ExponentCells {
         task: &Task,
         mut write: impl FnMut(&Table) -> Result<bool, E>,
     ) -> Result<ExponentTally, SweepEnd<E>> {
-        let cells = self.sweep.grid().cells();
+        let cells = self.cells.grid.cells();
         let mut tally = ExponentTally::default();
         while tally.cells < cells {
             let begin = tally.cells;
             let count = (CELLS_PER_THREAD * pool.count() as u64).min(cells - begin);
             let cell = |scene: &mut Scene, place: usize| {
-                let model = self.sweep.model(begin + place as u64, scene, task).and_then(Result::ok);
+                let model = self.cells.model(begin + place as u64, scene, task).and_then(Result::ok);
                 let found = match model.map(|model| exponents(&model, options, task.cancel)) {
                     Some(Err(NoExponents::Cancelled)) => return Err(()),
                     Some(Ok(found)) => Some(found),
@@ -90,7 +100,7 @@ impl ExponentCells {
                 (task.tick)();
                 if task.is_cancelled() { Err(()) } else { Ok(found) }
             };
-            let found = pool.map(count as usize, || self.base.clone(), cell);
+            let found = pool.map(count as usize, || self.cells.base.clone(), cell);
             let found = found.map_err(|()| SweepEnd::Cancelled)?;
             tally.cells += count;
             tally.missing += found.iter().filter(|own| own.is_none()).count() as u64;
@@ -103,7 +113,7 @@ impl ExponentCells {
     }
 
     fn table(&self, begin: u64, found: &[Found]) -> Table {
-        let grid = self.sweep.grid();
+        let grid = &self.cells.grid;
         let mut table = Table::new();
         for (place, column) in grid.columns().iter().enumerate() {
             let value = |row: usize| grid.values(begin + row as u64).nth(place).unwrap_or(f64::NAN);
@@ -113,12 +123,11 @@ impl ExponentCells {
     }
 }
 
-/// What needs the period.
-const WHAT: &str = "an exponent";
-
-/// What is wrong with the excitation of a scene whose exponents are asked for.
+/// What is wrong with the excitation of a scene whose exponents are asked for: it changes and does not
+/// repeat.
 pub fn drive_fault(model: &Model, scene: &Scene) -> Option<Fault> {
-    without_a_period(model, scene, WHAT)
+    let suits = model.excitation().is_constant();
+    if suits { None } else { without_a_period(model, scene, "an exponent") }
 }
 
 /// The exponents of one motion as a table of one row.

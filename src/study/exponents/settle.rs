@@ -7,7 +7,6 @@ use super::orbit::of_orbit;
 use super::result::{ExponentOptions, Exponents, NoExponents};
 use super::tangent::Tangent;
 use crate::dynamics::{Model, Outcome, Request};
-use crate::study::periodic::is_constant;
 
 /// Forcing periods after a scene's run for which a motion is followed until it repeats.
 const PATIENCE: f64 = 1000.0;
@@ -26,14 +25,13 @@ pub fn exponents(
     options: &ExponentOptions,
     cancel: &AtomicBool,
 ) -> Result<Exponents, NoExponents> {
-    let still = is_constant(model);
     let (run, until_settled) = match model.forcing_period().filter(|_| model.repeats()) {
         Some(period) => {
             let window = (model.duration() - model.settle()).max(WINDOW * period);
             let until = options.until_settled.unwrap_or(model.duration() + PATIENCE * period);
             (model.with_duration(model.settle() + window, model.settle()), Some(until))
         }
-        None if still => {
+        None if model.excitation().is_constant() => {
             let end = model.duration() + PATIENCE * model.natural_time();
             (model.with_duration(end, end), None)
         }

@@ -2,7 +2,6 @@
 
 use super::result::NoExponents;
 use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Scales, Side, StroboscopicMap};
-use crate::study::periodic::is_constant;
 
 /// Below this share of its two products a determinant has lost its digits: rounding is some 1e-15 of them.
 /// (The error of the integration is a share of the areas themselves, of the size of the tolerance.)
@@ -47,9 +46,10 @@ impl Tangent {
     /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time of the
     /// mechanism.
     pub fn of(model: &Model, phase: f64) -> Result<Self, NoExponents> {
-        let map = match is_constant(model) {
-            true => StroboscopicMap::over(model, model.natural_time()),
-            false => model.stroboscopic_map(phase).ok_or(NoExponents::NoPeriod)?,
+        let map = match model.stroboscopic_map(phase) {
+            Some(map) => map,
+            None if model.excitation().is_constant() => StroboscopicMap::over(model, model.natural_time()),
+            None => return Err(NoExponents::NoPeriod),
         };
         let stops = model.stops();
         let kept = |side: Side| {

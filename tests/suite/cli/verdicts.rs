@@ -104,6 +104,16 @@ fn a_threshold_that_cannot_be_searched_is_refused() {
         ("threshold paper --field excitation.amplitude_g", &["--field", "FROM:TO"]),
         ("threshold paper --field excitation.amplitude=0:2", &["excitation.amplitude_g"]),
         ("threshold paper --field excitation.amplitude_g=-1e999:2", &["--field"]),
+        ("threshold paper --field excitation.amplitude_g=1:1", &["both 1", "give a range"]),
+        ("threshold paper --field excitation.amplitude_g=1:1:0.1", &["single value", "0:2:0.1"]),
+        ("threshold paper --field excitation.amplitude_g=1,1", &["single value"]),
+        ("threshold paper-ramp --field mass_g=10:20 --of interwell", &["AmplitudeRamp", "does not repeat"]),
+        ("threshold walking --field mass_g=10:20 --of interwell", &["Recorded", "does not repeat"]),
+        ("threshold paper --plot a.png", &["--plot", "--over"]),
+        (
+            "threshold paper --plot a.png --over mass_g=1,2 --over damping.xi=0,1 --over run.settle_s=0,1",
+            &["3"],
+        ),
         ("threshold paper --of motion", &["release", "crossing", "interwell"]),
         ("threshold paper --resolution 0", &["--resolution 0", "above 0"]),
         ("threshold paper --over excitation.amplitude_g=1,2", &["the threshold is over it"]),
@@ -111,4 +121,25 @@ fn a_threshold_that_cannot_be_searched_is_refused() {
     ] {
         refused(headless(line), words);
     }
+}
+
+#[test]
+fn all_wrong_cells_of_thresholds_are_named() {
+    let line = "threshold nominal-cubic --over mechanism.cubic_n_per_m3=1e6,-1e5,8e5,-2e5 --quiet";
+    for jobs in [1, 3] {
+        let assert = headless(&format!("{line} --jobs {jobs}")).assert().code(2).stdout("");
+        let text = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+        let cells: Vec<&str> = text.lines().filter(|line| line.contains("in the cell")).collect();
+        assert_eq!(
+            cells,
+            ["error: in the cell cubic_n_per_m3 = -100000:", "in the cell cubic_n_per_m3 = -200000:"]
+        );
+        assert!(text.contains("damping.xi = 0.023"), "{text}");
+    }
+    // of many the first ones, and how many more
+    let many = "threshold nominal-cubic --over mechanism.cubic_n_per_m3=-30:-1:1 --quiet";
+    headless(many).assert().code(2).stderr(predicates::str::contains("and 22 more cells are wrong"));
+    // the same bytes for any number of threads, and a map of them
+    let line = "threshold nominal-cubic --over stops.travel_limit_mm=1:5:2 --over mass_g=14,16 --quiet";
+    assert_eq!(stdout(&format!("{line} --jobs 1")), stdout(&format!("{line} --jobs 3")));
 }

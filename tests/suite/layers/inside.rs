@@ -27,8 +27,7 @@ const CIRCLES: [(&str, usize); 8] = [
     ("study", 2),
     ("output", 2),
     ("cli", 2),
-    // methods of `Window` in several files of its folder
-    ("app", 5),
+    ("app", 2),
 ];
 
 /// Where a type may have methods, as folders or files of its layer.

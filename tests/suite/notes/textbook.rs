@@ -183,3 +183,45 @@ pub fn period_adding(text: &mut Text) {
     assert_eq!((own.period, own.regime), (None, Regime::Intrawell));
     text.says("no period is found, at 0.0142 g for one");
 }
+
+pub fn duffing_cascade(text: &mut Text) {
+    let name = "duffing-cascade";
+    for (words, amplitude, period) in
+        [("0.340", 0.34, 1), ("0.350", 0.35, 2), ("0.356", 0.356, 4), ("0.3582", 0.3582, 8)]
+    {
+        let (change, in_g) = drive(amplitude);
+        let own = settled(name, &[&change]);
+        assert_eq!((own.period, own.settled), (Some(period), Some(true)), "{amplitude}");
+        assert_eq!(own.regime, Regime::Intrawell, "{amplitude}");
+        let set = if period == 4 { ", as set here" } else { "" };
+        let unit = if period == 1 { " period" } else { "" };
+        text.says(&format!("{words} ({in_g}{set}): after {period}{unit}"));
+    }
+    text.says("periods 1, 2, 4, 8 and chaos, all in one well");
+    // below and above each doubling, after thousands of periods
+    let long = ["run.duration_s=32000", "run.settle_s=31000"];
+    let period = |amplitude: f64| {
+        let change = format!("excitation.amplitude_g={amplitude}");
+        settled(name, &[long[0], long[1], change.as_str()]).period
+    };
+    let mut found = Vec::new();
+    for (below, above, periods) in [(0.03502, 0.03505, 1), (0.03619, 0.03622, 2), (0.036488, 0.0365, 4)] {
+        assert_eq!((period(below), period(above)), (Some(periods), Some(2 * periods)), "{below}");
+        found.push(0.5 * (below + above));
+    }
+    let shorter = (found[2] - found[1]) / (found[1] - found[0]);
+    near(shorter, 0.25, 0.02);
+    text.says(&format!("at {:.4}, {:.4} and {:.4} g", found[0], found[1], found[2]));
+    text.says("about a quarter of the first");
+    let (change, in_g) = drive(0.36);
+    let own = settled(name, &[&change]);
+    assert_eq!((own.period, own.regime), (None, Regime::Intrawell));
+    text.says(&format!("At 0.360 ({in_g}) no period is found, and the mass still stays in its well"));
+    let document = changed(name, &[]);
+    let values = (0..=40).map(|i| 0.036 + 5e-5 * f64::from(i)).collect();
+    let scan = Scan { field: "excitation.amplitude_g".to_owned(), values, resolution: 1e-6 };
+    let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+    let asked = (&scan, Onset::Crossing);
+    let found = threshold(&document.scene, &mechanism(&document), &document.files, asked, &task).unwrap();
+    text.says(&format!("From {:.4} g on it crosses", found.value.unwrap()));
+}

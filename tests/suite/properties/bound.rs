@@ -9,7 +9,7 @@
 use std::cell::RefCell;
 
 use interwell::dynamics::{Model, Outcome, Request, Run, STANDARD_GRAVITY, Scales};
-use interwell::scene::{Damping, Excitation, Scene, Start, Stops};
+use interwell::scene::{Damping, Excitation, FieldPath, Scene, Start, Stops, numeric_fields};
 use proptest::prelude::*;
 
 use super::harness::{hold, text};
@@ -93,14 +93,12 @@ fn moved(scene: &Scene, model: &Model, share: f64) -> Vec<Scene> {
         Damping::Ratio(xi) => *xi *= 1.0 + share,
         Damping::Coefficient { c_n_s_per_m } => *c_n_s_per_m *= 1.0 + share,
     });
-    with(&|own| match &mut own.stops {
-        Stops::Rigid { restitution, .. } => *restitution = (*restitution * (1.0 - share)).min(1.0),
-        Stops::Uneven { restitution_left, restitution_right, .. } => {
-            for e in [restitution_left, restitution_right].into_iter().flatten() {
-                *e = (*e * (1.0 - share)).min(1.0);
-            }
+    with(&|own| {
+        for path in numeric_fields(own).iter().filter(|path| path.starts_with("stops.restitution")) {
+            let field = FieldPath::new(path);
+            let Some(restitution) = field.get(own) else { continue };
+            assert!(field.set(own, (restitution * (1.0 - share)).min(1.0)));
         }
-        Stops::None | Stops::Hertz { .. } => {}
     });
     with(&|own| own.excitation = Excitation::Sum(vec![own.excitation.clone(), wobble(model, share)]));
     let [left, right] = distances(&scene.stops).map(|own| own.0 * 1e3);

@@ -26,17 +26,8 @@ pub fn model(scene: &Scene) -> Option<Model> {
 
 /// Distances of the stops as they are written, and their restitutions; an open side is infinitely far.
 fn written(stops: &Stops) -> [(f64, f64); 2] {
-    let side = |own: Option<f64>| own.unwrap_or(f64::INFINITY);
-    match *stops {
-        Stops::None => [(f64::INFINITY, 1.0); 2],
-        Stops::Rigid { travel_limit_mm, restitution } => [(travel_limit_mm, restitution); 2],
-        Stops::Hertz { travel_limit_mm, .. } => [(travel_limit_mm, 1.0); 2],
-        Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => {
-            let left = restitution_left.or(restitution_right).unwrap_or(1.0);
-            let right = restitution_right.or(restitution_left).unwrap_or(1.0);
-            [(side(left_mm), left), (side(right_mm), right)]
-        }
-    }
+    let (limits, restitutions) = (stops.limits_mm(), stops.restitutions());
+    [0, 1].map(|side| (limits[side].unwrap_or(f64::INFINITY), restitutions[side].unwrap_or(1.0)))
 }
 
 /// The same with the distances in m.

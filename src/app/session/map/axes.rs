@@ -60,11 +60,8 @@ pub fn fields(scene: &Scene, when_on: Stops) -> Vec<String> {
         .collect();
     let of = |name: &&str| {
         let (dotted, name) = (format!(".{name}"), (*name).to_owned());
-        known
-            .iter()
-            .filter(move |path| **path == name || path.ends_with(&dotted))
-            .cloned()
-            .collect::<Vec<_>>()
+        let fits = |path: &&String| **path == name || path.ends_with(&dotted);
+        known.iter().filter(fits).cloned().collect::<Vec<_>>()
     };
     FIELDS.iter().flat_map(of).collect()
 }
@@ -113,7 +110,8 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
             (0.0, to, decimal(to / 100.0))
         }
         "xi" => {
-            (0.0, round_up((2.0 * present).max(0.1)), decimal(round_up((2.0 * present).max(0.1)) / STEPS))
+            let to = round_up((2.0 * present).max(0.1));
+            (0.0, to, decimal(to / STEPS))
         }
         name if name.starts_with("restitution") => (0.0, 1.0, 1.0 / STEPS),
         _ => upward(if present > 0.0 { 2.0 * present } else { 1.0 }),

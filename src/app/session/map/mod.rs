@@ -2,7 +2,7 @@
 //!
 //! It is the sweep of the command line, run on threads of its own and looked at while it comes. It is asked
 //! for by the view that shows it, frame by frame: a map that is not looked at stops where it is, and goes on
-//! when it is.
+//! when it is looked at again.
 
 mod axes;
 mod cells;

@@ -88,18 +88,17 @@ impl Session {
     }
 
     /// Takes the scene to a cell of its map, by one gesture; the motion goes on from where it is.
-    pub fn go_to_cell(&mut self, column: usize, row: usize) -> bool {
+    pub fn go_to_cell(&mut self, column: usize, row: usize) {
         self.end_gesture();
-        let changed = self.drag_to_cell(column, row);
+        self.drag_to_cell(column, row);
         self.end_gesture();
-        changed
     }
 
     /// The same as part of a gesture.
-    pub fn drag_to_cell(&mut self, column: usize, row: usize) -> bool {
-        let Some((map, _)) = self.map.shown() else { return false };
+    pub fn drag_to_cell(&mut self, column: usize, row: usize) {
+        let Some((map, _)) = self.map.shown() else { return };
         let (Some(x), Some(y)) = (map.edges[0].values.get(column), map.edges[1].values.get(row)) else {
-            return false;
+            return;
         };
         let (values, axes, stops) = ([*x, *y], map.question.axes.clone(), map.question.scene.stops);
         self.edit(|scene| {
@@ -110,7 +109,7 @@ impl Session {
                 let known = FieldPath::new(&axis.field).set(scene, value);
                 debug_assert!(known, "an axis of the map belongs to the scene");
             }
-        })
+        });
     }
 
     /// Waits until the map that was asked for is whole, at most so long. Whether it is.

@@ -11,7 +11,7 @@ use crate::system::clock::WallClock;
 use super::Player;
 
 /// Time on the screen that one frame computes, and the stretch of the motion between two looks at the clock,
-/// in multiples of its pace.
+/// in multiples of its characteristic time.
 const SHARE: Duration = Duration::from_millis(12);
 const STRETCH: f64 = 2.0;
 

@@ -163,16 +163,15 @@ impl Player {
     }
 
     /// Goes to the next or the previous event and pauses there; what has not happened yet is played up to it,
-    /// as far as `most` seconds ahead. Whether there was one.
-    pub fn seek_event(&mut self, later: bool, most: f64) -> bool {
+    /// as far as `most` seconds ahead.
+    pub fn seek_event(&mut self, later: bool, most: f64) {
         self.set_playing(false);
         let t = self.time();
         if let Some(event) = self.watch.neighbour(t, later) {
-            self.seek(event.t);
-            return true;
+            return self.seek(event.t);
         }
         if !later {
-            return false;
+            return;
         }
         self.past = None;
         let until = self.watch.time() + most;
@@ -180,15 +179,13 @@ impl Player {
             let before = self.watch.time();
             let arrived = self.watch.advance((before + most / 50.0).min(until));
             if let Some(event) = self.watch.neighbour(t, true) {
-                self.seek(event.t);
-                return true;
+                return self.seek(event.t);
             }
             // where the work of one call does not get there the window must not wait for more of it
             if !arrived || self.watch.time() <= before {
                 break;
             }
         }
-        false
     }
 
     /// The event at which the motion stands: what a step between events has come to.

@@ -1,6 +1,6 @@
 //! Table of runs at several tolerances, and error over time where there is room.
 
-use eframe::egui::{Align2, Grid, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
+use eframe::egui::{Align2, Grid, Pos2, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::ui::style::Style;
 use crate::study::accuracy::scene::{
@@ -22,8 +22,7 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     let (model, accuracy) = (context.session.model(), &context.session.accuracy);
     let Some((known, current)) = accuracy.tolerances(model) else {
-        waiting_ui(ui, context);
-        return;
+        return waiting_ui(ui, context);
     };
     let (own, known) = (model.tolerance(), known.clone());
     let stepped = accuracy.stepped(model).and_then(|(stepped, _)| stepped.as_ref().ok().cloned());
@@ -150,9 +149,7 @@ fn picture_ui(
     let rect = Rect::from_min_max(area.min + vec2(AXES.0, 24.0), area.max - vec2(22.0, AXES.1));
     let axes = Axes::new(rect, &all);
     let response = ui.interact(area, ui.scope_id().with("error over time"), Sense::hover());
-    response.widget_info(|| {
-        eframe::egui::WidgetInfo::labeled(eframe::egui::Role::Image, true, "error over processor time")
-    });
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "error over processor time"));
     let painter = ui.painter().with_clip_rect(area);
     let every = (((axes.errors.1 - axes.errors.0) as f32 * 18.0 / rect.height()).ceil() as i32).max(1);
     for power in axes.errors.0 as i32..=axes.errors.1 as i32 {
@@ -165,13 +162,8 @@ fn picture_ui(
                 1 => "10".to_owned(),
                 power => format!("1e{power}"),
             };
-            painter.text(
-                pos2(rect.left() - 6.0, y),
-                Align2::RIGHT_CENTER,
-                text,
-                style.small(),
-                style.faint(),
-            );
+            let at = pos2(rect.left() - 6.0, y);
+            painter.text(at, Align2::RIGHT_CENTER, text, style.small(), style.faint());
         }
     }
     for power in axes.times.0 as i32..=axes.times.1 as i32 {
@@ -201,8 +193,7 @@ fn picture_ui(
     }
     if let (Some(run), Some(ghost)) = (stepped, ghost) {
         let at = axes.screen_from_world(ghost);
-        let size = vec2(4.0, 4.0);
-        painter.rect_filled(Rect::from_center_size(at, 2.0 * size), 0.0, style.impact());
+        painter.rect_filled(Rect::from_center_size(at, vec2(8.0, 8.0)), 0.0, style.impact());
         let text = format!("{} in steps of {}", run.scheme.name(), step_name(run.step));
         let is_right = at.x > rect.center().x;
         let (step, align) = if is_right { (-9.0, Align2::RIGHT_CENTER) } else { (9.0, Align2::LEFT_CENTER) };

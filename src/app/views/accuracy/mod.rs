@@ -18,13 +18,12 @@ const BOTH: (f32, f32) = (760.0, 250.0);
 /// Share of the width that the digits have then.
 const DIGITS: f32 = 0.42;
 
-/// Draws it. Whether something changed.
-pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.painter().rect_filled(ui.max_rect(), 0.0, context.style.ground());
     let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
     if area.width() < 160.0 || area.height() < 100.0 {
-        too_small_ui(ui, &context.style, ui.max_rect());
-        return false;
+        return too_small_ui(ui, &context.style, ui.max_rect());
     }
     context.session.want_accuracy();
     let part = |ui: &mut Ui, rect: Rect, page: Page, context: &mut ViewContext<'_>| {
@@ -45,7 +44,7 @@ pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
             });
             part(ui, rect.with_min_y(rect.top() + 26.0), page, context);
         }
-        return false;
+        return;
     }
     ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
         ui.horizontal(|ui| {
@@ -55,5 +54,4 @@ pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
         });
     });
     part(ui, area.with_min_y(area.top() + 30.0), context.memory.accuracy_page, context);
-    false
 }

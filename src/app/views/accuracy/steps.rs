@@ -48,8 +48,7 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     let (model, accuracy) = (context.session.model(), &context.session.accuracy);
     let Some((known, current)) = accuracy.stepped(model) else {
-        waiting_ui(ui, context);
-        return;
+        return waiting_ui(ui, context);
     };
     let known = match known {
         Ok(known) => known.clone(),

@@ -1,7 +1,7 @@
 //! Coordinates and axes of the map on the screen.
 
 use eframe::egui::{
-    Align2, FontId, Painter, Pos2, Rect, Stroke, Vec2, emath::Rot2, epaint::TextShape, pos2, vec2,
+    Align2, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Vec2, emath::Rot2, epaint::TextShape, pos2, vec2,
 };
 
 use crate::app::session::map::{Map, label};
@@ -67,7 +67,7 @@ impl Coordinates {
     /// Draws ticks, numbers and names around the map.
     pub fn axes(&self, painter: &Painter, style: &Style) {
         let stroke = Stroke::new(1.0, style.ink());
-        painter.rect_stroke(self.rect, 0.0, stroke, eframe::egui::StrokeKind::Outside);
+        painter.rect_stroke(self.rect, 0.0, stroke, StrokeKind::Outside);
         let number = |at, align, text: &str| painter.text(at, align, text, style.small(), style.ink());
         for (value, text) in &self.x.ticks {
             let at = pos2(self.screen_from_world((*value, self.y.low)).x, self.rect.bottom());

@@ -8,12 +8,12 @@ mod tools;
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::session::map::{Map, name_and_unit};
+use crate::app::session::map::{Map, name_and_unit, short};
 use crate::app::ui::style::Style;
 use crate::app::words::kind::Kind;
 use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
-use crate::output::sweep_about;
+use crate::output::{PlotAxis, sweep_about};
 
 use super::{ViewContext, too_small_ui};
 
@@ -22,23 +22,22 @@ use picture::{Picture, bar, lines};
 use quantity::ColourScale;
 pub use quantity::MapQuantity;
 
-/// Draws it. Whether something changed.
-pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Draws it.
+pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
     let time = ui.input(|input| input.time);
     if context.session.want_map(time) {
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
     }
-    let changed = tools::tools_ui(ui, context);
+    tools::tools_ui(ui, context);
     if let Some(problem) = context.session.map.problem() {
         ui.label(format!("  No map: {}", problem.lines().next().unwrap_or_default()));
     }
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-    let Some((map, current)) = context.session.map.shown() else { return changed };
+    let Some((map, current)) = context.session.map.shown() else { return };
     if area.width() < 140.0 || area.height() < 110.0 {
-        too_small_ui(ui, &style, area);
-        return changed;
+        return too_small_ui(ui, &style, area);
     }
     let quantity = context.memory.map_quantity;
     let scale = ColourScale::of(quantity, map);
@@ -47,7 +46,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let key = (context.session.map.version(), quantity, style, current);
     let picture = Picture::of(ui, old, map, &scale, key);
     let painter = ui.painter().with_clip_rect(area);
-    let about = sweep_about(map.grid(), &map.question.scene);
+    let about = sweep_about(map.grid(), &map.question.scene, false);
     let legend = tools::legend(&painter, area, &picture, map, &style, &about);
     let frame = Coordinates::new(area.with_min_y(legend), map, scale.bar.is_some());
     let spoken = ui.interact(frame.rect, ui.scope_id().with("cells"), Sense::hover());
@@ -75,7 +74,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
     let hand = (&mut context.memory.map_pointer, context.session.map.is_enlarged());
     let wanted = pointer::action_ui(ui, (&response, &frame), map, hand, (&style, at));
     ui.data_mut(|data| data.insert_temp(id, Some(picture)));
-    changed | pointer::perform(context, wanted)
+    pointer::perform(context, wanted);
 }
 
 /// The cell at a place on the screen.
@@ -139,7 +138,7 @@ fn reading(map: &Map, column: usize, row: usize) -> String {
 
 /// `travel limit 1.5 mm` of a column's name and 1.5.
 fn named(column: &str, value: f64) -> String {
-    let number = crate::app::session::map::short(value);
+    let number = short(value);
     match name_and_unit(column) {
         (name, Some(unit)) => format!("{name} {number} {unit}"),
         (name, None) => format!("{name} {number}"),
@@ -150,12 +149,11 @@ fn named(column: &str, value: f64) -> String {
 fn marker(painter: &egui::Painter, frame: &Coordinates, style: &Style, place: [Option<f64>; 2]) -> Pos2 {
     // without a stop the mass goes as far as it would with one far out
     let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));
-    let inside = |axis: &crate::output::PlotAxis, value: f64| (axis.low..=axis.high).contains(&value);
+    let inside = |axis: &PlotAxis, value: f64| (axis.low..=axis.high).contains(&value);
     let at =
         frame.screen_from_world((x.clamp(frame.x.low, frame.x.high), y.clamp(frame.y.low, frame.y.high)));
-    let [halo, line] = style.marker_strokes();
     if inside(&frame.x, x) && inside(&frame.y, y) {
-        for stroke in [halo, line] {
+        for stroke in style.marker_strokes() {
             painter.circle_stroke(at, 8.0, stroke);
             for way in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
                 painter.line_segment([at + way * 5.0, at + way * 13.0], stroke);
@@ -169,7 +167,7 @@ fn marker(painter: &egui::Painter, frame: &Coordinates, style: &Style, place: [O
     )
     .normalized();
     let (tip, back, side) = (at - way * 2.0, at - way * 16.0, way.rot90() * 8.0);
-    let points = vec![tip, back + side, back - side];
+    let ([halo, line], points) = (style.marker_strokes(), vec![tip, back + side, back - side]);
     painter.add(Shape::convex_polygon(points, line.color, Stroke::new(1.5, halo.color)));
     let words = if place[0].is_none() { "no stops" } else { "now: further out" };
     let galley = painter.layout_no_wrap(words.to_owned(), style.body(), Color32::PLACEHOLDER);

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use eframe::egui::{
-    Align2, Color32, ColorImage, Painter, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, Ui, pos2,
-    vec2,
+    Align2, Color32, ColorImage, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, TextureHandle,
+    TextureOptions, Ui, pos2, vec2,
 };
 
 use crate::app::session::map::Map;
@@ -37,18 +37,12 @@ pub struct Picture {
     key: Key,
 }
 
+/// Version of the map, quantity, style, and whether the map is that of the scene.
 type Key = (u64, MapQuantity, Style, bool);
 
 impl Picture {
-    /// The picture of a map, made anew where `version` or the way it is shown has changed.
-    pub fn of(
-        ui: &Ui,
-        old: Option<Self>,
-        map: &Map,
-        scale: &ColourScale,
-        (version, quantity, style, whose): Key,
-    ) -> Self {
-        let key = (version, quantity, style, whose);
+    /// The picture of a map, made anew where the map or the way it is shown has changed.
+    pub fn of(ui: &Ui, old: Option<Self>, map: &Map, scale: &ColourScale, key: Key) -> Self {
         if let Some(old) = old.as_ref().filter(|old| old.key == key && old.size == map.size()) {
             return old.clone();
         }
@@ -59,7 +53,7 @@ impl Picture {
         let looks: Arc<[Look]> = (0..columns * rows).map(look).collect();
         let transient = |i: usize| cell(i).and_then(|c| c.0.settled()?.settled) == Some(false);
         let unsettled = (0..columns * rows).map(transient).collect();
-        let image = ColorImage::new(size, looks.iter().map(|look| colour(&style, *look)).collect());
+        let image = ColorImage::new(size, looks.iter().map(|look| colour(&key.2, *look)).collect());
         let texture = match old {
             Some(mut old) => {
                 old.texture.set(image, TextureOptions::NEAREST);
@@ -180,8 +174,7 @@ pub fn lines(painter: &Painter, frame: &Coordinates, map: &Map, style: &Style) {
     let painter = painter.with_clip_rect(frame.rect);
     let screen =
         |points: &[(f64, f64)]| -> Vec<Pos2> { points.iter().map(|p| frame.screen_from_world(*p)).collect() };
-    let [halo, crossing] = style.crossing_strokes();
-    for stroke in [halo, crossing] {
+    for stroke in style.crossing_strokes() {
         for part in &map.crossing {
             painter.add(Shape::line(screen(part), stroke));
         }
@@ -208,7 +201,7 @@ pub fn bar(painter: &Painter, frame: &Coordinates, scale: &ColourScale, style: &
         painter.rect_filled(part, 0.0, style.scale(share));
     }
     let stroke = Stroke::new(1.0, style.ink());
-    painter.rect_stroke(rect, 0.0, stroke, eframe::egui::StrokeKind::Outside);
+    painter.rect_stroke(rect, 0.0, stroke, StrokeKind::Outside);
     let mut above = f32::INFINITY;
     for (value, text) in &axis.ticks {
         let at = pos2(rect.right(), rect.bottom() - scale.share(*value, axis) as f32 * rect.height());

@@ -112,29 +112,22 @@ fn cross_hair_ui(ui: &Ui, frame: &Coordinates, map: &Map, (style, at): (&Style, 
     Some(MapAction::Cell(moved(column, across, columns), moved(row, up, rows)))
 }
 
-/// Performs an action. Whether the scene changed.
-pub fn perform(context: &mut ViewContext<'_>, action: Option<MapAction>) -> bool {
+/// Performs an action.
+pub fn perform(context: &mut ViewContext<'_>, action: Option<MapAction>) {
     let session = &mut *context.session;
     match action {
-        None => false,
         Some(MapAction::Cell(column, row)) => session.go_to_cell(column, row),
         Some(MapAction::Drag(cell, ended)) => {
             session.end_presses();
-            let changed = cell.is_some_and(|(column, row)| session.drag_to_cell(column, row));
+            if let Some((column, row)) = cell {
+                session.drag_to_cell(column, row);
+            }
             if ended {
                 session.end_gesture();
             }
-            changed
         }
-        Some(MapAction::Part(axes)) => {
-            if session.map_problem(&axes).is_none() {
-                session.map.enlarge(axes);
-            }
-            false
-        }
-        Some(MapAction::Whole) => {
-            session.map.show_whole();
-            false
-        }
+        Some(MapAction::Part(axes)) if session.map_problem(&axes).is_none() => session.map.enlarge(axes),
+        Some(MapAction::Whole) => session.map.show_whole(),
+        Some(MapAction::Part(_)) | None => {}
     }
 }

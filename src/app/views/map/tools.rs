@@ -23,8 +23,8 @@ const WIDE: f32 = 760.0;
 /// Height in points from which on it is said what was run.
 const LOW: f32 = 220.0;
 
-/// Title, choices, progress. Whether something changed.
-pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
+/// Title, choices, progress.
+pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.add_space(2.0);
     let narrow = ui.available_width() < NARROW;
     ui.horizontal(|ui| {
@@ -46,7 +46,6 @@ pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) -> bool {
             axes_ui(ui, context);
         });
     }
-    false
 }
 
 fn quantity_ui(ui: &mut Ui, quantity: &mut MapQuantity) {

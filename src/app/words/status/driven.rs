@@ -1,6 +1,6 @@
 //! Sentence about a shaken mass.
 
-use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, Summary};
+use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, STANDARD_GRAVITY, Summary};
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
@@ -256,11 +256,12 @@ fn unrepeated(told: &Told, rms: &str, range: &str, side: &str) -> Sentence {
 fn ramped(told: &Told, firsts: &Firsts) -> Sentence {
     let Told { model, summary, origin, now, .. } = *told;
     let end = origin + summary.window.1;
-    let at = |first: &First| {
-        let amplitude = first.amplitude.map(|own| own / crate::dynamics::STANDARD_GRAVITY);
-        let place = amplitude.map_or(String::new(), |g| format!("at {} g, ", grams(g)));
-        format!("{place}after {}", seconds(origin + first.t))
+    let place = |first: &First, at: &str| {
+        let amplitude = first.amplitude.map(|own| own / STANDARD_GRAVITY);
+        amplitude.map_or(String::new(), |g| format!("{at}{} g, ", grams(g)))
     };
+    let time = |first: &First| seconds(origin + first.t);
+    let at = |first: &First| format!("{}after {}", place(first, "at "), time(first));
     let passed = |first: &Option<First>| first.is_some_and(|first| now >= origin + first.t);
     let kind = match firsts {
         own if passed(&own.crossing) => Kind::Crossing,
@@ -283,9 +284,8 @@ fn ramped(told: &Told, firsts: &Firsts) -> Sentence {
         }
         (Some(first), always) => {
             parts.push(format!("first crosses {}", at(first)));
-            parts.extend(
-                always.as_ref().map(|always| format!("in every period from {} on", at_time(origin, always))),
-            );
+            let always = always.as_ref().map(|own| format!("{}{}", place(own, ""), time(own)));
+            parts.extend(always.map(|own| format!("in every period from {own} on")));
         }
         (None, _) => parts.push("never crosses".to_owned()),
     }
@@ -295,12 +295,6 @@ fn ramped(told: &Told, firsts: &Firsts) -> Sentence {
         format!(" up to {}", seconds(end))
     };
     Sentence::new(kind, format!("Growing shaking: {}{until}.", parts.join("; ")))
-}
-
-fn at_time(origin: f64, first: &First) -> String {
-    let amplitude = first.amplitude.map(|own| own / crate::dynamics::STANDARD_GRAVITY);
-    let place = amplitude.map_or(String::new(), |g| format!("{} g, ", grams(g)));
-    format!("{place}{}", seconds(origin + first.t))
 }
 
 /// Stops that the motion never reaches.

@@ -1,7 +1,8 @@
 //! Motions with a closed form.
 //!
-//! In double-double arithmetic, some 31 digits, from the very doubles that a model holds, so that an answer's
-//! own rounding is no part of any error measured against it; only the corner's is in doubles.
+//! They are computed in double-double arithmetic (some 31 digits) from the very doubles that a model holds,
+//! so that an answer's own rounding is no part of any error measured against it. Only those for a corner are
+//! in doubles.
 
 mod ball;
 mod corner;

@@ -12,7 +12,7 @@ use crate::study::accuracy::precision::{MEASURED_FOR, median};
 /// Tolerance of the run that counts as the true one, where the scene's own is not tighter still.
 pub const TRUE_TOLERANCE: f64 = 1e-9;
 
-/// Periods of the drive, or of the motion's own pace, that are drawn.
+/// Periods of the drive, or characteristic times of the motion, that are drawn.
 const DRAWN_PERIODS: f64 = 3.0;
 
 /// Points of a drawn path: a longer path has as many, even ones in place of the steps.

@@ -1,0 +1,179 @@
+//! State of the window, and what can be read of it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use egui_tiles::Tree;
+
+use crate::app::panels::hint;
+use crate::app::session::editor::Editor;
+use crate::app::session::{CannotRun, Session};
+use crate::app::task::{Latest, Wake};
+use crate::app::ui::settings::Settings;
+use crate::app::views::{Memory, Timeline, View};
+use crate::app::words::announce::Announcer;
+use crate::scene::{Layout, PRESETS};
+use crate::system::files;
+
+use super::deferred::DeferredInput;
+use super::layouts::{Arrangement, Room, Tiling};
+use super::leave::Next;
+use super::messages::{CANNOT_OPEN, Messages, Written};
+use super::path_dialog::PathDialog;
+use super::size::WindowSize;
+use super::wanted::Chosen;
+
+/// How many of the scenes opened last are kept.
+const MOST_RECENT: usize = 8;
+
+/// Everything that the window shows.
+pub struct Window {
+    /// The open scene.
+    pub session: Session,
+    /// What a person wants whatever the scene.
+    pub settings: Settings,
+    pub(super) tiling: Tiling,
+    pub(super) arrangement: Arrangement,
+    /// A person's own arrangement, kept between two starts.
+    pub(super) own: Option<Tree<View>>,
+    pub(super) memory: Memory,
+    pub(super) more: bool,
+    pub(super) filled: Option<View>,
+    pub(super) covered: bool,
+    pub(super) messages: Messages,
+    /// Scene files that were opened or saved, the latest first.
+    pub recent: Vec<String>,
+    /// What waits for an answer about unsaved changes.
+    pub(super) asked: Option<Next>,
+    /// What comes once the scene is saved.
+    pub(super) after_save: Option<Next>,
+    /// A file with comments that is about to be written over.
+    pub(super) over_comments: Option<PathBuf>,
+    /// The list of keys is shown, since this time in s.
+    pub(super) shortcuts: Option<f64>,
+    /// What it would take to cross is shown.
+    pub(super) ways: bool,
+    pub(super) announcer: Announcer,
+    /// The changes may go: the window closes without another question.
+    pub(super) leaving: bool,
+    /// What became of what is written elsewhere than in this thread: what was written, or the error.
+    pub(super) written: (Sender<Written>, Receiver<Written>),
+    /// A whole run that is computed and written.
+    pub(super) run: Latest<Written>,
+    /// The size of the window on the screen.
+    pub(super) place: WindowSize,
+    /// The title that the window has.
+    pub(super) titled: String,
+    pub(super) dialog: Latest<Chosen>,
+    /// Whether files are asked for.
+    pub(super) dialogs: bool,
+    /// A path that is typed where there is no dialog.
+    pub(super) typed: Option<PathDialog>,
+    /// Input that waits for the next frame.
+    pub(super) deferred: DeferredInput,
+    pub(super) hint: hint::Hint,
+    /// The line of the first minute has been there.
+    pub(super) hint_row: bool,
+    pub(super) wake: Wake,
+    /// What was applied last, to be applied again only where it changes.
+    pub(super) applied: Option<Settings>,
+}
+
+impl Window {
+    /// A window on a scene file or a built-in scene; the first preset where none is given.
+    pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+        let first = PRESETS.first().map_or("paper", |preset| preset.name);
+        Self::on(Editor::open(spec.unwrap_or(first))?, settings, wake)
+    }
+
+    /// The same; where the scene cannot be opened, on the first preset, with a message that says why.
+    pub fn start(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+        Self::open(spec, settings, Arc::clone(&wake)).or_else(|error| {
+            let mut window = Self::open(None, settings, wake)?;
+            window.messages.say(CANNOT_OPEN, error.to_string());
+            Ok(window)
+        })
+    }
+
+    /// A window on a scene that was read.
+    pub(super) fn on(editor: Editor, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+        let session = Session::new(editor, Arc::clone(&wake))?;
+        let layout = session.scene().app.as_ref().and_then(|app| app.layout).unwrap_or(Layout::Look);
+        Ok(Self {
+            hint: hint::Hint::for_scene(&session),
+            session,
+            settings,
+            tiling: Tiling::new(layout, Room::Wide),
+            arrangement: Arrangement::Layout(layout),
+            own: None,
+            memory: Memory::default(),
+            more: false,
+            filled: None,
+            covered: false,
+            messages: Messages::default(),
+            recent: Vec::new(),
+            asked: None,
+            after_save: None,
+            over_comments: None,
+            leaving: false,
+            shortcuts: None,
+            ways: false,
+            announcer: Announcer::default(),
+            written: channel(),
+            run: Latest::default(),
+            place: WindowSize::default(),
+            titled: String::new(),
+            dialog: Latest::default(),
+            dialogs: true,
+            typed: None,
+            deferred: DeferredInput::default(),
+            hint_row: false,
+            wake,
+            applied: None,
+        })
+    }
+
+    /// Puts the scene's file first among the recent ones.
+    pub fn remember_file(&mut self) {
+        let Some(path) = self.session.editor.path() else { return };
+        let whole = files::canonical(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
+        self.recent.retain(|own| *own != whole);
+        self.recent.insert(0, whole);
+        self.recent.truncate(MOST_RECENT);
+    }
+
+    /// The message that waits to be read.
+    pub fn message(&self) -> Option<&str> {
+        self.messages.waiting()
+    }
+
+    /// The short message that was shown last, while it stands.
+    pub fn told(&self) -> Option<&str> {
+        self.messages.told()
+    }
+
+    /// Whether something over the window waits for an answer: no key acts behind it.
+    pub(super) fn waits_for_answer(&self) -> bool {
+        self.message().is_some()
+            || self.asked.is_some()
+            || self.over_comments.is_some()
+            || self.typed.is_some()
+            || self.shortcuts.is_some()
+    }
+
+    /// What the traces share.
+    pub fn timeline(&self) -> &Timeline {
+        &self.memory.timeline
+    }
+
+    /// Whether the phase portrait shows a point a period and no path.
+    pub fn points_only(&self) -> bool {
+        self.memory.points_only
+    }
+
+    /// The views and where they stand.
+    pub fn tiling(&self) -> &Tiling {
+        &self.tiling
+    }
+}

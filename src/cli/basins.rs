@@ -1,0 +1,208 @@
+//! `basins`: the attractor that each start goes to, a row a start.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use interwell::output::{basins_figure, basins_manifest, can_show_starts};
+use interwell::study::{Answer, Basins, EvenRange, NoBasins, Starts, StartsError, Task};
+
+use super::failure::Failure;
+use super::options::{Common, PlotOptions};
+use super::picture::{Picture, caption};
+use super::support::{MANIFEST, Watch, finish, inputs, load, mechanism, open, warn, write_table, write_text};
+use super::sweep::{bar, manifest_path, pool};
+use super::{interrupt, say};
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless basins paper --x-mm -1.5:1.5:101 --v -0.5:0.5:101 --out basins.csv --plot basins.png
+  interwell --headless basins duffing --x-mm -2000:2000:200 --v -2:2:200 --attractors - --out /dev/null
+  interwell --headless basins paper-unconstrained --x-mm -8:8 --v -0.5:0.5 --random 1000 --out starts.csv";
+
+/// What it takes.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Scene file or built-in scene; its own start does not matter
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// Displacements in mm from which the mass starts: N from A to B, both included; A:B with --random
+    #[arg(long, value_name = "A:B:N", allow_hyphen_values = true)]
+    pub x_mm: Option<String>,
+
+    /// Velocities in m/s with which it starts, likewise
+    #[arg(long, value_name = "A:B:N", allow_hyphen_values = true)]
+    pub v: Option<String>,
+
+    /// Draw so many starts uniformly from the two ranges A:B, in place of a grid: the shares of the
+    /// attractors are then their basin stability
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub random: Option<String>,
+
+    /// Seed of --random; whole, 0 or above [default: 0]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, requires = "random")]
+    pub seed: Option<String>,
+
+    /// Where the attractors go: regime, period, side, RMS velocity, a state, and the share of the starts
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub attractors: Option<PathBuf>,
+
+    /// The picture.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Follows the starts and writes a row for each.
+pub fn run(options: &Arguments) -> Result<(), Failure> {
+    let common = &options.common;
+    let picture = Picture::asked(&options.plot)?;
+    let starts = starts(options)?;
+    if picture.is_some() {
+        can_show_starts(&starts)?;
+    }
+    let (mut document, warnings) = load(&options.scene, common, None)?;
+    let beside = manifest_path(common.out());
+    if beside.is_some() {
+        document.hold_files();
+    }
+    let mechanism = mechanism(&document)?;
+    warn(&document, common, &warnings, Some(&mechanism));
+    let count = starts.count() as u64;
+    let basins = Basins::new(&document.scene, mechanism, starts);
+    let mut basins = basins.map_err(|problem| match problem {
+        NoBasins::Faults(faults) => document.error_from(faults).into(),
+        NoBasins::Beyond { .. } => {
+            Failure::argument(format!("--x-mm {}: {problem}", options.x_mm.as_deref().unwrap_or("")))
+        }
+        _ => Failure::argument(format!("{}: {problem}", document.name)),
+    })?;
+    let pool = pool(common)?;
+    let attractors = options.attractors.as_deref().map(|path| ("--attractors", path));
+    let beside = beside.as_deref().map(|path| (MANIFEST, path));
+    let outputs = [Some(("--out", common.out())), attractors, picture.map(|own| own.output()), beside];
+    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+
+    let bar = bar(count, "starts", common.quiet, common.out());
+    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
+    let watch = Watch::start();
+    while !basins.is_whole() && basins.run_level(&pool, &task) {}
+    let answer = basins.answer(&task).filter(|_| basins.is_whole());
+    bar.finish_and_clear();
+    let answer = answer.ok_or_else(Failure::interrupted)?;
+    write_rows(&mut sinks[0], &basins, &answer)?;
+    write_table(&mut sinks[1], &answer.attractors_table())?;
+    if let Some(picture) = picture {
+        picture.write(&mut sinks[2], basins_figure(&basins, &answer, &caption(&document), picture.theme))?;
+    }
+    if sinks[3].is_some() {
+        let name = common.out().file_name();
+        let data = name.map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let text = basins_manifest(&document, &basins, &answer, &watch.origin(pool.count()), &data);
+        write_text(&mut sinks[3], &text)?;
+    }
+    finish(sinks)?;
+    if !common.quiet {
+        say(&told(&answer, count, watch.wall_s()));
+    }
+    Ok(())
+}
+
+/// Rows that are turned into a table at a time.
+const ROWS: usize = 1 << 15;
+
+fn write_rows(
+    sink: &mut Option<interwell::output::Sink>,
+    basins: &Basins,
+    answer: &Answer,
+) -> Result<(), Failure> {
+    write_table(sink, &answer.table(basins, 0, ROWS))?;
+    for begin in (ROWS..answer.rows.len()).step_by(ROWS) {
+        if interrupt::came() {
+            return Err(Failure::interrupted());
+        }
+        write_text(sink, &interwell::output::rows(&answer.table(basins, begin, begin + ROWS), 0..ROWS))?;
+    }
+    Ok(())
+}
+
+/// What came of it, in a line.
+fn told(answer: &Answer, count: u64, seconds: f64) -> String {
+    let number = |count: u64, one: &str| match count {
+        1 => format!("1 {one}"),
+        n => format!("{n} {one}s"),
+    };
+    let mut text = number(count, "start");
+    text += &format!(" in {seconds:.2} s, {}", number(answer.attractors.len() as u64, "attractor"));
+    for (count, what) in [
+        (answer.outside, "outside the room of the mass"),
+        (answer.lost, "ended early"),
+        (answer.undecided, "not settled after 1000 periods"),
+    ] {
+        if count > 0 {
+            text += &format!(", {count} {what}");
+        }
+    }
+    text
+}
+
+/// How values are given.
+const AS_EVEN: &str = "write A:B:N, the first value, the last and how many, such as -5:5:101";
+
+/// The starts that were asked for.
+fn starts(options: &Arguments) -> Result<Starts, Failure> {
+    let given = |option: &'static str, text: &Option<String>| {
+        let missing = || Failure::argument(format!("{option} is missing: {AS_EVEN}"));
+        text.clone().map(|text| (option, text)).ok_or_else(missing)
+    };
+    let texts = [given("--x-mm", &options.x_mm)?, given("--v", &options.v)?];
+    let Some(text) = &options.random else {
+        let [x_mm, v] = texts.map(|(option, text)| even(option, &text));
+        let (x_mm, v) = (x_mm?, v?);
+        return Starts::grid(&x_mm, &v).map_err(|problem| wrong("--x-mm and --v", "", &problem));
+    };
+    let whole = |option: &str, text: &str| {
+        text.trim()
+            .parse::<u64>()
+            .map_err(|_| Failure::argument(format!("{option} {text}: give a whole number, 0 or above")))
+    };
+    let count = whole("--random", text)?;
+    let seed = options.seed.as_deref().map_or(Ok(0), |text| whole("--seed", text))?;
+    let [x_mm, v] = texts.map(|(option, text)| {
+        let ends = numbers(option, &text)?;
+        let [from, to] = ends[..] else {
+            let message = "with --random write A:B; --random says how many";
+            return Err(Failure::argument(format!("{option} {text}: {message}")));
+        };
+        Starts::random((from, to), (0.0, 0.0), 1, 0).map_err(|problem| wrong(option, &text, &problem))?;
+        Ok((from, to))
+    });
+    Starts::random(x_mm?, v?, count, seed).map_err(|problem| wrong("--random", text, &problem))
+}
+
+fn wrong(option: &str, text: &str, problem: &StartsError) -> Failure {
+    Failure::argument(format!("{}: {problem}", format!("{option} {text}").trim_end()))
+}
+
+fn numbers(option: &str, text: &str) -> Result<Vec<f64>, Failure> {
+    super::support::numbers(option, text, ':')
+}
+
+/// The values `A:B:N` as given to `option`.
+fn even(option: &str, text: &str) -> Result<EvenRange, Failure> {
+    let parts: Vec<&str> = text.split(':').map(str::trim).collect();
+    let [_, _, count] = parts[..] else {
+        return Err(Failure::argument(format!("{option} {text}: {AS_EVEN}")));
+    };
+    let Ok(count) = count.parse::<u64>() else {
+        return Err(Failure::argument(format!("{option} {text}: N is not a whole number; {AS_EVEN}")));
+    };
+    let ends = numbers(option, text)?;
+    let range = EvenRange { from: ends[0], to: ends[1], count };
+    range.check().map_err(|problem| wrong(option, text, &problem))?;
+    Ok(range)
+}

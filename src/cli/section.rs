@@ -1,0 +1,242 @@
+//! `section`: the state once a forcing period or at every impact; over a field the bifurcation diagram.
+
+use clap::Args;
+use interwell::dynamics::{Model, Summary};
+use interwell::output::{SectionPicture, Sink, header, manifest, rows, section_figure};
+use interwell::scene::Document;
+use interwell::study::{
+    Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, SweepEnd, Table, Tally, Task,
+    section,
+};
+
+use super::failure::Failure;
+use super::options::{Common, PlotOptions, RangeOptions};
+use super::picture::{Picture, caption, ranges};
+use super::support::{
+    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, until_settled, warn, write_table,
+    write_text,
+};
+use super::sweep::{bar, file_name, located, manifest_path, pool};
+use super::{interrupt, say};
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless section paper --out section.csv --plot section.png
+  interwell --headless section paper --at impacts
+  interwell --headless section paper-unconstrained --over excitation.amplitude_g=1:1.5:0.005 --carry both \\
+      --skip 200 --keep 100 --out diagram.csv --plot diagram.png";
+
+/// What it takes.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// A row once a forcing period, or at every impact of the settled window
+    #[arg(long, value_name = "phase|impacts", value_parser = ["phase", "impacts"], default_value = "phase")]
+    pub at: String,
+
+    /// The drive's phase in degrees at which the states are [default: 0]
+    #[arg(long, value_name = "P", allow_hyphen_values = true)]
+    pub phase_deg: Option<String>,
+
+    /// One section for each value of a field: the bifurcation diagram (repeatable, the first is the slowest)
+    #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
+    pub over: Vec<String>,
+
+    /// Walk the last --over field in its order (up), backwards (down) or both ways: each run begins in the
+    /// state of the one before, only the first at the scene's start
+    #[arg(long, value_name = "up|down|both", value_parser = ["up", "down", "both"], requires = "over")]
+    pub carry: Option<String>,
+
+    /// Forcing periods to skip, in place of run.settle_s; needs --keep
+    #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "keep",
+          value_parser = clap::value_parser!(u64).range(0..=1_000_000_000))]
+    pub skip: Option<u64>,
+
+    /// Forcing periods of the settled window after those, in place of run.duration_s; needs --skip
+    #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "skip",
+          value_parser = clap::value_parser!(u64).range(1..=MAX_SECTION))]
+    pub keep: Option<u64>,
+
+    /// Let each run go on, window after window, until its motion repeats, or up to this time in s
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    pub until_settled: Option<String>,
+
+    /// The picture.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// Its axes.
+    #[command(flatten)]
+    pub ranges: RangeOptions,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Takes the section, or one for each cell, and writes the rows.
+pub fn run(options: &Arguments) -> Result<(), Failure> {
+    let asked = SectionOptions {
+        at: section_at(options)?,
+        periods: options.skip.zip(options.keep),
+        until_settled: None,
+        carry: options.carry.as_deref().and_then(Carry::named),
+    };
+    if options.over.is_empty() { one(options, asked) } else { diagram(options, asked) }
+}
+
+/// Where the section is taken.
+fn section_at(options: &Arguments) -> Result<SectionAt, Failure> {
+    let phase = options.phase_deg.as_deref();
+    if options.at == "impacts" {
+        return match phase {
+            Some(_) => Err(Failure::argument(
+                "--phase-deg belongs to states once a period: leave it out, or leave out --at impacts",
+            )),
+            None => Ok(SectionAt::Impacts),
+        };
+    }
+    let number = |text: &str| text.trim().parse().ok().filter(|own: &f64| own.is_finite());
+    let wrong = |text| Failure::argument(format!("--phase-deg {text}: give an angle in degrees, such as 90"));
+    let phase = phase.map_or(Ok(0.0), |text| number(text).ok_or_else(|| wrong(text)))?;
+    Ok(SectionAt::Phase(phase))
+}
+
+/// The section of one run.
+fn one(options: &Arguments, mut asked: SectionOptions) -> Result<(), Failure> {
+    let common = &options.common;
+    let picture = Picture::asked(&options.plot)?;
+    let axes = ranges(&options.ranges, "--plot-x")?;
+    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
+    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
+    asked.until_settled = until_settled(options.until_settled.as_deref(), &document, &asked.run_of(&model))?;
+    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let found = section(&model, &document.scene, &asked, interrupt::listen());
+    let (table, summary) = found.map_err(|fault| document.error_from(vec![fault]))?;
+    if interrupt::came() {
+        return Err(Failure::interrupted());
+    }
+    let names: Vec<String> = asked.columns().iter().map(|name| (*name).to_owned()).collect();
+    write_table(&mut sinks[0], &table.only(&names))?;
+    if let Some(picture) = picture {
+        let stops = model.stop_positions();
+        let shown =
+            SectionPicture { rows: &table, over: None, phase_deg: phase(&asked), stops, ranges: axes };
+        picture.write(&mut sinks[1], section_figure(&shown, &caption(&document), picture.theme))?;
+    }
+    finish(sinks)?;
+    tell_early(&document, &summary);
+    Ok(())
+}
+
+/// Says where a run has ended early.
+fn tell_early(document: &Document, summary: &Summary) {
+    if let Some(at) = summary.outcome.ended_at() {
+        let name = summary.outcome.name();
+        say(&format!("{}: the run ended early at t = {at} s ({name}): the rows end there", document.name));
+    }
+}
+
+fn phase(asked: &SectionOptions) -> Option<f64> {
+    if let SectionAt::Phase(degrees) = asked.at { Some(degrees) } else { None }
+}
+
+/// The sections of all cells.
+fn diagram(options: &Arguments, asked: SectionOptions) -> Result<(), Failure> {
+    let common = &options.common;
+    let picture = Picture::asked(&options.plot)?;
+    let axes = ranges(&options.ranges, "--plot-x")?;
+    let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
+    let beside = manifest_path(common.out());
+    if beside.is_some() {
+        document.hold_files();
+    }
+    let grid = Grid::new(document.axes(&options.over)?)?;
+    if picture.is_some() && grid.axes().len() > 1 {
+        let fields = grid.axes().len();
+        return Err(Failure::argument(format!(
+            "--plot shows a diagram over one field, not over {fields}: take the others out, or draw nothing"
+        )));
+    }
+    let sections = Sections::new(&document.scene, &document.files, grid, asked);
+    let looked_at = Task { tick: &|| (), cancel: interrupt::listen() };
+    let first = sections.first_model(&looked_at).and_then(Result::ok);
+    let until = match &first {
+        Some(model) => until_settled(options.until_settled.as_deref(), &document, model)?,
+        None => None, // said below, cell by cell
+    };
+    let sections = sections.until_settled(until);
+    warn(&document, common, &warnings, first.as_ref().map(|model| &**model.mechanism()));
+    let pool = pool(common)?;
+    let beside = beside.as_deref().map(|path| (MANIFEST, path));
+    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output()), beside];
+    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let mut shown = picture.map(|_| Table::new());
+
+    let bar = bar(sections.runs(), "runs", common.quiet, common.out());
+    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
+    let watch = Watch::start();
+    let mut count = 0;
+    let result = (|| {
+        sections.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
+        let mut names = sections.grid().columns().to_vec();
+        names.extend(asked.carry.map(|_| DIRECTION.to_owned()));
+        names.extend(asked.columns().iter().map(|name| (*name).to_owned()));
+        write_text(&mut sinks[0], &header(&sections.empty_table().only(&names)))?;
+        let write = |table: &Table| {
+            if let Some(shown) = &mut shown {
+                shown.append(table);
+            }
+            count += table.rows();
+            put(&mut sinks[0], &table.only(&names), shown.is_some())
+        };
+        sections.run(&pool, &task, write).map_err(|end| match end {
+            SweepEnd::Cancelled => Failure::interrupted(),
+            SweepEnd::Write(failure) => failure,
+        })
+    })();
+    bar.finish_and_clear();
+    let tally = result?;
+    if let Some((picture, rows)) = picture.zip(shown) {
+        let over = sections.grid().columns().first().map(String::as_str);
+        let phase_deg = phase(&asked);
+        let shown = SectionPicture { rows: &rows, over, phase_deg, stops: (None, None), ranges: axes };
+        picture.write(&mut sinks[1], section_figure(&shown, &caption(&document), picture.theme))?;
+    }
+    if sinks[2].is_some() {
+        let origin = watch.origin(pool.count());
+        let data = file_name(common.out());
+        let text = manifest(("section", &document), sections.grid(), &tally, &origin, &data);
+        write_text(&mut sinks[2], &text)?;
+    }
+    finish(sinks)?;
+    if !common.quiet && tally.cells == sections.runs() {
+        say(&format!("{count} rows of {} in {:.2} s", runs(&tally), watch.wall_s()));
+    }
+    Ok(())
+}
+
+/// Writes rows as they come; whether more of them are wanted: where the reader of a pipe has gone, a picture
+/// may still be.
+fn put(sink: &mut Option<Sink>, table: &Table, drawn: bool) -> Result<bool, Failure> {
+    write_text(sink, &rows(table, 0..usize::MAX))?;
+    let Some(sink) = sink else { return Ok(drawn) };
+    sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
+    Ok(!sink.is_closed() || drawn)
+}
+
+/// The number of runs in words, and of those that ended early.
+fn runs(tally: &Tally) -> String {
+    let cells = if tally.cells == 1 { "1 run".to_owned() } else { format!("{} runs", tally.cells) };
+    match (tally.ended_early, tally.not_converged) {
+        (0, 0) => cells,
+        (n, 0) => format!("{cells}, {n} of which ended early,"),
+        (0, m) => format!("{cells}, {m} of which have no solution of the flexures,"),
+        (n, m) => format!("{cells}, {n} of which ended early and {m} have no solution of the flexures,"),
+    }
+}

@@ -1,0 +1,128 @@
+//! `spectrum`: amplitude and power spectral density of a settled motion.
+
+use clap::Args;
+use interwell::dynamics::Model;
+use interwell::numeric::Taper;
+use interwell::output::{SpectrumQuantity, spectrum_figure};
+use interwell::study::{NoSpectrum, Signal, SpectrumOptions, Task, spectrum};
+
+use super::failure::Failure;
+use super::options::{Common, PlotOptions, RangeOptions};
+use super::picture::{Picture, caption, ranges};
+use super::support::{finish, inputs, load_with_mechanism, open, until_settled, write_table};
+use super::{interrupt, say};
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless spectrum paper --out lines.csv --plot lines.png
+  interwell --headless spectrum duffing-chaos --of v --plot chaos.png --quantity psd --plot-x 0:1
+  interwell --headless spectrum paper-unconstrained --set excitation.amplitude_g=1.2 --until-settled 300
+  interwell --headless spectrum random-shaking --of accel --taper none --rate-hz 4096
+
+What lies above half the rate is folded back below it; impacts make a spectrum that never ends, so compare
+with a higher --rate-hz.";
+
+/// What it takes.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// Of what: displacement x, velocity v, or acceleration of the base
+    #[arg(long, value_name = "SIGNAL", default_value = "x", value_parser = ["x", "v", "accel"])]
+    pub of: String,
+
+    /// Weights of the samples: hann, none, or auto, which is none where the motion repeats (then the
+    /// samples are whole periods of it, and a periodic motion has exact lines) and hann elsewhere
+    #[arg(long, value_name = "TAPER", default_value = "auto", value_parser = ["auto", "hann", "none"])]
+    pub taper: String,
+
+    /// Samples a second, made more until a whole number falls into a forcing period [default: 128 or more
+    /// in the shortest period of excitation and mechanism]
+    #[arg(long, value_name = "HZ", allow_hyphen_values = true)]
+    pub rate_hz: Option<String>,
+
+    /// Go on, window after window, until the motion repeats, or up to this time in s; the spectrum is that
+    /// of the last window. Needs a drive that repeats
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    pub until_settled: Option<String>,
+
+    /// With --plot: the column that is shown
+    #[arg(long, value_name = "COLUMN", requires = "plot", default_value = "amplitude",
+          value_parser = ["amplitude", "psd"])]
+    pub quantity: String,
+
+    /// The picture.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// Its axes.
+    #[command(flatten)]
+    pub ranges: RangeOptions,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Runs the scene and writes the spectrum of its settled motion.
+pub fn run(options: &Arguments) -> Result<(), Failure> {
+    let common = &options.common;
+    let picture = Picture::asked(&options.plot)?;
+    let axes = ranges(&options.ranges, "--plot-x")?;
+    if let Some((low, high)) = axes.y.filter(|(low, _)| !(*low > 0.0)) {
+        return Err(Failure::argument(format!(
+            "--plot-y {low}:{high}: the axis is logarithmic; give two numbers above 0, such as 1e-9:1e-2"
+        )));
+    }
+    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
+    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
+    let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
+    let asked = SpectrumOptions {
+        signal: Signal::ALL.into_iter().find(|own| own.name() == options.of).unwrap_or(Signal::Displacement),
+        taper: match options.taper.as_str() {
+            "hann" => Some(Taper::Hann),
+            "none" => Some(Taper::None),
+            _ => None,
+        },
+        rate_hz: options.rate_hz.as_deref().map(rate).transpose()?,
+        until_settled,
+    };
+    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let task = Task { tick: &|| (), cancel: interrupt::listen() };
+    let found = spectrum(&model, &asked, &task).map_err(|problem| match problem {
+        NoSpectrum::Cancelled => Failure::interrupted(),
+        NoSpectrum::EndedEarly { .. } => Failure::Failed(anyhow::anyhow!("{}: {problem}", document.name)),
+        NoSpectrum::NoWindow(..) => Failure::argument(format!("{}: {problem}", document.name)),
+        NoSpectrum::Rate { .. } => {
+            let given = options.rate_hz.as_deref().unwrap_or("(default)");
+            Failure::argument(format!("--rate-hz {given}: {}: {problem}", document.name))
+        }
+    })?;
+    let [lines, plot] = &mut sinks;
+    write_table(lines, &found.table)?;
+    if let Some(picture) = picture {
+        let quantity = match options.quantity.as_str() {
+            "psd" => SpectrumQuantity::Density,
+            _ => SpectrumQuantity::Amplitude,
+        };
+        picture.write(plot, spectrum_figure(&found, quantity, axes, &caption(&document), picture.theme))?;
+    }
+    finish(sinks)?;
+    if !common.quiet {
+        say(&format!("{}: {}", document.name, found.describe()));
+    }
+    Ok(())
+}
+
+fn rate(text: &str) -> Result<f64, Failure> {
+    let number = text.trim().parse().ok().filter(|own: &f64| *own > 0.0 && own.is_finite());
+    number.ok_or_else(|| {
+        Failure::argument(format!(
+            "--rate-hz {text}: give a number of samples a second above 0, such as 2048"
+        ))
+    })
+}

@@ -1,0 +1,49 @@
+//! Goal of a motion that is pursued: what it is found to go to.
+
+use super::regime::Judge;
+use crate::dynamics::result::{Arrival, Pursuit};
+
+/// Stroboscopic states beyond two periods of a motion that must have come back.
+const MORE: u64 = 12;
+
+/// What a motion is pursued to, and what it has reached.
+#[derive(Debug)]
+pub(crate) struct Goal<'a> {
+    pursuit: Pursuit<'a>,
+    pub reached: Option<Arrival>,
+}
+
+impl<'a> Goal<'a> {
+    pub fn new(pursuit: Pursuit<'a>) -> Self {
+        Self { pursuit, reached: None }
+    }
+
+    /// Another stroboscopic state, which `judge` has been told.
+    pub fn strobe(&mut self, judge: &Judge, state: (f64, f64)) {
+        if self.reached.is_some() {
+            return;
+        }
+        let periods = judge.strobes().seen() - 1;
+        if let Some(which) = self.pursuit.known.iter().position(|own| own.is_reached(state)) {
+            self.reached = Some(Arrival::Captured { which, periods });
+        } else if let Some(which) = self.pursuit.regions.iter().position(|own| own.holds(state)) {
+            self.reached = Some(Arrival::Entered { which, periods });
+        } else if periods >= self.pursuit.repeats_from {
+            let period = judge.strobes().repeats_for(MORE);
+            self.reached = period.map(|period| Arrival::Repeats { period, state, periods });
+        }
+    }
+
+    /// A release; one that is not passed over ends the pursuit.
+    pub fn release(&mut self, arrival: Arrival) {
+        match self.pursuit.releases.checked_sub(1) {
+            Some(left) => self.pursuit.releases = left,
+            None => self.end(arrival),
+        }
+    }
+
+    /// Ends the pursuit where nothing has yet.
+    pub fn end(&mut self, arrival: Arrival) {
+        self.reached.get_or_insert(arrival);
+    }
+}

@@ -1,0 +1,166 @@
+//! Stroboscopic states that a run lists: those of its settled window at a phase of the drive, and the last at
+//! the phase of its start.
+
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::result::{Request, SectionPoint};
+use crate::numeric::Scalar;
+
+/// Instants closer than this share of a forcing period are the same: more than rounding can set apart.
+pub(super) const SAME: f64 = 1e-9;
+
+/// The most stroboscopic states that are recorded one by one: some tenths of a second of one core, and more
+/// than a run makes whose steps are shorter than a forcing period. Later ones are not judged.
+pub(crate) const MOST_STROBES: u32 = 1 << 22;
+
+/// States once a forcing period.
+#[derive(Debug, Clone)]
+pub(crate) struct Listing<T> {
+    /// The instant of the next one, and how many are still to be listed.
+    next: Instant<T>,
+    left: u64,
+    /// Cycles of the clock from one to the next.
+    cycles: i64,
+    /// Displacement in m and velocity in m/s of those since `first`; where only the last is kept, of that.
+    states: Vec<(f64, f64)>,
+    first: Instant<T>,
+    last_only: bool,
+}
+
+/// What a run lists.
+#[derive(Debug, Clone)]
+pub(crate) struct Listings<T> {
+    section: Option<Listing<T>>,
+    carried: Option<Listing<T>>,
+}
+
+/// How far the listings had come at an instant: the states of the section, and the next instants.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Listed<T> {
+    states: usize,
+    next: [Option<Instant<T>>; 2],
+}
+
+impl<T: Scalar> Listing<T> {
+    /// Adds the state at the next instant.
+    pub fn add(&mut self, (x, v): (f64, f64)) {
+        if self.last_only {
+            self.states.clear();
+        }
+        self.states.push((x, v));
+        self.left -= 1;
+        self.next.cycle += self.cycles;
+    }
+
+    /// Passes over states of a mass that stands still up to `until`, where only the last is kept.
+    pub fn skip_still(&mut self, clock: &Clock<T>, period: T, until: &Instant<T>) {
+        if self.last_only {
+            let periods = (clock.between(&self.next, until) / period).floor().to_f64();
+            self.next.cycle += (periods as i64 - 1).max(0) * self.cycles;
+        }
+    }
+
+    /// The next instant, where one is still to be listed.
+    pub fn due(&self) -> Option<Instant<T>> {
+        (self.left > 0).then_some(self.next)
+    }
+}
+
+impl<T> Default for Listings<T> {
+    fn default() -> Self {
+        Self { section: None, carried: None }
+    }
+}
+
+impl<T: Scalar> Listings<T> {
+    /// What `request` asks of a run whose settled window begins at `from` and holds so many `periods`, each
+    /// of so many `cycles` of the clock; `start` is the drive's phase at the start in turns.
+    pub fn new(
+        request: &Request,
+        clock: &Clock<T>,
+        from: Instant<T>,
+        (periods, cycles): (u64, i64),
+        start: f64,
+    ) -> Self {
+        if cycles == 0 {
+            return Self::default();
+        }
+        let listing = |first: Instant<T>, left: u64, last_only: bool| {
+            let room = if last_only { 1 } else { 0 };
+            Listing { next: first, left, cycles, states: Vec::with_capacity(room), first, last_only }
+        };
+        let section = request.section.map(|phase| {
+            let turns = (phase - start).rem_euclid(1.0) * cycles as f64;
+            let whole = turns.floor();
+            let mut first = Instant { cycle: whole as i64, phase: T::of(turns - whole) * clock.period() };
+            let same = T::of(SAME * cycles as f64) * clock.period();
+            first.cycle += (from.cycle - first.cycle).div_euclid(cycles) * cycles;
+            while clock.between(&from, &first) < -same {
+                first.cycle += cycles;
+            }
+            if clock.between(&from, &first).abs() <= same {
+                first = from;
+            }
+            listing(first, periods.min(MOST_STROBES.into()), false)
+        });
+        let start = Instant { cycle: 0, phase: T::zero() };
+        Self { section, carried: request.carry.then(|| listing(start, u64::MAX, true)) }
+    }
+
+    /// Whether there are none.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.section.is_none() && self.carried.is_none()
+    }
+
+    pub fn each(&mut self) -> impl Iterator<Item = &mut Listing<T>> {
+        self.section.iter_mut().chain(&mut self.carried)
+    }
+
+    /// The instants that come next.
+    #[inline]
+    pub fn due(&self) -> impl Iterator<Item = Instant<T>> {
+        self.section.iter().chain(&self.carried).filter_map(Listing::due)
+    }
+
+    pub fn listed(&self) -> Listed<T> {
+        let next = [&self.section, &self.carried].map(|own| own.as_ref().map(|own| own.next));
+        Listed { states: self.section.as_ref().map_or(0, |own| own.states.len()), next }
+    }
+
+    /// Adds `laps` more laps of `cycles` cycles of the clock, each like the one from `before` to `after`.
+    pub fn repeat(&mut self, before: &Listed<T>, after: &Listed<T>, laps: i64, cycles: i64) {
+        for (own, next) in [&mut self.section, &mut self.carried].into_iter().zip([0, 1]) {
+            let Some(own) = own else { continue };
+            if before.next[next] == after.next[next] {
+                continue; // the lap lies before all of them
+            }
+            own.next.cycle += laps * cycles;
+            if !own.last_only {
+                let lap = own.states.get(before.states..after.states).unwrap_or_default().to_vec();
+                let more = ((lap.len() as u64).saturating_mul(laps as u64)).min(own.left);
+                own.states.extend(lap.iter().cycle().take(more as usize));
+                own.left -= more;
+            }
+        }
+    }
+
+    /// The settled window of so many `periods` begins anew at its end.
+    pub fn next_window(&mut self, periods: u64) {
+        if let Some(own) = &mut self.section {
+            own.states.clear();
+            own.first = own.next;
+            own.left = periods.min(MOST_STROBES.into());
+        }
+    }
+
+    /// The section, and the state that is carried.
+    pub fn finish(self, clock: &Clock<T>) -> (Vec<SectionPoint>, Option<(f64, f64)>) {
+        let points = self.section.into_iter().flat_map(|Listing { first, cycles, states, .. }| {
+            states.into_iter().zip(0..).map(move |((x, v), number)| {
+                let at = Instant { cycle: first.cycle + number * cycles, phase: first.phase };
+                SectionPoint { t: clock.seconds(&at), x, v }
+            })
+        });
+        (points.collect(), self.carried.and_then(|own| own.states.last().copied()))
+    }
+}

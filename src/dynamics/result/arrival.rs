@@ -1,0 +1,133 @@
+//! Arrival: what a motion was found to go to, and what is looked for on its way.
+
+use super::event::Side;
+use super::summary::Summary;
+
+/// An ellipse around a stroboscopic state of a known motion, from which a motion is known to go to that one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capture {
+    /// Displacement in m and velocity in m/s of the known motion.
+    pub state: (f64, f64),
+    /// The ellipse is where a x^2 + 2 b x v + c v^2 < 1, x and v from the state, in 1 over their units: a, b
+    /// and c.
+    pub form: [f64; 3],
+    /// Largest displacement and velocity from the state at which a motion has arrived; inside the ellipse a
+    /// larger one is followed until it has.
+    pub near: (f64, f64),
+}
+
+impl Capture {
+    /// Whether a state lies inside the ellipse.
+    pub fn holds(&self, state: (f64, f64)) -> bool {
+        let (x, v) = (state.0 - self.state.0, state.1 - self.state.1);
+        let [a, b, c] = self.form;
+        a * x * x + 2.0 * b * x * v + c * v * v < 1.0
+    }
+
+    /// Whether a motion in this state has arrived.
+    pub fn is_reached(&self, state: (f64, f64)) -> bool {
+        let near = |own: f64, other: f64, most: f64| (own - other).abs() <= most;
+        near(state.0, self.state.0, self.near.0)
+            && near(state.1, self.state.1, self.near.1)
+            && self.holds(state)
+    }
+}
+
+/// A set of cells of the plane of stroboscopic states that motions are known not to leave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Region {
+    /// Displacement in m and velocity in m/s at the lower left corner of the cell (0, 0).
+    pub corner: (f64, f64),
+    /// Width and height of a cell.
+    pub size: (f64, f64),
+    /// The cells, ascending: which along the displacement, and which along the velocity.
+    pub cells: Vec<(i32, i32)>,
+}
+
+impl Region {
+    /// The cell in which a state lies.
+    pub fn cell(&self, (x, v): (f64, f64)) -> (i32, i32) {
+        let place = |own: f64, corner: f64, size: f64| ((own - corner) / size).floor() as i32;
+        (place(x, self.corner.0, self.size.0), place(v, self.corner.1, self.size.1))
+    }
+
+    /// Whether a state lies in one of the cells.
+    pub fn holds(&self, state: (f64, f64)) -> bool {
+        self.cells.binary_search(&self.cell(state)).is_ok()
+    }
+}
+
+/// Identity of a release from rest on a rigid stop, known from the drive alone. Motions of one scene that
+/// were released with equal identities are equal from there on, to the last bit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReleaseIdentity {
+    /// The stop that the mass left.
+    pub side: Side,
+    /// Cycle of the drive's fastest tone within the common period.
+    pub cycle: i64,
+    /// Phase of the drive, in units of the integrator.
+    pub phase: f64,
+}
+
+/// Where a pursuit begins, and what ends it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pursuit<'a> {
+    /// Displacement in m and velocity in m/s at time 0.
+    pub start: (f64, f64),
+    /// Known motions, which it may go to.
+    pub known: &'a [Capture],
+    /// Known regions, which it may enter.
+    pub regions: &'a [Region],
+    /// The stroboscopic state from which on a repetition ends it.
+    pub repeats_from: u64,
+    /// Forcing periods after which it is given up.
+    pub most_periods: u64,
+    /// Releases with an identity that are passed over.
+    pub releases: u32,
+}
+
+/// What ended a pursuit; `periods` is the number of the first stroboscopic state after it, that of the start
+/// being 0.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Arrival {
+    /// A known motion.
+    Captured {
+        /// Which of the known ones.
+        which: usize,
+        /// See above.
+        periods: u64,
+    },
+    /// A known region.
+    Entered {
+        /// Which of the known ones.
+        which: usize,
+        /// See above.
+        periods: u64,
+    },
+    /// A release with an identity.
+    Released {
+        /// Which one.
+        identity: ReleaseIdentity,
+        /// See above.
+        periods: u64,
+    },
+    /// A rest that never ends.
+    Rests {
+        /// On which stop.
+        side: Side,
+        /// See above.
+        periods: u64,
+    },
+    /// The stroboscopic states have come back, to a thousandth of the scales, for two periods of the motion
+    /// and twelve more.
+    Repeats {
+        /// Period of the motion in forcing periods, at most 12.
+        period: u32,
+        /// The last of the states, in m and m/s.
+        state: (f64, f64),
+        /// See above.
+        periods: u64,
+    },
+    /// None of it. The summary's settled window is the last hundred periods, as far as there were so many.
+    Unsettled(Box<Summary>),
+}

@@ -1,0 +1,64 @@
+//! Pursuit of a motion from a start of its own, until it is known what it goes to.
+
+use super::ending::Begun;
+use crate::dynamics::clock::Clock;
+use crate::dynamics::drive::Drive;
+use crate::dynamics::drive::form::{Form, clock, form};
+use crate::dynamics::equation::Equation;
+use crate::dynamics::model::Model;
+use crate::dynamics::motion::Motion;
+use crate::dynamics::record::barrier::side_of;
+use crate::dynamics::record::goal::Goal;
+use crate::dynamics::result::{Arrival, Outcome, Pursuit, Request};
+use crate::dynamics::state::{Contact, MotionState};
+use crate::numeric::Scalar;
+
+impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D, false> {
+    /// Puts it at the start of a pursuit, whose end is its own. A release from rest ends it, so no recurrence
+    /// completes it.
+    pub fn pursuing(mut self, pursuit: &Pursuit<'a>, model: &Model) -> Self {
+        let Self { stepper, record, state, .. } = &mut self;
+        let (x, v) = (T::of(pursuit.start.0), T::of(pursuit.start.1 * stepper.equation.unit));
+        let mode = stepper.equation.mode_at(x, model.mechanism.curve.piece_index(pursuit.start.0));
+        *state = MotionState::new((x, v), mode, Contact::Free);
+        record.barrier_side = record.barrier.map_or(0, |barrier| side_of(x, barrier));
+        stepper.end = record.pursue(Goal::new(*pursuit), pursuit.most_periods);
+        (self.recurs, self.until_settled) = (true, None);
+        self
+    }
+
+    /// What it has come to.
+    pub fn arrived(mut self, model: &Model, begun: &Begun<T>, outcome: Outcome) -> Arrival {
+        let arrival = self.record.arrival().filter(|_| outcome == Outcome::Done);
+        arrival.unwrap_or_else(|| Arrival::Unsettled(Box::new(self.finish(model, begun, outcome).summary)))
+    }
+}
+
+/// Pursues each motion alone.
+pub(crate) fn pursue_alone(model: &Model, pursuits: &[Pursuit], request: &Request) -> Vec<Arrival> {
+    let unit = model.scales.unit();
+    let (equation, clock) = (Equation::new(model, unit), clock(model, unit));
+    match form(model, &clock) {
+        Form::Still(drive) => with_drive(model, pursuits, request, &equation, clock, &drive),
+        Form::Sine(drive) => with_drive(model, pursuits, request, &equation, clock, &drive),
+        Form::Composite(drive) => with_drive(model, pursuits, request, &equation, clock, &drive),
+    }
+}
+
+fn with_drive<D: Drive<f64>>(
+    model: &Model,
+    pursuits: &[Pursuit],
+    request: &Request,
+    equation: &Equation<f64>,
+    clock: Clock<f64>,
+    drive: &D,
+) -> Vec<Arrival> {
+    let pursue = |pursuit: &Pursuit| {
+        let motion = Motion::<f64, D, false>::new(model, request, model.tolerance, equation, clock, drive);
+        let mut motion = motion.pursuing(pursuit, model);
+        let begun = motion.begin(model);
+        let outcome = motion.go_on();
+        motion.arrived(model, &begun, outcome)
+    };
+    pursuits.iter().map(pursue).collect()
+}

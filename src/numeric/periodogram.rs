@@ -1,0 +1,162 @@
+//! Periodogram: amplitude and power spectral density of evenly spaced values.
+
+use std::f64::consts::PI;
+
+use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
+
+use super::sum::CompensatedSum;
+
+/// How values are weighted before they are transformed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Taper {
+    /// All alike. A part whose period divides the length is one line; any other leaks into all lines.
+    None,
+    /// The window of von Hann, sin^2(pi k/n): a part of any period is told within four lines, and leaks
+    /// little beyond.
+    Hann,
+}
+
+/// One-sided spectrum of n values a step apart, at the frequencies k/(n step) for k from 0 to n/2.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Periodogram {
+    /// Amplitude of the sine at each frequency, in the unit of the values; at 0 the size of the mean.
+    pub amplitude: Vec<f64>,
+    /// Power spectral density, in the unit of the values squared times that of the step.
+    pub density: Vec<f64>,
+}
+
+/// The periodogram of `values`, `step` apart.
+///
+/// The mean is taken out before the values are weighted, so that it does not leak, and stands in line 0
+/// alone. With weights w the amplitude is 2 |X|/sum w (the coherent gain corrected) and the density
+/// 2 step |X|^2/sum w^2 (the noise bandwidth corrected); lines 0 and n/2 have no mirror image and no factor 2
+/// (G. Heinzel, A. Ruediger and R. Schilling 2002, "Spectrum and spectral density estimation by the discrete
+/// Fourier transform"). Without a taper the density times 1/(n step), summed over all lines, is the mean
+/// square of the values (Parseval); with one it is the mean square of the weighted values.
+///
+/// A sine of k whole periods is line k alone without a taper. With that of von Hann it has its amplitude in
+/// line k, half of it in both neighbours, and 0 elsewhere. The error is some rounding units of the largest
+/// value. No values give no lines.
+pub fn periodogram(mut values: Vec<f64>, step: f64, taper: Taper) -> Periodogram {
+    let n = values.len();
+    if n == 0 {
+        return Periodogram { amplitude: Vec::new(), density: Vec::new() };
+    }
+    let weight = |k: usize| match taper {
+        // of one or two values the window of von Hann leaves nothing or one
+        Taper::Hann if n > 2 => (PI * k as f64 / n as f64).sin().powi(2),
+        _ => 1.0,
+    };
+    let total = |of: &dyn Fn(usize) -> f64| {
+        let mut sum = CompensatedSum::<f64>::new();
+        (0..n).for_each(|k| sum.add(of(k)));
+        sum.value()
+    };
+    let weights = total(&weight);
+    let squared_weights = total(&|k| weight(k).powi(2));
+    let mean = total(&|k| weight(k) * values[k]) / weights;
+    values.iter_mut().enumerate().for_each(|(k, value)| *value = weight(k) * (*value - mean));
+
+    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+    let mut lines: Vec<Complex<f64>> = transform.make_output_vec();
+    let done = transform.process(&mut values, &mut lines);
+    debug_assert!(done.is_ok(), "both buffers were made for this length");
+    let (mut amplitude, mut density) = (Vec::with_capacity(lines.len()), Vec::with_capacity(lines.len()));
+    for (k, line) in lines.iter().enumerate() {
+        let sides = if k == 0 || 2 * k == n { 1.0 } else { 2.0 };
+        amplitude.push(sides * line.norm() / weights);
+        density.push(sides * step * line.norm_sqr() / squared_weights);
+    }
+    amplitude[0] = mean.abs();
+    density[0] = mean * mean * n as f64 * step;
+    Periodogram { amplitude, density }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    fn noise(n: usize) -> Vec<f64> {
+        let mut state = 1_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.3
+        };
+        (0..n).map(|_| next()).collect()
+    }
+
+    fn near(value: f64, exact: f64, bound: f64) {
+        assert!((value - exact).abs() <= bound, "{value:?} is not {exact:?}");
+    }
+
+    #[test]
+    fn the_density_sums_to_the_mean_square() {
+        for n in [1, 2, 3, 4, 15, 360, 997, 1024] {
+            let values = noise(n);
+            let step = 0.01;
+            let resolution = 1.0 / (n as f64 * step);
+            let power = |taper| periodogram(values.clone(), step, taper).density.iter().sum::<f64>();
+            let square = values.iter().map(|x| x * x).sum::<f64>() / n as f64;
+            near(power(Taper::None) * resolution, square, 1e-14);
+            if n > 2 {
+                let weight = |k: usize| 0.5 - 0.5 * (TAU * k as f64 / n as f64).cos();
+                let total: f64 = (0..n).map(weight).sum();
+                near(total, 0.5 * n as f64, 1e-12 * n as f64);
+                let mean = (0..n).map(|k| weight(k) * values[k]).sum::<f64>() / total;
+                let squares = (0..n).map(|k| (weight(k) * (values[k] - mean)).powi(2)).sum::<f64>();
+                let weights = (0..n).map(|k| weight(k).powi(2)).sum::<f64>();
+                near(power(Taper::Hann) * resolution, squares / weights + mean * mean, 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn whole_periods_are_lines() {
+        let (n, step) = (240, 0.05);
+        let value = |k: usize| {
+            let turns = TAU * k as f64 / n as f64;
+            7.0 + 2.0 * (3.0 * turns + 0.4).sin() + 1e-6 * (100.0 * turns).cos()
+                - 0.25 * (120.0 * turns).cos()
+        };
+        let values: Vec<f64> = (0..n).map(value).collect();
+        let own = periodogram(values.clone(), step, Taper::None);
+        assert_eq!((own.amplitude.len(), own.density.len()), (121, 121));
+        for (k, amplitude) in own.amplitude.iter().enumerate() {
+            let exact = match k {
+                0 => 7.0,
+                3 => 2.0,
+                100 => 1e-6,
+                120 => 0.25,
+                _ => 0.0,
+            };
+            near(*amplitude, exact, 1e-14);
+        }
+        near(own.density[3] / (n as f64 * step), 2.0, 1e-13);
+        let tapered = periodogram(values, step, Taper::Hann).amplitude;
+        for (k, exact) in
+            [(0, 7.0), (1, 0.0), (2, 1.0), (3, 2.0), (4, 1.0), (5, 0.0), (99, 5e-7), (100, 1e-6)]
+        {
+            near(tapered[k], exact, 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_taper_tells_a_sine_that_is_no_line() {
+        // halfway between two lines: without a taper all lines show it, with one four
+        let (n, at) = (1000, 100.5);
+        let values: Vec<f64> = (0..n).map(|k| (TAU * at * k as f64 / n as f64).sin()).collect();
+        let far = |taper| periodogram(values.clone(), 1.0, taper).amplitude[120];
+        assert!(far(Taper::None) > 1e-2 && far(Taper::Hann) < 1e-4);
+        // the density of white noise is the same with and without
+        let level = |taper| {
+            let own = periodogram(noise(1 << 16), 0.5, taper).density;
+            own[1..own.len() - 1].iter().sum::<f64>() / (own.len() - 2) as f64
+        };
+        let white = 2.0 * 0.5 / 12.0; // twice the step times the variance
+        assert!((level(Taper::None) / white - 1.0).abs() < 0.02, "{}", level(Taper::None));
+        assert!((level(Taper::Hann) / white - 1.0).abs() < 0.02, "{}", level(Taper::Hann));
+    }
+}

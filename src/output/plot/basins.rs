@@ -1,0 +1,218 @@
+//! Picture of basins of attraction: the attractor of each start as colour, and where the attractors are.
+
+use super::axis::PlotAxis;
+use super::figure::{Area, Figure};
+use super::frame::Frame;
+use super::mark::{Caption, Marker, Sample, legend, marker};
+use super::style::{self, Ink, Theme};
+use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
+use super::swept::{BOTTOM, LEFT, TOP};
+use crate::dynamics::Regime;
+use crate::numeric::short;
+use crate::study::{Answer, Attractor, Basins, Edges, Starts};
+
+/// Colours of attractors, the first ones farthest apart in lightness, so that they are told apart without
+/// colour too. Beyond these they come again, hatched.
+const COLOURS: [Ink; 8] = [
+    Ink(0x1e, 0x52, 0x8c),
+    Ink(0xf3, 0xb6, 0x40),
+    Ink(0x2a, 0x9a, 0x7c),
+    Ink(0xc4, 0xe2, 0xf5),
+    Ink(0xb0, 0x3a, 0x14),
+    Ink(0xde, 0x8c, 0xb4),
+    Ink(0x48, 0x1e, 0x5a),
+    Ink(0xa6, 0xa8, 0x9c),
+];
+
+/// Their markers, in turn.
+const MARKERS: [Marker; 4] = [Marker::Disc, Marker::Square, Marker::Diamond, Marker::Triangle];
+
+/// The most attractors that the legend names, those with the largest shares.
+const MOST_NAMED: usize = 9;
+
+/// Whether a map of these starts can be drawn.
+pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
+    let count = starts.count() as u64;
+    if count > MAX_PICTURE_CELLS { Err(NoPicture::Starts(count)) } else { Ok(()) }
+}
+
+/// The picture of a map as far as it is known.
+pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme: &Theme) -> Figure {
+    const RIGHT: f64 = 1560.0;
+    let mut figure = Figure::new(theme.paper);
+    let entries = entries(basins, answer, theme);
+    let entries: Vec<(Sample, &str)> = entries.iter().map(|(own, words)| (*own, words.as_str())).collect();
+    let top = TOP.max(legend(&mut figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
+    let area = Area::new(LEFT, top, RIGHT, BOTTOM);
+    let (across, up) = match basins.starts().axes() {
+        Some((x_mm, v)) => (Edges::new(x_mm).ends(), Edges::new(v).ends()),
+        None => {
+            let all = || (0..basins.starts().count()).map(|row| basins.starts().at(row));
+            let around = |values: Vec<f64>| {
+                let axis = PlotAxis::around(values, 0.02, 8, "");
+                (axis.low, axis.high)
+            };
+            (around(all().map(|own| own.0).collect()), around(all().map(|own| own.1).collect()))
+        }
+    };
+    let frame = Frame::new(
+        area,
+        PlotAxis::between(across.0, across.1, 8, "displacement at the start, mm"),
+        PlotAxis::between(up.0, up.1, 7, "velocity at the start, m/s"),
+    );
+    match basins.starts().axes() {
+        Some((x_mm, v)) => cells(&mut figure, &frame, (x_mm, v), (basins, answer), theme),
+        None => dots(&mut figure, &frame, (basins, answer), theme),
+    }
+    let (left, right) = basins.model().stop_positions();
+    for (stop, is_left) in [(left, true), (right, false)] {
+        if let Some(mm) = stop.map(|x| 1e3 * x).filter(|mm| *mm > across.0 && *mm < across.1) {
+            frame.wall_across(&mut figure, mm, is_left, theme);
+        }
+    }
+    for (place, attractor) in answer.attractors.iter().enumerate() {
+        for (x, v) in &attractor.states {
+            let at = frame.place((1e3 * x, *v));
+            if area.contains(at) {
+                marker(&mut figure, shape(place), at, style::MARKER + 5.0, style::BLACK, style::BLACK);
+                marker(&mut figure, shape(place), at, style::MARKER, ink(place), style::WHITE);
+            }
+        }
+    }
+    frame.axes(&mut figure, theme);
+    caption.draw(&mut figure, theme, &about(basins, answer), LEFT);
+    figure
+}
+
+fn ink(place: usize) -> Ink {
+    COLOURS[place % COLOURS.len()]
+}
+
+fn shape(place: usize) -> Marker {
+    MARKERS[place % MARKERS.len()]
+}
+
+/// The hatching of an attractor whose colour is another one's too.
+fn hatch(place: usize) -> Option<Ink> {
+    let dark = |Ink(r, g, b): Ink| 2 * u32::from(r) + 5 * u32::from(g) + u32::from(b) < 8 * 128;
+    let over = if dark(ink(place)) { style::WHITE } else { style::BLACK };
+    (place >= COLOURS.len()).then_some(over)
+}
+
+/// The attractor of each start of a grid as the colour of its cell.
+fn cells(
+    figure: &mut Figure,
+    frame: &Frame,
+    (x_mm, v): (&[f64], &[f64]),
+    (basins, answer): (&Basins, &Answer),
+    theme: &Theme,
+) {
+    let (across, up) = (Edges::new(x_mm), Edges::new(v));
+    let stand_in = standing(basins);
+    for (column, x_mm) in x_mm.iter().enumerate() {
+        let own = |row: usize| answer.rows[stand_in(column * v.len() + row)].map(|own| own.0);
+        let all: Vec<Option<u32>> = (0..v.len()).map(own).collect();
+        let (low, high) = basins.room();
+        let outside = x_mm / 1e3 < low || x_mm / 1e3 > high;
+        let mut row = 0;
+        for run in all.chunk_by(|a, b| a == b) {
+            let (left, right) = (frame.across(across.edges[column]), frame.across(across.edges[column + 1]));
+            let (bottom, top) = (frame.down(up.edges[row]), frame.down(up.edges[row + run.len()]));
+            row += run.len();
+            let Some(area) = Area::new(left, top, right, bottom).common(frame.area) else { continue };
+            match run[0].map(|number| number as usize - 1) {
+                Some(place) => {
+                    figure.rect(area, ink(place));
+                    if let Some(over) = hatch(place) {
+                        figure.hatch(area, style::HATCH, over);
+                    }
+                }
+                None if outside => {}
+                None => {
+                    figure.rect(area, theme.rest);
+                    figure.hatch(area, style::HATCH, theme.rest_hatch);
+                }
+            }
+        }
+    }
+}
+
+/// For each row the one whose answer is shown: its own, or the nearest one that has been run.
+fn standing(basins: &Basins) -> impl Fn(usize) -> usize {
+    let (levels, done) = basins.levels();
+    move |row| {
+        if basins.is_whole() || done == 0 { row } else { levels.stand_in(row as u64, done - 1) as usize }
+    }
+}
+
+/// Random starts as discs in the colours of their attractors.
+fn dots(figure: &mut Figure, frame: &Frame, (basins, answer): (&Basins, &Answer), theme: &Theme) {
+    let size = (700.0 / (answer.rows.len() as f64).sqrt()).clamp(2.5, 9.0);
+    for (row, own) in answer.rows.iter().enumerate() {
+        let (x_mm, v) = basins.starts().at(row);
+        let (low, high) = basins.room();
+        if x_mm / 1e3 < low || x_mm / 1e3 > high {
+            continue;
+        }
+        let at = frame.place((x_mm, v));
+        figure.disc(at, size, theme.soft);
+        figure.disc(at, 0.85 * size, own.map_or(theme.rest, |own| ink(own.0 as usize - 1)));
+    }
+}
+
+/// What the legend says: the attractors with their shares, the largest ones where there are many.
+fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, String)> {
+    let mut named: Vec<usize> = (0..answer.attractors.len()).collect();
+    named.sort_by_key(|place| std::cmp::Reverse(answer.attractors[*place].starts));
+    let more = named.split_off(named.len().min(MOST_NAMED)).len();
+    named.sort_unstable();
+    let mut entries: Vec<(Sample, String)> = Vec::new();
+    for place in named {
+        let words = words(place, &answer.attractors[place], basins.starts().is_grid());
+        entries.push((Sample::Patch(ink(place), hatch(place)), words));
+    }
+    if more > 0 {
+        entries.push((Sample::Patch(theme.paper, None), format!("{more} more")));
+    }
+    if answer.lost + answer.undecided > 0 {
+        entries.push((Sample::Patch(theme.rest, Some(theme.rest_hatch)), "none found".into()));
+    }
+    entries
+}
+
+/// An attractor in words, with its number and its share; of random starts with its interval.
+fn words(place: usize, own: &Attractor, is_grid: bool) -> String {
+    let regime = match own.regime.name() {
+        "" => "one well",
+        name => name,
+    };
+    let mut words = format!("{} {regime}", place + 1);
+    if let Some(side) = own.side.map(|side| side.name()).filter(|side| *side != "both") {
+        words += &format!(" {side}");
+    }
+    if let Some(period) = own.period {
+        words += &format!(", period {period}");
+    } else if own.regime == Regime::Intrawell {
+        words += ", no period";
+    }
+    let percent = |share: f64| short((1e3 * share).round() / 10.0);
+    let share = &own.share;
+    words += &match is_grid {
+        true => format!(": {} %", percent(share.share)),
+        false => {
+            format!(": {} % ({} to {})", percent(share.share), percent(share.low), percent(share.high))
+        }
+    };
+    words
+}
+
+/// What was run, in one line.
+fn about(basins: &Basins, answer: &Answer) -> String {
+    let counted = match basins.starts().axes() {
+        Some((x_mm, v)) => format!("{} \u{d7} {} starts", x_mm.len(), v.len()),
+        None => format!("{} random starts", answer.rows.len()),
+    };
+    let period = basins.model().forcing_period().filter(|_| basins.model().is_shaken());
+    let when = period.map_or_else(String::new, |_| " at time 0 of the drive".to_owned());
+    format!("Where motions go from {counted}{when}; markers: the attractors")
+}

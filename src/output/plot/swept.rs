@@ -1,0 +1,103 @@
+//! Rows of a sweep as its pictures need them: what a picture is drawn from, places, words, marks.
+
+use super::axis::Ranges;
+use super::figure::Point;
+use crate::scene::Scene;
+use crate::study::{Column, Grid, Table, Values};
+
+pub(super) const LEFT: f64 = 160.0;
+pub(super) const TOP: f64 = 185.0;
+pub(super) const BOTTOM: f64 = 868.0;
+
+/// The lines over a map, each where it makes sense.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Overlay {
+    /// The release in closed form, with the swept columns of the map.
+    pub release: Option<Table>,
+    /// The first crossing cell along the amplitude.
+    pub first_crossing: Option<Table>,
+}
+
+/// What the picture of a sweep is drawn from.
+#[derive(Debug, Clone)]
+pub struct SweepPicture<'a> {
+    /// All rows.
+    pub rows: &'a Table,
+    /// Of which grid.
+    pub grid: &'a Grid,
+    /// Over which scene.
+    pub scene: &'a Scene,
+    /// The column that is shown.
+    pub quantity: &'a str,
+    /// The lines over a map.
+    pub overlay: Overlay,
+    /// The axes of the fields, and over one field that of the quantity upward.
+    pub ranges: Ranges,
+}
+
+pub(super) fn words<'a>(rows: &'a Table, name: &str) -> &'a [&'static str] {
+    match rows.column(name).map(|column| &column.values) {
+        Some(Values::Words(words)) => words,
+        _ => &[],
+    }
+}
+
+pub(super) fn label(rows: &Table, name: &str) -> String {
+    rows.column(name).map_or_else(|| name.to_owned(), Column::label)
+}
+
+/// What a legend says of cells without a speed, by the outcomes of all cells.
+pub(super) fn missing_words(outcomes: &[&'static str]) -> &'static str {
+    let is = |word: &&&str| **word == "not_converged";
+    let unsolved = outcomes.iter().filter(is).count();
+    let early = outcomes.iter().filter(|word| !is(word) && **word != "done").count();
+    match (unsolved, early) {
+        (0, _) => "ended early",
+        (_, 0) => "flexures not solved",
+        _ => "ended early or not solved",
+    }
+}
+
+/// So many times its half height apart, markers on a line are told from each other.
+pub(super) const MARKER_ROOM: f64 = 5.0;
+
+/// The marks of a line that stand `apart` from the one before; where the word changes, `close` is enough.
+pub(super) fn thinned<'a>(marks: &[(Point, &'a str)], apart: f64, close: f64) -> Vec<(Point, &'a str)> {
+    let mut kept: Vec<(Point, &str)> = Vec::new();
+    for (at, word) in marks {
+        let stands = kept.last().is_none_or(|(last, own)| {
+            (at.0 - last.0).hypot(at.1 - last.1) >= if own == word { apart } else { close.min(apart) }
+        });
+        if stands {
+            kept.push((*at, word));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markers_on_a_line_stand_apart_and_a_change_is_seen() {
+        let marks: Vec<(Point, &str)> = (0..100)
+            .map(|i| ((f64::from(i) * 4.0, 0.0), if i < 50 { "rest" } else { "interwell" }))
+            .collect();
+        let kept = thinned(&marks, 40.0, 10.0);
+        assert!(kept.windows(2).all(|pair| {
+            let step = pair[1].0.0 - pair[0].0.0;
+            step >= 40.0 || (pair[0].1 != pair[1].1 && step >= 10.0)
+        }));
+        let first = kept.iter().find(|own| own.1 == "interwell").unwrap();
+        assert!(first.0.0 <= 200.0 + 10.0, "{first:?}");
+        assert_eq!(thinned(&marks, 0.0, 10.0), marks);
+    }
+
+    #[test]
+    fn a_legend_says_why_a_cell_has_no_speed() {
+        assert_eq!(missing_words(&["done", "left_table"]), "ended early");
+        assert_eq!(missing_words(&["done", "not_converged"]), "flexures not solved");
+        assert_eq!(missing_words(&["step_budget", "not_converged"]), "ended early or not solved");
+    }
+}

@@ -1,0 +1,196 @@
+//! Picture of a field that was walked both ways: two lines and the hysteresis between them, or two maps and
+//! their difference.
+
+use super::axis::PlotAxis;
+use super::figure::{Align, Area, Figure, Point, Text};
+use super::frame::Frame;
+use super::map::{Cell, Mosaic, colour_bar, meanings};
+use super::mark::{REGIMES, Sample, legend, marker, regime};
+use super::quantity::Quantity;
+use super::style::{self, Ink, Theme, viridis};
+use super::swept::{BOTTOM, LEFT, MARKER_ROOM, SweepPicture, TOP, label, thinned, words};
+use crate::study::{DIRECTION, Direction, Table};
+
+/// Whether the rows are those of a walk both ways.
+pub(super) fn walked_both(rows: &Table) -> bool {
+    let ways = words(rows, DIRECTION);
+    [Direction::Up, Direction::Down].iter().all(|way| ways.contains(&way.name()))
+}
+
+/// The rows that were walked in a direction, in ascending order of the field `x`.
+fn walked(rows: &Table, x: &[f64], direction: Direction) -> Vec<usize> {
+    let ways = words(rows, DIRECTION);
+    let mut order: Vec<usize> = (0..rows.rows()).filter(|i| ways[*i] == direction.name()).collect();
+    order.sort_by(|a, b| x[*a].total_cmp(&x[*b]));
+    order
+}
+
+/// How a direction is drawn: its colour, and its dash.
+type Stroke = (Direction, Ink, Option<(f64, f64)>);
+
+fn strokes(theme: &Theme) -> [Stroke; 2] {
+    [(Direction::Up, theme.ink, None), (Direction::Down, theme.second, Some(style::DASH))]
+}
+
+/// The quantity over the field `x` on the way up and on the way down, each value marked with its regime.
+pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str, theme: &Theme) {
+    const RIGHT: f64 = 1560.0;
+    let SweepPicture { rows, ranges, .. } = *picture;
+    let values = rows.numbers(x).unwrap_or_default();
+    let quantity = Quantity::of(rows, picture.quantity);
+    let regimes = words(rows, "regime");
+    let shade = theme.shaking.over(theme.paper, 0.3);
+    let mut entries = vec![];
+    for (direction, ink, dash) in strokes(theme) {
+        entries.push((Sample::Line(ink, style::LINE, dash), direction.name()));
+    }
+    if !quantity.regimes {
+        entries.push((Sample::Patch(shade, None), "hysteresis"));
+    }
+    for (name, shape) in REGIMES {
+        if regimes.contains(&name) {
+            entries.push((Sample::Marker(shape, regime(name, theme).1), name));
+        }
+    }
+    let top = TOP.max(legend(figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
+    let x_label = label(rows, x);
+    let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
+    let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
+    let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);
+    let place = |row: &usize| frame.place((values[*row], quantity.values[*row]));
+    let [ups, downs] = [Direction::Up, Direction::Down].map(|way| walked(rows, values, way));
+    let pairs: Vec<(Point, Point)> = ups.iter().map(place).zip(downs.iter().map(place)).collect();
+    if !quantity.regimes {
+        pairs.windows(2).for_each(|two| between(figure, two[0], two[1], shade, frame.area));
+    }
+    frame.grid(figure, theme);
+    for ((_, ink, dash), order) in strokes(theme).into_iter().zip([&ups, &downs]) {
+        for part in order.split(|row| !quantity.values[*row].is_finite()) {
+            let points: Vec<Point> = part.iter().map(place).collect();
+            match dash {
+                _ if quantity.regimes => {}
+                None => figure.line(&points, style::LINE, ink, frame.area),
+                Some(dash) => figure.dashed(&points, style::LINE, ink, dash, frame.area),
+            }
+            let marks: Vec<(Point, &str)> = part
+                .iter()
+                .map(|row| (place(row), regimes.get(*row).copied().unwrap_or("")))
+                .filter(|(at, _)| frame.area.contains(*at))
+                .collect();
+            let size = 0.8 * style::MARKER;
+            for (at, word) in thinned(&marks, MARKER_ROOM * size, 1.5 * size) {
+                let (shape, own) = regime(word, theme);
+                marker(figure, shape, at, size, own, ink);
+            }
+        }
+    }
+    frame.axes(figure, theme);
+}
+
+/// Shades what lies between two lines from one value to the next, where both have values.
+fn between(figure: &mut Figure, a: (Point, Point), b: (Point, Point), ink: Ink, within: Area) {
+    let ends = [a.0, a.1, b.0, b.1];
+    if !ends.iter().all(|(x, y)| x.is_finite() && y.is_finite()) {
+        return;
+    }
+    let held = |(x, y): Point| (x.clamp(within.left, within.right), y.clamp(within.top, within.bottom));
+    let (before, after) = (a.0.1 - a.1.1, b.0.1 - b.1.1);
+    if before * after < 0.0 {
+        let share = before / (before - after);
+        let mix = |p: f64, q: f64| p + share * (q - p);
+        let meet = held((mix(a.0.0, b.0.0), mix(a.0.1, b.0.1)));
+        figure.polygon(vec![held(a.0), meet, held(a.1)], ink);
+        figure.polygon(vec![held(b.0), meet, held(b.1)], ink);
+    } else {
+        figure.polygon(vec![held(a.0), held(b.0), held(b.1), held(a.1)], ink);
+    }
+}
+
+/// Panels: where they begin and end.
+const PANELS: [(f64, f64); 3] = [(150.0, 505.0), (541.0, 896.0), (1066.0, 1421.0)];
+const BAR: f64 = 24.0;
+
+/// The quantity over two fields on the way up and on the way down, and what the way down has more.
+pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &str), theme: &Theme) {
+    let SweepPicture { rows, ranges, .. } = *picture;
+    let quantity = Quantity::of(rows, picture.quantity);
+    let ways = words(rows, DIRECTION);
+    let [up, down] = [Direction::Up, Direction::Down]
+        .map(|way| Mosaic::new(rows, (x, y), &quantity, |row| ways[row] == way.name()));
+    let bar = quantity.axis(0.0, 6);
+    let difference: Vec<Cell> =
+        up.cells.iter().zip(&down.cells).map(|(up, down)| less(*down, *up, quantity.regimes)).collect();
+    let values = difference.iter().filter_map(Cell::value).map(f64::abs);
+    let largest = values.fold(0.0, f64::max);
+    let reach = if largest > 0.0 { largest } else { 1.0 };
+    let signed = PlotAxis::between(-reach, reach, 6, &format!("down \u{2212} up, {}", unit(&quantity.label)));
+    let tint = |value: f64| {
+        let share = (value / reach).clamp(-1.0, 1.0);
+        let ink = if share < 0.0 { theme.regimes[1] } else { theme.regimes[3] };
+        ink.over(theme.rest, share.abs())
+    };
+    let top = 58.0 + TOP;
+    let both: Vec<Cell> = up.cells.iter().chain(&down.cells).copied().collect();
+    let mut entries = meanings(rows, &quantity, &both, theme);
+    if quantity.regimes {
+        entries.push((Sample::Patch(theme.ink, None), "differs"));
+    }
+    let last = Mosaic { cells: difference, ..up.clone() };
+    for (i, (mosaic, name)) in
+        [(&up, "up"), (&down, "down"), (&last, "down \u{2212} up")].into_iter().enumerate()
+    {
+        let (left, right) = PANELS[i];
+        let labels = (label(rows, x), label(rows, y));
+        let mut frame = mosaic.frame(Area::new(left, top, right, BOTTOM), (&labels.0, &labels.1), ranges);
+        if i > 0 {
+            frame.y = frame.y.silent();
+        }
+        mosaic.paint(figure, &frame, theme, |value| match (i, quantity.regimes) {
+            (2, true) if value == 0.0 => theme.rest,
+            (2, true) => theme.ink,
+            (2, false) => tint(value),
+            (_, true) => theme.regimes[value as usize],
+            (_, false) => viridis(bar.share(value)),
+        });
+        frame.axes(figure, theme);
+        let name = if quantity.regimes && i == 2 { "where they differ" } else { name };
+        figure.text(Text {
+            words: name.to_owned(),
+            at: (0.5 * (left + right), top - 16.0),
+            size: style::AXIS,
+            ink: theme.ink,
+            bold: false,
+            align: Align::Centre,
+            upright: false,
+        });
+    }
+    if !quantity.regimes {
+        let beside = |panel: usize| {
+            let left = PANELS[panel].1 + 16.0;
+            Area::new(left, top, left + BAR, BOTTOM)
+        };
+        colour_bar(figure, beside(1), &bar, theme, viridis);
+        colour_bar(figure, beside(2), &signed, theme, |share| tint((2.0 * share - 1.0) * reach));
+    }
+    legend(figure, theme, &entries, LEFT, 1560.0, 146.0);
+}
+
+/// What the one cell has more than the other; of regimes, whether they differ.
+fn less(down: Cell, up: Cell, regimes: bool) -> Cell {
+    match (down, up) {
+        (Cell::Missing, _) | (_, Cell::Missing) => Cell::Missing,
+        (down, up) if regimes => Cell::Value(f64::from(u8::from(down != up))),
+        (down, up) => Cell::Value(down.value().unwrap_or(0.0) - up.value().unwrap_or(0.0)),
+    }
+}
+
+impl Cell {
+    fn value(&self) -> Option<f64> {
+        if let Self::Value(value) = self { Some(*value) } else { None }
+    }
+}
+
+/// The unit at the end of a label; the label where it has none.
+fn unit(label: &str) -> &str {
+    label.rsplit_once(", ").map_or(label, |(_, unit)| unit)
+}

@@ -1,0 +1,202 @@
+//! Basins of attraction: which motion each start of a scene goes to.
+//!
+//! Each start begins at time 0, where the drive has its phase, and is followed until one of these is known:
+//!
+//! - A mass at rest on a rigid stop is released at an instant that the drive alone decides, so motions that
+//!   share a release are equal from there on, to the last bit. What follows a release is computed once.
+//! - Without rest its states once a period come within a thousandth of the scene's scales of a known stable
+//!   orbit, inside an ellipse around it from which all motions go there (see `orbit`). A start that repeats
+//!   only proposes an orbit, so that a transient near a saddle is followed on. (That a motion is told by its
+//!   coming back to known ones, and not from its whole way, is also how Datseris and Wagemakers (2022) do it,
+//!   there on a grid of cells.)
+//! - It does neither for a thousand periods: `verdict` decides whether it is irregular for good. Around the
+//!   first such motions a region is looked for that no motion leaves (see `region`); later ones that enter it
+//!   need not be followed on.
+//!
+//! The scales of all starts are those of the one farthest from the barrier, and what is known grows between
+//! rounds of starts alone, so neither batches nor threads change a bit.
+
+mod answer;
+mod orbit;
+mod region;
+mod rounds;
+mod starts;
+mod stroboscopic;
+mod verdict;
+
+use std::sync::Arc;
+
+use crate::dynamics::Model;
+use crate::mechanics::Mechanism;
+use crate::scene::{Damping, Excitation, Fault, Scene, Start, Stops};
+use crate::study::levels::{Levels, STRIDES};
+pub use answer::{Answer, Attractor, Shares};
+use rounds::Rounds;
+pub use starts::{EvenRange, MAX_STARTS, Starts, StartsError};
+
+/// Why a scene has no basins.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoBasins {
+    /// The scene is wrong.
+    #[error("the scene is wrong")]
+    Faults(Vec<Fault>),
+    /// Its drive does not repeat.
+    #[error(
+        "its excitation does not repeat, so there is no state once a period to compare; take a Sine, a Sum \
+         of sines whose frequencies have a common period, or None"
+    )]
+    NoPeriod,
+    /// It loses no energy.
+    #[error(
+        "it has no damping and no stop that takes energy, so that no motion attracts others; set damping, \
+         such as damping=Ratio(0.02)"
+    )]
+    NoLoss,
+    /// No start lies in the room that the mass has.
+    #[error("all starts lie beyond {what} at {at_mm} mm; start between {from_mm} and {to_mm} mm")]
+    Beyond {
+        /// `the left stop`, or `the end of the force curve`.
+        what: &'static str,
+        /// Where that is, in mm.
+        at_mm: f64,
+        /// Where the room of the mass begins, in mm.
+        from_mm: f64,
+        /// Where it ends.
+        to_mm: f64,
+    },
+}
+
+/// A map of basins, coarse first.
+#[derive(Debug)]
+pub struct Basins {
+    model: Model,
+    starts: Starts,
+    levels: Levels,
+    /// How many of the levels have been run.
+    done: usize,
+    room: (f64, f64),
+    rounds: Rounds,
+}
+
+impl Basins {
+    /// The map of a scene from these starts, of which none has been run; the scene's own start does not
+    /// matter. Its mass rests or swings once a period of its excitation; without one, once a period of small
+    /// oscillations.
+    pub fn new(scene: &Scene, mechanism: Arc<Mechanism>, starts: Starts) -> Result<Self, NoBasins> {
+        if !loses_energy(scene) {
+            return Err(NoBasins::NoLoss);
+        }
+        let ((low, high), v) = starts.extent();
+        let at = |x_mm: f64, v_m_per_s: f64, excitation: &Excitation| {
+            let start = Start::At { x_mm, v_m_per_s };
+            let scene = Scene { start, excitation: excitation.clone(), ..scene.clone() };
+            Model::build(&scene, Arc::clone(&mechanism)).map_err(NoBasins::Faults)
+        };
+        let (left, right) = mechanism.curve.domain();
+        let within = |x_mm: f64| x_mm.clamp(left * 1e3, right * 1e3);
+        let limits = scene.stops.limits_mm();
+        let between = |x_mm: f64| {
+            let x_mm = limits[0].map_or(x_mm, |stop| x_mm.max(-stop));
+            limits[1].map_or(x_mm, |stop| x_mm.min(stop))
+        };
+        let middle = at(between(within(0.0)), 0.0, &scene.excitation)?;
+        let excitation = shaken(scene, &middle);
+        let excitation = excitation.as_ref().unwrap_or(&scene.excitation);
+        let reference = 1e3 * middle.crossing_level().unwrap_or(0.0);
+        let (low, high) = (between(within(low)), between(within(high)));
+        let far = if reference - low > high - reference { low } else { high };
+        let model = at(far, v, excitation)?;
+        if !model.repeats() {
+            return Err(NoBasins::NoPeriod);
+        }
+        let stops = model.stop_positions();
+        let room =
+            (stops.0.map_or(left, |stop| stop.max(left)), stops.1.map_or(right, |stop| stop.min(right)));
+        let levels = starts.levels();
+        let rounds = Rounds::new(starts.count());
+        let own = Self { model, starts, levels, done: 0, room, rounds };
+        if (0..own.starts.count()).all(|row| own.start(row).is_none()) {
+            return Err(own.beyond());
+        }
+        Ok(own)
+    }
+
+    /// What all starts lie beyond.
+    fn beyond(&self) -> NoBasins {
+        let (from, to) = self.room;
+        let is_left = self.starts.at(0).0 / 1e3 < from;
+        let stops = self.model.stop_positions();
+        let (stop, at) = if is_left { (stops.0, from) } else { (stops.1, to) };
+        let what = match (stop == Some(at), is_left) {
+            (true, true) => "the left stop",
+            (true, false) => "the right stop",
+            (false, _) => "the end of the force curve",
+        };
+        NoBasins::Beyond { what, at_mm: at * 1e3, from_mm: from * 1e3, to_mm: to * 1e3 }
+    }
+
+    /// The starts.
+    pub fn starts(&self) -> &Starts {
+        &self.starts
+    }
+
+    /// The model that follows them; its own start is the farthest of theirs.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Displacements in m that the mass may have.
+    pub fn room(&self) -> (f64, f64) {
+        self.room
+    }
+
+    /// The levels of their order, and how many of them have been run.
+    pub fn levels(&self) -> (&Levels, usize) {
+        (&self.levels, self.done)
+    }
+
+    /// Whether every start has been run.
+    pub fn is_whole(&self) -> bool {
+        self.done == STRIDES.len()
+    }
+
+    /// Start `row` in m and m/s; none outside the room.
+    fn start(&self, row: usize) -> Option<(f64, f64)> {
+        let (x_mm, v) = self.starts.at(row);
+        let x = x_mm / 1e3;
+        (x >= self.room.0 && x <= self.room.1).then_some((x, v))
+    }
+}
+
+/// Whether damping or a stop takes energy.
+fn loses_energy(scene: &Scene) -> bool {
+    let damped = match scene.damping {
+        Damping::None => false,
+        Damping::Ratio(xi) => xi > 0.0,
+        Damping::Coefficient { c_n_s_per_m } => c_n_s_per_m > 0.0,
+    };
+    let loses = |restitution: Option<f64>| restitution.is_some_and(|own| own < 1.0);
+    damped
+        || match &scene.stops {
+            Stops::None => false,
+            Stops::Rigid { restitution, .. } => *restitution < 1.0,
+            Stops::Uneven { restitution_left, restitution_right, .. } => {
+                loses(*restitution_left) || loses(*restitution_right)
+            }
+            Stops::Hertz { loss_s_per_m, .. } => *loss_s_per_m > 0.0,
+        }
+}
+
+/// An excitation with a period that does the same, where the scene's has none because nothing in it moves:
+/// with a sine of amplitude 0 at the frequency of small oscillations.
+fn shaken(scene: &Scene, model: &Model) -> Option<Excitation> {
+    if model.forcing_period().is_some() || !model.excitation().is_constant() {
+        return None;
+    }
+    let frequency_hz = 1.0 / model.natural_time();
+    let still = Excitation::Sine { frequency_hz, amplitude_g: 0.0, phase_deg: 0.0 };
+    Some(match &scene.excitation {
+        Excitation::None => still,
+        other => Excitation::Sum(vec![other.clone(), still]),
+    })
+}

@@ -1,0 +1,205 @@
+//! Stable periodic orbits of the stroboscopic map, and ellipses around their states from which all motions go
+//! to them.
+//!
+//! A proposal comes from a motion whose states repeat. Newton's method on the map of `period` forcing periods
+//! finds the orbit near by, and the Lyapunov equation M = J^T M J + I a norm in which the linear map shrinks
+//! everything; without a solution the orbit is unstable, as that of a transient near a saddle is. How far
+//! from the orbit the map itself shrinks in that norm is then measured, on circles of growing radius, and the
+//! largest one up to which all do is the ellipse: every motion that enters it goes to the orbit.
+
+use super::stroboscopic::Stroboscope;
+use crate::dynamics::{Capture, Jacobian, Outcome};
+
+/// A displacement and a velocity in units of the scene's scales.
+type Point = [f64; 2];
+
+/// Two rows.
+type Matrix = [[f64; 2]; 2];
+
+/// Steps of Newton's method, the longest of one, and the one that ends it, in units of the scales.
+const MOST_STEPS: usize = 12;
+const LONGEST_STEP: f64 = 0.1;
+const LAST_STEP: f64 = 1e-8;
+
+/// States of an orbit closer than this share of the scales are the same.
+const SAME: f64 = 1e-6;
+
+/// The least radius that is measured, how many there are, each so many times the one before, and the starts
+/// on a circle. The radius is that of the norm, which is never less than the distance.
+const LEAST_RADIUS: f64 = 2e-5;
+const RADII: usize = 34;
+const GROWTH: f64 = std::f64::consts::SQRT_2;
+const AROUND: usize = 16;
+
+/// States nearer to an orbit than this share of the scales have arrived, as for a repetition of states.
+const NEAR: f64 = 1e-3;
+
+/// Doublings of the series of the norm; a contraction by 1e-9 a period takes half of them.
+const DOUBLINGS: usize = 60;
+
+/// An orbit that was looked for near a proposal.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Found {
+    /// A stable one: its states, each with its ellipse.
+    Stable(Vec<Capture>),
+    /// An unstable one, through this state in m and m/s.
+    Unstable((f64, f64)),
+    /// None, or none around which anything is known to go to it.
+    Nothing,
+}
+
+/// The orbit of the proposed period, or twice that, near a state in m and m/s. None where it was cancelled.
+pub(super) fn find(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Found> {
+    let first = of_period(scope, period, state)?;
+    match first {
+        // Soon after a doubling the two halves of the doubled orbit are hardly told apart.
+        Found::Unstable(_) => match of_period(scope, 2 * period, state)? {
+            Found::Stable(own) => Some(Found::Stable(own)),
+            _ => Some(first),
+        },
+        _ => Some(first),
+    }
+}
+
+fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Found> {
+    let Some(root) = newton(scope, period, scope.point(state)) else { return Some(Found::Nothing) };
+    let after: Vec<(Point, u32)> = (1..=period).map(|periods| (root, periods)).collect();
+    let Some(states) = scope.map(&after)?.into_iter().collect::<Option<Vec<Point>>>() else {
+        return Some(Found::Nothing);
+    };
+    let same = |own: &Point| distance(own, &root) < SAME;
+    let period = states.iter().position(same).map_or(period, |place| place as u32 + 1);
+    let mut captures = Vec::new();
+    let mut orbit = vec![root];
+    orbit.extend_from_slice(&states[..period as usize - 1]);
+    for own in orbit {
+        let Some((_, jacobian)) = jacobian(scope, period, own) else { return Some(Found::Nothing) };
+        let Some(norm) = lyapunov(&jacobian) else { return Some(Found::Unstable(scope.state(root))) };
+        let Some(radius) = radius(scope, period, own, &norm)? else { return Some(Found::Nothing) };
+        captures.push(capture(scope, own, &norm, radius));
+    }
+    Some(Found::Stable(captures))
+}
+
+fn distance(a: &Point, b: &Point) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// A fixed point of the map of `period` forcing periods near `from`.
+fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Point> {
+    let mut point = from;
+    for _ in 0..MOST_STEPS {
+        let (image, [[a, b], [c, d]]) = jacobian(scope, period, point)?;
+        let (a, d, rest) = (a - 1.0, d - 1.0, [point[0] - image[0], point[1] - image[1]]);
+        let determinant = a * d - b * c;
+        let step = [(d * rest[0] - b * rest[1]) / determinant, (a * rest[1] - c * rest[0]) / determinant];
+        let length = step[0].hypot(step[1]);
+        if !(length < LONGEST_STEP) {
+            break;
+        }
+        point = [point[0] + step[0], point[1] + step[1]];
+        if length < LAST_STEP {
+            return Some(point);
+        }
+    }
+    None
+}
+
+/// The image of a point and the derivative of the map there, in units of the scales; none where the motion
+/// ends early.
+fn jacobian(scope: &Stroboscope, period: u32, at: Point) -> Option<(Point, Matrix)> {
+    let ((length, speed), map) = (scope.units(), scope.model.stroboscopic_map(0.0)?);
+    let (passage, Jacobian { rows: [[a, b], [c, d]] }) = map.pass_with_jacobian(scope.state(at), period);
+    let whole = scope.has(at) && passage.outcome == Outcome::Done;
+    whole.then(|| (scope.point(passage.state), [[a, b * speed / length], [c * length / speed, d]]))
+}
+
+/// M = sum of (J^k)^T J^k over all k from 0 on, where the sum is finite: a, b and c of the rows (a, b) and
+/// (b, c). Summed by doubling (Smith 1968).
+fn lyapunov(jacobian: &Matrix) -> Option<[f64; 3]> {
+    let mut power = *jacobian;
+    let mut sum = [1.0, 0.0, 1.0];
+    for _ in 0..DOUBLINGS {
+        let [[p, q], [r, s]] = power;
+        let [a, b, c] = sum;
+        let more = [
+            a * p * p + 2.0 * b * p * r + c * r * r,
+            a * p * q + b * (p * s + q * r) + c * r * s,
+            a * q * q + 2.0 * b * q * s + c * s * s,
+        ];
+        sum = [a + more[0], b + more[1], c + more[2]];
+        if !sum.iter().all(|own| own.is_finite()) {
+            return None;
+        }
+        if more[0] + more[2] <= f64::EPSILON * (sum[0] + sum[2]) {
+            return Some(sum);
+        }
+        power = [[p * p + q * r, p * q + q * s], [r * p + s * r, r * q + s * s]];
+    }
+    None
+}
+
+/// The square of a vector's length in a norm.
+fn square([a, b, c]: &[f64; 3], [x, v]: Point) -> f64 {
+    a * x * x + 2.0 * b * x * v + c * v * v
+}
+
+/// The largest radius around a fixed point up to which the map shrinks every circle in the norm, by at least
+/// half of what its derivative says; none where not even the smallest.
+fn radius(scope: &Stroboscope, period: u32, at: Point, norm: &[f64; 3]) -> Option<Option<f64>> {
+    let [a, b, c] = *norm;
+    // the unit circle of the norm is (u, w) by M = L L^T
+    let (l, m) = (a.sqrt(), b / a.sqrt());
+    let n = (c - m * m).sqrt();
+    let radii = || (0..RADII).map(|step| LEAST_RADIUS * GROWTH.powi(step as i32));
+    let away = |radius: f64, part: usize| {
+        let (sine, cosine) = (std::f64::consts::TAU * part as f64 / AROUND as f64).sin_cos();
+        let v = radius * sine / n;
+        [(radius * cosine - m * v) / l, v]
+    };
+    let circles: Vec<Point> =
+        radii().flat_map(|radius| (0..AROUND).map(move |part| away(radius, part))).collect();
+    let starts: Vec<(Point, u32)> = circles.iter().map(|[x, v]| ([at[0] + x, at[1] + v], period)).collect();
+    let images = scope.map(&starts)?;
+    let shrinks = |(from, image): (&Point, &Option<Point>)| {
+        image.is_some_and(|image| {
+            let to = [image[0] - at[0], image[1] - at[1]];
+            square(norm, to) <= square(norm, *from) - 0.5 * (from[0] * from[0] + from[1] * from[1])
+        })
+    };
+    let whole = circles.chunks(AROUND).zip(images.chunks(AROUND));
+    let good = whole.take_while(|(from, to)| from.iter().zip(*to).all(shrinks)).count();
+    Some(good.checked_sub(1).and_then(|last| radii().nth(last)))
+}
+
+/// The ellipse of this radius in a norm, in SI.
+fn capture(scope: &Stroboscope, at: Point, norm: &[f64; 3], radius: f64) -> Capture {
+    let (length, speed) = scope.units();
+    let per = 1.0 / (radius * radius);
+    let form = [
+        norm[0] * per / (length * length),
+        norm[1] * per / (length * speed),
+        norm[2] * per / (speed * speed),
+    ];
+    Capture { state: scope.state(at), form, near: (NEAR * length, NEAR * speed) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_norm_solves_its_equation_and_no_unstable_map_has_one() {
+        for jacobian in [[[0.5, 3.0], [0.0, -0.9]], [[0.6, -0.7], [0.7, 0.6]], [[0.0, 0.0], [0.0, 0.0]]] {
+            let norm = lyapunov(&jacobian).unwrap();
+            for from in [[1.0, 0.0], [0.3, -1.0], [-2.0, 0.1]] {
+                let to = jacobian.map(|[a, b]: [f64; 2]| a * from[0] + b * from[1]);
+                let shrunk = square(&norm, from) - (from[0] * from[0] + from[1] * from[1]);
+                assert!((square(&norm, to) - shrunk).abs() < 1e-13 * square(&norm, from), "{jacobian:?}");
+            }
+        }
+        for jacobian in [[[1.001, 0.0], [0.0, 0.1]], [[0.0, -1.0], [1.0, 0.0]], [[0.1, 0.0], [5.0, -1.01]]] {
+            assert_eq!(lyapunov(&jacobian), None);
+        }
+    }
+}

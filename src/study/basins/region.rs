@@ -1,0 +1,107 @@
+//! Absorbing regions: cells of the plane of states around an irregular attractor that no motion leaves.
+//!
+//! The cells that long motions visit once a period, and their neighbours, are followed by the stroboscopic
+//! map: a cell into which a corner or the middle of another one is mapped is added, until none is missing.
+//! Where that ends, all motions in the cells stay there; where it does not, what looked like an attractor
+//! has a way out, as a long irregular transient has, and there is no region.
+
+use std::collections::BTreeSet;
+
+use super::stroboscopic::Stroboscope;
+use crate::dynamics::{Capture, Region};
+
+/// Motions that are followed to see an attractor, the periods that each is followed, and how many of the
+/// first are left out.
+const MOTIONS: usize = 16;
+const PERIODS: u32 = 500;
+const SKIPPED: usize = 50;
+
+/// How far apart these begin, as a share of the scales; they part by themselves.
+const APART: f64 = 1e-6;
+
+/// Cells along each side of what an attractor spans, coarse ones first, and the most of any region.
+const ALONG: [f64; 3] = [48.0, 96.0, 192.0];
+const MOST_CELLS: usize = 20_000;
+
+/// Rounds in which cells may be added.
+const ROUNDS: usize = 40;
+
+/// A region around the irregular motion that has a state in m and m/s, where no state comes to a known orbit.
+/// None where it was cancelled.
+pub(super) fn absorbing(scope: &Stroboscope, state: (f64, f64), known: &[Capture]) -> Option<Option<Region>> {
+    let [x, v] = scope.point(state);
+    let starts: Vec<(f64, f64)> = (0..MOTIONS)
+        .map(|own| [x, v + APART * own as f64])
+        .filter(|own| scope.has(*own))
+        .map(|own| scope.state(own))
+        .collect();
+    let Some(states) = scope.paths(&starts, PERIODS, SKIPPED)? else { return Some(None) };
+    if states.iter().any(|own| known.iter().any(|other| other.holds(*own))) {
+        return Some(None);
+    }
+    let ends = |of: &dyn Fn(&(f64, f64)) -> f64| {
+        let fold = |(low, high): (f64, f64), own: f64| (low.min(own), high.max(own));
+        states.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), fold)
+    };
+    let ((left, right), (low, high)) = (ends(&|own| own.0), ends(&|own| own.1));
+    if !(right > left && high > low) {
+        return Some(None);
+    }
+    for along in ALONG {
+        let size = ((right - left) / along, (high - low) / along);
+        let region = Region { corner: (left, low), size, cells: Vec::new() };
+        if let Some(whole) = closed(scope, region, &states, known)? {
+            return Some(Some(whole));
+        }
+    }
+    Some(None)
+}
+
+/// A region with the cells of these states and all that motions in them reach.
+fn closed(
+    scope: &Stroboscope,
+    region: Region,
+    states: &[(f64, f64)],
+    known: &[Capture],
+) -> Option<Option<Region>> {
+    let mut cells: BTreeSet<(i32, i32)> = BTreeSet::new();
+    for (i, j) in states.iter().map(|own| region.cell(*own)) {
+        cells.extend((-1..=1).flat_map(|right| (-1..=1).map(move |up| (i + right, j + up))));
+    }
+    let (mut new, mut seen): (Vec<_>, BTreeSet<(i32, i32)>) =
+        (cells.iter().copied().collect(), BTreeSet::new());
+    for _ in 0..ROUNDS {
+        // corners and middles, in half cells
+        let halves = new.iter().flat_map(|(i, j)| {
+            [(0, 0), (2, 0), (0, 2), (2, 2), (1, 1)].map(|(right, up)| (2 * i + right, 2 * j + up))
+        });
+        let asked: BTreeSet<(i32, i32)> = halves.filter(|own| !seen.contains(own)).collect();
+        let place = |(i, j): &(i32, i32)| {
+            let (x, v) = (f64::from(*i) * 0.5 * region.size.0, f64::from(*j) * 0.5 * region.size.1);
+            scope.point((region.corner.0 + x, region.corner.1 + v))
+        };
+        let starts: Vec<_> =
+            asked.iter().map(place).filter(|own| scope.has(*own)).map(|own| (own, 1)).collect();
+        seen.extend(asked);
+        let Some(images) = scope.map(&starts)?.into_iter().collect::<Option<Vec<_>>>() else {
+            return Some(None);
+        };
+        new.clear();
+        for image in images.into_iter().map(|own| scope.state(own)) {
+            if known.iter().any(|own| own.holds(image)) {
+                return Some(None);
+            }
+            let cell = region.cell(image);
+            if cells.insert(cell) {
+                new.push(cell);
+            }
+        }
+        if new.is_empty() {
+            return Some(Some(Region { cells: cells.into_iter().collect(), ..region }));
+        }
+        if cells.len() > MOST_CELLS {
+            break;
+        }
+    }
+    Some(None)
+}

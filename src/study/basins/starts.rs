@@ -1,0 +1,211 @@
+//! Starts of a map of basins: a grid over displacement and velocity, or random ones.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::numeric::Decimal;
+use crate::study::curve::even_positions;
+use crate::study::levels::Levels;
+
+/// The most starts of one map: some minutes of a core where the mass comes to rest on stops, and many hours
+/// where it does not.
+pub const MAX_STARTS: u64 = 10_000_000;
+
+/// The largest displacement in mm and velocity in m/s, those of a scene.
+const LARGEST: f64 = 1e15;
+
+/// What is wrong about a range or a number of starts, as a sentence.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum StartsError {
+    /// A range that cannot be.
+    #[error("{0}")]
+    Range(&'static str),
+    /// Too many starts.
+    #[error("makes {0} starts; at most {MAX_STARTS} fit in one map: take fewer values")]
+    TooMany(String),
+}
+
+/// Values of one axis of a grid: so many, evenly spaced from `from` to `to`, both included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EvenRange {
+    /// The first, in mm or m/s.
+    pub from: f64,
+    /// The last.
+    pub to: f64,
+    /// How many.
+    pub count: u64,
+}
+
+impl EvenRange {
+    /// What is wrong about it, as a sentence.
+    pub fn check(&self) -> Result<(), StartsError> {
+        within((self.from, self.to))?;
+        let wrong = |what| Err(StartsError::Range(what));
+        match self.count {
+            0 => wrong("no values: N counts them, both ends included, such as -5:5:101"),
+            1 if self.from < self.to => wrong("one value cannot be both ends: write A:A:1, or a larger N"),
+            2.. if self.from == self.to => wrong("both ends are equal: write A:A:1 for one value"),
+            _ if self.count > MAX_STARTS => Err(StartsError::TooMany(self.count.to_string())),
+            _ => Ok(()),
+        }
+    }
+
+    /// The values, each the double nearest to its exact decimal.
+    fn values(&self) -> Vec<f64> {
+        let plain = || even_positions((self.from, self.to), self.count as usize);
+        self.exact().unwrap_or_else(plain)
+    }
+
+    fn exact(&self) -> Option<Vec<f64>> {
+        let (from, to) = (Decimal::shortest(self.from)?, Decimal::shortest(self.to)?);
+        let exponent = from.exponent.min(to.exponent).min(0);
+        let last = i128::from(self.count.saturating_sub(1).max(1));
+        let below = last.checked_mul(10_i128.checked_pow(exponent.unsigned_abs())?)?;
+        let (from, to) = (from.in_units(exponent)?, to.in_units(exponent)?);
+        // Of whole numbers that doubles hold the quotient is rounded once.
+        let whole = |number: i128| (number.unsigned_abs() <= 1 << 53).then_some(number as f64);
+        let below = whole(below)?;
+        let value = |place: i128| {
+            let above = from.checked_mul(last - place)?.checked_add(to.checked_mul(place)?)?;
+            Some(whole(above)? / below)
+        };
+        (0..i128::from(self.count)).map(value).collect()
+    }
+}
+
+/// Whether two ends make a range.
+fn within((from, to): (f64, f64)) -> Result<(), StartsError> {
+    let wrong = |what| Err(StartsError::Range(what));
+    match (from, to) {
+        _ if !(from.abs() <= LARGEST && to.abs() <= LARGEST) => wrong("give finite numbers, at most 1e15"),
+        _ if from > to => wrong("the range is reversed: write A:B with A not above B"),
+        _ => Ok(()),
+    }
+}
+
+/// Starts in the order of their rows, displacement in mm and velocity in m/s.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Starts {
+    x_mm: Vec<f64>,
+    v: Vec<f64>,
+    /// Whether they are all pairs of the values, displacement the slower; else each has its own.
+    product: bool,
+}
+
+impl Starts {
+    /// A grid; preconditions: the [checks](EvenRange::check) of both ranges.
+    pub fn grid(x_mm: &EvenRange, v: &EvenRange) -> Result<Self, StartsError> {
+        match x_mm.count.checked_mul(v.count) {
+            Some(count) if count <= MAX_STARTS => {
+                Ok(Self { x_mm: x_mm.values(), v: v.values(), product: true })
+            }
+            _ => Err(StartsError::TooMany(format!("{} x {}", x_mm.count, v.count))),
+        }
+    }
+
+    /// So many drawn uniformly from two ranges: from ChaCha8 seeded with `seed`, for each start first the
+    /// displacement, then the velocity, each from the upper 53 bits of 64.
+    pub fn random(x_mm: (f64, f64), v: (f64, f64), count: u64, seed: u64) -> Result<Self, StartsError> {
+        within(x_mm).and(within(v))?;
+        match count {
+            0 => return Err(StartsError::Range("no starts: give how many to draw, such as 1000")),
+            1..=MAX_STARTS => {}
+            _ => return Err(StartsError::TooMany(count.to_string())),
+        }
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut draw = |(from, to): (f64, f64)| {
+            let share = (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+            from + (to - from) * share
+        };
+        let (x_mm, v) = (0..count).map(|_| (draw(x_mm), draw(v))).unzip();
+        Ok(Self { x_mm, v, product: false })
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        if self.product { self.x_mm.len() * self.v.len() } else { self.x_mm.len() }
+    }
+
+    /// Start `row`, displacement in mm and velocity in m/s.
+    pub fn at(&self, row: usize) -> (f64, f64) {
+        match self.product {
+            true => (self.x_mm[row / self.v.len()], self.v[row % self.v.len()]),
+            false => (self.x_mm[row], self.v[row]),
+        }
+    }
+
+    /// Whether they are a grid.
+    pub fn is_grid(&self) -> bool {
+        self.product
+    }
+
+    /// Values on the axes of a grid.
+    pub fn axes(&self) -> Option<(&[f64], &[f64])> {
+        self.product.then_some((&self.x_mm, &self.v))
+    }
+
+    /// Their order, coarse first; random ones come in the order in which they were drawn.
+    pub(super) fn levels(&self) -> Levels {
+        match self.product {
+            true => Levels::of_lengths(vec![self.x_mm.len(), self.v.len()]),
+            false => Levels::of_lengths(vec![self.x_mm.len()]),
+        }
+    }
+
+    /// Displacements in mm and largest velocity in m/s either way.
+    pub(super) fn extent(&self) -> ((f64, f64), f64) {
+        let ends = |values: &[f64]| {
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            (low, values.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+        };
+        let (slow, fast) = ends(&self.v);
+        (ends(&self.x_mm), if -slow > fast { slow } else { fast })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn range(from: f64, to: f64, count: u64) -> EvenRange {
+        EvenRange { from, to, count }
+    }
+
+    #[test]
+    fn values_are_exact_decimals_and_mirror_each_other() {
+        assert_eq!(range(0.1, 0.7, 7).values(), [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]);
+        assert_eq!(range(-1.5, 1.5, 5).values(), [-1.5, -0.75, 0.0, 0.75, 1.5]);
+        let thirds = range(-1.1, 1.1, 100).values();
+        assert!((0..100).all(|i| thirds[i] == -thirds[99 - i]));
+        assert_eq!(range(3.0, 3.0, 1).values(), [3.0]);
+        assert_eq!(range(-1e15, 1e-300, 2).values(), [-1e15, 1e-300]);
+    }
+
+    #[test]
+    fn what_is_no_range_is_told() {
+        for (own, word) in [
+            (range(0.0, 1.0, 0), "no values"),
+            (range(0.0, 1.0, 1), "A:A:1"),
+            (range(1.0, 1.0, 2), "equal"),
+            (range(1.0, 0.0, 2), "reversed"),
+            (range(f64::NAN, 0.0, 2), "finite"),
+            (range(0.0, 1.0, 1_000_000_000), "1000000000 starts"),
+        ] {
+            assert!(own.check().unwrap_err().to_string().contains(word), "{own:?}");
+        }
+        let many = range(0.0, 1.0, 10_000);
+        assert!(Starts::grid(&many, &many).unwrap_err().to_string().contains("10000 x 10000"));
+    }
+
+    #[test]
+    fn random_starts_fill_both_ranges_and_depend_on_the_seed() {
+        let starts = Starts::random((-1.0, 3.0), (0.0, 2.0), 10_000, 7).unwrap();
+        let mean =
+            |of: fn((f64, f64)) -> f64| (0..10_000).map(|row| of(starts.at(row))).sum::<f64>() / 10_000.0;
+        // 4 standard errors of a uniform mean
+        assert!((mean(|own| own.0) - 1.0).abs() < 4.0 * 4.0 / 12.0_f64.sqrt() / 100.0);
+        assert!((mean(|own| own.1) - 1.0).abs() < 4.0 * 2.0 / 12.0_f64.sqrt() / 100.0);
+        assert_eq!(starts, Starts::random((-1.0, 3.0), (0.0, 2.0), 10_000, 7).unwrap());
+        assert_ne!(starts, Starts::random((-1.0, 3.0), (0.0, 2.0), 10_000, 8).unwrap());
+    }
+}

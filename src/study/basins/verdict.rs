@@ -1,0 +1,38 @@
+//! Verdict on a motion that neither came to rest nor to a known orbit.
+
+use crate::dynamics::{Outcome, Place, Regime, Summary};
+
+/// What a motion is taken for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Verdict {
+    /// A motion of its own kind: all of one regime, on one side, and of one period, where they have one, are
+    /// one attractor.
+    Settled {
+        /// See [`Regime`].
+        regime: Regime,
+        /// Where it is.
+        side: Option<Place>,
+        /// Its period, where no ellipse could be found around it.
+        period: Option<u32>,
+    },
+    /// It ended early.
+    Lost,
+    /// It is not known where it goes.
+    Undecided,
+}
+
+/// The verdict by the summary of a pursuit, whose window is its last hundred forcing periods, and whether it
+/// ended on an orbit that is unstable.
+///
+/// An exponent would tell irregular motion from a long transient no better: the transients of a double well
+/// are themselves irregular, and end by chance. So a motion is called irregular after a thousand periods in
+/// which it found no other.
+pub(super) fn verdict(summary: &Summary, on_unstable: bool) -> Verdict {
+    match summary.outcome {
+        Outcome::Done if on_unstable || summary.settled != Some(true) => Verdict::Undecided,
+        Outcome::Done => {
+            Verdict::Settled { regime: summary.regime, side: summary.side, period: summary.period }
+        }
+        _ => Verdict::Lost,
+    }
+}

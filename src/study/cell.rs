@@ -1,0 +1,97 @@
+//! Cells of a sweep: what each came to, and their tally.
+
+use std::collections::BTreeMap;
+
+use crate::dynamics::{Outcome, Summary};
+use crate::scene::Fault;
+
+/// What one cell came to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "nearly all cells are run")]
+pub enum Cell {
+    /// It has not been run.
+    NotRun,
+    /// Its mechanism is right and was not solved.
+    Unsolved,
+    /// It was run.
+    Run(Summary),
+}
+
+impl Cell {
+    /// The summary of its run.
+    pub fn summary(&self) -> Option<&Summary> {
+        if let Self::Run(summary) = self { Some(summary) } else { None }
+    }
+
+    /// The word in the CSV; empty where the cell was not run.
+    pub fn outcome(&self) -> &'static str {
+        match self {
+            Self::NotRun => "",
+            Self::Unsolved => "not_converged",
+            Self::Run(summary) => summary.outcome.name(),
+        }
+    }
+
+    /// Whether its run lasted to its end.
+    pub fn is_done(&self) -> bool {
+        self.summary().is_some_and(|summary| summary.outcome == Outcome::Done)
+    }
+
+    /// The summary of a run that reached its settled window. Earlier there are no numbers there, and
+    /// counts of 0 would lie.
+    pub fn settled(&self) -> Option<&Summary> {
+        self.summary().filter(|summary| summary.rms_velocity.is_some())
+    }
+}
+
+/// What is wrong with one cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellFaults {
+    /// The cell in words.
+    pub cell: String,
+    /// Its faults.
+    pub faults: Vec<Fault>,
+}
+
+/// How a sweep ended short of its last cell; `E` is the writer's error.
+#[derive(Debug)]
+pub enum SweepEnd<E> {
+    /// It was told to stop.
+    Cancelled,
+    /// The rows could not be written.
+    Write(E),
+}
+
+/// What a sweep came to.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Tally {
+    /// Cells run, those without a solved mechanism among them.
+    pub cells: u64,
+    /// Cells whose run ended early, as their outcome says.
+    pub ended_early: u64,
+    /// Cells whose mechanism was not solved.
+    pub not_converged: u64,
+    /// Cells in which the contact with a compliant stop was pressed beyond what its material bears.
+    pub yielding: u64,
+    /// Mechanisms built: one for each combination of the swept fields of the mechanism, however many cells
+    /// share it.
+    pub mechanisms: u64,
+    /// Cells by outcome.
+    pub outcomes: BTreeMap<&'static str, u64>,
+    /// Cells by regime; those that ended before their settled window, and those of one well, have none.
+    pub regimes: BTreeMap<&'static str, u64>,
+}
+
+impl Tally {
+    /// Counts one more cell by how it ended and what it was.
+    pub(super) fn count(&mut self, cell: &Cell) {
+        self.cells += 1;
+        self.ended_early += u64::from(cell.summary().is_some_and(|row| row.outcome.ended_at().is_some()));
+        self.not_converged += u64::from(*cell == Cell::Unsolved);
+        self.yielding += u64::from(cell.summary().is_some_and(|row| row.contact_yields));
+        *self.outcomes.entry(cell.outcome()).or_default() += 1;
+        if let Some(row) = cell.settled().filter(|row| !row.regime.name().is_empty()) {
+            *self.regimes.entry(row.regime.name()).or_default() += 1;
+        }
+    }
+}

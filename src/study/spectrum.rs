@@ -1,0 +1,274 @@
+//! Spectrum of a settled motion: amplitude and power spectral density over frequency.
+//!
+//! A run is sampled evenly over its settled window. Under a drive with a period the samples are a whole
+//! number of forcing periods, and where the motion repeats a whole number of its own, so that all of a
+//! periodic motion lies in lines and no taper is needed. Every other motion is tapered by the window of
+//! von Hann.
+
+use super::Task;
+use super::table::{Table, Values};
+use super::times::MAX_SAMPLES;
+use crate::dynamics::{Model, Outcome, Request, Sample};
+use crate::numeric::{Taper, periodogram, short};
+
+/// What the spectrum is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Signal {
+    /// Displacement relative to the base, m.
+    Displacement,
+    /// Velocity relative to the base, m/s.
+    Velocity,
+    /// Acceleration of the base, m/s^2.
+    BaseAcceleration,
+}
+
+impl Signal {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Displacement, Self::Velocity, Self::BaseAcceleration];
+
+    /// The word on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Displacement => "x",
+            Self::Velocity => "v",
+            Self::BaseAcceleration => "accel",
+        }
+    }
+
+    fn of(self, sample: &Sample) -> f64 {
+        match self {
+            Self::Displacement => sample.x,
+            Self::Velocity => sample.v,
+            Self::BaseAcceleration => sample.base_accel,
+        }
+    }
+}
+
+/// What a spectrum is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpectrumOptions {
+    /// Of what.
+    pub signal: Signal,
+    /// How the samples are weighted; left out, not at all where the motion repeats, else by the window of
+    /// von Hann.
+    pub taper: Option<Taper>,
+    /// Samples a second, made more until a whole number falls into a forcing period; left out, enough for
+    /// 128 in the shortest period of excitation and mechanism, and for 4096 in all.
+    pub rate_hz: Option<f64>,
+    /// Goes on until the motion repeats, or up to this time in s; the spectrum is that of the last window.
+    pub until_settled: Option<f64>,
+}
+
+/// A spectrum, and what it was made from. SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spectrum {
+    /// `frequency_hz,amplitude,psd`, one-sided: from 0 to half the rate, a row a line.
+    pub table: Table,
+    /// Of what.
+    pub signal: Signal,
+    /// How the samples were weighted.
+    pub taper: Taper,
+    /// Number of samples.
+    pub samples: usize,
+    /// Samples a second.
+    pub rate_hz: f64,
+    /// Begin and end in s of the part of the run that was sampled.
+    pub window: (f64, f64),
+    /// Forcing periods in it; 0 where the drive has none.
+    pub periods: u64,
+    /// Forcing periods after which the motion repeats, where it does.
+    pub period: Option<u32>,
+    /// Frequencies in Hz of the sines of the drive, those of noise left out.
+    pub forcing_hz: Vec<f64>,
+}
+
+impl Spectrum {
+    /// What it was made from, in one line.
+    pub fn describe(&self) -> String {
+        let periods = match self.periods {
+            0 => String::new(),
+            1 => ", 1 forcing period".to_owned(),
+            n => format!(", {n} forcing periods"),
+        };
+        let repeats = match self.period {
+            None => String::new(),
+            Some(1) => "; repeats in each".to_owned(),
+            Some(n) => format!("; repeats after {n}"),
+        };
+        let taper = if self.taper == Taper::Hann { "Hann taper" } else { "no taper" };
+        let (from, to) = (short(self.window.0), short(self.window.1));
+        format!("from {from} to {to} s{periods}{repeats}; {taper}, sampled at {} Hz", short(self.rate_hz))
+    }
+}
+
+/// Why there is no spectrum.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoSpectrum {
+    /// It was told to stop.
+    #[error("interrupted")]
+    Cancelled,
+    /// The run ended before the settled window did.
+    #[error("the run ended early at {at} s ({outcome}), so it has no settled window to take a spectrum of")]
+    EndedEarly {
+        /// The word of the outcome.
+        outcome: &'static str,
+        /// When, in s.
+        at: f64,
+    },
+    /// The settled window has no length.
+    #[error("the settled window from {0} to {1} s has no length: lower run.settle_s")]
+    NoWindow(f64, f64),
+    /// A rate that is no number above 0, or makes too few samples or too many.
+    #[error("{rate_hz} samples a second make {samples} in the {length} s of the settled window: {remedy}")]
+    Rate {
+        /// Samples a second.
+        rate_hz: f64,
+        /// What that makes.
+        samples: String,
+        /// Length of the window in s.
+        length: f64,
+        /// What would be right.
+        remedy: String,
+    },
+}
+
+/// Samples in the shortest period of excitation and mechanism.
+const PER_CYCLE: f64 = 128.0;
+
+/// The fewest samples of a spectrum, and the fewest where no rate was asked for.
+const FEWEST: f64 = 4.0;
+const PLENTY: f64 = 4096.0;
+
+/// The spectrum of the settled motion of `model`. The motion is run twice: for its verdict, then for its
+/// samples.
+///
+/// What a motion holds above half the rate is folded back below it. Of a smooth motion that is nothing: its
+/// spectrum falls faster than any power of the frequency. Impacts are jumps of the velocity, whose amplitude
+/// falls like 1/f, and that of the displacement like 1/f^2: with impacts four times the rate leaves a quarter
+/// of what is folded into each line of the velocity, a sixteenth into each of the displacement.
+pub fn spectrum(model: &Model, options: &SpectrumOptions, task: &Task) -> Result<Spectrum, NoSpectrum> {
+    let request =
+        Request { cancel: Some(task.cancel), until_settled: options.until_settled, ..Request::default() };
+    let summary = model.run(&request).summary;
+    ended(summary.outcome)?;
+    (task.tick)();
+    let period = summary.period.filter(|_| summary.settled == Some(true));
+    let taper = options.taper.unwrap_or(if period.is_some() { Taper::None } else { Taper::Hann });
+    let plan = Plan::new(model, summary.window, (summary.periods, period), options.rate_hz)?;
+    let times: Vec<f64> = (0..plan.samples).map(|k| plan.time(k)).collect();
+    let run = model.run(&Request { sample_times: &times, ..request });
+    ended(run.summary.outcome)?;
+    (task.tick)();
+    let values: Vec<f64> = run.samples.iter().map(|sample| options.signal.of(sample)).collect();
+    let lines = periodogram(values, 1.0 / plan.rate_hz(), taper);
+    let frequencies = (0..lines.amplitude.len()).map(|k| plan.frequency(k)).collect();
+    let table = Table::new()
+        .with("frequency_hz", Values::Numbers(frequencies))
+        .with("amplitude", Values::Numbers(lines.amplitude))
+        .with("psd", Values::Numbers(lines.density));
+    let tones = model.excitation().tones.iter().filter(|tone| !tone.noise);
+    Ok(Spectrum {
+        table,
+        signal: options.signal,
+        taper,
+        samples: plan.samples,
+        rate_hz: plan.rate_hz(),
+        window: (plan.from, plan.to),
+        periods: plan.periods,
+        period,
+        forcing_hz: tones.map(|tone| tone.frequency).collect(),
+    })
+}
+
+fn ended(outcome: Outcome) -> Result<(), NoSpectrum> {
+    match outcome.ended_at() {
+        None => Ok(()),
+        Some(_) if matches!(outcome, Outcome::Cancelled { .. }) => Err(NoSpectrum::Cancelled),
+        Some(at) => Err(NoSpectrum::EndedEarly { outcome: outcome.name(), at }),
+    }
+}
+
+/// When to sample: evenly from `from` on, the last time a step before `to`. SI.
+struct Plan {
+    from: f64,
+    to: f64,
+    samples: usize,
+    /// Forcing periods in it; 0 where there are none.
+    periods: u64,
+    /// Cycles of this frequency in so many seconds, or 1 in the whole: the frequencies of the lines are its
+    /// fractions, rounded once.
+    cycles: (f64, f64),
+}
+
+impl Plan {
+    /// Of a window with so many forcing periods, after some of which the motion repeats.
+    fn new(
+        model: &Model,
+        (from, to): (f64, f64),
+        (periods, repeats): (u64, Option<u32>),
+        rate_hz: Option<f64>,
+    ) -> Result<Self, NoSpectrum> {
+        if !(to > from) {
+            return Err(NoSpectrum::NoWindow(from, to));
+        }
+        let own = model.forcing_period().filter(|_| periods > 0);
+        let lap = u64::from(repeats.unwrap_or(1));
+        let whole = own.map(|period| (period, periods / lap * lap)).filter(|(_, count)| *count > 0);
+        let (from, parts) = match whole {
+            Some((period, count)) => (from + (periods - count) as f64 * period, count as f64),
+            None => (from, 1.0),
+        };
+        let length = whole.map_or(to - from, |(period, count)| period * count as f64);
+        let rate = rate_hz.unwrap_or_else(|| (PER_CYCLE / shortest(model)).max(PLENTY / length));
+        // a decimal rate may make a whole number but for its rounding
+        let least = (length / parts * rate - 1e-9).ceil().max(1.0);
+        let each = if rate_hz.is_some() || least > MAX_SAMPLES as f64 { least } else { round_up(least) };
+        let samples = each * parts;
+        if !(rate > 0.0 && (FEWEST..=MAX_SAMPLES as f64).contains(&samples)) {
+            let remedy = if samples > MAX_SAMPLES as f64 {
+                format!("at most {MAX_SAMPLES} fit; take a lower rate or a shorter window")
+            } else {
+                format!("take at least {}", short(FEWEST / length))
+            };
+            return Err(NoSpectrum::Rate { rate_hz: rate, samples: short(samples), length, remedy });
+        }
+        let cycles = match (whole, model.excitation().fastest()) {
+            (Some((period, count)), Some(fastest)) => (fastest, (period * fastest).round() * count as f64),
+            _ => (1.0, length),
+        };
+        let periods = whole.map_or(0, |(_, count)| count);
+        Ok(Self { from, to, samples: samples as usize, periods, cycles })
+    }
+
+    fn length(&self) -> f64 {
+        self.cycles.1 / self.cycles.0
+    }
+
+    fn rate_hz(&self) -> f64 {
+        self.samples as f64 / self.length()
+    }
+
+    /// The time of sample `k` in s.
+    fn time(&self, k: usize) -> f64 {
+        (self.from + k as f64 * self.cycles.1 / (self.cycles.0 * self.samples as f64)).min(self.to)
+    }
+
+    /// The frequency of line `k` in Hz.
+    fn frequency(&self, k: usize) -> f64 {
+        k as f64 * self.cycles.0 / self.cycles.1
+    }
+}
+
+/// The shortest period in s of the excitation and of small oscillations in a well.
+fn shortest(model: &Model) -> f64 {
+    let drive = model.excitation();
+    let tones = drive.tones.iter().map(|tone| tone.frequency);
+    let chirps = drive.chirps.iter().map(|chirp| chirp.from.max(chirp.to));
+    let fastest = tones.chain(chirps).map(|frequency| 1.0 / frequency);
+    fastest.fold(model.characteristic_time().min(model.natural_time()), f64::min)
+}
+
+/// The least power of two that is no smaller than `count`, of which transforms are fastest.
+fn round_up(count: f64) -> f64 {
+    (count as u64).next_power_of_two() as f64
+}

@@ -1,0 +1,136 @@
+//! The command `basins`: rows, attractors, random starts, manifest, picture, and starts that are refused.
+
+use std::fs;
+
+use super::{column, headless, refused, stdout};
+
+const PAPER: &str = "basins paper --set excitation.amplitude_g=0 --quiet";
+
+#[test]
+fn rows_number_the_attractors_by_the_first_start_and_are_the_same_for_any_number_of_jobs() {
+    let line = "basins duffing --set excitation.amplitude_g=0.02 --x-mm -1500:1500:9 --v -1:1:5 --quiet";
+    let text = stdout(line);
+    assert_eq!(text.lines().next().unwrap(), "x_mm,v_m_per_s,attractor,periods");
+    assert_eq!(column(&text, "x_mm")[..6], ["-1500", "-1500", "-1500", "-1500", "-1500", "-1125"]);
+    assert_eq!(column(&text, "v_m_per_s")[..5], ["-1", "-0.5", "0", "0.5", "1"]);
+    let mut seen = 0;
+    for number in column(&text, "attractor").iter().map(|own| own.parse::<u64>().unwrap()) {
+        assert!(number >= 1 && number <= seen + 1);
+        seen = seen.max(number);
+    }
+    assert!(seen >= 2);
+    for jobs in ["1", "2", "3"] {
+        assert_eq!(stdout(&format!("{line} --jobs {jobs}")), text, "--jobs {jobs}");
+    }
+    let attractors = stdout(&format!("{line} --out /dev/null --attractors -"));
+    assert_eq!(
+        attractors.lines().next().unwrap(),
+        "attractor,regime,period,side,rms_velocity_m_per_s,x_m,v_m_per_s,starts,share,share_low,share_high"
+    );
+    let counts = column(&attractors, "starts").iter().map(|own| own.parse::<usize>().unwrap()).sum::<usize>();
+    assert_eq!(counts, 45);
+    assert_eq!(column(&attractors, "attractor").len() as u64, seen);
+}
+
+#[test]
+fn starts_beyond_the_stops_have_no_attractor_and_no_part_in_the_shares() {
+    let line = format!("{PAPER} --x-mm -2:2:5 --v 0:0:1");
+    let text = stdout(&line);
+    assert_eq!(column(&text, "attractor")[..2], ["", "1"]);
+    assert_eq!(column(&text, "attractor")[3..], ["2", ""]);
+    assert_eq!(column(&text, "periods")[4], "");
+    let shares = column(&stdout(&format!("{line} --out /dev/null --attractors -")), "share");
+    // of three starts inside; the one on the top of the barrier goes nowhere
+    assert!(shares.iter().all(|own| own.starts_with("0.3333")), "{shares:?}");
+    let loud = line.replace("--quiet", "--out /dev/null");
+    let told = headless(&loud).assert().success().get_output().stderr.clone();
+    let told = String::from_utf8(told).unwrap();
+    assert!(told.contains("2 outside the room of the mass, 1 not settled"), "{told}");
+}
+
+#[test]
+fn a_start_that_leaves_the_table_has_no_attractor() {
+    let line = "basins paper-unconstrained --x-mm 0:0:1 --v -9:9:2 --out /dev/null";
+    let told = headless(line).assert().success().get_output().stderr.clone();
+    assert!(String::from_utf8(told).unwrap().contains("2 starts in"), "2 starts");
+    let text = stdout("basins paper-unconstrained --x-mm 0:0:1 --v -9:9:2 --quiet");
+    assert_eq!(column(&text, "attractor"), ["", ""]);
+}
+
+#[test]
+fn random_starts_come_from_their_seed() {
+    let line = |seed: &str| stdout(&format!("{PAPER} --x-mm -1.5:1.5 --v -0.2:0.2 --random 40 {seed}"));
+    let own = line("--seed 3");
+    assert_eq!(own.lines().count(), 41);
+    assert!(column(&own, "x_mm").iter().all(|x| x.parse::<f64>().unwrap().abs() <= 1.5));
+    assert_eq!(own, line("--seed 3 --jobs 3"));
+    assert_ne!(own, line("--seed 4"));
+    assert_eq!(line(""), line("--seed 0"));
+}
+
+#[test]
+fn what_stands_beside_the_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name);
+    let mut command = headless(&format!("{PAPER} --x-mm -2:2:9 --v -0.1:0.1:3"));
+    command.arg("--out").arg(place("rows.csv")).arg("--plot").arg(place("map.svg"));
+    command.assert().success();
+    let manifest: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(place("rows.csv.json")).unwrap()).unwrap();
+    assert_eq!((&manifest["command"], &manifest["starts"]), (&"basins".into(), &27.into()));
+    assert_eq!((&manifest["attractors"], &manifest["outside"]), (&2.into(), &6.into()));
+    let svg = fs::read_to_string(place("map.svg")).unwrap();
+    for words in
+        ["rest left", "rest right", "displacement at the start, mm", "none found", "9 \u{d7} 3 starts"]
+    {
+        assert!(svg.contains(words), "{words}");
+    }
+    // the manifest is a scene
+    let again = headless("basins")
+        .arg(place("rows.csv.json"))
+        .args(["--quiet", "--v", "-0.1:0.1:3"])
+        .args(["--x-mm", "-2:2:9"])
+        .assert()
+        .success()
+        .get_output()
+        .stdout
+        .clone();
+    assert_eq!(again, fs::read(place("rows.csv")).unwrap());
+}
+
+#[test]
+fn starts_that_cannot_be_are_refused() {
+    let with = |x_mm: &str, v: &str| headless(&format!("basins paper --x-mm {x_mm} --v {v}"));
+    refused(with("0:1:0", "0:0:1"), &["--x-mm 0:1:0", "no values"]);
+    refused(with("1:0:2", "0:0:1"), &["--x-mm 1:0:2", "reversed"]);
+    refused(with("0:1:2", "1:1:2"), &["--v 1:1:2", "A:A:1"]);
+    refused(with("0:1:1", "0:0:1"), &["--x-mm 0:1:1", "A:A:1"]);
+    refused(with("0:1", "0:0:1"), &["--x-mm 0:1", "A:B:N"]);
+    refused(with("0:1:2.5", "0:0:1"), &["--x-mm 0:1:2.5", "whole number"]);
+    refused(with("0:x:2", "0:0:1"), &["--x-mm 0:x:2", "`x`"]);
+    refused(with("0:inf:2", "0:0:1"), &["--x-mm", "finite"]);
+    refused(with("0:1:1000000000", "0:0:1"), &["1000000000 starts", "10000000"]);
+    refused(with("0:1:100000", "0:1:10000"), &["100000 x 10000 starts", "10000000"]);
+    refused(with("2:3:5", "0:0:1"), &["--x-mm 2:3:5", "right stop at 1.5 mm"]);
+    refused(with("0:1:2", "0:1:2 --seed 3"), &["--random"]);
+    refused(with("0:1:2", "0:1:2 --random 5"), &["--x-mm 0:1:2", "--random"]);
+    refused(with("0:1", "0:1 --random 0"), &["--random 0", "how many"]);
+    refused(with("0:1", "0:1 --random 1e9"), &["--random 1e9", "whole"]);
+    refused(with("0:1", "0:1 --random 1000000000"), &["1000000000 starts", "10000000"]);
+    refused(with("1:0", "0:1 --random 5"), &["--x-mm 1:0", "reversed"]);
+    refused(with("0:1:1000", "0:1:1000 --plot map.png"), &["500000", "1000000"]);
+    refused(headless("basins paper-ramp --x-mm 0:1:2 --v 0:0:1"), &["does not repeat", "Sine"]);
+    let lossless = "basins elastic-box --set excitation=None --x-mm 0:1:2 --v 0:0:1";
+    refused(headless(lossless), &["no damping"]);
+    refused(headless("basins paper --v 0:0:1"), &["--x-mm"]);
+}
+
+#[test]
+fn one_start_is_a_map() {
+    let text = stdout(&format!("{PAPER} --x-mm 1:1:1 --v 0:0:1"));
+    assert_eq!(text.lines().nth(1).unwrap(), "1,0,1,1");
+    let folder = tempfile::tempdir().unwrap();
+    let plot = folder.path().join("one.png");
+    headless(&format!("{PAPER} --x-mm 1:1:1 --v 0:0:1 --out /dev/null --plot")).arg(&plot).assert().success();
+    assert!(fs::metadata(plot).unwrap().len() > 1000);
+}

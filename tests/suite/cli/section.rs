@@ -1,0 +1,117 @@
+//! The command `section` and walks of `sweep`: columns, the same bytes on any number of threads, refusals.
+
+use std::fs;
+
+use super::{column, headless, refused, stdout};
+
+const SHORT: &str = "--set run.duration_s=4 --set run.settle_s=2 --quiet";
+
+#[test]
+fn sections_have_their_columns() {
+    let states = stdout(&format!("section paper {SHORT}"));
+    assert_eq!(states.lines().next().unwrap(), "index,t_s,x_m,v_m_per_s");
+    assert_eq!(column(&states, "index"), ["0", "1", "2", "3", "4", "5"]);
+    assert_eq!(column(&states, "t_s")[..2], ["2", "2.3333333333333335"]);
+    let impacts = stdout(&format!("section paper --at impacts {SHORT}"));
+    assert_eq!(impacts.lines().next().unwrap(), "index,t_s,side,phase_deg,v_in_m_per_s");
+    assert!(column(&impacts, "side").iter().all(|side| side == "left" || side == "right"));
+    let over = "--over stops.travel_limit_mm=1.5,2 --over excitation.amplitude_g=0.6,1";
+    let diagram = stdout(&format!("section paper {over} --phase-deg -90 {SHORT}"));
+    assert_eq!(diagram.lines().next().unwrap(), "travel_limit_mm,amplitude_g,index,t_s,x_m,v_m_per_s");
+    assert_eq!(diagram.lines().count(), 1 + 4 * 6);
+    let strong = over.replace("0.6,1", "1.1,1.2");
+    let walked = stdout(&format!("section paper {strong} --at impacts --carry down {SHORT}"));
+    let header = "travel_limit_mm,amplitude_g,direction,index,t_s,side,phase_deg,v_in_m_per_s";
+    assert_eq!(walked.lines().next().unwrap(), header);
+    let amplitudes = column(&walked, "amplitude_g");
+    assert_eq!((amplitudes[0].as_str(), amplitudes.last().unwrap().as_str()), ("1.2", "1.1"));
+    // A cell that is not carried is the section of its scene.
+    let alone = stdout(&format!("section paper --set stops.travel_limit_mm=2 --phase-deg 270 {SHORT}"));
+    assert_eq!(column(&diagram, "x_m")[18..], column(&alone, "x_m"));
+    // Without motion, and without a period.
+    let still = stdout(&format!("section paper --set excitation.amplitude_g=0 {SHORT}"));
+    assert_eq!(column(&still, "v_m_per_s"), ["0"; 6]);
+    let ball = stdout("section bouncing-ball --at impacts --quiet");
+    assert!(ball.lines().count() > 2 && column(&ball, "phase_deg").iter().all(String::is_empty));
+}
+
+#[test]
+fn walks_are_the_same_on_any_number_of_threads() {
+    for line in [
+        "section paper --over stops.travel_limit_mm=1.5:3:0.5 --over excitation.amplitude_g=0.4:1.4:0.1 \
+         --carry both",
+        "section paper-unconstrained --over excitation.amplitude_g=1:1.3:0.02 --skip 20 --keep 5",
+        "sweep paper --over stops.travel_limit_mm=1.5:3:0.25 --over excitation.amplitude_g=0.4:1.4:0.1 \
+         --carry both --columns rms_velocity_m_per_s,final_x_m,mean_x_m --until-settled 12",
+        "sweep paper-unconstrained --over excitation.frequency_hz=2:4:0.2 --carry both",
+    ] {
+        let text = stdout(&format!("{line} {SHORT} --jobs 1"));
+        assert!(text.lines().count() > 20);
+        for jobs in ["2", "4"] {
+            assert_eq!(stdout(&format!("{line} {SHORT} --jobs {jobs}")), text, "{line} --jobs {jobs}");
+        }
+    }
+}
+
+#[test]
+fn skip_and_keep_count_forcing_periods() {
+    let text = stdout("section paper --skip 9 --keep 4 --over excitation.frequency_hz=2,4 --quiet");
+    assert_eq!(column(&text, "index"), ["0", "1", "2", "3", "0", "1", "2", "3"]);
+    assert_eq!(column(&text, "t_s"), ["4.5", "5", "5.5", "6", "2.25", "2.5", "2.75", "3"]);
+}
+
+#[test]
+fn a_diagram_has_a_manifest_and_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |line: &str| {
+        headless(&format!("{line} {SHORT}")).current_dir(folder.path()).assert().success();
+    };
+    run("section paper --over excitation.amplitude_g=0.5:1:0.05 --carry both --out d.csv --plot d.svg");
+    let manifest: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("d.csv.json")).unwrap()).unwrap();
+    assert_eq!((&manifest["command"], &manifest["cells"]), (&"section".into(), &22.into()));
+    let text = fs::read_to_string(folder.path().join("d.svg")).unwrap();
+    for words in ["up", "down", "with impacts", "free", "amplitude, g", "displacement, mm"] {
+        assert!(text.lines().any(|line| line == words), "{words}");
+    }
+    run("section paper --plot s.svg --out s.csv");
+    assert!(fs::read_to_string(folder.path().join("s.svg")).unwrap().contains("displacement, mm"));
+    assert!(!folder.path().join("s.csv.json").exists(), "one run has no manifest");
+    run("section paper --at impacts --plot i.svg --out i.csv");
+    assert!(fs::read_to_string(folder.path().join("i.svg")).unwrap().contains("phase of the drive"));
+    run("sweep paper --over excitation.amplitude_g=0.5:1:0.05 --carry both --out w.csv --plot w.svg");
+    assert!(fs::read_to_string(folder.path().join("w.svg")).unwrap().contains("\nhysteresis\n"));
+    run("sweep paper --over stops.travel_limit_mm=1.5:3:0.5 --over excitation.amplitude_g=0.5,1 \
+         --carry both --out m.csv --plot m.svg");
+    let text = fs::read_to_string(folder.path().join("m.svg")).unwrap();
+    assert!(text.contains("\ndown \u{2212} up\n"), "the difference of the two maps");
+}
+
+#[test]
+fn sections_and_walks_that_cannot_be_are_refused() {
+    let chirp = "--set excitation=Chirp(from_hz:1,to_hz:2,over_s:3,amplitude_g:1)";
+    let over = "--over excitation.amplitude_g=0.5,1";
+    refused(headless(&format!("section paper {chirp}")), &["excitation = Chirp", "Sine"]);
+    refused(headless("section paper --set excitation=None"), &["excitation = None", "Sine"]);
+    refused(headless(&format!("section paper {chirp} {over}")), &["amplitude_g = 0.5", "Chirp", "Sine"]);
+    refused(headless(&format!("sweep paper {chirp} {over} --carry up")), &["Chirp", "common period"]);
+    let ramp = "--set excitation=AmplitudeRamp(frequency_hz:3,from_g:0,to_g:1,over_s:5)";
+    refused(headless(&format!("section paper {ramp}")), &["AmplitudeRamp", "Sine"]);
+    refused(headless("section paper --phase-deg north"), &["--phase-deg north", "degrees"]);
+    refused(headless("section paper --phase-deg inf"), &["--phase-deg inf"]);
+    refused(headless("section paper --phase-deg 9 --at impacts"), &["--phase-deg", "--at impacts"]);
+    refused(headless("section paper --at crossings"), &["--at", "impacts"]);
+    refused(headless("section paper --carry up"), &["--over"]);
+    refused(headless(&format!("section paper {over} --carry sideways")), &["sideways", "both"]);
+    refused(headless("section paper --over excitation.amplitude_g=1:0.5:0.1"), &["amplitude_g"]);
+    let many = "--over mass_g=1:100000:1 --over excitation.amplitude_g=0.0001:1:0.0001";
+    refused(headless(&format!("section paper {many}")), &["1000000000 cells"]);
+    refused(headless(&format!("sweep paper {many} --carry both")), &["1000000000 cells"]);
+    refused(headless("section paper --skip 5"), &["--keep"]);
+    refused(headless("section paper --skip 5 --keep 0"), &["--keep"]);
+    refused(headless("section paper --quiet --set run.settle_s=9.9"), &["run.duration_s", "forcing period"]);
+    refused(headless("section paper --quiet --set run.duration_s=9e6"), &["run.duration_s", "4194304"]);
+    let two = "--over stops.travel_limit_mm=1,2 --plot a.png";
+    refused(headless(&format!("section paper {over} {two}")), &["--plot", "one field"]);
+    refused(headless("section paper --until-settled 1"), &["--until-settled 1"]);
+}
