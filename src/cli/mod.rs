@@ -4,6 +4,7 @@ mod accuracy;
 mod basins;
 mod check;
 mod curve;
+mod exponents;
 mod failure;
 mod interrupt;
 mod options;

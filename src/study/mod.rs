@@ -14,6 +14,7 @@ mod continued;
 mod curve;
 mod dense_output;
 mod edges;
+mod exponents;
 mod fields;
 mod flexures;
 mod grid;
@@ -49,6 +50,10 @@ pub use curve::{
 };
 pub use dense_output::between;
 pub use edges::{Edges, first_crossing_edge};
+pub use exponents::{
+    Estimate, ExponentCells, ExponentOptions, ExponentTally, Exponents, NoExponents, average_exponents,
+    drive_fault, exponents, exponents_row,
+};
 pub use fields::{Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};

@@ -106,6 +106,7 @@ fn every_column_and_word_of_the_output_is_documented() {
         "curve paper --out /dev/null --shapes - --points 3".to_owned(),
         format!("curve paper --out /dev/null --contact - {hertz}"),
         "threshold paper --of release".to_owned(),
+        "exponents paper --quiet".to_owned(),
         "spectrum paper --rate-hz 30 --quiet".to_owned(),
         "section paper --over excitation.amplitude_g=1 --carry up --quiet".to_owned(),
         "section paper --at impacts".to_owned(),

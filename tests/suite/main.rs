@@ -12,6 +12,7 @@ mod convergence;
 mod documents;
 mod drives;
 mod examples;
+mod exponents;
 mod impacts;
 mod lanes;
 mod layers;

@@ -127,7 +127,10 @@ impl StroboscopicMap {
         let scales = [self.model.scales.length, self.model.scales.speed * unit];
         let start =
             (Dual { value: x, slopes: [scales[0], 0.0] }, Dual { value: v * unit, slopes: [0.0, scales[1]] });
-        let Traced { passage, end } = self.trace(&self.dual, start, f64::from(periods));
+        let Traced { passage, end, rested } = self.trace(&self.dual, start, f64::from(periods));
+        if rested {
+            return (passage, Jacobian { rows: [[0.0; 2]; 2] });
+        }
         let in_si = [1.0, unit];
         let row = |own: Dual, out: f64| std::array::from_fn(|j| own.slopes[j] / scales[j] * in_si[j] / out);
         (passage, Jacobian { rows: [row(end.0, 1.0), row(end.1, unit)] })

@@ -51,10 +51,11 @@ impl Passage {
     }
 }
 
-/// A passage, and the state at its end in kernel units.
+/// A passage, the state at its end in kernel units, and whether the mass has rested on a stop on the way.
 pub(super) struct Traced<T> {
     pub passage: Passage,
     pub end: (T, T),
+    pub rested: bool,
 }
 
 /// Follows the motion from a state in kernel units at an instant to another.
@@ -106,7 +107,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
         false => (-model.damping * time / model.mass).exp() * squared_restitutions(model, &events),
     });
     let state = (x.to_f64(), v.to_f64() / equation.unit);
-    Traced { passage: Passage { state, events, determinant, nearest_miss, outcome }, end: (x, v) }
+    Traced { passage: Passage { state, events, determinant, nearest_miss, outcome }, end: (x, v), rested }
 }
 
 /// The product of the squared restitution of each impact.

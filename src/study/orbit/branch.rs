@@ -16,14 +16,18 @@ const FIRST: f64 = 2e-3;
 const LONGEST: f64 = 1e-2;
 const SHORTEST: f64 = 1e-9;
 
+/// The step below which a branch near a grazing is looked for on its other side: there the map changes as
+/// the root of the distance, and steps would become ever shorter.
+const NEAR_A_GRAZING: f64 = 1e-5;
+
 /// Cosine of the angle by which the direction may turn in a step.
 const STRAIGHT: f64 = 0.9;
 
 /// The most points.
 const MOST_POINTS: usize = 5000;
 
-/// Distances at which another motion is looked for where the branch ends at a grazing.
-const AROUND: [f64; 3] = [3e-3, 3e-4, 3e-5];
+/// Distances at which another motion is looked for where the branch comes to a grazing.
+const AROUND: [f64; 4] = [3e-3, 1e-3, 1e-4, 1e-5];
 
 /// Why a branch ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -163,17 +167,15 @@ impl Walk<'_> {
                 }
                 None => step *= 0.5,
             }
-            if step < SHORTEST {
-                let Some(next) = self.past_a_grazing() else {
-                    let grazes = grazes(&self.at.0, &self.corrector.units);
-                    return Ok(if grazes { BranchEnd::Grazing } else { BranchEnd::Lost });
-                };
-                if let Some(event) = self.branch.events.last_mut() {
+            let at_a_grazing = step < NEAR_A_GRAZING && grazes(&self.at.0, &self.corrector.units);
+            if at_a_grazing && let Some(next) = self.past_a_grazing() {
+                self.go_to(next);
+                step = FIRST * 0.1;
+            } else if step < SHORTEST {
+                if let Some(event) = self.branch.events.last_mut().filter(|_| at_a_grazing) {
                     *event = Some(BranchEvent::Grazing);
                 }
-                self.add(None, &next.0);
-                self.at = next;
-                step = FIRST * 0.1;
+                return Ok(if at_a_grazing { BranchEnd::Grazing } else { BranchEnd::Lost });
             }
         }
         Ok(BranchEnd::Points)
@@ -233,21 +235,19 @@ impl Walk<'_> {
     /// A motion that touches the stops otherwise, near the last one, and the direction away from it.
     fn past_a_grazing(&self) -> Option<(Point, Vector3<f64>)> {
         let (last, _) = &self.at;
-        let part = |number: i32, place: u32| f64::from(number / 3_i32.pow(place) % 3 - 1);
-        for distance in AROUND {
-            let directions = (0..27).map(|own| Vector3::new(part(own, 0), part(own, 1), part(own, 2)));
-            for direction in directions.filter_map(|own| own.try_normalize(0.5)) {
-                let Some(point) = self.corrector.correct(last.at + direction * distance, &direction) else {
-                    continue;
-                };
-                let away = point.at - last.at;
-                let far = away.norm();
-                if !(0.3 * distance..=3.0 * distance).contains(&far) || !differ(last, &point) {
-                    continue;
-                }
-                if let Some(onward) = self.corrector.tangent(&point, &(away / far)) {
-                    return Some((point, onward));
-                }
+        let directions = self.corrector.directions_past(last);
+        let starts = AROUND.iter().flat_map(|far| directions.iter().map(move |own| (*far, own)));
+        for (distance, direction) in starts {
+            let Some(point) = self.corrector.correct(last.at + direction * distance, direction) else {
+                continue;
+            };
+            let away = point.at - last.at;
+            let far = away.norm();
+            if !(0.3 * distance..=3.0 * distance).contains(&far) || !differ(last, &point) {
+                continue;
+            }
+            if let Some(onward) = self.corrector.tangent(&point, &(away / far)) {
+                return Some((point, onward));
             }
         }
         None

@@ -20,6 +20,9 @@ const DIFFERENCE: f64 = 3e-8;
 const NEAR_AN_EVENT: f64 = 0.02;
 const CHOICES: u32 = 64;
 
+/// How far beside a motion that touches a stop without speed the map is differentiated.
+const BESIDE: f64 = 1e-5;
+
 /// The largest correction of a predicted point.
 const LARGEST: f64 = 0.2;
 
@@ -140,27 +143,17 @@ impl Corrector<'_> {
         let mut at = guess;
         let mut best = f64::INFINITY;
         for _ in 0..MOST_STEPS {
-            let value = at.z * self.units.range;
-            let map = self.map(value)?;
-            let state = allowed(map.model(), self.state(&at));
-            (at.x, at.y) = (state.0 / self.units.length, state.1 / self.units.speed);
-            let (passage, jacobian) = map.pass_with_jacobian(state, self.periods);
-            if passage.outcome != Outcome::Done
-                || !jacobian.rows.as_flattened().iter().all(|own| own.is_finite())
-            {
-                return None;
-            }
-            let off = self.off(passage.state, state);
-            let slopes = self.by_field(state, value)?;
-            let orbit = Orbit { period: self.periods, state, passage, jacobian };
-            let matrix = self.matrix(&orbit, slopes, across);
+            let point = self.look(&at)?;
+            at = point.at;
+            let off = self.off(point.orbit.passage.state, point.orbit.state);
+            let matrix = self.matrix(&point.orbit, point.by_field, across);
             let right = Vector3::new(-off[0], -off[1], -across.dot(&(at - guess)));
             let step = matrix.lu().solve(&right)?;
             let length = step.amax();
             let close = off.iter().all(|own| own.abs() <= CLOSE);
             let exact = off.iter().all(|own| own.abs() <= ROUNDING);
             if exact || length <= SMALLEST_STEP || (close || length <= CLOSE) && length >= 0.5 * best {
-                return Some(Point { at, value, orbit, by_field: slopes });
+                return Some(point);
             }
             if !(length.is_finite() && (at + step - guess).amax() <= LARGEST) {
                 return None;
@@ -177,5 +170,50 @@ impl Corrector<'_> {
         let tangent = matrix.lu().solve(&Vector3::new(0.0, 0.0, 1.0))?;
         let tangent = tangent.try_normalize(0.0)?;
         tangent.iter().all(|own| own.is_finite()).then_some(tangent)
+    }
+
+    /// Directions in which a branch may go on from a motion that touches a stop without speed.
+    ///
+    /// On the side without the touch the map is smooth, and the branch goes along the null vector of its
+    /// derivatives. On the side with it they are all but of rank 1: what a touch does to the state, times how
+    /// deep the state would have it (Nordmark 1991). The branch leaves along the surface of grazing, so that
+    /// what is left of the change of a state is of that one direction.
+    pub fn directions_past(&self, grazing: &Point) -> Vec<Vector3<f64>> {
+        let rows = |orbit: &Orbit, by_field: [f64; 2]| {
+            let matrix = self.matrix(orbit, by_field, &Vector3::zeros());
+            [0, 1].map(|row| Vector3::new(matrix[(row, 0)], matrix[(row, 1)], matrix[(row, 2)]))
+        };
+        let own = rows(&grazing.orbit, grazing.by_field);
+        let mut found = Vec::new();
+        let sides = [1.0, -1.0].into_iter().flat_map(|sign| (0..3).map(move |axis| (sign, axis)));
+        for (sign, axis) in sides {
+            let mut at = grazing.at;
+            at[axis] += sign * BESIDE;
+            let Some(beside) = self.look(&at) else { continue };
+            let other = rows(&beside.orbit, beside.by_field);
+            let largest = if other[0].norm() > other[1].norm() { other[0] } else { other[1] };
+            let depth = largest.normalize();
+            let touch = (other[0].dot(&depth), other[1].dot(&depth));
+            let across = own[0] * touch.1 - own[1] * touch.0;
+            for direction in [other[0].cross(&other[1]), across.cross(&depth)] {
+                if let Some(direction) = direction.try_normalize(0.0).filter(|own| own.norm().is_finite()) {
+                    found.extend([direction, -direction]);
+                }
+            }
+        }
+        found
+    }
+
+    /// The motion through a state, which need not come back, with its derivatives; none where it ends early
+    /// or has none.
+    fn look(&self, at: &Vector3<f64>) -> Option<Point> {
+        let value = at.z * self.units.range;
+        let map = self.map(value)?;
+        let state = allowed(map.model(), self.state(at));
+        let (passage, jacobian) = map.pass_with_jacobian(state, self.periods);
+        let finite = jacobian.rows.as_flattened().iter().all(|own| own.is_finite());
+        let by_field = self.by_field(state, value).filter(|_| finite && passage.outcome == Outcome::Done)?;
+        let orbit = Orbit { period: self.periods, state, passage, jacobian };
+        Some(Point { at: self.at(state, value), value, orbit, by_field })
     }
 }

@@ -85,8 +85,10 @@ pub(super) fn between(
     let forgets = |point: &Point| point.orbit.determinant() == 0.0;
     let touches = differ(from, to) && !(forgets(from) && forgets(to));
     if touches {
-        // A motion with fewer contacts is on the side on which it misses the stop.
-        let changed = |point: &Point| differ(from, point);
+        // From the side that misses the stop: on the other the map changes as the root of the distance.
+        let misses = from.orbit.contacts().len() <= to.orbit.contacts().len();
+        let free = if misses { from } else { to };
+        let share = |own: f64| if misses { own } else { 1.0 - own };
         let (mut low, mut high) = (0.0, 1.0);
         let (mut before, mut after) = (None, None);
         for _ in 0..MOST_POINTS {
@@ -94,16 +96,16 @@ pub(super) fn between(
                 break;
             }
             let middle = 0.5 * (low + high);
-            match at(middle) {
-                Some(point) if !changed(&point) => (low, before) = (middle, Some(point)),
+            match at(share(middle)) {
+                Some(point) if !differ(free, &point) => (low, before) = (middle, Some(point)),
                 Some(point) => (high, after) = (middle, Some(point)),
                 None => high = middle,
             }
         }
-        let before = before.unwrap_or_else(|| from.clone());
+        let before = before.unwrap_or_else(|| free.clone());
         let grazes = |point: &Point| grazes(point, &corrector.units);
         if grazes(&before) || after.as_ref().is_some_and(grazes) {
-            found.push((low, BranchEvent::Grazing, before));
+            found.push((share(low), BranchEvent::Grazing, before));
         }
     }
     // Across a grazing the multipliers jump: none passes through the unit circle there.

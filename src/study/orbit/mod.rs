@@ -29,7 +29,7 @@ const LONGEST_STEP: f64 = 0.2;
 
 /// The change of a state, as a share of the scales, below which it has come back; and the step below which
 /// nothing is gained any more.
-pub(super) const CLOSE: f64 = 1e-9;
+const CLOSE: f64 = 1e-9;
 const SMALLEST_STEP: f64 = 1e-13;
 
 /// States closer than this share of the scales are the same motion's.
