@@ -21,6 +21,7 @@ Examples:
   interwell --headless section paper --over excitation.amplitude_g=0.5:1.5:0.005 --plot diagram.png
   interwell --headless basins --x-mm -1.5:1.5:101 --v -0.5:0.5:101 --out basins.csv --plot basins.png
   interwell --headless exponents duffing-chaos --quiet
+  interwell --headless orbit impact-oscillator --branch excitation.amplitude_g=0.05:0.06 --plot branch.png
   interwell --headless accuracy --plot accuracy.png
   interwell --headless accuracy nominal-cubic --method rk4 --step-s 1/60,1/600
 

@@ -62,7 +62,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         .map_err(|faults| Failure::from(document.error_from(faults)))?;
     if !model.repeats() || !model.is_shaken() {
         return Err(Failure::argument(format!(
-            "{}: excitation: a periodic motion is one of a drive that repeats and is not 0; take a Sine, or a \
+            "{}: excitation: a periodic motion needs a drive that repeats and is not 0; take a Sine, or a \
              Sum of sines whose frequencies have a common period",
             document.name
         )));

@@ -112,6 +112,7 @@ fn every_column_and_word_of_the_output_is_documented() {
         "section paper --at impacts".to_owned(),
         "basins paper --x-mm 0:1:2 --v 0:0:1 --quiet".to_owned(),
         "basins paper --x-mm 0:1:2 --v 0:0:1 --quiet --out /dev/null --attractors -".to_owned(),
+        "orbit impact-oscillator --branch excitation.amplitude_g=0.05:0.06 --quiet".to_owned(),
         "accuracy --case grazing --out - --quiet".to_owned(),
         "accuracy nominal-cubic --out - --quiet".to_owned(),
         "sweep paper --over excitation.amplitude_g=1 --columns all --out - --quiet".to_owned(),

@@ -20,6 +20,7 @@ mod live;
 mod mechanics;
 mod notes;
 mod oracles;
+mod orbit;
 mod plots;
 mod presets;
 mod properties;

@@ -44,7 +44,7 @@ pub fn branch_figure(
         entries.push((Sample::Marker(shape, theme.soft), event.name()));
     }
     let top = TOP.max(legend(&mut figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
-    let x_label = label(&table, &branch.field);
+    let x_label = label(&table, &table.columns()[0].name);
     let y_label = "displacement at the strobe, mm";
     let across =
         PlotAxis::around(branch.values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);

@@ -8,6 +8,7 @@ use super::corrector::{Corrector, Point, Units};
 use super::events::{BranchEvent, between, differ, grazes};
 use super::family::Family;
 use super::{NoOrbit, Orbit, orbit, with_orbits};
+use crate::scene::column_names;
 use crate::study::{Table, Task};
 
 /// Steps of the walk in the units of the branch: the first, the longest, and the one below which it does not
@@ -76,7 +77,8 @@ pub struct Branch {
 impl Branch {
     /// A row a motion: the field, what [`orbit_table`](super::orbit_table) has, and `event`.
     pub fn table(&self) -> Table {
-        let table = Table::new().with(&self.field, self.values.iter().copied().collect());
+        let column = column_names(&[&self.field]).concat();
+        let table = Table::new().with(column, self.values.iter().copied().collect());
         let name = |event: &Option<BranchEvent>| event.map_or("", BranchEvent::name);
         with_orbits(table, &self.orbits).each("event", &self.events, name)
     }
@@ -112,7 +114,7 @@ pub fn branch(
     let ends = [from.min(to), from.max(to)].map(|own| own / units.range);
     let mut walk = Walk { corrector, branch, ends, phase, start, at: (point, along) };
     walk.add(None, &walk.at.0.clone());
-    walk.branch.end = walk.to_the_end(task)?;
+    walk.branch.end = walk.run_out(task)?;
     Ok(walk.branch)
 }
 
@@ -131,7 +133,8 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn to_the_end(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
+    /// Goes on until the branch ends.
+    fn run_out(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
         let mut step = FIRST;
         while self.branch.values.len() < MOST_POINTS {
             if task.is_cancelled() {

@@ -1,9 +1,12 @@
 //! Periodic motions: found by Newton's method on the stroboscopic map, with their Floquet multipliers, and
 //! followed over a field of the scene.
 //!
-//! A periodic motion of `n` forcing periods is a fixed point of the map of a state to that n periods later
-//! ([`StroboscopicMap`]). Its multipliers are the eigenvalues of the map's derivative there; it is stable where
-//! both are inside the unit circle. A motion that rests on a stop forgets its past: both are 0.
+//! A periodic motion of n forcing periods is a fixed point of the map of a state to that n periods later
+//! ([`StroboscopicMap`]). Its multipliers are the eigenvalues of the map's derivative there; it is stable
+//! where both are inside the unit circle. A motion that rests on a stop forgets its past: both are 0.
+//!
+//! [`orbit`] finds the motion near that of a run, [`orbit_near`] one near a state, [`branch()`] follows it
+//! over a field.
 
 mod branch;
 mod corrector;
@@ -63,7 +66,7 @@ pub enum NoOrbit {
     Grazing,
     /// The motion does not last for the period.
     Ended(Outcome),
-    /// One of the period that was asked for was not there: the motion repeats after this many forcing periods.
+    /// None of the period that was asked for is there: the motion repeats after this many forcing periods.
     Shorter(u32),
     /// The run does not come to a motion that repeats.
     NotSettled,
@@ -76,7 +79,8 @@ impl fmt::Display for NoOrbit {
         match self {
             Self::NotConverged => f.write_str("Newton's method finds no periodic motion near the run's own"),
             Self::Grazing => f.write_str(
-                "the motion touches a stop without speed, where it has no derivative; change the scene a little",
+                "the motion touches a stop without speed, where it has no derivative; change the scene a \
+                 little",
             ),
             Self::Ended(outcome) => {
                 write!(f, "the motion ends early ({})", outcome.name())?;
