@@ -127,7 +127,7 @@ mod tests {
         (1..=9).for_each(|value| batches.add(f64::from(value)));
         // means 2, 5 and 8 of three batches: their standard deviation is 3
         let estimate = batches.estimate(2.0);
-        assert_eq!((estimate.per_s, estimate.error), (2.5, 3.0 / 3.0_f64.sqrt() / 2.0));
+        assert_eq!((estimate.per_s, estimate.error), (2.5, 3.0_f64.sqrt() / 2.0));
         // 10 values in 3 batches of 4, 3 and 3
         let mut uneven = Batches::new(10);
         (0..10).for_each(|_| uneven.add(0.5));
