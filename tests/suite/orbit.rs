@@ -208,6 +208,9 @@ fn a_motion_that_rests_has_multipliers_of_zero_and_a_table_says_so() {
 fn what_is_not_there_is_said() {
     let irregular = preset("duffing-chaos", &[]);
     assert_eq!(find(&irregular, 0.0, None), Err(NoOrbit::NotSettled));
+    // an unstable one is found beside it
+    let unstable = find(&irregular, 0.0, Some(1)).unwrap();
+    assert!(unstable.period == 1 && !unstable.is_stable());
     let single = preset("paper", &["excitation.amplitude_g=1"]);
     assert_eq!(find(&single, 0.0, Some(3)), Err(NoOrbit::Shorter(1)));
     assert_eq!(orbit(&single, 0.0, None, &AtomicBool::new(true)), Err(NoOrbit::Cancelled));

@@ -112,7 +112,7 @@ pub fn branch(
         end: BranchEnd::Points,
     };
     let ends = [from.min(to), from.max(to)].map(|own| own / units.range);
-    let mut walk = Walk { corrector, branch, ends, phase, start, at: (point, along) };
+    let mut walk = Walk { corrector, branch, ends, phase, start, farthest: 0.0, at: (point, along) };
     walk.add(None, &walk.at.0.clone());
     walk.branch.end = walk.run_out(task)?;
     Ok(walk.branch)
@@ -128,6 +128,8 @@ struct Walk<'a> {
     /// The phase at which motions are told, in forcing periods, and the first one there.
     phase: f64,
     start: Vector3<f64>,
+    /// How far from it the branch has been.
+    farthest: f64,
     /// The last point, and the direction there.
     at: (Point, Vector3<f64>),
 }
@@ -227,12 +229,13 @@ impl Walk<'_> {
         }
     }
 
-    fn is_closed(&self, step: f64) -> bool {
+    fn is_closed(&mut self, step: f64) -> bool {
         let (Some(last), Some(value)) = (self.branch.orbits.last(), self.branch.values.last()) else {
             return false;
         };
         let far = (self.corrector.at(last.state, *value) - self.start).norm();
-        far < 0.5 * step && self.branch.values.len() > 10
+        self.farthest = self.farthest.max(far);
+        far < 0.5 * step && self.farthest > 10.0 * step
     }
 
     /// A motion that touches the stops otherwise, near the last one, and the direction away from it.

@@ -35,6 +35,9 @@ const LONGEST_STEP: f64 = 0.2;
 const CLOSE: f64 = 1e-9;
 const SMALLEST_STEP: f64 = 1e-13;
 
+/// Strobes of a motion without a period among which one that nearly comes back is looked for.
+const STROBES: usize = 400;
+
 /// States closer than this share of the scales are the same motion's.
 const SAME: f64 = 1e-6;
 
@@ -219,11 +222,26 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
     let periods = period.or(summary.period).ok_or(NoOrbit::NotSettled)?;
     let since = (summary.window.1.max(summary.settles_at.unwrap_or(0.0)) / forcing).ceil();
     let run = StroboscopicMap::over(model, map.first_strobe() + since * forcing).pass(model.start(), 1);
-    let orbit = orbit_near(&map, run.state, periods)?;
+    let guess = if summary.period.is_some() { run.state } else { closest_return(&map, run.state, periods) };
+    let orbit = orbit_near(&map, guess, periods)?;
     match period {
         Some(asked) if orbit.period != asked => Err(NoOrbit::Shorter(orbit.period)),
         _ => Ok(orbit),
     }
+}
+
+/// Of the states that follow one strobe by strobe, that which comes back the closest after `periods`.
+fn closest_return(map: &StroboscopicMap, from: (f64, f64), periods: u32) -> (f64, f64) {
+    let scales = map.model().scales();
+    let next = |state: &(f64, f64)| {
+        let passage = map.pass(*state, 1);
+        (passage.outcome == Outcome::Done).then_some(passage.state)
+    };
+    let states: Vec<_> = std::iter::successors(Some(from), next).take(STROBES + periods as usize).collect();
+    let returns = states.iter().zip(states.iter().skip(periods as usize));
+    let far =
+        |(a, b): (&(f64, f64), &(f64, f64))| ((a.0 - b.0) / scales.length).hypot((a.1 - b.1) / scales.speed);
+    returns.min_by(|a, b| far(*a).total_cmp(&far(*b))).map_or(from, |(state, _)| *state)
 }
 
 /// A row a motion: period, state, multipliers, whether it is stable, and what happens on it.
