@@ -20,6 +20,8 @@ Examples:
   interwell --headless sweep paper --over excitation.amplitude_g=0:2:0.02 --carry both --plot hysteresis.png
   interwell --headless section paper --over excitation.amplitude_g=0.5:1.5:0.005 --plot diagram.png
   interwell --headless basins --x-mm -1.5:1.5:101 --v -0.5:0.5:101 --out basins.csv --plot basins.png
+  interwell --headless exponents duffing-chaos --quiet
+  interwell --headless orbit impact-oscillator --branch excitation.amplitude_g=0.05:0.06 --plot branch.png
   interwell --headless accuracy --plot accuracy.png
   interwell --headless accuracy nominal-cubic --method rk4 --step-s 1/60,1/600
 
@@ -113,6 +115,10 @@ commands! {
     spectrum Spectrum " [SCENE]";
     /// The attractor that each of many starts goes to: CSV with a row for each start
     basins Basins " [SCENE] --x-mm A:B:N --v A:B:N";
+    /// The periodic motion near a run's own, with its multipliers; or a branch of them over a field
+    orbit Orbit " [SCENE]";
+    /// Lyapunov exponents of the settled motion, with their standard errors, sum and dimension
+    exponents Exponents " [SCENE]";
     /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed
     /// against error beside other methods, and the hard cases with the digits that they allow and reach
     accuracy Accuracy " [SCENE]";

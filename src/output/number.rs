@@ -3,11 +3,15 @@
 use std::fmt::Write;
 
 /// Appends `value` in its shortest form: plain (`0.58`) or with an exponent (`1e-9`), whichever has
-/// fewer characters, plain where they tie. A value that is not finite appends nothing.
+/// fewer characters, plain where they tie. Minus infinity, the logarithm of nothing, is `-inf`; NaN and plus
+/// infinity append nothing.
 ///
 /// The digits are the fewest that parse back to the same double (the standard library's `{:e}`,
 /// after Grisu, Loitsch 2010); only their layout is chosen here, so that one conversion serves both.
 pub fn push_number(text: &mut String, value: f64) {
+    if value == f64::NEG_INFINITY {
+        text.push_str("-inf");
+    }
     if !value.is_finite() {
         return;
     }
@@ -88,5 +92,10 @@ mod tests {
     fn a_missing_number_is_an_empty_cell() {
         assert_eq!(short(f64::NAN), "");
         assert_eq!(short(f64::INFINITY), "");
+    }
+
+    #[test]
+    fn minus_infinity_reads_back() {
+        assert_eq!(short(f64::NEG_INFINITY).parse(), Ok(f64::NEG_INFINITY));
     }
 }

@@ -14,6 +14,7 @@ mod continued;
 mod curve;
 mod dense_output;
 mod edges;
+mod exponents;
 mod fields;
 mod flexures;
 mod grid;
@@ -21,6 +22,7 @@ mod inspect;
 mod levels;
 mod map;
 mod models;
+mod orbit;
 mod push;
 mod section;
 mod settled;
@@ -48,6 +50,10 @@ pub use curve::{
 };
 pub use dense_output::between;
 pub use edges::{Edges, first_crossing_edge};
+pub use exponents::{
+    Estimate, ExponentCells, ExponentOptions, ExponentTally, Exponents, NoExponents, average_exponents,
+    drive_fault, exponents, exponents_row,
+};
 pub use fields::{Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
@@ -55,6 +61,9 @@ pub use inspect::inspect;
 pub use levels::{Levels, STRIDES};
 pub use map::{first_crossing, release_line};
 pub use models::Held;
+pub use orbit::{
+    Branch, BranchEnd, BranchEvent, Family, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table,
+};
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use settled::{Standing, lasts, settled, standing};
 pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};

@@ -18,7 +18,7 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 10] = [
+const COMMANDS: [&str; 12] = [
     "presets",
     "check",
     "curve",
@@ -28,6 +28,8 @@ const COMMANDS: [&str; 10] = [
     "threshold",
     "spectrum",
     "basins",
+    "orbit",
+    "exponents",
     "accuracy",
 ];
 

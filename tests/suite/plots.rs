@@ -106,6 +106,13 @@ fn pictures_say_what_they_show() {
         SMALL_MAP,
         &["release in closed form", "first crossing cell", "7 \u{d7} 9 runs of 2 s, each from rest"],
     );
+    let line = "exponents duffing --periods 50 --over excitation.amplitude_g=";
+    says(
+        &format!("{line}0.02:0.05:0.01"),
+        &["first exponent", "standard error", "Lyapunov exponent, 1/s", "amplitude, g", "4 motions"],
+    );
+    let resting = says("exponents paper --over excitation.amplitude_g=0.5,1", &["(rests on a stop)"]);
+    assert!(!resting.iter().any(|text| text == "first exponent"), "nothing is drawn: {resting:?}");
     let line = "sweep duffing --set run.settle_s=100 --set run.duration_s=300 \
         --over excitation.amplitude_g=0.02,0.05";
     says(line, &["amplitude, g", "RMS velocity, mm/s", "2 runs of 300 s", "intrawell"]);

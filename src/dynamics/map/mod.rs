@@ -65,7 +65,7 @@ impl Model {
     pub fn stroboscopic_map(&self, phase: f64) -> Option<StroboscopicMap> {
         let period = self.forcing_period.filter(|_| self.repeats())?;
         let cycles = self.cycles_per_period;
-        let turns = phase.rem_euclid(1.0) * cycles as f64;
+        let turns = (phase - self.start_phase).rem_euclid(1.0) * cycles as f64;
         Some(StroboscopicMap {
             phase: (turns.floor() as i64, turns - turns.floor()),
             length: Length::Cycles(cycles),
@@ -93,6 +93,12 @@ impl StroboscopicMap {
         &self.model
     }
 
+    /// Time in s of the first strobe of a run.
+    pub fn first_strobe(&self) -> f64 {
+        let Kernel { clock, equation, .. } = &self.plain;
+        (self.phase.0 as f64 + self.phase.1) * clock.period() * equation.unit
+    }
+
     /// Time in s that one application takes: the forcing period.
     pub fn period(&self) -> f64 {
         self.period
@@ -103,7 +109,13 @@ impl StroboscopicMap {
     /// A displacement beyond a stop or the curve is the caller's error: the motion then begins there.
     pub fn pass(&self, (x, v): (f64, f64), periods: u32) -> Passage {
         let unit = self.model.scales.unit();
-        self.trace(&self.plain, (x, v * unit), periods).passage
+        self.trace(&self.plain, (x, v * unit), f64::from(periods)).passage
+    }
+
+    /// The same over a part of the forcing period, from 0 to 1.
+    pub fn pass_part(&self, (x, v): (f64, f64), part: f64) -> Passage {
+        let unit = self.model.scales.unit();
+        self.trace(&self.plain, (x, v * unit), part).passage
     }
 
     /// The same with the derivatives of the state at the end by that at the start. All are 0 where the mass
@@ -115,18 +127,25 @@ impl StroboscopicMap {
         let scales = [self.model.scales.length, self.model.scales.speed * unit];
         let start =
             (Dual { value: x, slopes: [scales[0], 0.0] }, Dual { value: v * unit, slopes: [0.0, scales[1]] });
-        let Traced { passage, end } = self.trace(&self.dual, start, periods);
+        let Traced { passage, end, rested } = self.trace(&self.dual, start, f64::from(periods));
+        if rested {
+            return (passage, Jacobian { rows: [[0.0; 2]; 2] });
+        }
         let in_si = [1.0, unit];
         let row = |own: Dual, out: f64| std::array::from_fn(|j| own.slopes[j] / scales[j] * in_si[j] / out);
         (passage, Jacobian { rows: [row(end.0, 1.0), row(end.1, unit)] })
     }
 
-    fn trace<T: Scalar>(&self, kernel: &Kernel<T>, start: (T, T), periods: u32) -> Traced<T> {
+    fn trace<T: Scalar>(&self, kernel: &Kernel<T>, start: (T, T), periods: f64) -> Traced<T> {
         let Kernel { equation, clock, drive } = kernel;
         let from = Instant { cycle: self.phase.0, phase: T::of(self.phase.1) * clock.period() };
         let to = match self.length {
-            Length::Cycles(cycles) => Instant { cycle: from.cycle + i64::from(periods) * cycles, ..from },
-            Length::Seconds(seconds) => clock.at(seconds * f64::from(periods)),
+            Length::Cycles(cycles) => {
+                let cycles = periods * cycles as f64;
+                let later = Instant { cycle: from.cycle + cycles.floor() as i64, ..from };
+                clock.advance(&later, T::of(cycles - cycles.floor()) * clock.period())
+            }
+            Length::Seconds(seconds) => clock.at(seconds * periods),
         };
         let span = (from, to);
         match drive {

@@ -49,24 +49,13 @@ impl Passage {
     pub fn crossings(&self) -> u64 {
         self.count([EventKind::Crossing; 2])
     }
-
-    /// Speed in m/s of the slowest impact; none without one.
-    pub fn gentlest_impact(&self) -> Option<f64> {
-        let hits = |event: &&Event| matches!(event.kind, EventKind::Impact | EventKind::Contact);
-        self.events.iter().filter(hits).map(|event| event.v_in.abs()).reduce(f64::min)
-    }
-
-    /// What happened at the stops, in order: impacts, rests and releases by side.
-    pub fn sequence(&self) -> impl Iterator<Item = (EventKind, Side)> {
-        let at_a_stop = |event: &&Event| event.kind != EventKind::Crossing;
-        self.events.iter().filter(at_a_stop).map(|event| (event.kind, event.side))
-    }
 }
 
-/// A passage, and the state at its end in kernel units.
+/// A passage, the state at its end in kernel units, and whether the mass has rested on a stop on the way.
 pub(super) struct Traced<T> {
     pub passage: Passage,
     pub end: (T, T),
+    pub rested: bool,
 }
 
 /// Follows the motion from a state in kernel units at an instant to another.
@@ -118,7 +107,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
         false => (-model.damping * time / model.mass).exp() * squared_restitutions(model, &events),
     });
     let state = (x.to_f64(), v.to_f64() / equation.unit);
-    Traced { passage: Passage { state, events, determinant, nearest_miss, outcome }, end: (x, v) }
+    Traced { passage: Passage { state, events, determinant, nearest_miss, outcome }, end: (x, v), rested }
 }
 
 /// The product of the squared restitution of each impact.

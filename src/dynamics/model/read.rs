@@ -124,7 +124,7 @@ impl Model {
 
     /// A state with the mass between the stops, or pressed in by up to `depth`, and within the known curve;
     /// where it had to be carried there, it has no speed.
-    pub(in crate::dynamics) fn held_within(&self, (x, v): (f64, f64), depth: f64) -> (f64, f64) {
+    pub fn held_within(&self, (x, v): (f64, f64), depth: f64) -> (f64, f64) {
         let domain = self.mechanism.curve.domain();
         let (left, right) = self.stop_positions();
         let low = left.map_or(domain.0, |stop| (stop - depth).max(domain.0));

@@ -31,6 +31,9 @@ pub enum NoPicture {
          --over FIELD=FROM:TO:STEP, or leave --plot out"
     )]
     SingleThreshold,
+    /// Exponents of a single motion, or over several fields.
+    #[error("--plot shows exponents over one field, not over {0}: name it with --over FIELD=FROM:TO:STEP")]
+    Exponents(usize),
     /// Finer than a picture.
     #[error(
         "--plot shows at most {MAX_PICTURE_CELLS} cells, not {0}: take longer steps, or sweep without --plot"

@@ -108,7 +108,8 @@ fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Point> {
 /// The image of a point and the derivative of the map there, in units of the scales; none where the motion
 /// ends early.
 fn jacobian(scope: &Stroboscope, period: u32, at: Point) -> Option<(Point, Matrix)> {
-    let ((length, speed), map) = (scope.units(), scope.model.stroboscopic_map(0.0)?);
+    let ((length, speed), map) =
+        (scope.units(), scope.model.stroboscopic_map(scope.model.drive_phase(0.0)?)?);
     let (passage, Jacobian { rows: [[a, b], [c, d]] }) = map.pass_with_jacobian(scope.state(at), period);
     let whole = scope.has(at) && passage.outcome == Outcome::Done;
     whole.then(|| (scope.point(passage.state), [[a, b * speed / length], [c * length / speed, d]]))

@@ -1,0 +1,138 @@
+//! `orbit`: the periodic motion near a run's own, or a branch of them over a field.
+
+use std::io::IsTerminal;
+use std::sync::Arc;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use interwell::dynamics::Model;
+use interwell::output::branch_figure;
+use interwell::scene::{Axis, Document};
+use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, orbit, orbit_table};
+
+use super::failure::Failure;
+use super::options::{Common, PlotOptions, RangeOptions};
+use super::picture::{Picture, caption, ranges};
+use super::support::{finish, inputs, load_with_mechanism, open, write_table};
+use super::{interrupt, say};
+
+/// What it takes.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// Forcing periods after which the motion repeats [default: those of the run's settled motion]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub period: Option<u32>,
+
+    /// Phase of the drive at which states are taken, in degrees
+    #[arg(long, value_name = "P", default_value = "0", allow_hyphen_values = true)]
+    pub phase_deg: String,
+
+    /// Follow the motion over a field from A to B, through folds; a row a motion
+    #[arg(long, value_name = "FIELD=A:B", allow_hyphen_values = true)]
+    pub branch: Option<String>,
+
+    /// The picture, of a branch.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// Its axes.
+    #[command(flatten)]
+    pub ranges: RangeOptions,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Finds the motion, or follows its branch, and writes the table.
+pub fn run(options: &Arguments) -> Result<(), Failure> {
+    let common = &options.common;
+    let picture = Picture::asked(&options.plot)?;
+    let axes = ranges(&options.ranges, "--plot-x")?;
+    if picture.is_some() && options.branch.is_none() {
+        return Err(Failure::argument("--plot shows a branch; add --branch FIELD=A:B, or leave it out"));
+    }
+    let phase_deg = phase(&options.phase_deg)?;
+    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
+    let model = Model::build(&document.scene, Arc::clone(&mechanism))
+        .map_err(|faults| Failure::from(document.error_from(faults)))?;
+    if !model.repeats() || !model.is_shaken() {
+        return Err(Failure::argument(format!(
+            "{}: excitation: a periodic motion needs a drive that repeats and is not 0; take a Sine, or a \
+             Sum of sines whose frequencies have a common period",
+            document.name
+        )));
+    }
+    let branch_range = options.branch.as_deref().map(|text| range(text, &document)).transpose()?;
+    let cancel = interrupt::listen();
+    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let phase = phase_deg / 360.0;
+    let failed = |own: NoOrbit| match own {
+        NoOrbit::Cancelled => Failure::interrupted(),
+        _ => Failure::Failed(anyhow::anyhow!("{}: {own}", document.name)),
+    };
+    let table: Table = match branch_range {
+        None => orbit_table(&[orbit(&model, phase, options.period, cancel).map_err(failed)?]),
+        Some((field, from, to)) => {
+            let family = Family::new(&document.scene, &document.files, &mechanism, &field);
+            let bar = count(common.quiet);
+            let task = Task { tick: &|| bar.inc(1), cancel };
+            let found = branch(&family, &field, (from, to), (phase, options.period), &task);
+            bar.finish_and_clear();
+            let found = found.map_err(failed)?;
+            if let Some(picture) = picture {
+                let figure = branch_figure(&found, phase_deg, axes, &caption(&document), picture.theme);
+                picture.write(&mut sinks[1], figure)?;
+            }
+            if !common.quiet && found.end != BranchEnd::Range {
+                say(&told(&found));
+            }
+            found.table()
+        }
+    };
+    write_table(&mut sinks[0], &table)?;
+    finish(sinks)
+}
+
+/// The number of motions on a terminal: how many there will be is not known.
+fn count(quiet: bool) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{human_pos} motions");
+    ProgressBar::no_length().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
+}
+
+/// Where and why a branch ended.
+fn told(branch: &Branch) -> String {
+    let at = branch.values.last().copied().unwrap_or(f64::NAN);
+    format!("the branch ends at {} = {at}: {}", branch.field, branch.end)
+}
+
+fn phase(text: &str) -> Result<f64, Failure> {
+    text.trim()
+        .parse()
+        .ok()
+        .filter(|own: &f64| own.is_finite())
+        .ok_or_else(|| Failure::argument(format!("--phase-deg {text}: give a phase in degrees, such as 90")))
+}
+
+/// The field of `--branch FIELD=A:B` and the ends of its range.
+fn range(text: &str, document: &Document) -> Result<(String, f64, f64), Failure> {
+    let wrong = |problem: String| Failure::argument(format!("--branch {text}: {problem}"));
+    let form = || wrong("write FIELD=A:B, such as excitation.amplitude_g=0.5:2".into());
+    let (field, values) = text.split_once('=').ok_or_else(form)?;
+    let (from, to) = values.split_once(':').ok_or_else(form)?;
+    // both ends are values that the field may have
+    let axis = Axis::parse(&format!("{}={},{}", field.trim(), from.trim(), to.trim()), &document.scene);
+    let axis = axis.map_err(wrong)?;
+    match axis.values[..] {
+        [from, to] if from != to => Ok((axis.field, from, to)),
+        _ => Err(form()),
+    }
+}

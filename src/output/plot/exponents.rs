@@ -1,0 +1,161 @@
+//! Picture of Lyapunov exponents over a field: both of them, each with its standard error as a band.
+
+use super::axis::{PlotAxis, Ranges};
+use super::figure::{Area, Figure, Point};
+use super::frame::Frame;
+use super::mark::{Caption, Sample, legend};
+use super::style::{self, Ink, Theme};
+use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
+use super::swept::{BOTTOM, LEFT, TOP, label};
+use crate::numeric::short;
+use crate::scene::{Excitation, Scene};
+use crate::study::{Grid, Table};
+
+/// What the picture is drawn from.
+#[derive(Debug, Clone, Copy)]
+pub struct ExponentPicture<'a> {
+    /// All rows.
+    pub rows: &'a Table,
+    /// Of which grid, of one field.
+    pub grid: &'a Grid,
+    /// Over which scene.
+    pub scene: &'a Scene,
+    /// The axes.
+    pub ranges: Ranges,
+}
+
+const RIGHT: f64 = 1560.0;
+
+/// Whether exponents over this grid can be shown; none is a single motion.
+pub fn can_show_exponents(grid: Option<&Grid>) -> Result<(), NoPicture> {
+    match grid.map_or(0, |grid| grid.axes().len()) {
+        1 => match grid.map_or(0, Grid::cells) {
+            cells if cells > MAX_PICTURE_CELLS => Err(NoPicture::Cells(cells)),
+            _ => Ok(()),
+        },
+        n => Err(NoPicture::Exponents(n)),
+    }
+}
+
+/// Both exponents over the field of the grid.
+pub fn exponents_figure(
+    picture: &ExponentPicture,
+    caption: &Caption,
+    theme: &Theme,
+) -> Result<Figure, NoPicture> {
+    can_show_exponents(Some(picture.grid))?;
+    let ExponentPicture { rows, grid, ranges, .. } = *picture;
+    let mut figure = Figure::new(theme.paper);
+    let x = &grid.columns()[0];
+    let numbers = |name: &str| rows.numbers(name).unwrap_or_default();
+    let places = numbers(x);
+    let lines = [
+        Line { name: "first exponent", of: "exponent_1", ink: theme.regimes[3], dash: None },
+        Line { name: "second exponent", of: "exponent_2", ink: theme.regimes[1], dash: Some(style::DASH) },
+    ];
+    let both = numbers("exponent_1_per_s").iter().chain(numbers("exponent_2_per_s"));
+    let x_label = label(rows, x);
+    let across = PlotAxis::around(places.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
+    let y_label = "Lyapunov exponent, 1/s";
+    let up = PlotAxis::around(both.copied().chain([0.0]), 0.06, 6, y_label).or_given(ranges.y, 6, y_label);
+
+    let first = numbers("exponent_1_per_s");
+    let mut entries: Vec<(Sample, &str)> = Vec::new();
+    if first.iter().any(|own| own.is_finite()) {
+        entries.extend(lines.iter().map(|own| (Sample::Line(own.ink, style::LINE, own.dash), own.name)));
+        entries.push((Sample::Patch(lines[0].band(theme), None), "standard error"));
+    }
+    let resting = first.contains(&f64::NEG_INFINITY);
+    if resting {
+        entries.push((Sample::Ticks(theme.ink), "both \u{2212}\u{221e} (rests on a stop)"));
+    }
+    if first.iter().any(|own| own.is_nan()) {
+        entries.push((Sample::Ticks(theme.soft), "no value"));
+    }
+    let top = TOP.max(legend(&mut figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
+    let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);
+    frame.grid(&mut figure, theme);
+    frame.horizontal(&mut figure, 0.0, style::THIN, theme.ink, None);
+    let mut order: Vec<usize> = (0..places.len()).collect();
+    order.sort_by(|a, b| places[*a].total_cmp(&places[*b]));
+    for line in &lines {
+        line.draw(&mut figure, &frame, rows, (places, &order), theme);
+    }
+    for (place, own) in places.iter().zip(first).filter(|(_, own)| !own.is_finite()) {
+        let ink = if own.is_nan() { theme.soft } else { theme.ink };
+        let at = frame.across(*place);
+        figure.line(&[(at, BOTTOM - TICK), (at, BOTTOM)], style::FINE_LINE, ink, frame.area);
+    }
+    frame.axes(&mut figure, theme);
+    caption.draw(&mut figure, theme, &about(picture), LEFT);
+    Ok(figure)
+}
+
+/// Length of the tick of a value without exponents.
+const TICK: f64 = 18.0;
+
+/// What is shown, in one line.
+fn about(picture: &ExponentPicture) -> String {
+    let swept = picture.grid.axes().iter().map(|axis| axis.values.len()).sum::<usize>();
+    let shaken = match picture.scene.excitation {
+        Excitation::Sine { frequency_hz, .. }
+            if !picture.grid.axes().iter().any(|axis| axis.field == "excitation.frequency_hz") =>
+        {
+            format!(", shaken at {} Hz", short(frequency_hz))
+        }
+        _ => String::new(),
+    };
+    format!("rates at which small changes of the settled motion grow, {swept} motions{shaken}")
+}
+
+/// One exponent.
+struct Line {
+    name: &'static str,
+    of: &'static str,
+    ink: Ink,
+    dash: Option<(f64, f64)>,
+}
+
+impl Line {
+    /// The colour of its standard error.
+    fn band(&self, theme: &Theme) -> Ink {
+        self.ink.over(theme.paper, 0.3)
+    }
+
+    /// Draws it through the rows in this order, over its band; a row without a value parts it.
+    fn draw(
+        &self,
+        figure: &mut Figure,
+        frame: &Frame,
+        rows: &Table,
+        (places, order): (&[f64], &[usize]),
+        theme: &Theme,
+    ) {
+        let values = rows.numbers(&format!("{}_per_s", self.of)).unwrap_or_default();
+        let errors = rows.numbers(&format!("{}_se", self.of)).unwrap_or_default();
+        for part in order.split(|row| !values[*row].is_finite()) {
+            let at = |row: &usize, sign: f64| {
+                let error = if errors[*row].is_finite() { errors[*row] } else { 0.0 };
+                (places[*row], values[*row] + sign * error)
+            };
+            for pair in part.windows(2) {
+                let corners = [at(&pair[0], 1.0), at(&pair[1], 1.0), at(&pair[1], -1.0), at(&pair[0], -1.0)];
+                if corners.iter().all(|corner| frame.area.contains(frame.place(*corner))) {
+                    figure.polygon(
+                        corners.iter().map(|corner| frame.place(*corner)).collect(),
+                        self.band(theme),
+                    );
+                }
+            }
+            let line: Vec<Point> = part.iter().map(|row| at(row, 0.0)).collect();
+            match (self.dash, line.as_slice()) {
+                (_, [(x, y)]) => {
+                    let (x, y) = frame.place((*x, *y));
+                    figure.line(&[(x - 4.0, y), (x + 4.0, y)], style::LINE, self.ink, frame.area);
+                }
+                (Some(dash), _) => frame.dashed(figure, &line, style::LINE, self.ink, dash),
+                (None, _) => frame.line(figure, &line, style::LINE, self.ink),
+            }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Exponents of any motion, as averages over forcing periods.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::result::{Estimate, Exponents, NoExponents};
+use super::tangent::Tangent;
+use crate::dynamics::Model;
+use crate::numeric::CompensatedSum;
+
+/// Forcing periods in which a change turns into the direction that grows most, before anything is averaged.
+const TURNING: u32 = 20;
+
+/// The exponents of the motion through `state`, in m and m/s at a `phase` of the drive from 0 to 1, over so
+/// many forcing periods: no transient is waited for and no periodic motion looked for. Without a drive a
+/// period is the natural time of the mechanism. At least one period.
+///
+/// The standard errors are those of the means of batches, as many as the root of the number of periods
+/// (Flegal and Jones 2010): they cover the scatter of a motion that forgets itself within a batch.
+pub fn average_exponents(
+    model: &Model,
+    (state, phase): ((f64, f64), f64),
+    periods: u32,
+    cancel: &AtomicBool,
+) -> Result<Exponents, NoExponents> {
+    average(&Tangent::of(model, phase)?, state, periods, cancel)
+}
+
+/// The same of a map.
+pub(super) fn average(
+    tangent: &Tangent,
+    mut state: (f64, f64),
+    periods: u32,
+    cancel: &AtomicBool,
+) -> Result<Exponents, NoExponents> {
+    let periods = periods.max(1);
+    let time = tangent.period() * f64::from(periods);
+    let mut change = [std::f64::consts::FRAC_1_SQRT_2; 2];
+    let (mut first, mut second) = (Batches::new(periods), Batches::new(periods));
+    let mut measured = CompensatedSum::<f64>::new();
+    let mut exact = Some(CompensatedSum::<f64>::new());
+    for number in 0..TURNING + periods {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(NoExponents::Cancelled);
+        }
+        let passed = tangent.pass(state)?;
+        let [[a, b], [c, d]] = passed.jacobian.rows;
+        let [x, v] = [a * change[0] + b * change[1], c * change[0] + d * change[1]];
+        let growth = x.hypot(v);
+        if growth == 0.0 {
+            return Ok(Exponents::of_rest(None, (periods, time), passed.exact.is_some()));
+        }
+        change = [x / growth, v / growth];
+        state = passed.state;
+        if number >= TURNING {
+            first.add(growth.ln());
+            second.add(passed.log_determinant() - growth.ln());
+            measured.add(passed.measured);
+            exact = exact.zip(passed.exact).map(|(mut sum, own)| {
+                sum.add(own);
+                sum
+            });
+        }
+    }
+    let exact_sum = exact.map(|own| own.value() / time + 0.0);
+    let (first, second) = (first.estimate(tangent.period()), second.estimate(tangent.period()));
+    // The sum less the first one has no rounding of its own.
+    let second = Estimate { per_s: exact_sum.map_or(second.per_s, |sum| sum - first.per_s), ..second };
+    // Of two that are equal but for their scatter either may come out as the larger.
+    let (first, second) = if second.per_s > first.per_s { (second, first) } else { (first, second) };
+    Ok(Exponents {
+        first,
+        second,
+        sum: measured.value() / time,
+        exact_sum,
+        period: None,
+        span: (periods, time),
+    })
+}
+
+/// Sums over consecutive parts of a series of known length.
+struct Batches {
+    sums: Vec<f64>,
+    told: u64,
+    length: u64,
+}
+
+impl Batches {
+    fn new(length: u32) -> Self {
+        Self { sums: vec![0.0; length.isqrt() as usize], told: 0, length: length.into() }
+    }
+
+    fn add(&mut self, value: f64) {
+        let batch = self.told * self.sums.len() as u64 / self.length;
+        self.sums[batch as usize] += value;
+        self.told += 1;
+    }
+
+    /// Mean and standard error of the series over `period`. Batches differ by at most one value in length.
+    fn estimate(&self, period: f64) -> Estimate {
+        let mean = self.sums.iter().sum::<f64>() / self.length as f64;
+        if !mean.is_finite() {
+            let error = if mean == f64::NEG_INFINITY { 0.0 } else { f64::NAN };
+            return Estimate { per_s: mean, error };
+        }
+        let count = self.sums.len() as u64;
+        let length = |batch: u64| {
+            let begin = |batch: u64| (batch * self.length).div_ceil(count);
+            (begin(batch + 1) - begin(batch)) as f64
+        };
+        let means = self.sums.iter().zip(0..).map(|(sum, batch)| sum / length(batch));
+        let squares: f64 = means.map(|own| (own - mean) * (own - mean)).sum();
+        let error = match count {
+            1 => f64::NAN,
+            n => (squares / (n - 1) as f64 / n as f64).sqrt(),
+        };
+        Estimate { per_s: mean / period + 0.0, error: error / period }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn batch_means_of_a_known_series() {
+        let mut batches = Batches::new(9);
+        (1..=9).for_each(|value| batches.add(f64::from(value)));
+        // means 2, 5 and 8 of three batches: their standard deviation is 3
+        let estimate = batches.estimate(2.0);
+        assert_eq!((estimate.per_s, estimate.error), (2.5, 3.0 / 3.0_f64.sqrt() / 2.0));
+        // 10 values in 3 batches of 4, 3 and 3
+        let mut uneven = Batches::new(10);
+        (0..10).for_each(|_| uneven.add(0.5));
+        assert_eq!(uneven.estimate(1.0), Estimate { per_s: 0.5, error: 0.0 });
+        assert_eq!(uneven.sums, [2.0, 1.5, 1.5]);
+        let mut single = Batches::new(3);
+        (0..3).for_each(|_| single.add(1.0));
+        assert!(single.estimate(1.0).error.is_nan());
+    }
+}

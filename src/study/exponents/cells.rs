@@ -1,0 +1,148 @@
+//! Exponents of every cell of a grid, a row a cell.
+
+use super::result::{ExponentOptions, Exponents, NoExponents};
+use super::settle::exponents;
+use crate::dynamics::Model;
+use crate::scene::{Fault, Files, Scene};
+use crate::study::cell::{CellFaults, SweepEnd};
+use crate::study::cells::{Built, Cells};
+use crate::study::table::Table;
+use crate::study::walk::without_a_period;
+use crate::study::{Grid, Task};
+use crate::system::threads::Pool;
+
+/// Cells that a thread has of a chunk of rows.
+const CELLS_PER_THREAD: u64 = 32;
+
+/// A scene and the grid over it whose exponents are asked for.
+#[derive(Debug)]
+pub struct ExponentCells {
+    cells: Cells,
+}
+
+/// What the cells of a grid came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ExponentTally {
+    /// Cells done.
+    pub cells: u64,
+    /// Cells whose motion rests on a stop, so that both exponents are minus infinity.
+    pub resting: u64,
+    /// Cells without exponents: the motion ended early or touched a stop without speed, or the flexures were
+    /// not solved.
+    pub missing: u64,
+}
+
+/// The exponents of a cell; none where it has none.
+type Found = Option<Exponents>;
+
+impl ExponentCells {
+    /// The exponents of `grid` over `base`.
+    pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
+        Self { cells: Cells::new(base, files, grid) }
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        &self.cells.grid
+    }
+
+    /// The mechanism of the first cell, or why it has none.
+    pub fn first_mechanism(&self) -> Built {
+        self.cells.first_mechanism()
+    }
+
+    /// The model of the first cell, or its faults; none where its mechanism was not solved.
+    pub fn first_model(&self, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
+        self.cells.model(0, &mut self.cells.base.clone(), task)
+    }
+
+    /// The table without rows.
+    pub fn empty_table(&self) -> Table {
+        self.table(0, &[])
+    }
+
+    /// Builds every cell; the first one that is wrong, or whose excitation changes and does not repeat.
+    pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
+        let faults = |scene: &mut Scene, index: u64| {
+            if task.is_cancelled() {
+                return None;
+            }
+            let faults = match self.cells.model(index, scene, task)? {
+                Ok(model) => vec![drive_fault(&model, scene)?],
+                Err(faults) => faults,
+            };
+            Some(CellFaults { cell: self.cells.grid.describe(index), faults })
+        };
+        pool.find_first(self.cells.grid.cells(), || self.cells.base.clone(), faults).map_or(Ok(()), Err)
+    }
+
+    /// Measures every cell on `pool` and hands the rows to `write`, chunk by chunk in order. `write` answers
+    /// whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
+    pub fn run<E>(
+        &self,
+        options: &ExponentOptions,
+        pool: &Pool,
+        task: &Task,
+        mut write: impl FnMut(&Table) -> Result<bool, E>,
+    ) -> Result<ExponentTally, SweepEnd<E>> {
+        let cells = self.cells.grid.cells();
+        let mut tally = ExponentTally::default();
+        while tally.cells < cells {
+            let begin = tally.cells;
+            let count = (CELLS_PER_THREAD * pool.count() as u64).min(cells - begin);
+            let cell = |scene: &mut Scene, place: usize| {
+                let model = self.cells.model(begin + place as u64, scene, task).and_then(Result::ok);
+                let found = match model.map(|model| exponents(&model, options, task.cancel)) {
+                    Some(Err(NoExponents::Cancelled)) => return Err(()),
+                    Some(Ok(found)) => Some(found),
+                    Some(Err(_)) | None => None,
+                };
+                (task.tick)();
+                if task.is_cancelled() { Err(()) } else { Ok(found) }
+            };
+            let found = pool.map(count as usize, || self.cells.base.clone(), cell);
+            let found = found.map_err(|()| SweepEnd::Cancelled)?;
+            tally.cells += count;
+            tally.missing += found.iter().filter(|own| own.is_none()).count() as u64;
+            tally.resting += found.iter().flatten().filter(|own| own.rests()).count() as u64;
+            if !write(&self.table(begin, &found)).map_err(SweepEnd::Write)? {
+                break;
+            }
+        }
+        Ok(tally)
+    }
+
+    fn table(&self, begin: u64, found: &[Found]) -> Table {
+        let grid = &self.cells.grid;
+        let mut table = Table::new();
+        for (place, column) in grid.columns().iter().enumerate() {
+            let value = |row: usize| grid.values(begin + row as u64).nth(place).unwrap_or(f64::NAN);
+            table = table.with(column, (0..found.len()).map(value).collect());
+        }
+        with_columns(table, found)
+    }
+}
+
+/// What is wrong with the excitation of a scene whose exponents are asked for: it changes and does not
+/// repeat.
+pub fn drive_fault(model: &Model, scene: &Scene) -> Option<Fault> {
+    let suits = model.excitation().is_constant();
+    if suits { None } else { without_a_period(model, scene, "an exponent") }
+}
+
+/// The exponents of one motion as a table of one row.
+pub fn exponents_row(found: &Exponents) -> Table {
+    with_columns(Table::new(), &[Some(*found)])
+}
+
+fn with_columns(table: Table, found: &[Found]) -> Table {
+    let number = |of: fn(&Exponents) -> f64| move |own: &Found| own.as_ref().map_or(f64::NAN, of);
+    table
+        .each("exponent_1_per_s", found, number(|own| own.first.per_s))
+        .each("exponent_1_se", found, number(|own| own.first.error))
+        .each("exponent_2_per_s", found, number(|own| own.second.per_s))
+        .each("exponent_2_se", found, number(|own| own.second.error))
+        .each("sum_per_s", found, number(|own| own.sum))
+        .each("exact_sum_per_s", found, number(|own| own.exact_sum.unwrap_or(f64::NAN)))
+        .each("dimension", found, number(Exponents::dimension))
+}

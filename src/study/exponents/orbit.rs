@@ -1,0 +1,93 @@
+//! Exponents of a periodic motion, by its multipliers.
+
+use super::result::{Estimate, Exponents, NoExponents};
+use super::tangent::{Passed, Tangent};
+
+/// The farthest a motion that repeats is from itself a period later, in units of the scales.
+const NEAR: f64 = 1e-2;
+
+/// The same of the periodic motion that Newton's method gives: rounding at best, and at most the error of a
+/// period.
+const ROUNDING: f64 = 1e-13;
+const CLOSE: (f64, f64) = (1e-10, 1e-4);
+
+/// Steps of Newton's method: it doubles the digits.
+const STEPS: usize = 12;
+
+/// A growth over a period that rounding can hide.
+const NEUTRAL: f64 = 1e-6;
+
+/// The exponents of the periodic motion of so many forcing periods that the motion through `start` has
+/// settled on. None where there is none near it, and where it is unstable: only a motion that is on it
+/// exactly stays there.
+pub(super) fn of_orbit(
+    tangent: &Tangent,
+    start: (f64, f64),
+    periods: u32,
+) -> Result<Option<Exponents>, NoExponents> {
+    let Some((orbit, distance, moved)) = find(tangent, start, periods)? else { return Ok(None) };
+    let time = tangent.period() * f64::from(periods);
+    if orbit.rested() {
+        return Ok(Some(Exponents::of_rest(Some(periods), (periods, time), orbit.exact.is_some())));
+    }
+    let both = orbit.log_determinant();
+    let [larger, smaller] = orbit.jacobian.multipliers(both.exp());
+    let (first, second) = match larger.im != 0.0 {
+        true if both.is_finite() => (0.5 * both, 0.5 * both),
+        true => (larger.magnitude().ln(), smaller.magnitude().ln()),
+        false => (larger.magnitude().ln(), both - larger.magnitude().ln()),
+    };
+    let stays = first <= NEUTRAL || (distance <= ROUNDING && !moved);
+    Ok(stays.then(|| Exponents {
+        first: Estimate::exact(first / time),
+        second: Estimate::exact(second / time),
+        sum: orbit.measured / time,
+        exact_sum: orbit.exact.map(|own| own / time + 0.0),
+        period: Some(periods),
+        span: (periods, time),
+    }))
+}
+
+/// The periodic motion near a state, how far it is from itself a period later, and whether the state had to
+/// be moved; none where Newton's method finds none.
+fn find(
+    tangent: &Tangent,
+    start: (f64, f64),
+    periods: u32,
+) -> Result<Option<(Passed, f64, bool)>, NoExponents> {
+    let mut state = start;
+    let mut best: Option<(Passed, f64, bool)> = None;
+    for step in 0..STEPS {
+        let orbit = match tangent.pass_many(state, periods) {
+            Ok(orbit) => orbit,
+            Err(_) if step > 0 => break, // a step led out of where the motion goes on
+            Err(error) => return Err(error),
+        };
+        let [x, v] = tangent.scaled(state, orbit.state);
+        let distance = x.hypot(v);
+        if step == 0 && !(distance <= NEAR) || best.is_some_and(|own| !(distance < own.1)) {
+            break;
+        }
+        best = Some((orbit, distance, step > 0));
+        let [[a, b], [c, d]] = orbit.jacobian.rows;
+        let singular = (a - 1.0) * (d - 1.0) - b * c;
+        let by = [(b * v - (d - 1.0) * x) / singular, (c * x - (a - 1.0) * v) / singular];
+        let next = tangent.changed(state, by);
+        if distance <= ROUNDING || !has_room(tangent, next) {
+            break;
+        }
+        state = next;
+    }
+    let close = (10.0 * tangent.model().tolerance()).clamp(CLOSE.0, CLOSE.1);
+    Ok(best.filter(|own| own.1 <= close))
+}
+
+/// Whether a mass can be there.
+fn has_room(tangent: &Tangent, (x, v): (f64, f64)) -> bool {
+    let model = tangent.model();
+    let (low, high) = model.mechanism().curve.domain();
+    let (left, right) = model.stop_positions();
+    let rigid = model.compliant().is_none();
+    let inside = left.is_none_or(|stop| x >= stop) && right.is_none_or(|stop| x <= stop);
+    v.is_finite() && x >= low && x <= high && (inside || !rigid)
+}

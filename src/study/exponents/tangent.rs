@@ -1,0 +1,136 @@
+//! Forcing period of a motion, with what becomes of small changes of it.
+
+use super::result::NoExponents;
+use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Scales, Side, StroboscopicMap};
+
+/// Below this share of its two products a determinant has lost its digits: rounding is some 1e-15 of them.
+/// (The error of the integration is a share of the areas themselves, of the size of the tolerance.)
+const LOST: f64 = 1e-12;
+
+/// The stroboscopic map of a model, with changes of a state in units of its scales.
+pub(super) struct Tangent {
+    map: StroboscopicMap,
+    scales: Scales,
+    /// Logarithm of the share of an area that damping leaves in a period.
+    damped: f64,
+    /// The same of an impact on the left and the right stop; none where they are compliant.
+    struck: Option<[f64; 2]>,
+}
+
+/// What one or more forcing periods did.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Passed {
+    /// The state at their end, in m and m/s.
+    pub state: (f64, f64),
+    /// Derivatives of it by that at the start, in units of the scales.
+    pub jacobian: Jacobian,
+    /// Logarithm of their determinant; NaN where its digits are lost.
+    pub measured: f64,
+    /// The same by damping and impacts; none with compliant stops.
+    pub exact: Option<f64>,
+}
+
+impl Passed {
+    /// Whether nothing is left of a change.
+    pub fn rested(&self) -> bool {
+        self.jacobian.rows == [[0.0; 2]; 2]
+    }
+
+    /// The best there is of both logarithms.
+    pub fn log_determinant(&self) -> f64 {
+        self.exact.unwrap_or(self.measured)
+    }
+}
+
+impl Tangent {
+    /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time of the
+    /// mechanism.
+    pub fn of(model: &Model, phase: f64) -> Result<Self, NoExponents> {
+        let map = match model.stroboscopic_map(phase) {
+            Some(map) => map,
+            None if model.excitation().is_constant() => StroboscopicMap::over(model, model.natural_time()),
+            None => return Err(NoExponents::NoPeriod),
+        };
+        let stops = model.stops();
+        let kept = |side: Side| {
+            let pair = stops.and_then(|pair| if side == Side::Left { pair.left } else { pair.right });
+            2.0 * pair.map_or(1.0, |stop| stop.restitution).ln()
+        };
+        let struck = model.compliant().is_none().then(|| [Side::Left, Side::Right].map(kept));
+        let damped = -model.damping() * map.period() / model.mass();
+        Ok(Self { scales: model.scales(), map, damped, struck })
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        self.map.model()
+    }
+
+    /// Time in s that a period takes.
+    pub fn period(&self) -> f64 {
+        self.map.period()
+    }
+
+    /// The next period of the motion from a state in m and m/s.
+    pub fn pass(&self, state: (f64, f64)) -> Result<Passed, NoExponents> {
+        let (passage, own) = self.map.pass_with_jacobian(state, 1);
+        if passage.outcome != Outcome::Done {
+            return Err(NoExponents::EndedEarly(passage.outcome));
+        }
+        let time = self.scales.length / self.scales.speed;
+        let [[a, b], [c, d]] = own.rows;
+        let jacobian = Jacobian { rows: [[a, b / time], [c * time, d]] };
+        let products = (a * d).abs() + (b * c).abs();
+        if !products.is_finite() {
+            return Err(NoExponents::Grazing);
+        }
+        let rested = own.rows == [[0.0; 2]; 2];
+        let impacts = |side: Side| {
+            let hits = passage.events.iter().filter(|own| own.kind == EventKind::Impact && own.side == side);
+            hits.count() as f64
+        };
+        let exact = self.struck.map(|[left, right]| match rested {
+            true => f64::NEG_INFINITY,
+            false => self.damped + times(impacts(Side::Left), left) + times(impacts(Side::Right), right),
+        });
+        let determinant = own.determinant().abs();
+        let least = exact.unwrap_or(self.damped).exp().min(determinant);
+        let measured = match rested {
+            true => f64::NEG_INFINITY,
+            false if least <= LOST * products => f64::NAN,
+            false => determinant.ln(),
+        };
+        Ok(Passed { state: passage.state, jacobian, measured, exact })
+    }
+
+    /// So many periods of the motion together.
+    pub fn pass_many(&self, state: (f64, f64), periods: u32) -> Result<Passed, NoExponents> {
+        let mut all =
+            Passed { state, jacobian: Jacobian::IDENTITY, measured: 0.0, exact: self.struck.map(|_| 0.0) };
+        for _ in 0..periods {
+            let next = self.pass(all.state)?;
+            all = Passed {
+                state: next.state,
+                jacobian: next.jacobian.after(&all.jacobian),
+                measured: all.measured + next.measured,
+                exact: all.exact.zip(next.exact).map(|(before, own)| before + own),
+            };
+        }
+        Ok(all)
+    }
+
+    /// A change of the state in units of the scales, from `from` to `to`.
+    pub fn scaled(&self, from: (f64, f64), to: (f64, f64)) -> [f64; 2] {
+        [(to.0 - from.0) / self.scales.length, (to.1 - from.1) / self.scales.speed]
+    }
+
+    /// A state changed so much, in units of the scales.
+    pub fn changed(&self, (x, v): (f64, f64), by: [f64; 2]) -> (f64, f64) {
+        (x + by[0] * self.scales.length, v + by[1] * self.scales.speed)
+    }
+}
+
+/// A count times a logarithm, 0 where there is nothing to count however small the logarithm.
+fn times(count: f64, logarithm: f64) -> f64 {
+    if count == 0.0 { 0.0 } else { count * logarithm }
+}

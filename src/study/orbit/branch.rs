@@ -1,0 +1,258 @@
+//! Branch of periodic motions over a field, followed through folds by pseudo-arclength (Keller 1977).
+
+use std::fmt;
+
+use nalgebra::Vector3;
+
+use super::corrector::{Corrector, Point, Units};
+use super::events::{BranchEvent, between, differ, grazes};
+use super::family::Family;
+use super::{NoOrbit, Orbit, orbit, with_orbits};
+use crate::scene::column_names;
+use crate::study::{Table, Task};
+
+/// Steps of the walk in the units of the branch: the first, the longest, and the one below which it does not
+/// go on.
+const FIRST: f64 = 2e-3;
+const LONGEST: f64 = 1e-2;
+const SHORTEST: f64 = 1e-9;
+
+/// The step below which a branch near a grazing is looked for on its other side: there the map changes as
+/// the root of the distance, and steps would become ever shorter.
+const NEAR_A_GRAZING: f64 = 1e-5;
+
+/// Cosine of the angle by which the direction may turn in a step.
+const STRAIGHT: f64 = 0.9;
+
+/// The most points.
+const MOST_POINTS: usize = 5000;
+
+/// Distances at which another motion is looked for where the branch comes to a grazing.
+const AROUND: [f64; 4] = [3e-3, 1e-3, 1e-4, 1e-5];
+
+/// Why a branch ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum BranchEnd {
+    /// At an end of the range.
+    Range,
+    /// It came back to where it began.
+    Closed,
+    /// The motion touches a stop without speed, and no motion near to it goes on.
+    Grazing,
+    /// Newton's method no longer converges: the motion no longer lasts for its period, or changes too fast.
+    Lost,
+    /// At the most points.
+    Points,
+}
+
+impl fmt::Display for BranchEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Range => "at an end of the range",
+            Self::Closed => "where it began",
+            Self::Grazing => "where the motion touches a stop without speed, and none near to it goes on",
+            Self::Lost => "where the motion no longer lasts for its period, or changes too fast",
+            Self::Points => "after 5000 motions",
+        })
+    }
+}
+
+/// A branch: its motions in order, each with the value of the field and what happens there.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Branch {
+    /// The field that changes.
+    pub field: String,
+    /// Its value at each motion.
+    pub values: Vec<f64>,
+    /// The motions.
+    pub orbits: Vec<Orbit>,
+    /// What happens there.
+    pub events: Vec<Option<BranchEvent>>,
+    /// Why the branch ended after the last.
+    pub end: BranchEnd,
+}
+
+impl Branch {
+    /// A row a motion: the field, what [`orbit_table`](super::orbit_table) has, and `event`.
+    pub fn table(&self) -> Table {
+        let column = column_names(&[&self.field]).concat();
+        let table = Table::new().with(column, self.values.iter().copied().collect());
+        let name = |event: &Option<BranchEvent>| event.map_or("", BranchEvent::name);
+        with_orbits(table, &self.orbits).each("event", &self.events, name)
+    }
+}
+
+/// The branch of periodic motions of a family over `field` from one value towards another, on from the motion
+/// that a run comes to at the first; `phase` in forcing periods, `period` where one is asked for.
+///
+/// Ticks once a motion. An error is one of the first motion.
+pub fn branch(
+    family: &Family,
+    field: &str,
+    (from, to): (f64, f64),
+    (phase, period): (f64, Option<u32>),
+    task: &Task,
+) -> Result<Branch, NoOrbit> {
+    let model = family.model(from).ok_or(NoOrbit::NotConverged)?;
+    let first = orbit(&model, phase, period, task.cancel)?;
+    let scales = model.scales();
+    let units = Units { length: scales.length, speed: scales.speed, range: (to - from).abs() };
+    let corrector = Corrector { family, phase, periods: first.period, units };
+    let upwards = Vector3::new(0.0, 0.0, (to - from).signum());
+    let start = corrector.at(first.state, from);
+    let point = corrector.correct(start, &upwards).ok_or(NoOrbit::NotConverged)?;
+    let along = corrector.tangent(&point, &upwards).ok_or(NoOrbit::Grazing)?;
+    let branch = Branch {
+        field: field.to_owned(),
+        values: Vec::new(),
+        orbits: Vec::new(),
+        events: Vec::new(),
+        end: BranchEnd::Points,
+    };
+    let ends = [from.min(to), from.max(to)].map(|own| own / units.range);
+    let mut walk = Walk { corrector, branch, ends, phase, start, at: (point, along) };
+    walk.add(None, &walk.at.0.clone());
+    walk.branch.end = walk.run_out(task)?;
+    Ok(walk.branch)
+}
+
+/// A walk along a branch.
+struct Walk<'a> {
+    /// At a phase of the drive away from impacts, where a state has no derivative by the field.
+    corrector: Corrector<'a>,
+    branch: Branch,
+    /// The ends of the range in its unit.
+    ends: [f64; 2],
+    /// The phase at which motions are told, in forcing periods, and the first one there.
+    phase: f64,
+    start: Vector3<f64>,
+    /// The last point, and the direction there.
+    at: (Point, Vector3<f64>),
+}
+
+impl Walk<'_> {
+    /// Goes on until the branch ends.
+    fn run_out(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
+        let mut step = FIRST;
+        while self.branch.values.len() < MOST_POINTS {
+            if task.is_cancelled() {
+                return Err(NoOrbit::Cancelled);
+            }
+            (task.tick)();
+            self.keep_clear();
+            let (point, along) = &self.at;
+            let guess = point.at + along * step;
+            let leaves = |to: f64| self.ends.into_iter().find(|end| (to - end) * (point.at.z - end) < 0.0);
+            let mut beyond = leaves(guess.z);
+            let mut next = None;
+            if beyond.is_none()
+                && let Some(point) = self.corrector.correct(guess, along)
+            {
+                beyond = leaves(point.at.z);
+                let onward = self.corrector.tangent(&point, along);
+                next = onward.filter(|own| own.dot(along) > STRAIGHT).map(|onward| (point, onward));
+            }
+            if let Some(end) = beyond {
+                next = self.last(end);
+            }
+            match next {
+                Some(next) => {
+                    self.go_to(next);
+                    if beyond.is_some() {
+                        return Ok(BranchEnd::Range);
+                    }
+                    if self.is_closed(step) {
+                        return Ok(BranchEnd::Closed);
+                    }
+                    step = (step * 1.3).min(LONGEST);
+                }
+                None => step *= 0.5,
+            }
+            let at_a_grazing = step < NEAR_A_GRAZING && grazes(&self.at.0, &self.corrector.units);
+            if at_a_grazing && let Some(next) = self.past_a_grazing() {
+                self.go_to(next);
+                step = FIRST * 0.1;
+            } else if step < SHORTEST {
+                if let Some(event) = self.branch.events.last_mut().filter(|_| at_a_grazing) {
+                    *event = Some(BranchEvent::Grazing);
+                }
+                return Ok(if at_a_grazing { BranchEnd::Grazing } else { BranchEnd::Lost });
+            }
+        }
+        Ok(BranchEnd::Points)
+    }
+
+    /// The point at an end of the range.
+    fn last(&self, end: f64) -> Option<(Point, Vector3<f64>)> {
+        let (point, along) = &self.at;
+        let across = Vector3::new(0.0, 0.0, 1.0);
+        let share = (end - point.at.z) / along.z;
+        let next = self.corrector.correct(point.at + along * share, &across)?;
+        let onward = self.corrector.tangent(&next, along)?;
+        ((next.at - point.at).norm() <= 2.0 * LONGEST).then_some((next, onward))
+    }
+
+    fn go_to(&mut self, next: (Point, Vector3<f64>)) {
+        let (point, along) = &self.at;
+        for (event, there) in between(&self.corrector, (point, along.z), (&next.0, next.1.z)) {
+            self.add(Some(event), &there);
+        }
+        self.add(None, &next.0);
+        self.at = next;
+    }
+
+    /// Adds a motion, told at the phase that was asked for.
+    fn add(&mut self, event: Option<BranchEvent>, point: &Point) {
+        let told = self.corrector.at_phase(&point.orbit, point.value, self.phase);
+        self.branch.values.push(point.value);
+        self.branch.orbits.push(told.unwrap_or_else(|| point.orbit.clone()));
+        self.branch.events.push(event);
+    }
+
+    /// Takes states at another phase of the drive where an impact comes near to the present one.
+    fn keep_clear(&mut self) {
+        let (point, along) = &self.at;
+        let Some(later) = self.corrector.clear_phase(point) else { return };
+        let phase = (self.corrector.phase + later).rem_euclid(1.0);
+        let Some(orbit) = self.corrector.at_phase(&point.orbit, point.value, phase) else { return };
+        let upwards = Vector3::new(0.0, 0.0, along.z.signum());
+        let corrector = Corrector { phase, ..self.corrector };
+        let next = corrector.correct(corrector.at(orbit.state, point.value), &upwards);
+        if let Some(next) = next
+            && let Some(onward) = corrector.tangent(&next, &upwards)
+        {
+            (self.corrector, self.at) = (corrector, (next, onward));
+        }
+    }
+
+    fn is_closed(&self, step: f64) -> bool {
+        let (Some(last), Some(value)) = (self.branch.orbits.last(), self.branch.values.last()) else {
+            return false;
+        };
+        let far = (self.corrector.at(last.state, *value) - self.start).norm();
+        far < 0.5 * step && self.branch.values.len() > 10
+    }
+
+    /// A motion that touches the stops otherwise, near the last one, and the direction away from it.
+    fn past_a_grazing(&self) -> Option<(Point, Vector3<f64>)> {
+        let (last, _) = &self.at;
+        let directions = self.corrector.directions_past(last);
+        let starts = AROUND.iter().flat_map(|far| directions.iter().map(move |own| (*far, own)));
+        for (distance, direction) in starts {
+            let Some(point) = self.corrector.correct(last.at + direction * distance, direction) else {
+                continue;
+            };
+            let away = point.at - last.at;
+            let far = away.norm();
+            if !(0.3 * distance..=3.0 * distance).contains(&far) || !differ(last, &point) {
+                continue;
+            }
+            if let Some(onward) = self.corrector.tangent(&point, &(away / far)) {
+                return Some((point, onward));
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,249 @@
+//! Periodic motions: found by Newton's method on the stroboscopic map, with their Floquet multipliers, and
+//! followed over a field of the scene.
+//!
+//! A periodic motion of n forcing periods is a fixed point of the map of a state to that n periods later
+//! ([`StroboscopicMap`]). Its multipliers are the eigenvalues of the map's derivative there; it is stable
+//! where both are inside the unit circle. A motion that rests on a stop forgets its past: both are 0.
+//!
+//! [`orbit`] finds the motion near that of a run, [`orbit_near`] one near a state, [`branch()`] follows it
+//! over a field.
+
+mod branch;
+mod corrector;
+mod events;
+mod family;
+
+use std::fmt;
+use std::sync::atomic::AtomicBool;
+
+use super::settled::settled;
+use super::table::Table;
+use crate::dynamics::{Event, EventKind, Jacobian, Model, Multiplier, Outcome, Passage, StroboscopicMap};
+
+pub use branch::{Branch, BranchEnd, branch};
+pub use events::BranchEvent;
+pub use family::Family;
+
+/// The most steps of Newton's method.
+const MOST_STEPS: usize = 40;
+
+/// The longest step, as a share of the scales: the method is for a guess near the motion.
+const LONGEST_STEP: f64 = 0.2;
+
+/// The change of a state, as a share of the scales, below which it has come back; and the step below which
+/// nothing is gained any more.
+const CLOSE: f64 = 1e-9;
+const SMALLEST_STEP: f64 = 1e-13;
+
+/// States closer than this share of the scales are the same motion's.
+const SAME: f64 = 1e-6;
+
+/// The tolerance at which the map is computed, where the scene's is larger: near rounding, since derivatives
+/// by a field are quotients of differences, and events on a branch are located to 1e-8.
+const TOLERANCE: f64 = 1e-14;
+
+/// A periodic motion.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Orbit {
+    /// Its period in forcing periods.
+    pub period: u32,
+    /// Displacement in m and velocity in m/s at the phase of its map.
+    pub state: (f64, f64),
+    /// What happens on it.
+    pub passage: Passage,
+    /// Derivative of the map over its period.
+    pub jacobian: Jacobian,
+}
+
+/// Why there is no periodic motion near a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum NoOrbit {
+    /// Newton's method has not converged.
+    NotConverged,
+    /// The motion touches a stop without speed, where the map has no derivative.
+    Grazing,
+    /// The motion does not last for the period.
+    Ended(Outcome),
+    /// None of the period that was asked for is there: the motion repeats after this many forcing periods.
+    Shorter(u32),
+    /// The run does not come to a motion that repeats.
+    NotSettled,
+    /// It was cancelled.
+    Cancelled,
+}
+
+impl fmt::Display for NoOrbit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotConverged => f.write_str("Newton's method finds no periodic motion near the run's own"),
+            Self::Grazing => f.write_str(
+                "the motion touches a stop without speed, where it has no derivative; change the scene a \
+                 little",
+            ),
+            Self::Ended(outcome) => {
+                write!(f, "the motion ends early ({})", outcome.name())?;
+                outcome.ended_at().map_or(Ok(()), |at| write!(f, ", {at} s after the drive's phase 0"))
+            }
+            Self::Shorter(period) => write!(f, "near the run's own motion is only one of period {period}"),
+            Self::NotSettled => f.write_str(
+                "the run comes to no motion that repeats after at most 12 forcing periods; name a period, or \
+                 start elsewhere",
+            ),
+            Self::Cancelled => f.write_str("it was told to stop"),
+        }
+    }
+}
+
+impl Orbit {
+    /// Floquet multipliers, the larger magnitude first.
+    pub fn multipliers(&self) -> [Multiplier; 2] {
+        self.jacobian.multipliers(self.determinant())
+    }
+
+    /// Product of the multipliers.
+    pub fn determinant(&self) -> f64 {
+        self.passage.determinant.unwrap_or_else(|| self.jacobian.determinant())
+    }
+
+    /// Events at the stops in their order around the motion, without the impacts of a chatter that ends in
+    /// rest but its first: of those there is no end, and how many are told from their sum means nothing.
+    pub fn contacts(&self) -> Vec<Event> {
+        let mut all: Vec<Event> =
+            self.passage.events.iter().filter(|event| event.kind != EventKind::Crossing).copied().collect();
+        // so that no chatter is cut in two
+        if let Some(place) = all.iter().position(|event| event.kind == EventKind::Release) {
+            all.rotate_left(place);
+        }
+        let mut kept: Vec<Event> = Vec::new();
+        for event in all {
+            let hits = |own: &Event| (own.kind, own.side) == (EventKind::Impact, event.side);
+            if event.kind == EventKind::Rest {
+                while kept.len() > 1 && kept[kept.len() - 2..].iter().all(hits) {
+                    kept.pop();
+                }
+            }
+            kept.push(event);
+        }
+        kept
+    }
+
+    /// Speed in m/s of the slowest impact, those after the first of a chatter that ends in rest left out;
+    /// none without one.
+    pub fn gentlest_impact(&self) -> Option<f64> {
+        let hits = |event: &Event| matches!(event.kind, EventKind::Impact | EventKind::Contact);
+        let all = self.contacts().into_iter().filter(hits);
+        all.map(|event| event.v_in.abs()).reduce(f64::min)
+    }
+
+    /// Whether what is near to it comes nearer.
+    pub fn is_stable(&self) -> bool {
+        self.multipliers()[0].magnitude() < 1.0
+    }
+}
+
+/// A state between rigid stops and on the curve, with the mass held at the one that it lies beyond.
+pub(super) fn allowed(model: &Model, state: (f64, f64)) -> (f64, f64) {
+    model.held_within(state, if model.compliant().is_some() { f64::INFINITY } else { 0.0 })
+}
+
+/// The stroboscopic map of a model, exact enough for its derivatives; none where the drive has no period.
+pub(super) fn map_of(model: &Model, phase: f64) -> Option<StroboscopicMap> {
+    model.with_tolerance(model.tolerance().min(TOLERANCE)).stroboscopic_map(phase)
+}
+
+/// The periodic motion near a state at the map's phase, displacement in m and velocity in m/s, by Newton's
+/// method. Its period is `periods` or a divisor of it.
+pub fn orbit_near(map: &StroboscopicMap, guess: (f64, f64), periods: u32) -> Result<Orbit, NoOrbit> {
+    let scales = map.model().scales();
+    let size = |change: (f64, f64)| (change.0 / scales.length).abs().max((change.1 / scales.speed).abs());
+    let mut state = allowed(map.model(), guess);
+    let mut best = f64::INFINITY;
+    for _ in 0..MOST_STEPS {
+        let (passage, jacobian) = map.pass_with_jacobian(state, periods);
+        if passage.outcome != Outcome::Done {
+            return Err(NoOrbit::Ended(passage.outcome));
+        }
+        let [[a, b], [c, d]] = jacobian.rows;
+        if ![a, b, c, d].iter().all(|own| own.is_finite()) {
+            return Err(NoOrbit::Grazing);
+        }
+        let off = (passage.state.0 - state.0, passage.state.1 - state.1);
+        // (1 - J) step = off
+        let determinant = (1.0 - a) * (1.0 - d) - b * c;
+        let step =
+            (((1.0 - d) * off.0 + b * off.1) / determinant, (c * off.0 + (1.0 - a) * off.1) / determinant);
+        let length = size(step);
+        if size(off) <= CLOSE && (length <= SMALLEST_STEP || length >= 0.5 * best) {
+            return Ok(shortest(map, Orbit { period: periods, state, passage, jacobian }));
+        }
+        if !length.is_finite() {
+            return Err(NoOrbit::NotConverged);
+        }
+        best = best.min(length);
+        let share = (LONGEST_STEP / length).min(1.0);
+        state = allowed(map.model(), (state.0 + share * step.0, state.1 + share * step.1));
+    }
+    Err(NoOrbit::NotConverged)
+}
+
+/// The same motion with its smallest period.
+fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Orbit {
+    let scales = map.model().scales();
+    let divisors = (1..orbit.period).filter(|own| orbit.period.is_multiple_of(*own));
+    for period in divisors {
+        let (passage, jacobian) = map.pass_with_jacobian(orbit.state, period);
+        let back = passage.state;
+        if (back.0 - orbit.state.0).abs() <= SAME * scales.length
+            && (back.1 - orbit.state.1).abs() <= SAME * scales.speed
+        {
+            return Orbit { period, state: orbit.state, passage, jacobian };
+        }
+    }
+    orbit
+}
+
+/// The periodic motion near the one that a run of `model` comes to, at a phase of the drive in forcing
+/// periods; of `period`, where one is asked for.
+///
+/// Precondition: the drive repeats.
+pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool) -> Result<Orbit, NoOrbit> {
+    let (Some(map), Some(forcing)) = (map_of(model, phase), model.forcing_period()) else {
+        return Err(NoOrbit::NotSettled);
+    };
+    let summary = settled(model, cancel).ok_or(NoOrbit::Cancelled)?;
+    if summary.outcome != Outcome::Done {
+        return Err(NoOrbit::Ended(summary.outcome));
+    }
+    let periods = period.or(summary.period).ok_or(NoOrbit::NotSettled)?;
+    let since = (summary.window.1.max(summary.settles_at.unwrap_or(0.0)) / forcing).ceil();
+    let run = StroboscopicMap::over(model, map.first_strobe() + since * forcing).pass(model.start(), 1);
+    let orbit = orbit_near(&map, run.state, periods)?;
+    match period {
+        Some(asked) if orbit.period != asked => Err(NoOrbit::Shorter(orbit.period)),
+        _ => Ok(orbit),
+    }
+}
+
+/// A row a motion: period, state, multipliers, whether it is stable, and what happens on it.
+pub fn orbit_table(orbits: &[Orbit]) -> Table {
+    with_orbits(Table::new(), orbits)
+}
+
+fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
+    let part = |number: usize, of: fn(Multiplier) -> f64| move |own: &Orbit| of(own.multipliers()[number]);
+    table
+        .each("period", orbits, |own| Some(u64::from(own.period)))
+        .each("x_m", orbits, |own| own.state.0)
+        .each("v_m_per_s", orbits, |own| own.state.1)
+        .each("multiplier_1_re", orbits, part(0, |own| own.re))
+        .each("multiplier_1_im", orbits, part(0, |own| own.im))
+        .each("multiplier_2_re", orbits, part(1, |own| own.re))
+        .each("multiplier_2_im", orbits, part(1, |own| own.im))
+        .each("stable", orbits, |own| if own.is_stable() { "true" } else { "false" })
+        .each("impacts", orbits, |own| Some(own.passage.impacts()))
+        .each("rests", orbits, |own| Some(own.passage.rests()))
+        .each("gentlest_impact_m_per_s", orbits, |own| own.gentlest_impact().unwrap_or(f64::NAN))
+        .each("nearest_miss_m", orbits, |own| own.passage.nearest_miss.unwrap_or(f64::NAN))
+}
