@@ -68,9 +68,10 @@ fn the_steady_motion_of_a_linear_oscillator() {
 }
 
 /// A ball on a table that shakes with amplitude `a` g, seen from the table: it is pulled to the left, onto
-/// the stop. In the motion with one impact a period it rises and falls for the whole period, so that the speed of
-/// the table at the impact is w = g T/2 (1 - e)/(1 + e); its acceleration there, q, gives the multipliers:
-/// their sum is 1 + e^2 + (1 + e)^2 q/g, their product e^2 (Guckenheimer and Holmes 1983, section 2.4).
+/// the stop. In the motion with one impact a period it rises and falls for the whole period, so that the
+/// speed of the table at the impact is w = g T/2 (1 - e)/(1 + e); its acceleration there, q, gives the
+/// multipliers: their sum is 1 + e^2 + (1 + e)^2 q/g, their product e^2 (Guckenheimer and Holmes 1983,
+/// section 2.4).
 struct Ball {
     e: f64,
     frequency: f64,
