@@ -187,7 +187,7 @@ fn each_picture_of_the_studies_is_made_by_a_command_beside_it() {
     for command in &commands {
         headless(command).arg("--help").assert().success();
     }
-    let quick = ["hysteresis-stops.png", "basins-stops.png", "threshold-stops.png", "spectrum.png"];
+    let quick = ["hysteresis-stops.png", "branch.png", "basins-stops.png", "spectrum.png"];
     let folder = tempfile::tempdir().unwrap();
     for command in commands.into_iter().filter(|command| quick.contains(&picture(command))) {
         headless(command).arg("--quiet").current_dir(folder.path()).assert().success();
