@@ -168,7 +168,7 @@ fn starts(options: &Arguments) -> Result<Starts, Failure> {
     let whole = |option: &str, text: &str| {
         text.trim()
             .parse::<u64>()
-            .map_err(|_| Failure::argument(format!("{option} {text}: give a whole number, 0 or above")))
+            .map_err(|_| Failure::argument(format!("{option} {text}: give a whole number, such as 1000")))
     };
     let count = whole("--random", text)?;
     let seed = options.seed.as_deref().map_or(Ok(0), |text| whole("--seed", text))?;

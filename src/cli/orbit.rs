@@ -16,8 +16,16 @@ use super::picture::{Picture, caption, ranges};
 use super::support::{finish, inputs, load_with_mechanism, open, write_table};
 use super::{interrupt, say};
 
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless orbit paper
+  interwell --headless orbit duffing-chaos --period 1
+  interwell --headless orbit paper-unconstrained --set run.duration_s=200 \\
+      --branch excitation.amplitude_g=1.3:1.1 --out branch.csv --plot branch.png";
+
 /// What it takes.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// Scene file or built-in scene
     #[arg(value_name = "SCENE", default_value = "paper")]
@@ -31,7 +39,8 @@ pub struct Arguments {
     #[arg(long, value_name = "P", default_value = "0", allow_hyphen_values = true)]
     pub phase_deg: String,
 
-    /// Follow the motion over a field from A to B, through folds; a row a motion
+    /// Follow the motion over a field from A, in place of the scene's own value, to B, through folds; a row a
+    /// motion
     #[arg(long, value_name = "FIELD=A:B", allow_hyphen_values = true)]
     pub branch: Option<String>,
 
@@ -72,19 +81,19 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let phase = phase_deg / 360.0;
-    let failed = |own: NoOrbit| match own {
+    let failed = |own: NoOrbit, at: &str| match own {
         NoOrbit::Cancelled => Failure::interrupted(),
-        _ => Failure::Failed(anyhow::anyhow!("{}: {own}", document.name)),
+        _ => Failure::Failed(anyhow::anyhow!("{}: {at}{own}", document.name)),
     };
     let table: Table = match branch_range {
-        None => orbit_table(&[orbit(&model, phase, options.period, cancel).map_err(failed)?]),
+        None => orbit_table(&[orbit(&model, phase, options.period, cancel).map_err(|own| failed(own, ""))?]),
         Some((field, from, to)) => {
             let family = Family::new(&document.scene, &document.files, &mechanism, &field);
             let bar = count(common.quiet);
             let task = Task { tick: &|| bar.inc(1), cancel };
             let found = branch(&family, &field, (from, to), (phase, options.period), &task);
             bar.finish_and_clear();
-            let found = found.map_err(failed)?;
+            let found = found.map_err(|own| failed(own, &format!("at {field} = {from}: ")))?;
             if let Some(picture) = picture {
                 let figure = branch_figure(&found, phase_deg, axes, &caption(&document), picture.theme);
                 picture.write(&mut sinks[1], figure)?;
@@ -127,12 +136,13 @@ fn range(text: &str, document: &Document) -> Result<(String, f64, f64), Failure>
     let wrong = |problem: String| Failure::argument(format!("--branch {text}: {problem}"));
     let form = || wrong("write FIELD=A:B, such as excitation.amplitude_g=0.5:2".into());
     let (field, values) = text.split_once('=').ok_or_else(form)?;
-    let (from, to) = values.split_once(':').ok_or_else(form)?;
+    let (from, to) = values.split_once(':').filter(|(_, to)| !to.contains(':')).ok_or_else(form)?;
     // both ends are values that the field may have
     let axis = Axis::parse(&format!("{}={},{}", field.trim(), from.trim(), to.trim()), &document.scene);
     let axis = axis.map_err(wrong)?;
     match axis.values[..] {
         [from, to] if from != to => Ok((axis.field, from, to)),
+        [from, _] => Err(wrong(format!("A and B are both {from}; give a range, such as 0.5:2"))),
         _ => Err(form()),
     }
 }

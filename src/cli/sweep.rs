@@ -131,7 +131,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
             },
         };
         let (rows, scene, quantity) = (&rows, &document.scene, &*options.quantity);
-        let shown = SweepPicture { rows, grid, scene, quantity, overlay, ranges: axes };
+        let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, ranges: axes };
         picture.write(&mut sinks[1], sweep_figure(&shown, &caption(&document), picture.theme)?)?;
     }
     if sinks[2].is_some() {

@@ -33,7 +33,7 @@ pub struct Arguments {
     #[arg(
         long,
         value_name = "FIELD=FROM:TO[:STEP]",
-        default_value = "excitation.amplitude_g=0:2",
+        default_value = AMPLITUDES,
         allow_hyphen_values = true
     )]
     pub field: String,
@@ -65,6 +65,9 @@ pub struct Arguments {
     #[command(flatten)]
     pub common: Common,
 }
+
+/// The field and range of a scan where none are given.
+const AMPLITUDES: &str = "excitation.amplitude_g=0:2";
 
 /// Steps of a scan whose step was left out.
 const STEPS: f64 = 200.0;
@@ -131,7 +134,8 @@ fn wrong(document: &Document, cells: Vec<CellFaults>) -> Failure {
 /// What is searched over.
 fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     let argument = options.field.trim();
-    let wrong = |problem: String| Failure::argument(format!("--field {argument}: {problem}"));
+    let default = if argument == AMPLITUDES { " (the default; give another)" } else { "" };
+    let wrong = |problem: String| Failure::argument(format!("--field {argument}{default}: {problem}"));
     let parts: Vec<&str> = argument.split(':').collect();
     let full = match parts[..] {
         [from, to] => {

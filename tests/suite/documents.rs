@@ -12,6 +12,7 @@ use crate::cli::{headless, stdout};
 const README: &str = include_str!("../../README.md");
 const SCENE: &str = include_str!("../../docs/scene.md");
 const OUTPUT: &str = include_str!("../../docs/output.md");
+const STUDIES: &str = include_str!("../../docs/studies.md");
 
 /// Whether `name` stands in `page` as code.
 fn says(page: &str, name: &str) -> bool {
@@ -162,14 +163,44 @@ fn scenes_in_the_documents_are_valid() {
     }
 }
 
+/// The commands of a page, without the program's name.
+fn commands(page: &str) -> Vec<&str> {
+    let lines = blocks(page, "sh").into_iter().flat_map(str::lines);
+    lines.filter_map(|line| line.strip_prefix("interwell --headless ")).collect()
+}
+
+/// The picture that a command makes.
+fn picture(command: &str) -> &str {
+    command.split("--plot ").nth(1).unwrap().split(' ').next().unwrap()
+}
+
+#[test]
+fn each_picture_of_the_studies_is_made_by_a_command_beside_it() {
+    let commands = commands(STUDIES);
+    assert!(commands.len() >= 9, "{commands:?}");
+    for command in &commands {
+        let shown = format!("](../assets/{})", picture(command));
+        assert!(STUDIES.contains(&shown), "docs/studies.md does not show {}", picture(command));
+    }
+    assert_eq!(STUDIES.matches("](../assets/").count(), commands.len());
+    // the long ones are only read
+    for command in &commands {
+        headless(command).arg("--help").assert().success();
+    }
+    let quick = ["hysteresis-stops.png", "branch.png", "basins-stops.png", "spectrum.png"];
+    let folder = tempfile::tempdir().unwrap();
+    for command in commands.into_iter().filter(|command| quick.contains(&picture(command))) {
+        headless(command).arg("--quiet").current_dir(folder.path()).assert().success();
+    }
+    for made in quick {
+        assert!(fs::metadata(folder.path().join(made)).unwrap().len() > 0, "{made}");
+    }
+}
+
 #[test]
 fn the_readmes_commands_work() {
     let folder = tempfile::tempdir().unwrap();
-    let commands: Vec<&str> = blocks(README, "sh")
-        .into_iter()
-        .flat_map(str::lines)
-        .filter_map(|line| line.strip_prefix("interwell --headless "))
-        .collect();
+    let commands = commands(README);
     assert!(commands.len() >= 5, "{commands:?}");
     for command in commands {
         headless(command).arg("--quiet").current_dir(folder.path()).assert().success();

@@ -50,7 +50,7 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
     let mut figure = Figure::new(theme.paper);
     let SectionPicture { rows, over, phase_deg, ranges, .. } = *picture;
     let kinds = match phase_deg {
-        Some(_) => [("free", Marker::Disc, 1), ("with impacts", Marker::Triangle, 3)],
+        Some(_) => [("without impacts", Marker::Disc, 1), ("with impacts", Marker::Triangle, 3)],
         None => [("left stop", Marker::Disc, 1), ("right stop", Marker::Triangle, 3)],
     };
     let kinds = kinds.map(|(name, shape, ink)| Kind { name, shape, ink: theme.regimes[ink] });

@@ -73,7 +73,7 @@ const MANY: usize = 3;
 /// The picture of a sweep: over one field a line, over two a map, or a line for each value of a field that
 /// has few.
 pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) -> Result<Figure, NoPicture> {
-    let SweepPicture { rows, grid, scene, .. } = *picture;
+    let SweepPicture { rows, grid, scene, until_settled, .. } = *picture;
     can_show(grid, picture.quantity, rows)?;
     let mut figure = Figure::new(theme.paper);
     match (grid.columns(), few_lines(rows, grid)) {
@@ -84,7 +84,8 @@ pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) ->
         ([x, y], None) => map(&mut figure, picture, (x, y), theme),
         (other, None) => return Err(NoPicture::Fields(other.len())),
     }
-    caption.draw(&mut figure, theme, &sweep_about(grid, scene, rows.column(DIRECTION).is_some()), LEFT);
+    let walked = rows.column(DIRECTION).is_some();
+    caption.draw(&mut figure, theme, &sweep_about(grid, scene, walked, until_settled), LEFT);
     Ok(figure)
 }
 
@@ -108,13 +109,15 @@ pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
     values
 }
 
-/// What was run, in one line; `walked`, where each run went on from the one before.
-pub fn sweep_about(grid: &Grid, scene: &Scene, walked: bool) -> String {
+/// What was run, in one line; `walked`, where each run went on from the one before, and up to when in s runs
+/// went on until they repeat, where they did.
+pub fn sweep_about(grid: &Grid, scene: &Scene, walked: bool, until_settled: Option<f64>) -> String {
     let counts: Vec<String> = grid.axes().iter().map(|axis| axis.values.len().to_string()).collect();
     let swept = |field: &str| grid.axes().iter().any(|axis| axis.field == field);
     let mut parts = vec![format!("{} runs", counts.join(" \u{d7} "))];
     if !swept("run.duration_s") {
-        parts[0] += &format!(" of {} s", short(scene.run.duration_s));
+        let longest = until_settled.map_or_else(String::new, |until| format!(" to {}", short(until)));
+        parts[0] += &format!(" of {}{longest} s", short(scene.run.duration_s));
     }
     if walked {
         parts.push("each from where the one before was".to_owned());

@@ -27,6 +27,8 @@ pub struct SweepPicture<'a> {
     pub grid: &'a Grid,
     /// Over which scene.
     pub scene: &'a Scene,
+    /// Up to when in s runs went on until they repeat, where they did.
+    pub until_settled: Option<f64>,
     /// The column that is shown.
     pub quantity: &'a str,
     /// The lines over a map.

@@ -61,7 +61,8 @@ pub fn threshold_figure(
         (columns, _) => {
             let named = rows.clone().with(&least, quantity.values);
             let (quantity, overlay) = (least.as_str(), Overlay::default());
-            let shown = SweepPicture { rows: &named, grid, scene, quantity, overlay, ranges };
+            let until_settled = None;
+            let shown = SweepPicture { rows: &named, grid, scene, until_settled, quantity, overlay, ranges };
             map(&mut figure, &shown, (&columns[0], &columns[1]), theme);
         }
     }

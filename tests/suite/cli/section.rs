@@ -71,7 +71,7 @@ fn a_diagram_has_a_manifest_and_pictures() {
         serde_json::from_str(&fs::read_to_string(folder.path().join("d.csv.json")).unwrap()).unwrap();
     assert_eq!((&manifest["command"], &manifest["cells"]), (&"section".into(), &22.into()));
     let text = fs::read_to_string(folder.path().join("d.svg")).unwrap();
-    for words in ["up", "down", "with impacts", "free", "amplitude, g", "displacement, mm"] {
+    for words in ["up", "down", "with impacts", "without impacts", "amplitude, g", "displacement, mm"] {
         assert!(text.lines().any(|line| line == words), "{words}");
     }
     run("section paper --plot s.svg --out s.csv");
