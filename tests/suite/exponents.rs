@@ -218,8 +218,8 @@ fn an_average_along_a_periodic_motion_tends_to_its_multipliers() {
     assert_eq!(exact.period, Some(5));
     assert!(exact.first.per_s > exact.second.per_s);
     let settled = run(&own).summary;
-    let phase = settled.window.1 / own.forcing_period().unwrap();
-    let start = ((settled.final_x, settled.final_v), phase.fract());
+    let phase = own.drive_phase(settled.window.1).unwrap();
+    let start = ((settled.final_x, settled.final_v), phase);
     let found = average_exponents(&own, start, 1000, &NEVER).unwrap();
     near(found.first.per_s, exact.first.per_s, 1e-8);
     near(found.second.per_s, exact.second.per_s, 1e-8);

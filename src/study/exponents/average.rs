@@ -10,9 +10,9 @@ use crate::numeric::CompensatedSum;
 /// Forcing periods in which a change turns into the direction that grows most, before anything is averaged.
 const TURNING: u32 = 20;
 
-/// The exponents of the motion through `state`, in m and m/s at a `phase` of the drive from 0 to 1, over so
-/// many forcing periods: no transient is waited for and no periodic motion looked for. Without a drive a
-/// period is the natural time of the mechanism. At least one period.
+/// The exponents of the motion through `state`, in m and m/s at a [`phase`](Model::drive_phase) of the drive
+/// from 0 to 1, over so many forcing periods: no transient is waited for and no periodic motion looked for.
+/// Without a drive a period is the natural time of the mechanism. At least one period.
 ///
 /// The standard errors are those of the means of batches, as many as the root of the number of periods
 /// (Flegal and Jones 2010): they cover the scatter of a motion that forgets itself within a batch.
