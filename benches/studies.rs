@@ -9,7 +9,10 @@ use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::STANDARD_GRAVITY;
-use interwell::study::{Onset, Scan, Signal, SpectrumOptions, Task, spectrum, threshold};
+use interwell::study::{
+    Branch, BranchEvent, ExponentOptions, Family, Onset, Orbit, Scan, Signal, SpectrumOptions, Task, branch,
+    exponents, spectrum, threshold,
+};
 
 /// Times that each study is done.
 const ROUNDS: usize = 21;
@@ -19,6 +22,8 @@ fn main() {
     println!("| --- | --- | --- | --- | --- |");
     spectra();
     thresholds();
+    branches();
+    growth();
 }
 
 /// Does `study`, which gives its error, several times, and prints its row.
@@ -90,4 +95,43 @@ fn thresholds() {
         scan,
         press / (0.7 * STANDARD_GRAVITY) * 1e3,
     );
+}
+
+fn branches() {
+    let never = AtomicBool::new(false);
+    let task = Task { tick: &|| (), cancel: &never };
+    let over = |name: &str, (from, to): (f64, f64), of: &dyn Fn(&Branch) -> f64| {
+        let document = shared::changed(name, &[]);
+        let mechanism =
+            interwell::mechanics::Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+        let mechanism = std::sync::Arc::new(mechanism);
+        let field = "excitation.amplitude_g";
+        let family = Family::new(&document.scene, &document.files, &mechanism, field);
+        of(&branch(&family, field, (from, to), (0.0, Some(1)), &task).unwrap())
+    };
+    // the swing of the linear spring whose amplitude is the distance of the stop, 1 m
+    let (w, c) = (0.7_f64, 0.2);
+    let grazing = (1.0 - w * w).hypot(c * w) / STANDARD_GRAVITY;
+    row("orbit --branch", "`impact-oscillator`, 166 motions past a grazing", "the grazing", || {
+        over("impact-oscillator", (0.05, 0.06), &|found| {
+            let at = found.events.iter().position(|own| *own == Some(BranchEvent::Grazing)).unwrap();
+            (found.values[at] / grazing - 1.0).abs()
+        })
+    });
+    row("orbit --branch", "`duffing`, 0.1 to 1 g, 195 motions", "the product of the multipliers", || {
+        over("duffing", (0.1, 1.0), &|found| {
+            let of = |own: &Orbit| (own.jacobian.determinant() / own.determinant() - 1.0).abs();
+            found.orbits.iter().map(of).fold(0.0, f64::max)
+        })
+    });
+}
+
+fn growth() {
+    let never = AtomicBool::new(false);
+    let chaos = shared::preset("duffing-chaos", &[]);
+    let options = ExponentOptions { periods: ExponentOptions::PERIODS, until_settled: None };
+    row("exponents", "`duffing-chaos`, 1000 periods", "the sum of both", || {
+        let found = exponents(&chaos, &options, &never).unwrap();
+        (found.sum / found.exact_sum.unwrap() - 1.0).abs()
+    });
 }

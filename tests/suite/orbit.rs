@@ -199,6 +199,8 @@ fn a_motion_that_rests_has_multipliers_of_zero_and_a_table_says_so() {
     let found = find(&preset("paper", &["excitation.amplitude_g=1"]), 0.25, None).unwrap();
     assert_eq!((found.period, found.determinant(), found.is_stable()), (1, 0.0, true));
     assert!(found.multipliers().iter().all(|own| own.magnitude() == 0.0));
+    let still = find(&preset("paper", &["excitation.amplitude_g=0.5"]), 0.0, None).unwrap();
+    assert_eq!((still.period, still.state, still.passage.impacts()), (1, (1.5e-3, 0.0), 0));
     let table = orbit_table(&[found]);
     assert_eq!(table.numbers("multiplier_1_re").unwrap(), [0.0]);
     assert!(table.numbers("gentlest_impact_m_per_s").unwrap()[0] > 0.1);

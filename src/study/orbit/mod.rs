@@ -18,7 +18,9 @@ use std::sync::atomic::AtomicBool;
 
 use super::settled::settled;
 use super::table::Table;
-use crate::dynamics::{Event, EventKind, Jacobian, Model, Multiplier, Outcome, Passage, StroboscopicMap};
+use crate::dynamics::{
+    Event, EventKind, Jacobian, Model, Multiplier, Outcome, Passage, Regime, StroboscopicMap,
+};
 
 pub use branch::{Branch, BranchEnd, branch};
 pub use events::BranchEvent;
@@ -219,10 +221,13 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
     if summary.outcome != Outcome::Done {
         return Err(NoOrbit::Ended(summary.outcome));
     }
-    let periods = period.or(summary.period).ok_or(NoOrbit::NotSettled)?;
+    // a mass that has come to rest repeats from period to period, and no strobe is looked at
+    let still = (summary.regime == Regime::Rest).then_some(1);
+    let periods = period.or(summary.period).or(still).ok_or(NoOrbit::NotSettled)?;
     let since = (summary.window.1.max(summary.settles_at.unwrap_or(0.0)) / forcing).ceil();
     let run = StroboscopicMap::over(model, map.first_strobe() + since * forcing).pass(model.start(), 1);
-    let guess = if summary.period.is_some() { run.state } else { closest_return(&map, run.state, periods) };
+    let guess =
+        if summary.period.or(still).is_some() { run.state } else { closest_return(&map, run.state, periods) };
     let orbit = orbit_near(&map, guess, periods)?;
     match period {
         Some(asked) if orbit.period != asked => Err(NoOrbit::Shorter(orbit.period)),
