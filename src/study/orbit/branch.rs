@@ -40,7 +40,7 @@ pub enum BranchEnd {
     Closed,
     /// The motion touches a stop without speed, and no motion near to it goes on.
     Grazing,
-    /// Newton's method no longer converges: the motion no longer lasts for its period, or changes too fast.
+    /// Newton's method finds no motion near the last one: it jumps, changes too fast, or ends early.
     Lost,
     /// At the most points.
     Points,
@@ -52,7 +52,7 @@ impl fmt::Display for BranchEnd {
             Self::Range => "at an end of the range",
             Self::Closed => "where it began",
             Self::Grazing => "where the motion touches a stop without speed, and none near to it goes on",
-            Self::Lost => "where the motion no longer lasts for its period, or changes too fast",
+            Self::Lost => "where no motion near the last one was found: it may jump, or end early",
             Self::Points => "after 5000 motions",
         })
     }
