@@ -4,6 +4,7 @@ use std::fmt;
 use std::process::ExitCode;
 
 use interwell::output::{NoPicture, OpenError};
+use interwell::scene::lesson::LessonError;
 use interwell::scene::{ArgumentError, SceneError};
 use interwell::study::accuracy::UnknownCase;
 use interwell::study::{CellFaults, GridError, OutsideCurve, TimesError};
@@ -59,7 +60,16 @@ macro_rules! arguments_are_wrong {
     )*};
 }
 
-arguments_are_wrong!(SceneError, ArgumentError, GridError, TimesError, OutsideCurve, NoPicture, UnknownCase);
+arguments_are_wrong!(
+    SceneError,
+    LessonError,
+    ArgumentError,
+    GridError,
+    TimesError,
+    OutsideCurve,
+    NoPicture,
+    UnknownCase
+);
 
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {

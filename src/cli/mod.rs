@@ -7,6 +7,7 @@ mod curve;
 mod exponents;
 mod failure;
 mod interrupt;
+mod lesson;
 mod options;
 mod orbit;
 mod picture;

@@ -119,6 +119,8 @@ commands! {
     orbit Orbit " [SCENE]";
     /// Lyapunov exponents of the settled motion, with their standard errors, sum and dimension
     exponents Exponents " [SCENE]";
+    /// List the lessons; print, check or begin one
+    lesson Lesson " [LESSON]";
     /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed
     /// against error beside other methods, and the hard cases with the digits that they allow and reach
     accuracy Accuracy " [SCENE]";

@@ -270,7 +270,11 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 
 /// Joins the lines of a text that was wrapped by hand; paragraphs stay, one empty line apart.
 fn paragraphs<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
-    let text = String::deserialize(from)?;
+    String::deserialize(from).map(|text| joined(&text))
+}
+
+/// The text with its lines joined to paragraphs.
+pub(super) fn joined(text: &str) -> String {
     let mut joined = String::with_capacity(text.len());
     for line in text.lines().map(str::trim) {
         if line.is_empty() {
@@ -285,7 +289,7 @@ fn paragraphs<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
         }
     }
     joined.truncate(joined.trim_end().len());
-    Ok(joined)
+    joined
 }
 
 /// `Some(Stops::None)` says no more than leaving the field out, and could not be told apart from it

@@ -303,9 +303,24 @@ fn read_scene(spec: &str, largest: usize) -> Result<String, SceneError> {
     })
 }
 
-/// The error of a text that is no scene. A name that nothing knows is taken out, so that others, and values
-/// out of their ranges, are said with it.
-fn refused(name: &str, text: &str, mut refusal: text::Refusal, files: Files) -> SceneError {
+/// The error of a text that is no scene.
+fn refused(name: &str, text: &str, refusal: text::Refusal, files: Files) -> SceneError {
+    let rest = |text: &str| {
+        let checked = Document::from_text(name, text, files.clone()).and_then(|document| document.check());
+        checked.err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    unreadable(name, text, refusal, |text| text::parse(text).err(), rest)
+}
+
+/// The error of a text that a parser refuses. A name that nothing knows is taken out, so that others, and
+/// what `rest` has to say of the text without them, are said with it.
+pub(super) fn unreadable(
+    name: &str,
+    text: &str,
+    mut refusal: text::Refusal,
+    parse: impl Fn(&str) -> Option<text::Refusal>,
+    rest: impl Fn(&str) -> String,
+) -> SceneError {
     /// How many names are taken out.
     const MOST_UNKNOWN: usize = 20;
     let said = |refusal: &text::Refusal| {
@@ -314,25 +329,17 @@ fn refused(name: &str, text: &str, mut refusal: text::Refusal, files: Files) -> 
     };
     let (place, problem) = (refusal.place, refusal.problem.clone());
     let (mut more, mut text) = (Vec::new(), text.strip_prefix('\u{feff}').unwrap_or(text).to_owned());
-    while let Some(rest) = refusal.without_unknown(&text).filter(|_| more.len() < MOST_UNKNOWN) {
-        text = rest;
-        match text::parse(&text) {
+    while let Some(without) = refusal.without_unknown(&text).filter(|_| more.len() < MOST_UNKNOWN) {
+        text = without;
+        match parse(&text) {
             // What is missing now may be what the unknown name was meant to be.
-            Err(next) if next.unknown.is_none() => break,
-            Err(next) => {
+            Some(next) if next.unknown.is_none() => break,
+            Some(next) => {
                 more.push(said(&next));
                 refusal = next;
             }
-            Ok(_) => {
-                let checked = Document::from_text(name, &text, files).and_then(|document| document.check());
-                more.extend(
-                    checked
-                        .err()
-                        .map(|error| error.to_string())
-                        .iter()
-                        .flat_map(|all| all.lines())
-                        .map(str::to_owned),
-                );
+            None => {
+                more.extend(rest(&text).lines().map(str::to_owned));
                 break;
             }
         }

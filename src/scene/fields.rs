@@ -4,6 +4,7 @@
 //! number costs some ten string comparisons and allocates nothing, which a sweep of a million cells needs.
 
 use super::data::Scene;
+use super::ranges::number_text;
 pub(super) use super::walk::{Field, Slot};
 use super::walk::{Segment, Visitor, walk};
 
@@ -87,6 +88,17 @@ impl FieldPath {
         self.follow(&mut scene.clone(), |field| match field {
             Field::Number(_, slot) => slot.get(),
             _ => None,
+        })
+        .flatten()
+    }
+
+    /// The value at this path as one word: a number, a text, or the name of a choice; `None` where the scene
+    /// has none, leaves it out, or has the choice `None`.
+    pub fn word(&self, scene: &Scene) -> Option<String> {
+        self.follow(&mut scene.clone(), |field| match field {
+            Field::Number(_, slot) => slot.get().map(number_text),
+            Field::Text(text) => Some(text.clone()).filter(|text| !text.is_empty()),
+            Field::Value(value) => value.word(),
         })
         .flatten()
     }

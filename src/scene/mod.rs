@@ -26,6 +26,7 @@ mod document;
 mod error;
 mod fields;
 mod files;
+pub mod lesson;
 mod locate;
 mod manifest;
 mod mechanism;

@@ -5,6 +5,7 @@
 
 use ron::error::{Error as Ron, SpannedError};
 use ron::extensions::Extensions;
+use serde::de::DeserializeOwned;
 
 use super::clip::clip;
 use super::data::*;
@@ -61,9 +62,14 @@ pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
             .to_owned();
         return Err(Refusal { place: start, problem, unknown: None });
     }
+    read(text)
+}
+
+/// Reads a text that may be long.
+pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Refusal> {
     if text.len() > LARGEST_SCENE {
-        let problem = format!("{} bytes are more than a scene may have ({LARGEST_SCENE})", text.len());
-        return Err(Refusal { place: start, problem, unknown: None });
+        let problem = format!("{} bytes are more than are read ({LARGEST_SCENE})", text.len());
+        return Err(Refusal { place: Place { line: 1, column: 1 }, problem, unknown: None });
     }
     options().from_str(text).map_err(|error| {
         let trailing = error.code == Ron::TrailingCharacters;
@@ -117,7 +123,7 @@ fn token_at(text: &str, place: Place, further_lines: bool) -> Place {
 
 /// The variants that a field chooses from.
 fn choices(field: &str) -> Option<&'static [&'static str]> {
-    fn of<T: serde::de::DeserializeOwned>() -> Option<&'static [&'static str]> {
+    fn of<T: DeserializeOwned>() -> Option<&'static [&'static str]> {
         match options().from_str::<T>("Unknown").err()?.code {
             Ron::NoSuchEnumVariant { expected, .. } => Some(expected),
             _ => None,

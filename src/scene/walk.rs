@@ -7,6 +7,7 @@
 
 use std::fmt;
 
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::data::*;
@@ -59,12 +60,22 @@ impl Slot<'_> {
 /// Something that can be replaced from its RON text.
 pub(super) trait Assign {
     fn assign(&mut self, ron: &str) -> ron::error::SpannedResult<()>;
+
+    /// Its value as a word: of a choice its name; none for the choice `None`, an option left out, and a list.
+    fn word(&self) -> Option<String>;
 }
 
-impl<T: DeserializeOwned> Assign for T {
+impl<T: DeserializeOwned + Serialize> Assign for T {
     fn assign(&mut self, ron: &str) -> ron::error::SpannedResult<()> {
         *self = text::options().from_str(ron)?;
         Ok(())
+    }
+
+    fn word(&self) -> Option<String> {
+        let text = text::options().to_string(self).ok()?;
+        let name = text.trim_start_matches("r#");
+        let length = name.find(|c: char| !c.is_alphanumeric()).unwrap_or(name.len());
+        Some(name[..length].to_owned()).filter(|name| !name.is_empty() && name != "None")
     }
 }
 

@@ -19,6 +19,7 @@ mod fields;
 mod flexures;
 mod grid;
 mod inspect;
+mod lesson;
 mod levels;
 mod map;
 mod models;
@@ -58,6 +59,9 @@ pub use fields::{Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
 pub use inspect::inspect;
+pub use lesson::{
+    LessonFinding, LessonReport, Subject, Unjudged, check_lesson, goal_met, options_that_hold, result_fields,
+};
 pub use levels::{Levels, STRIDES};
 pub use map::{first_crossing, release_line};
 pub use models::Held;

@@ -20,7 +20,7 @@ pub enum Regime {
 
 impl Regime {
     /// The word in the CSV; empty for one well.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
             Self::Intrawell => "intrawell",
@@ -75,8 +75,12 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// All words that [`name`](Self::name) gives.
+    pub const NAMES: &[&str] =
+        &["done", "left_table", "impact_budget", "step_budget", "not_finite", "inaccurate", "cancelled"];
+
     /// The word in the CSV and the summary.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Done => "done",
             Self::LeftTable { .. } => "left_table",
@@ -114,7 +118,7 @@ pub enum Place {
 
 impl Place {
     /// The word in the CSV.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Left => "left",
             Self::Right => "right",

@@ -1,0 +1,167 @@
+//! `lesson`: list of the lessons, the text of one, its check, and a template of one's own.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use interwell::output::Sink;
+use interwell::scene::Fault;
+use interwell::scene::lesson::{LESSONS, LessonDocument, LessonError, Step, TEMPLATE};
+use interwell::study::{LessonFinding, LessonReport, Task, Unjudged, check_lesson, result_fields};
+use interwell::system::files;
+
+use super::failure::Failure;
+use super::options::Common;
+use super::support::{finish, open, write_text};
+use super::sweep::pool;
+use super::{interrupt, say};
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless lesson
+  interwell --headless lesson 3
+  interwell --headless lesson --check
+  interwell --headless lesson --new my-lesson.ron
+  interwell --headless lesson my-lesson.ron --check";
+
+/// What it takes.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Lesson file, or name or number of a built-in lesson, whose text is printed [default: list them all]
+    #[arg(value_name = "LESSON")]
+    pub lesson: Option<String>,
+
+    /// Run it, or all built-in ones: every start must fail its task, every solution pass, and of every
+    /// prediction exactly one option hold. A bound that turns a verdict where it is moved by 1 % is a warning
+    #[arg(long)]
+    pub check: bool,
+
+    /// Write a lesson to begin one's own from
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["lesson", "check"])]
+    pub new: Option<PathBuf>,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Lists, prints, checks or begins lessons.
+pub fn run(options: &Arguments) -> Result<(), Failure> {
+    let common = &options.common;
+    let changes = !common.set.is_empty() || common.tolerance.is_some();
+    if let Some(option) = common.given(true).filter(|_| changes || !options.check) {
+        return Err(Failure::argument(format!(
+            "{option}: a lesson has its own scenes and changes; leave it out"
+        )));
+    }
+    if let Some(path) = &options.new {
+        return begin(path);
+    }
+    let input: Vec<PathBuf> = options.lesson.iter().map(PathBuf::from).collect();
+    let mut sinks = open(&input, [Some(("--out", common.out()))])?;
+    let (text, wrong) = match &options.lesson {
+        _ if options.check => checked(options)?,
+        Some(spec) => (told(&load(spec)?), None),
+        None => (listed()?, None),
+    };
+    write_text(&mut sinks[0], &text)?;
+    finish(sinks)?;
+    wrong.map_or(Ok(()), Err)
+}
+
+fn load(spec: &str) -> Result<LessonDocument, LessonError> {
+    LessonDocument::load(spec, &result_fields())
+}
+
+/// A line a lesson.
+fn listed() -> Result<String, Failure> {
+    let width = LESSONS.iter().map(|lesson| lesson.name.len()).max().unwrap_or(0);
+    let line = |name: &str| {
+        let lesson = load(name)?.lesson;
+        Ok(format!("{name:width$}  {} min  {}\n", lesson.minutes, lesson.goal))
+    };
+    LESSONS.iter().map(|lesson| line(lesson.name)).collect()
+}
+
+/// A lesson as text: what a student reads, then what the lecturer does.
+fn told(document: &LessonDocument) -> String {
+    let lesson = &document.lesson;
+    let mut text = format!("{} ({} min)\nGoal: {}\n\n", lesson.title, lesson.minutes, lesson.goal);
+    for (number, step) in lesson.steps.iter().enumerate() {
+        let word = match step {
+            Step::Say(_) => "",
+            Step::Predict { .. } => "Predict: ",
+            Step::Do { .. } => "Do: ",
+            Step::Explain(_) => "Explained: ",
+        };
+        text += &format!("{}. {word}{}\n", number + 1, step.text());
+        match step {
+            Step::Predict { options, .. } => {
+                for (letter, option) in ('a'..).zip(options) {
+                    text += &format!("   ({letter}) {}\n", option.text);
+                }
+            }
+            Step::Do { hint: Some(hint), .. } => text += &format!("   Hint: {hint}\n"),
+            _ => {}
+        }
+    }
+    text + &format!("\nMisconception: {}\nLecturer: {}\n", lesson.misconception, lesson.lecturer)
+}
+
+/// What the check of the lessons says, a line each, and the error with which it ends where one is wrong.
+fn checked(options: &Arguments) -> Result<(String, Option<Failure>), Failure> {
+    let specs: Vec<&str> = match &options.lesson {
+        Some(spec) => vec![spec],
+        None => LESSONS.iter().map(|lesson| lesson.name).collect(),
+    };
+    let documents = specs.iter().map(|spec| load(spec)).collect::<Result<Vec<_>, _>>()?;
+    let task = Task { tick: &|| (), cancel: interrupt::listen() };
+    let check = |_: &mut (), number: usize| check_lesson(&documents[number], &task);
+    let reports = pool(&options.common)?.map(documents.len(), || (), check).map_err(|error| match error {
+        Unjudged::Cancelled => Failure::interrupted(),
+        Unjudged::Scene { .. } => Failure::Failed(anyhow::anyhow!("a scene of the lesson: {error}")),
+    })?;
+    let mut text = String::new();
+    let mut wrong: Vec<String> = Vec::new();
+    for (document, report) in documents.iter().zip(&reports) {
+        let LessonReport { predictions, tasks, .. } = report;
+        let verdict = if report.wrong.is_empty() { "holds" } else { "is wrong" };
+        let many = |count: usize| if count == 1 { "" } else { "s" };
+        text += &format!(
+            "{}: {verdict} ({predictions} prediction{}, {tasks} task{})\n",
+            document.name,
+            many(*predictions),
+            many(*tasks)
+        );
+        if !options.common.quiet {
+            lines(document, &report.warnings).for_each(|line| say(&format!("warning: {line}")));
+        }
+        wrong.extend(lines(document, &report.wrong));
+    }
+    let wrong = (!wrong.is_empty()).then(|| Failure::Failed(anyhow::anyhow!("{}", wrong.join("\n"))));
+    Ok((text, wrong))
+}
+
+/// Findings with their places, a line each.
+fn lines(document: &LessonDocument, findings: &[LessonFinding]) -> impl Iterator<Item = String> {
+    let fault = |own: &LessonFinding| Fault {
+        field: own.field.clone(),
+        value: String::new(),
+        problem: own.problem.clone(),
+    };
+    let error = (!findings.is_empty()).then(|| document.error_from(findings.iter().map(fault).collect()));
+    let text = error.map(|error| error.to_string()).unwrap_or_default();
+    text.lines().map(str::to_owned).collect::<Vec<_>>().into_iter()
+}
+
+/// Writes the template, where no file is there yet.
+fn begin(path: &Path) -> Result<(), Failure> {
+    let shown = path.display();
+    if files::exists(path) {
+        return Err(Failure::argument(format!("--new {shown}: the file is there already; name another")));
+    }
+    let mut sink = Sink::open(path)?;
+    sink.put(TEMPLATE)
+        .and_then(|()| sink.finish())
+        .map_err(|error| Failure::writing(&shown.to_string(), error))
+}

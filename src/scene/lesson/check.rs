@@ -1,0 +1,251 @@
+//! Validation of a lesson.
+
+use super::condition::Condition;
+use super::stage::Stage;
+use super::{LESSON_FORMAT, LONGEST_OPTION, LONGEST_STEP, Lesson, Step};
+use crate::scene::axis::Axis;
+use crate::scene::check::check;
+use crate::scene::data::{Excitation, Scene};
+use crate::scene::error::Fault;
+use crate::scene::fields::{all_fields, numeric_fields};
+use crate::scene::ranges::number_text;
+
+/// A field of a summary, as a lesson may name it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ResultField {
+    /// Its name, with the unit in it.
+    pub name: &'static str,
+    /// The words that it may be; none for a number.
+    pub words: &'static [&'static str],
+}
+
+/// The most starts of a condition, and the most seeds.
+const MOST_STARTS: usize = 1000;
+const MOST_SEEDS: u32 = 1000;
+/// The longest title, and the longest goal.
+const LONGEST_TITLE: usize = 60;
+/// The most minutes of a lesson.
+const MOST_MINUTES: u32 = 90;
+
+/// The fields of a whole walk.
+pub(super) const OF_WALK: [&str; 3] = ["walk.up_crosses_from", "walk.down_crosses_to", "walk.gap"];
+
+/// A field that a condition may name, with the words that it may be: none for a number, a list without an
+/// entry for any text.
+struct Known {
+    name: String,
+    words: Option<&'static [&'static str]>,
+}
+
+/// What is wrong with a lesson besides its scenes, all of it.
+pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField]) -> Vec<Fault> {
+    let mut found = Found(Vec::new());
+    if lesson.format != LESSON_FORMAT {
+        found.add("format", lesson.format.to_string(), format!("this program reads format {LESSON_FORMAT}"));
+    }
+    found.length("title", &lesson.title, LONGEST_TITLE);
+    found.length("goal", &lesson.goal, LONGEST_STEP);
+    if !(1..=MOST_MINUTES).contains(&lesson.minutes) {
+        found.add("minutes", lesson.minutes.to_string(), format!("must be 1 to {MOST_MINUTES}"));
+    }
+    if let Some(speed) = lesson.speed
+        && !(1e-15..=1000.0).contains(&speed)
+    {
+        found.add("speed", number_text(speed), "must be 1e-15 to 1000; 0.1 is a tenth of real time");
+    }
+    if lesson.views.is_empty() {
+        found.add("views", "", "must name a view, such as Well");
+    }
+    if lesson.steps.is_empty() {
+        found.add("steps", "", "must have a step, such as Say(\"..\")");
+    }
+    let scenes: Vec<&Scene> =
+        stages.iter().flat_map(|own| [&own.begin, &own.end]).map(|own| &own.scene).collect();
+    if scenes.is_empty() {
+        return found.0;
+    }
+    settings(lesson, &scenes, &mut found);
+    let known = known(lesson, &scenes, results);
+    for (index, (step, stage)) in lesson.steps.iter().zip(stages).enumerate() {
+        let at = |part: &str| format!("steps.{index}{part}");
+        found.length(&at(""), step.text(), LONGEST_STEP);
+        match step {
+            Step::Say(_) | Step::Explain(_) => {}
+            Step::Predict { options, .. } => {
+                if options.len() < 2 {
+                    found.add(&at(".options"), format!("a list of {}", options.len()), "give at least two");
+                }
+                for (number, option) in options.iter().enumerate() {
+                    let at = |part: &str| format!("steps.{index}.options.{number}.{part}");
+                    found.length(&at("text"), &option.text, LONGEST_OPTION);
+                    condition(&option.holds, &at("holds"), (&known, &stage.end.scene, false), &mut found);
+                }
+            }
+            Step::Do { goal, hint, .. } => {
+                if let Some(hint) = hint {
+                    found.length(&at(".hint"), hint, LONGEST_STEP);
+                }
+                condition(goal, &at(".goal"), (&known, &stage.end.scene, false), &mut found);
+            }
+        }
+    }
+    found.0
+}
+
+/// Controls, seeds and walk.
+fn settings(lesson: &Lesson, scenes: &[&Scene], found: &mut Found) {
+    let numbers = union(scenes, numeric_fields);
+    for (index, control) in lesson.controls.iter().enumerate() {
+        if control != "stops" && !numbers.contains(control) {
+            let problem = format!("no number of its scenes{}", suggested(control, numbers.iter()));
+            found.add(&format!("controls.{index}"), control, problem);
+        }
+    }
+    if let Some(seeds) = lesson.seeds {
+        if !(2..=MOST_SEEDS).contains(&seeds) {
+            found.add("seeds", seeds.to_string(), format!("must be 2 to {MOST_SEEDS}"));
+        } else if !scenes.iter().all(|own| matches!(own.excitation, Excitation::Noise { .. })) {
+            found.add("seeds", seeds.to_string(), "its scenes have no seed; take a Noise, or leave it out");
+        }
+    }
+    if let Some(axis) = &lesson.walk {
+        for scene in scenes {
+            if let Err((part, problem)) = Axis::from_scene(axis, scene) {
+                found.add(&format!("walk.{part}"), "", problem);
+                break;
+            }
+        }
+    }
+}
+
+/// The fields that the conditions may name.
+fn known(lesson: &Lesson, scenes: &[&Scene], results: &[ResultField]) -> Vec<Known> {
+    let numbers = union(scenes, numeric_fields);
+    let mut known: Vec<Known> = union(scenes, all_fields)
+        .into_iter()
+        .map(|own| Known { words: (!numbers.contains(&own)).then_some(&[]), name: format!("scene.{own}") })
+        .collect();
+    let mut add = |of: &str, numbers_only: bool| {
+        let wanted = results.iter().filter(|own| !numbers_only || own.words.is_empty());
+        known.extend(wanted.map(|own| Known {
+            name: format!("{of}.{}", own.name),
+            words: (!own.words.is_empty()).then_some(own.words),
+        }));
+    };
+    add("result", false);
+    add("before", false);
+    if lesson.seeds.is_some() {
+        add("mean", true);
+        add("error", true);
+    }
+    if lesson.walk.is_some() {
+        add("up", false);
+        add("down", false);
+        known.extend(OF_WALK.map(|name| Known { name: name.to_owned(), words: None }));
+    }
+    known
+}
+
+/// Checks a condition; `from` says whether it stands in one over several starts.
+fn condition(own: &Condition, at: &str, of: (&[Known], &Scene, bool), found: &mut Found) {
+    let (known, scene, from) = of;
+    let inner = from || !own.starts().is_empty();
+    own.parts().iter().for_each(|part| condition(part, at, (known, scene, inner), found));
+    match own {
+        Condition::All(parts) | Condition::Any(parts) if parts.is_empty() => {
+            found.add(at, "", "All and Any need a condition");
+        }
+        Condition::Every(starts, _) | Condition::ForSome(starts, _) | Condition::Same(_, _, starts) => {
+            if !(1..=MOST_STARTS).contains(&starts.len()) {
+                let problem = format!("give 1 to {MOST_STARTS} starts");
+                found.add(at, format!("a list of {}", starts.len()), problem);
+            }
+            if from {
+                found.add(at, "", "starts within starts have no meaning");
+            }
+            for start in starts {
+                let begun = Scene { start: *start, ..scene.clone() };
+                let wrong = check(&begun).faults.into_iter().find(|fault| fault.field.starts_with("start"));
+                if let Some(fault) = wrong {
+                    found.add(at, fault.value, format!("{}: {}", fault.field, fault.problem));
+                }
+            }
+        }
+        _ => {}
+    }
+    let Some(field) = own.field() else { return };
+    let Some(Known { words, .. }) = known.iter().find(|known| known.name == field) else {
+        let needs = match field.split('.').next() {
+            Some("mean" | "error") => "; it needs `seeds`",
+            Some("up" | "down" | "walk") => "; it needs `walk`",
+            _ => "",
+        };
+        let names = known.iter().map(|own| &own.name);
+        found.add(at, field, format!("no such field{}{needs}", suggested(field, names)));
+        return;
+    };
+    let mut bounds = Vec::new();
+    own.clone().for_each_bound(&mut |_, bound| bounds.push(*bound));
+    let of_parts = !own.parts().is_empty();
+    match (own, words) {
+        (Condition::Is(_, text), None) if text.trim().parse::<f64>().is_err() => {
+            found.add(at, format!("{field} is {text}"), "the field is a number");
+        }
+        (Condition::Is(_, text), Some(words)) if !words.is_empty() && !words.contains(&text.as_str()) => {
+            found.add(at, format!("{field} is {text}"), format!("it is one of {}", words.join(", ")));
+        }
+        (_, Some(_)) if !bounds.is_empty() && !of_parts => {
+            found.add(at, field, "is no number; compare it by Is, Present or Absent");
+        }
+        _ => {}
+    }
+    if bounds.iter().any(|bound| !bound.is_finite()) {
+        found.add(at, field, "its bound must be a number");
+    }
+    match own {
+        Condition::Between(_, low, high) if low > high => {
+            found.add(at, format!("{field} from {low} to {high}"), "give the lower bound first");
+        }
+        Condition::Same(_, within, _) if *within < 0.0 => {
+            found.add(at, number_text(*within), "a share that values differ by is 0 or more");
+        }
+        _ => {}
+    }
+}
+
+/// The fields of all scenes, each once.
+fn union(scenes: &[&Scene], fields: fn(&Scene) -> Vec<String>) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for field in scenes.iter().flat_map(|scene| fields(scene)) {
+        if !all.contains(&field) {
+            all.push(field);
+        }
+    }
+    all
+}
+
+/// The known name that is most like one that is not known, as the end of a sentence.
+fn suggested<'a>(wrong: &str, known: impl Iterator<Item = &'a String>) -> String {
+    let likeness = |own: &&String| strsim::jaro_winkler(own, wrong);
+    let best = known.max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    best.map_or(String::new(), |best| format!("; did you mean {best}?"))
+}
+
+struct Found(Vec<Fault>);
+
+impl Found {
+    fn add(&mut self, field: &str, value: impl Into<String>, problem: impl Into<String>) {
+        self.0.push(Fault { field: field.to_owned(), value: value.into(), problem: problem.into() });
+    }
+
+    /// A text that is missing, or longer than fits.
+    fn length(&mut self, field: &str, text: &str, longest: usize) {
+        let length = text.replace("**", "").chars().count();
+        if length == 0 {
+            self.add(field, "", "must have a text");
+        } else if length > longest {
+            let problem = format!("is {length} characters long; at most {longest} fit on the screen");
+            self.add(field, "", problem);
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Built-in lessons, each a file in `lessons/` and embedded.
+
+/// A built-in lesson.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BuiltInLesson {
+    /// Its file's name without ending: a number and a few words.
+    pub name: &'static str,
+    /// The lesson's text.
+    pub text: &'static str,
+}
+
+macro_rules! lessons {
+    ($($name:literal)*) => {
+        /// The built-in lessons, in the order of a course.
+        pub static LESSONS: &[BuiltInLesson] = &[$(BuiltInLesson {
+            name: $name,
+            text: include_str!(concat!("../../../lessons/", $name, ".ron")),
+        }),*];
+    };
+}
+
+lessons! {
+    "03-a-stop-that-helps"
+}
+
+/// A lesson to begin one's own from.
+pub static TEMPLATE: &str = include_str!("../../../lessons/template.ron");
+
+impl BuiltInLesson {
+    /// The lesson of that name; its number or its words alone will do.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        LESSONS.iter().find(|lesson| {
+            let (number, words) = lesson.name.split_once('-').unwrap_or(("", lesson.name));
+            lesson.name == name
+                || words == name
+                || number.trim_start_matches('0') == name.trim_start_matches('0')
+        })
+    }
+}
+
+/// Names of all lessons, with commas.
+pub(super) fn names() -> String {
+    LESSONS.iter().map(|lesson| lesson.name).collect::<Vec<_>>().join(", ")
+}

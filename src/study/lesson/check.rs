@@ -1,0 +1,122 @@
+//! A lesson run from its first step to its last.
+
+use super::judge::{Unjudged, goal_met, holds, options_that_hold};
+use super::subject::Subject;
+use crate::numeric::short;
+use crate::scene::lesson::{Condition, LessonDocument, Step};
+use crate::study::Task;
+
+/// A bound is moved by this share of it, to see whether a verdict sits on an edge.
+const MOVED: f64 = 0.01;
+
+/// Something that is wrong with a lesson, or close to it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LessonFinding {
+    /// Number of the step, from 0.
+    pub step: usize,
+    /// Path of the field in the lesson: `steps.2.goal`.
+    pub field: String,
+    /// What is the matter.
+    pub problem: String,
+}
+
+/// What a lesson comes to.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LessonReport {
+    /// Predictions that were asked.
+    pub predictions: usize,
+    /// Tasks that were tried.
+    pub tasks: usize,
+    /// What is wrong: a start that meets its goal, a solution that does not, a prediction of which not
+    /// exactly one option holds.
+    pub wrong: Vec<LessonFinding>,
+    /// Bounds that turn a verdict where they are moved by 1 %.
+    pub warnings: Vec<LessonFinding>,
+}
+
+/// Runs a lesson: the start of every task must fail, its solution must pass, of the options of every
+/// prediction exactly one must hold; then once more with each bound moved by 1 % up and down. Bounds on
+/// fields of the scene that no control of the lesson changes are not moved: they are settings, and exact.
+pub fn check_lesson(document: &LessonDocument, task: &Task) -> Result<LessonReport, Unjudged> {
+    let lesson = &document.lesson;
+    let mut report = LessonReport::default();
+    for (number, step) in lesson.steps.iter().enumerate() {
+        let of = (lesson.seeds, lesson.walk.as_ref());
+        let (begin, end) = (document.begin(number), document.end(number));
+        let begin = Subject::new(&begin.scene, &begin.files, of, task);
+        let end = Subject::new(&end.scene, &end.files, of, task);
+        let finding = |part: &str, problem: String| {
+            let field = format!("steps.{number}.{part}");
+            LessonFinding { step: number, field, problem }
+        };
+        let mut near = |part: &str, condition: &Condition, subject: &Subject| {
+            let turned = turned_by(condition, &lesson.controls, subject, &begin)?;
+            report.warnings.extend(turned.into_iter().map(|problem| finding(part, problem)));
+            Ok(())
+        };
+        match step {
+            Step::Say(_) | Step::Explain(_) => {}
+            Step::Predict { options, .. } => {
+                report.predictions += 1;
+                let held = options_that_hold(step, &end, &begin)?;
+                let right: Vec<&str> =
+                    options.iter().zip(&held).filter(|own| *own.1).map(|own| own.0.text.as_str()).collect();
+                if right.len() != 1 {
+                    let problem = match right.len() {
+                        0 => "none of the options holds; exactly one must".to_owned(),
+                        _ => format!("these options hold, and only one may: {}", right.join("; ")),
+                    };
+                    report.wrong.push(finding("options", problem));
+                }
+                for (index, option) in options.iter().enumerate() {
+                    near(&format!("options.{index}.holds"), &option.holds, &end)?;
+                }
+            }
+            Step::Do { goal, .. } => {
+                report.tasks += 1;
+                if goal_met(step, &begin, &begin)? {
+                    report.wrong.push(finding("goal", "is met before anything is done".to_owned()));
+                }
+                if !goal_met(step, &end, &begin)? {
+                    report.wrong.push(finding("solution", "does not meet the goal".to_owned()));
+                }
+                near("goal", goal, &begin)?;
+                near("goal", goal, &end)?;
+            }
+        }
+    }
+    Ok(report)
+}
+
+/// The bounds of a condition that turn its verdict where they are moved, a sentence each.
+fn turned_by(
+    condition: &Condition,
+    controls: &[String],
+    subject: &Subject,
+    before: &Subject,
+) -> Result<Vec<String>, Unjudged> {
+    let mut bounds = Vec::new();
+    condition.clone().for_each_bound(&mut |field, bound| bounds.push((field.to_owned(), *bound)));
+    let verdict = holds(condition, subject, before)?;
+    let mut turned = Vec::new();
+    for (index, (field, bound)) in bounds.iter().enumerate() {
+        let of_scene = field.strip_prefix("scene.");
+        if of_scene.is_some_and(|own| !controls.iter().any(|control| control == own)) {
+            continue;
+        }
+        for factor in [1.0 - MOVED, 1.0 + MOVED] {
+            let (mut moved, mut place) = (condition.clone(), 0);
+            moved.for_each_bound(&mut |_, own| {
+                if place == index {
+                    *own *= factor;
+                }
+                place += 1;
+            });
+            if holds(&moved, subject, before)? != verdict {
+                let to = short(bound * factor);
+                turned.push(format!("a bound of {to} on {field} in place of {bound} turns the verdict"));
+            }
+        }
+    }
+    Ok(turned)
+}

@@ -1,0 +1,66 @@
+//! Fields of runs that conditions of lessons may name.
+
+use crate::dynamics::{Outcome, Place, Regime, Summary};
+use crate::scene::lesson::ResultField;
+use crate::study::fields::{Read, SUMMARY_FIELDS, SummaryField};
+
+/// What a field has come to.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Value {
+    Number(f64),
+    Word(String),
+    Missing,
+}
+
+impl Value {
+    /// Of a number that is missing where it is not finite.
+    pub fn number(own: f64) -> Self {
+        if own.is_finite() { Self::Number(own) } else { Self::Missing }
+    }
+}
+
+/// Forcing periods after which the motion repeats, 0 where no period was found.
+const PERIOD_MULTIPLE: &str = "period_multiple";
+
+/// The fields of a summary that conditions may name: those of `simulate` and `period_multiple`.
+pub fn result_fields() -> Vec<ResultField> {
+    let of_summary = SUMMARY_FIELDS.iter().map(|field| ResultField { name: field.name, words: words(field) });
+    of_summary.chain([ResultField { name: PERIOD_MULTIPLE, words: &[] }]).collect()
+}
+
+/// The words that a field may be; none for a number.
+fn words(field: &SummaryField) -> &'static [&'static str] {
+    const REGIMES: &[&str] = &[
+        Regime::Rest.name(),
+        Regime::Intrawell.name(),
+        Regime::Interwell.name(),
+        Regime::Irregular.name(),
+        Regime::Crossing.name(),
+    ];
+    const SIDES: &[&str] = &[Place::Left.name(), Place::Right.name(), Place::Both.name()];
+    match (field.read, field.name) {
+        (Read::Word(_), "regime") => REGIMES,
+        (Read::Word(_), "side") => SIDES,
+        (Read::Word(_), _) => Outcome::NAMES,
+        (Read::Flag(_), _) => &["true", "false"],
+        (Read::Number(_) | Read::Count(_), _) => &[],
+    }
+}
+
+/// The field called `name` of a summary.
+pub(super) fn value(summary: &Summary, name: &str) -> Value {
+    if name == PERIOD_MULTIPLE {
+        return Value::Number(summary.period.map_or(0.0, f64::from));
+    }
+    let count = |own: u64| Value::Number(own as f64);
+    let word = |own: &str| if own.is_empty() { Value::Missing } else { Value::Word(own.to_owned()) };
+    match SummaryField::find(name).map(|field| field.read) {
+        Some(Read::Number(of)) => of(summary).map_or(Value::Missing, Value::number),
+        Some(Read::Count(of)) => of(summary).map_or(Value::Missing, count),
+        Some(Read::Word(of)) => word(of(summary)),
+        Some(Read::Flag(of)) => {
+            of(summary).map_or(Value::Missing, |own| word(if own { "true" } else { "false" }))
+        }
+        None => Value::Missing,
+    }
+}

@@ -1,0 +1,165 @@
+//! Whether a condition holds.
+
+use super::fields::{Value, value};
+use super::subject::Subject;
+use crate::dynamics::Summary;
+use crate::scene::lesson::{Condition, Step};
+use crate::scene::{FieldPath, Start};
+
+/// Why there is no verdict.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Unjudged {
+    /// It was cancelled.
+    #[error("cancelled")]
+    Cancelled,
+    /// The scene cannot be run.
+    #[error("{field}: {problem}")]
+    Scene {
+        /// The field at fault.
+        field: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+}
+
+impl Unjudged {
+    pub(super) fn of(field: &str, problem: &str) -> Self {
+        Self::Scene { field: field.to_owned(), problem: problem.to_owned() }
+    }
+}
+
+/// Whether the goal of a step is met by `subject`; `before` is the scene with which the step began. A step
+/// without a goal has nothing to be met.
+pub fn goal_met(step: &Step, subject: &Subject, before: &Subject) -> Result<bool, Unjudged> {
+    match step {
+        Step::Do { goal, .. } => holds(goal, subject, before),
+        _ => Ok(true),
+    }
+}
+
+/// Which options of a prediction hold of `subject`; `before` is the scene with which the step began. Of other
+/// steps there are none.
+pub fn options_that_hold(step: &Step, subject: &Subject, before: &Subject) -> Result<Vec<bool>, Unjudged> {
+    match step {
+        Step::Predict { options, .. } => {
+            options.iter().map(|option| holds(&option.holds, subject, before)).collect()
+        }
+        _ => Ok(Vec::new()),
+    }
+}
+
+/// Whether a condition holds.
+pub(super) fn holds(condition: &Condition, subject: &Subject, before: &Subject) -> Result<bool, Unjudged> {
+    Judge { subject, before, from: None }.holds(condition)
+}
+
+/// The scene, that before, and, in a condition over starts, the run from the present one.
+struct Judge<'a> {
+    subject: &'a Subject<'a>,
+    before: &'a Subject<'a>,
+    from: Option<&'a Summary>,
+}
+
+impl Judge<'_> {
+    fn holds(&self, condition: &Condition) -> Result<bool, Unjudged> {
+        let compare = |field: &str, of: &dyn Fn(f64) -> bool| {
+            Ok(matches!(self.value(field)?, Value::Number(own) if of(own)))
+        };
+        match condition {
+            Condition::Is(field, text) => Ok(match self.value(field)? {
+                Value::Number(own) => text.trim().parse() == Ok(own),
+                Value::Word(own) => own == *text,
+                Value::Missing => false,
+            }),
+            Condition::AtLeast(field, bound) => compare(field, &|own| own >= *bound),
+            Condition::AtMost(field, bound) => compare(field, &|own| own <= *bound),
+            Condition::Above(field, bound) => compare(field, &|own| own > *bound),
+            Condition::Below(field, bound) => compare(field, &|own| own < *bound),
+            Condition::Between(field, low, high) => compare(field, &|own| (*low..=*high).contains(&own)),
+            Condition::Present(field) => Ok(self.value(field)? != Value::Missing),
+            Condition::Absent(field) => Ok(self.value(field)? == Value::Missing),
+            Condition::All(parts) => self.count(parts).map(|count| count == parts.len()),
+            Condition::Any(parts) => self.count(parts).map(|count| count > 0),
+            Condition::Not(part) => self.holds(part).map(|holds| !holds),
+            Condition::Every(starts, part) => {
+                self.over_starts(starts, part).map(|all| all.into_iter().all(|holds| holds))
+            }
+            Condition::ForSome(starts, part) => {
+                self.over_starts(starts, part).map(|all| all.into_iter().any(|holds| holds))
+            }
+            Condition::Same(field, within, starts) => {
+                let name = field.split_once('.').map_or("", |(_, name)| name);
+                let runs = self.subject.from(starts)?;
+                let values: Option<Vec<f64>> = runs
+                    .iter()
+                    .map(|run| match value(run, name) {
+                        Value::Number(own) => Some(own),
+                        _ => None,
+                    })
+                    .collect();
+                Ok(values.is_some_and(|values| {
+                    let (low, high) = values
+                        .iter()
+                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), own| (a.min(*own), b.max(*own)));
+                    high - low <= within * low.abs().max(high.abs())
+                }))
+            }
+        }
+    }
+
+    /// How many of these hold; all are asked, so that what one of them needs is run whatever the others say.
+    fn count(&self, parts: &[Condition]) -> Result<usize, Unjudged> {
+        let verdicts = parts.iter().map(|part| self.holds(part)).collect::<Result<Vec<_>, _>>()?;
+        Ok(verdicts.into_iter().filter(|holds| *holds).count())
+    }
+
+    fn over_starts(&self, starts: &[Start], part: &Condition) -> Result<Vec<bool>, Unjudged> {
+        let runs = self.subject.from(starts)?;
+        runs.iter().map(|run| Judge { from: Some(run), ..*self }.holds(part)).collect()
+    }
+
+    fn value(&self, field: &str) -> Result<Value, Unjudged> {
+        let (of, name) = field.split_once('.').unwrap_or(("", field));
+        Ok(match of {
+            "scene" => match FieldPath::new(name).word(self.subject.scene()) {
+                Some(text) => text.parse().map_or(Value::Word(text), Value::Number),
+                None => Value::Missing,
+            },
+            "result" => match self.from {
+                Some(run) => value(run, name),
+                None => value(self.subject.run()?, name),
+            },
+            "before" => value(self.before.run()?, name),
+            "up" => value(&self.subject.walked_to()?[0], name),
+            "down" => value(&self.subject.walked_to()?[1], name),
+            "walk" => {
+                let turns = self.subject.turns()?;
+                let (up, down) = (turns.up_crosses_from, turns.down_crosses_to);
+                let number = match name {
+                    "up_crosses_from" => up,
+                    "down_crosses_to" => down,
+                    _ => up.zip(down).map(|(up, down)| up - down),
+                };
+                number.map_or(Value::Missing, Value::Number)
+            }
+            "mean" | "error" => {
+                let runs = self.subject.over_seeds()?;
+                let number = |run: &Summary| match value(run, name) {
+                    Value::Number(own) => own,
+                    _ => f64::NAN,
+                };
+                let (mean, error) = mean(&runs.iter().map(number).collect::<Vec<_>>());
+                Value::number(if of == "mean" { mean } else { error })
+            }
+            _ => Value::Missing,
+        })
+    }
+}
+
+/// The mean of some values and its standard error; NaN where one of them is.
+fn mean(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|own| (own - mean).powi(2)).sum();
+    (mean, (squares / (count - 1.0) / count).sqrt())
+}
