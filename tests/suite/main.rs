@@ -36,4 +36,5 @@ mod stroboscopic;
 mod studies;
 mod support;
 mod untrusted;
+mod up_and_down;
 mod verdicts;

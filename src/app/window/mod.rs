@@ -154,6 +154,7 @@ impl Window {
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.memory.grab = false;
         self.session.map.end_frame();
+        self.session.explore.end_frame();
         self.session.accuracy.end_frame();
         self.session.player.end_frame();
         for command in asked {
