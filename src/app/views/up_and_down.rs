@@ -128,7 +128,12 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let ways = ways(if of_field { parts } else { &[] });
     let span = &context.span;
     let (low, high) = match quantity {
-        WalkQuantity::Strobes => (span.low * 1e3, span.high * 1e3),
+        WalkQuantity::Strobes => {
+            let all = ways.iter().flat_map(|way| way.visits.iter().flat_map(|visit| &visit.strobes));
+            all.fold((span.low * 1e3, span.high * 1e3), |(low, high), x| {
+                (low.min(1.05e3 * x), high.max(1.05e3 * x))
+            })
+        }
         WalkQuantity::RmsVelocity => {
             let all = ways.iter().flat_map(|way| way.visits.iter().map(|visit| rms(visit)));
             (0.0, 1.08 * all.filter(|rms| rms.is_finite()).fold(1e-3, f64::max))
@@ -278,14 +283,14 @@ fn differing([up, down]: &[Way<'_>; 2], height: f64) -> Vec<(f64, f64)> {
 }
 
 /// Whether two runs at one value are different motions: one crosses in a rhythm and the other never, or both
-/// have settled and their RMS velocities differ. Mirror images are one.
+/// repeat and their RMS velocities differ. Mirror images are one.
 fn differ(a: &Visit, b: &Visit, height: f64) -> bool {
     let (x, y) = (rms(a), rms(b));
     let apart = (x - y).abs() > SAME * x.max(y).max(1e-6 * height);
-    let settled = |own: &Visit| own.summary.settled == Some(true);
+    let repeats = |own: &Visit| own.summary.period.is_some();
     let crosses = |own: &Visit| own.summary.regime == Regime::Interwell;
     let stays = |own: &Visit| own.summary.crossings == 0;
-    crosses(a) && stays(b) || stays(a) && crosses(b) || settled(a) && settled(b) && apart
+    crosses(a) && stays(b) || stays(a) && crosses(b) || repeats(a) && repeats(b) && apart
 }
 
 /// The displacements of a run that are drawn: one of each where they repeat.
