@@ -7,7 +7,6 @@ use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Ink, Theme};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
 use super::swept::{BOTTOM, LEFT, TOP};
-use crate::dynamics::Regime;
 use crate::numeric::short;
 use crate::study::{Answer, Attractor, Basins, Edges, Starts};
 
@@ -75,7 +74,7 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
             let at = frame.place((1e3 * x, *v));
             if area.contains(at) {
                 marker(&mut figure, shape(place), at, style::MARKER + 5.0, style::BLACK, style::BLACK);
-                marker(&mut figure, shape(place), at, style::MARKER, ink(place), style::WHITE);
+                marker(&mut figure, shape(place), at, style::MARKER, attractor_colour(place), style::WHITE);
             }
         }
     }
@@ -84,7 +83,8 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
     figure
 }
 
-fn ink(place: usize) -> Ink {
+/// The colour of an attractor, by its place from 0; beyond eight they come again.
+pub fn attractor_colour(place: usize) -> Ink {
     COLOURS[place % COLOURS.len()]
 }
 
@@ -95,7 +95,7 @@ fn shape(place: usize) -> Marker {
 /// The hatching of an attractor whose colour is another one's too.
 fn hatch(place: usize) -> Option<Ink> {
     let dark = |Ink(r, g, b): Ink| 2 * u32::from(r) + 5 * u32::from(g) + u32::from(b) < 8 * 128;
-    let over = if dark(ink(place)) { style::WHITE } else { style::BLACK };
+    let over = if dark(attractor_colour(place)) { style::WHITE } else { style::BLACK };
     (place >= COLOURS.len()).then_some(over)
 }
 
@@ -122,7 +122,7 @@ fn cells(
             let Some(area) = Area::new(left, top, right, bottom).common(frame.area) else { continue };
             match run[0].map(|number| number as usize - 1) {
                 Some(place) => {
-                    figure.rect(area, ink(place));
+                    figure.rect(area, attractor_colour(place));
                     if let Some(over) = hatch(place) {
                         figure.hatch(area, style::HATCH, over);
                     }
@@ -156,7 +156,7 @@ fn dots(figure: &mut Figure, frame: &Frame, (basins, answer): (&Basins, &Answer)
         }
         let at = frame.place((x_mm, v));
         figure.disc(at, size, theme.soft);
-        figure.disc(at, 0.85 * size, own.map_or(theme.rest, |own| ink(own.0 as usize - 1)));
+        figure.disc(at, 0.85 * size, own.map_or(theme.rest, |own| attractor_colour(own.0 as usize - 1)));
     }
 }
 
@@ -169,7 +169,7 @@ fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, Stri
     let mut entries: Vec<(Sample, String)> = Vec::new();
     for place in named {
         let words = words(place, &answer.attractors[place], basins.starts().is_grid());
-        entries.push((Sample::Patch(ink(place), hatch(place)), words));
+        entries.push((Sample::Patch(attractor_colour(place), hatch(place)), words));
     }
     if more > 0 {
         entries.push((Sample::Patch(theme.paper, None), format!("{more} more")));
@@ -182,19 +182,7 @@ fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, Stri
 
 /// An attractor in words, with its number and its share; of random starts with its interval.
 fn words(place: usize, own: &Attractor, is_grid: bool) -> String {
-    let regime = match own.regime.name() {
-        "" => "one well",
-        name => name,
-    };
-    let mut words = format!("{} {regime}", place + 1);
-    if let Some(side) = own.side.map(|side| side.name()).filter(|side| *side != "both") {
-        words += &format!(" {side}");
-    }
-    if let Some(period) = own.period {
-        words += &format!(", period {period}");
-    } else if own.regime == Regime::Intrawell {
-        words += ", no period";
-    }
+    let mut words = format!("{} {}", place + 1, own.words());
     let percent = |share: f64| short((1e3 * share).round() / 10.0);
     let share = &own.share;
     words += &match is_grid {

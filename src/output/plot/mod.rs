@@ -30,7 +30,7 @@ use std::path::Path;
 
 pub use accuracy::accuracy_figure;
 pub use axis::{PlotAxis, Ranges};
-pub use basins::{basins_figure, can_show_starts};
+pub use basins::{attractor_colour, basins_figure, can_show_starts};
 pub use branch::branch_figure;
 pub use contact::contact_figure;
 pub use curve::curve_figure;
