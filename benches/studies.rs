@@ -145,7 +145,7 @@ fn diagram(name: &str, changes: &[&str]) -> Table {
     let document = shared::changed(name, changes);
     let axes = document.axes(&["excitation.amplitude_g=0.6025:1.6:0.0025"]).unwrap();
     let options = SectionOptions {
-        at: SectionAt::Phase(0.25),
+        at: SectionAt::Phase(90.0),
         periods: Some((200, 100)),
         until_settled: None,
         carry: None,
