@@ -16,7 +16,7 @@ use interwell::study::{
 };
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{Common, PlotOptions, RangeOptions, whole};
 use super::picture::{Picture, caption, ranges};
 use super::support::{finish, inputs, load_with_mechanism, numbers, open, write_table, write_text};
 use super::{interrupt, say};
@@ -34,7 +34,7 @@ pub struct Arguments {
 
     /// Number of positions over the range [default: 401, for --shapes 21]
     #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "at_mm",
-          value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
+          value_parser = whole::<u32>(2..=10_000_000))]
     pub points: Option<u32>,
 
     /// At these positions in mm, in this order

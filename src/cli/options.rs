@@ -1,5 +1,6 @@
 //! The arguments of the command line, and the text of `--help`.
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, Parser, Subcommand};
@@ -132,6 +133,17 @@ pub fn command_names() -> String {
     format!("{} or {last}", others.join(", "))
 }
 
+/// Reads a whole number of a range for clap, and says in words what it takes.
+pub fn whole<T: TryFrom<u64>>(
+    range: RangeInclusive<u64>,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.trim().parse().ok().filter(|own| range.contains(own));
+        let wrong = || format!("give a whole number from {} to {}", range.start(), range.end());
+        number.and_then(|own| T::try_from(own).ok()).ok_or_else(wrong)
+    }
+}
+
 /// What every command takes, before its name or after it.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Common options")]
@@ -150,7 +162,7 @@ pub struct Common {
 
     /// Threads to use [default: one per core]
     #[arg(long, value_name = "N", allow_hyphen_values = true,
-          value_parser = clap::value_parser!(u16).range(1..=1024))]
+          value_parser = whole::<u16>(1..=1024))]
     pub jobs: Option<u16>,
 
     /// Say nothing on standard error but errors

@@ -11,9 +11,9 @@ use interwell::scene::{Axis, Document};
 use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, orbit, orbit_table};
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{Common, PlotOptions, RangeOptions, whole};
 use super::picture::{Picture, caption, ranges};
-use super::support::{finish, inputs, load_with_mechanism, open, write_table};
+use super::support::{finish, inputs, mechanism, open, read, warn, write_table};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -32,7 +32,8 @@ pub struct Arguments {
     pub scene: String,
 
     /// Forcing periods after which the motion repeats [default: those of the run's settled motion]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", allow_hyphen_values = true,
+          value_parser = whole::<u32>(1..=1000))]
     pub period: Option<u32>,
 
     /// Phase of the drive at which states are taken, in degrees
@@ -66,7 +67,20 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         return Err(Failure::argument("--plot shows a branch; add --branch FIELD=A:B, or leave it out"));
     }
     let phase_deg = phase(&options.phase_deg)?;
-    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
+    let mut document = read(&options.scene, common)?;
+    let branch_range = options.branch.as_deref().map(|text| range(text, &document)).transpose()?;
+    if let Some((field, from, _)) = &branch_range {
+        // a branch begins there, and the scene's own value is never run
+        document.assign(
+            field,
+            &from.to_string(),
+            &format!("--branch {}", options.branch.as_deref().unwrap_or_default()),
+        )?;
+    }
+    let moved = document.settle_within();
+    let warnings: Vec<String> = moved.into_iter().chain(document.check()?).collect();
+    let mechanism = mechanism(&document)?;
+    warn(&document, common, &warnings, Some(&mechanism));
     let model = Model::build(&document.scene, Arc::clone(&mechanism))
         .map_err(|faults| Failure::from(document.error_from(faults)))?;
     if !model.repeats() || !model.is_shaken() {
@@ -76,7 +90,6 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
             document.name
         )));
     }
-    let branch_range = options.branch.as_deref().map(|text| range(text, &document)).transpose()?;
     let cancel = interrupt::listen();
     let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;

@@ -10,7 +10,7 @@ use interwell::study::{
 };
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{Common, PlotOptions, RangeOptions, whole};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
     MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, until_settled, warn, write_table,
@@ -53,12 +53,12 @@ pub struct Arguments {
 
     /// Forcing periods to skip, in place of run.settle_s; needs --keep
     #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "keep",
-          value_parser = clap::value_parser!(u64).range(0..=1_000_000_000))]
+          value_parser = whole::<u64>(0..=1_000_000_000))]
     pub skip: Option<u64>,
 
     /// Forcing periods of the settled window after those, in place of run.duration_s; needs --skip
     #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "skip",
-          value_parser = clap::value_parser!(u64).range(1..=MAX_SECTION))]
+          value_parser = whole::<u64>(1..=MAX_SECTION))]
     pub keep: Option<u64>,
 
     /// Let each run go on, window after window, until its motion repeats, or up to this time in s

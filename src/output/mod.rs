@@ -12,7 +12,7 @@ mod text;
 
 pub use csv::{header, rows};
 pub use json::{landscape, summary};
-pub use manifest::{Provenance, basins_manifest, manifest};
+pub use manifest::{Provenance, basins_manifest, exponents_manifest, manifest};
 pub use number::push_number;
 pub use plot::{
     Caption, ExponentPicture, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError,

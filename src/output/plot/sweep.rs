@@ -11,7 +11,7 @@ use super::swept::{BOTTOM, LEFT, MARKER_ROOM, SweepPicture, TOP, label, missing_
 use super::walk::{walked_both, walked_lines, walked_maps};
 use crate::numeric::short;
 use crate::scene::{Excitation, Scene, Start};
-use crate::study::{DIRECTION, Grid, Table};
+use crate::study::{DIRECTION, Direction, Grid, Table};
 
 /// The most cells that a picture shows: more than it has pixels to tell apart.
 pub const MAX_PICTURE_CELLS: u64 = 500_000;
@@ -84,8 +84,10 @@ pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) ->
         ([x, y], None) => map(&mut figure, picture, (x, y), theme),
         (other, None) => return Err(NoPicture::Fields(other.len())),
     }
-    let walked = rows.column(DIRECTION).is_some();
-    caption.draw(&mut figure, theme, &sweep_about(grid, scene, walked, until_settled), LEFT);
+    let ways = words(rows, DIRECTION);
+    let walked = [Direction::Up, Direction::Down].into_iter().filter(|way| ways.contains(&way.name()));
+    let walked: Vec<Direction> = walked.collect();
+    caption.draw(&mut figure, theme, &sweep_about(grid, scene, &walked, until_settled), LEFT);
     Ok(figure)
 }
 
@@ -109,18 +111,25 @@ pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
     values
 }
 
-/// What was run, in one line; `walked`, where each run went on from the one before, and up to when in s runs
-/// went on until they repeat, where they did.
-pub fn sweep_about(grid: &Grid, scene: &Scene, walked: bool, until_settled: Option<f64>) -> String {
-    let counts: Vec<String> = grid.axes().iter().map(|axis| axis.values.len().to_string()).collect();
+/// What was run, in one line; in which directions it was `walked`, where each run went on from the one
+/// before, and up to when in s runs went on until they repeat, where they did.
+pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settled: Option<f64>) -> String {
+    let lengths = grid.axes().iter().map(|axis| axis.values.len());
+    let counts: Vec<String> = Some(walked.len())
+        .filter(|ways| *ways > 1)
+        .into_iter()
+        .chain(lengths)
+        .map(|n| n.to_string())
+        .collect();
     let swept = |field: &str| grid.axes().iter().any(|axis| axis.field == field);
     let mut parts = vec![format!("{} runs", counts.join(" \u{d7} "))];
     if !swept("run.duration_s") {
         let longest = until_settled.map_or_else(String::new, |until| format!(" to {}", short(until)));
         parts[0] += &format!(" of {}{longest} s", short(scene.run.duration_s));
     }
-    if walked {
-        parts.push("each from where the one before was".to_owned());
+    if !walked.is_empty() {
+        let ways: Vec<&str> = walked.iter().map(|way| way.name()).collect();
+        parts.push(format!("{}, each from where the one before was", ways.join(" and ")));
     } else if scene.start == Start::Rest {
         parts.push("each from rest".to_owned());
     }

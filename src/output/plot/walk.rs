@@ -32,6 +32,9 @@ fn strokes(theme: &Theme) -> [Stroke; 2] {
     [(Direction::Up, theme.ink, None), (Direction::Down, theme.second, Some(style::DASH))]
 }
 
+/// The distance between two lines as a share of the axis upward from which on they are seen apart.
+const VISIBLE: f64 = 2e-3;
+
 /// The quantity over the field `x` on the way up and on the way down, each value marked with its regime.
 pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str, theme: &Theme) {
     const RIGHT: f64 = 1560.0;
@@ -40,11 +43,17 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
     let quantity = Quantity::of(rows, picture.quantity);
     let regimes = words(rows, "regime");
     let shade = theme.shaking.over(theme.paper, 0.3);
+    let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
+    let [ups, downs] = [Direction::Up, Direction::Down].map(|way| walked(rows, values, way));
+    let apart = |(a, b): (&usize, &usize)| {
+        let [a, b] = [a, b].map(|row| up.share(quantity.values[*row]));
+        (a - b).abs() > VISIBLE
+    };
     let mut entries = vec![];
     for (direction, ink, dash) in strokes(theme) {
         entries.push((Sample::Line(ink, style::LINE, dash), direction.name()));
     }
-    if !quantity.regimes {
+    if !quantity.regimes && ups.iter().zip(&downs).any(apart) {
         entries.push((Sample::Patch(shade, None), "hysteresis"));
     }
     for (name, shape) in REGIMES {
@@ -55,10 +64,8 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
     let top = TOP.max(legend(figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
     let x_label = label(rows, x);
     let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
-    let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
     let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);
     let place = |row: &usize| frame.place((values[*row], quantity.values[*row]));
-    let [ups, downs] = [Direction::Up, Direction::Down].map(|way| walked(rows, values, way));
     let pairs: Vec<(Point, Point)> = ups.iter().map(place).zip(downs.iter().map(place)).collect();
     if !quantity.regimes {
         pairs.windows(2).for_each(|two| between(figure, two[0], two[1], shade, frame.area));
