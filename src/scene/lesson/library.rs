@@ -20,7 +20,11 @@ macro_rules! lessons {
 }
 
 lessons! {
+    "01-two-wells-and-a-hill"
+    "02-shake-it-over"
     "03-a-stop-that-helps"
+    "04-letting-go-is-not-crossing"
+    "05-the-price-of-a-stop"
 }
 
 /// A lesson to begin one's own from.
