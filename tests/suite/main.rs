@@ -16,6 +16,7 @@ mod exponents;
 mod impacts;
 mod lanes;
 mod layers;
+mod lesson_format;
 mod live;
 mod mechanics;
 mod notes;

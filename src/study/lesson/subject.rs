@@ -201,10 +201,8 @@ impl<'a> Subject<'a> {
 
     fn ended(&self, summary: &Summary) -> Result<(), Unjudged> {
         (self.task.tick)();
-        match summary.outcome {
-            Outcome::Cancelled { .. } => Err(Unjudged::Cancelled),
-            _ => Ok(()),
-        }
+        let cancelled = self.task.is_cancelled() || matches!(summary.outcome, Outcome::Cancelled { .. });
+        if cancelled { Err(Unjudged::Cancelled) } else { Ok(()) }
     }
 
     /// The model of a scene that differs from the subject's in a few fields.
