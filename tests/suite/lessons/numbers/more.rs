@@ -97,12 +97,14 @@ fn design() {
     let needs = |limit: f64| told.least(Onset::Interwell, &[&preloaded(0.5), &stopped(limit)], 0.2..0.6);
     let (wide, close) = (needs(2.3), needs(2.0));
     told.says(&format!(
-        "stops at 2.3 mm give {:.1} mm/s and need {wide:.2} g; at 2.0 mm they give {:.1} mm/s and need {close:.2} g",
+        "stops at 2.3 mm give {:.1} mm/s and need {wide:.2} g; at 2.0 mm they give {:.1} mm/s and \
+         need {close:.2} g",
         rms(&at(0.5, 2.3)),
         rms(&at(0.5, 2.0))
     ));
     told.says(&format!("at 0.5 mm stops at 2.3 mm need {wide:.2} g, at 2.0 mm {close:.2} g"));
-    let free = told.run(&[&preloaded(1.0), "stops=None", "run.duration_s=120", "run.settle_s=60"]);
+    let free =
+        told.run(&["sweep=[]", &preloaded(1.0), "stops=None", "run.duration_s=120", "run.settle_s=60"]);
     assert!(crosses(&free));
     let reach = 1e3 * free.max_abs_x.unwrap();
     told.says(&format!("it crosses at 0.6 g at {:.0} mm/s, with a reach of {reach:.1} mm", rms(&free)));
