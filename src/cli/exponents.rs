@@ -65,7 +65,7 @@ pub struct Arguments {
 
 /// Measures and writes the table.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     if !options.over.is_empty() {
         return over(options, picture);
     }
@@ -139,7 +139,8 @@ fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
     let first = cells.first_model(&task).and_then(Result::ok);
     let asked = asked(options, &document, first.as_ref())?;
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
     let grid = cells.grid();
@@ -160,7 +161,7 @@ fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
     })?;
     if let Some((picture, rows)) = picture.zip(shown) {
         let shown = ExponentPicture { rows: &rows, grid, scene: &document.scene, ranges: axes };
-        picture.write(&mut sinks[1], exponents_figure(&shown, &caption(&document), picture.theme)?)?;
+        picture.write(&mut sinks[1..3], exponents_figure(&shown, &caption(&document), &picture.theme)?)?;
     }
     finish(sinks)?;
     if !common.quiet && tally.cells == grid.cells() {

@@ -68,7 +68,7 @@ pub struct Arguments {
 /// Runs the grid and writes a row a cell.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let beside = manifest_path(common.out());
@@ -93,7 +93,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     }
     let pool = pool(common)?;
     let beside = beside.as_deref().map(|path| (MANIFEST, path));
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output()), beside];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data, beside];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
 
@@ -132,14 +133,14 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         };
         let (rows, scene, quantity) = (&rows, &document.scene, &*options.quantity);
         let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, ranges: axes };
-        picture.write(&mut sinks[1], sweep_figure(&shown, &caption(&document), picture.theme)?)?;
+        picture.write(&mut sinks[1..3], sweep_figure(&shown, &caption(&document), &picture.theme)?)?;
     }
-    if sinks[2].is_some() {
+    if sinks[3].is_some() {
         let data = file_name(common.out());
         let grid = sweep.grid();
         let origin = watch.origin(pool.count());
         let text = manifest(("sweep", &document), grid, &tally, &origin, &data);
-        write_text(&mut sinks[2], &text)?;
+        write_text(&mut sinks[3], &text)?;
     }
     finish(sinks)?;
     // Fewer cells than there are: the reader of a pipe has gone, which is no news to anyone.

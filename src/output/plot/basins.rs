@@ -6,7 +6,7 @@ use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Ink, Theme};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
-use super::swept::{BOTTOM, LEFT, TOP};
+use super::swept::{LEAST, LEFT, TOP};
 use crate::dynamics::Regime;
 use crate::numeric::short;
 use crate::study::{Answer, Attractor, Basins, Edges, Starts};
@@ -38,12 +38,11 @@ pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
 
 /// The picture of a map as far as it is known.
 pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme: &Theme) -> Figure {
-    const RIGHT: f64 = 1560.0;
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, LEAST);
     let entries = entries(basins, answer, theme);
     let entries: Vec<(Sample, &str)> = entries.iter().map(|(own, words)| (*own, words.as_str())).collect();
-    let top = TOP.max(legend(&mut figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
-    let area = Area::new(LEFT, top, RIGHT, BOTTOM);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
     let (across, up) = match basins.starts().axes() {
         Some((x_mm, v)) => (Edges::new(x_mm).ends(), Edges::new(v).ends()),
         None => {
@@ -55,11 +54,11 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
             (around(all().map(|own| own.0).collect()), around(all().map(|own| own.1).collect()))
         }
     };
-    let frame = Frame::new(
-        area,
-        PlotAxis::between(across.0, across.1, 8, "displacement at the start, mm"),
-        PlotAxis::between(up.0, up.1, 7, "velocity at the start, m/s"),
-    );
+    let upward = PlotAxis::between(up.0, up.1, 7, "velocity at the start, m/s");
+    let left = Frame::left(&figure, &upward, LEFT);
+    let area = Area::new(left, top, figure.right(), figure.bottom());
+    let frame =
+        Frame::new(area, PlotAxis::between(across.0, across.1, 8, "displacement at the start, mm"), upward);
     match basins.starts().axes() {
         Some((x_mm, v)) => cells(&mut figure, &frame, (x_mm, v), (basins, answer), theme),
         None => dots(&mut figure, &frame, (basins, answer), theme),

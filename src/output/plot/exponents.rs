@@ -6,7 +6,7 @@ use super::frame::Frame;
 use super::mark::{Caption, Sample, legend};
 use super::style::{self, Ink, Theme};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
-use super::swept::{BOTTOM, LEFT, TOP, label};
+use super::swept::{LEAST, LEFT, TOP, label};
 use crate::numeric::short;
 use crate::scene::{Excitation, Scene};
 use crate::study::{Grid, Table};
@@ -23,8 +23,6 @@ pub struct ExponentPicture<'a> {
     /// The axes.
     pub ranges: Ranges,
 }
-
-const RIGHT: f64 = 1560.0;
 
 /// Whether exponents over this grid can be shown; none is a single motion.
 pub fn can_show_exponents(grid: Option<&Grid>) -> Result<(), NoPicture> {
@@ -45,7 +43,7 @@ pub fn exponents_figure(
 ) -> Result<Figure, NoPicture> {
     can_show_exponents(Some(picture.grid))?;
     let ExponentPicture { rows, grid, ranges, .. } = *picture;
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, LEAST);
     let x = &grid.columns()[0];
     let numbers = |name: &str| rows.numbers(name).unwrap_or_default();
     let places = numbers(x);
@@ -72,8 +70,10 @@ pub fn exponents_figure(
     if first.iter().any(|own| own.is_nan()) {
         entries.push((Sample::Ticks(theme.soft), "no value"));
     }
-    let top = TOP.max(legend(&mut figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
-    let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
+    let (left, right, bottom) = (Frame::left(&figure, &up, LEFT), figure.right(), figure.bottom());
+    let frame = Frame::new(Area::new(left, top, right, bottom), across, up);
     frame.grid(&mut figure, theme);
     frame.horizontal(&mut figure, 0.0, style::THIN, theme.ink, None);
     let mut order: Vec<usize> = (0..places.len()).collect();
@@ -84,7 +84,7 @@ pub fn exponents_figure(
     for (place, own) in places.iter().zip(first).filter(|(_, own)| !own.is_finite()) {
         let ink = if own.is_nan() { theme.soft } else { theme.ink };
         let at = frame.across(*place);
-        figure.line(&[(at, BOTTOM - TICK), (at, BOTTOM)], style::FINE_LINE, ink, frame.area);
+        figure.line(&[(at, bottom - TICK), (at, bottom)], style::FINE_LINE, ink, frame.area);
     }
     frame.axes(&mut figure, theme);
     caption.draw(&mut figure, theme, &about(picture), LEFT);

@@ -19,10 +19,23 @@ pub struct Frame {
     pub gutter: Option<f64>,
 }
 
+/// Distance of the upward label's line from the frame, besides the width of the numbers between them.
+const BESIDE: f64 = style::TICK_LENGTH + 7.0 + 18.0;
+
 impl Frame {
     /// A frame at `area` with these axes.
     pub fn new(area: Area, x: PlotAxis, y: PlotAxis) -> Self {
         Self { area, x, y, gutter: None }
+    }
+
+    /// Where the left edge of a frame with this axis upward stands, so that numbers and label have room: on a
+    /// wide canvas at `wide`.
+    pub fn left(figure: &Figure, y: &PlotAxis, wide: f64) -> f64 {
+        if !figure.is_narrow() {
+            return wide;
+        }
+        let numbers = y.ticks.iter().map(|tick| font::width(&tick.1, style::TICK, false)).fold(0.0, f64::max);
+        BESIDE + numbers + style::AXIS
     }
 
     /// Where a value of x stands on the canvas.
@@ -57,7 +70,7 @@ impl Frame {
     pub fn axes(&self, figure: &mut Figure, theme: &Theme) {
         let Area { left, top, right, bottom } = self.area;
         let outline = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-        figure.line(&outline, style::FRAME, theme.ink, Figure::canvas());
+        figure.line(&outline, style::FRAME, theme.ink, figure.canvas);
         let ascent = style::TICK * font::CAPITAL;
         let text = |words: &str, at: Point, align: Align| Text {
             words: words.to_owned(),
@@ -73,14 +86,14 @@ impl Frame {
             let at = self.across(*value);
             let words = if numbered(i) { words } else { "" };
             let tick = [(at, bottom), (at, bottom + style::TICK_LENGTH)];
-            figure.line(&tick, style::FRAME, theme.ink, Figure::canvas());
+            figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
             figure.text(text(words, (at, bottom + style::TICK_LENGTH + ascent + 8.0), Align::Centre));
         }
         let mut widest: f64 = 0.0;
         for (value, words) in &self.y.ticks {
             let at = self.down(*value);
             let tick = [(left - style::TICK_LENGTH, at), (left, at)];
-            figure.line(&tick, style::FRAME, theme.ink, Figure::canvas());
+            figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
             widest = widest.max(font::width(words, style::TICK, false));
             figure.text(text(words, (left - style::TICK_LENGTH - 7.0, at + 0.5 * ascent), Align::Right));
         }
@@ -99,7 +112,7 @@ impl Frame {
         };
         let below = bottom + style::TICK_LENGTH + ascent + 16.0 + style::AXIS;
         figure.text(label(&self.x.label, (0.5 * (left + right), below), false));
-        let near = style::TICK_LENGTH + 7.0 + widest + 18.0;
+        let near = BESIDE + widest;
         let beside = (left - self.gutter.map_or(near, |gutter| gutter.max(near))).max(style::AXIS);
         figure.text(label(&self.y.label, (beside, 0.5 * (top + bottom)), true));
     }
@@ -220,6 +233,14 @@ impl Frame {
         }
         figure.line(&[(left, at), (right, at)], style::LINE, theme.wall, self.area);
     }
+}
+
+/// Upper and lower edges of frames one under the other, drawn up or down so that they fill the room from `top`
+/// to `bottom`.
+pub fn stretched<const N: usize>(frames: [(f64, f64); N], top: f64, bottom: f64) -> [(f64, f64); N] {
+    let (first, last) = (frames[0].0, frames[N - 1].1);
+    let scale = (bottom - top) / (last - first);
+    frames.map(|(from, to)| (top + scale * (from - first), top + scale * (to - first)))
 }
 
 /// First, least, greatest and last of a column, in their order.

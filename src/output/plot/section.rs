@@ -8,11 +8,9 @@ use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, dot, legend};
 use super::run::speed_unit;
 use super::style::{self, Ink, Theme};
-use super::swept::{BOTTOM, LEFT, TOP, label, words};
+use super::swept::{LEAST, LEFT, TOP, label, words};
 use crate::numeric::short;
 use crate::study::{DIRECTION, Direction, IMPACTS, Table, Values};
-
-const RIGHT: f64 = 1560.0;
 
 /// Half the size of a point: one of few, and one of many; as many or more of them.
 const LARGE: f64 = 6.0;
@@ -47,7 +45,7 @@ struct Kind {
 
 /// The picture of a section.
 pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme) -> Figure {
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, LEAST);
     let SectionPicture { rows, over, phase_deg, ranges, .. } = *picture;
     let kinds = match phase_deg {
         Some(_) => [("without impacts", Marker::Disc, 1), ("with impacts", Marker::Triangle, 3)],
@@ -69,18 +67,20 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
     let both = [Direction::Up, Direction::Down].iter().all(|way| ways.contains(&way.name()));
     let panels: &[Option<Direction>] =
         if both { &[Some(Direction::Up), Some(Direction::Down)] } else { &[None] };
-    let top = TOP.max(legend(&mut figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
     let x = PlotAxis::around(across.values.iter().copied(), 0.02, 8, &across.label);
     let x = if over.is_none() && phase_deg.is_none() { turn(&across.label) } else { x };
     let x = x.or_given(ranges.x, 8, &across.label);
     let y = PlotAxis::around(up.values.iter().copied(), 0.06, 6, &up.label);
     let y = y.or_given(ranges.y, 6, &up.label);
-    let height = (BOTTOM - top - BETWEEN * (panels.len() - 1) as f64) / panels.len() as f64;
+    let (left, right) = (Frame::left(&figure, &y, LEFT), figure.right());
+    let height = (figure.bottom() - top - BETWEEN * (panels.len() - 1) as f64) / panels.len() as f64;
     for (number, way) in panels.iter().enumerate() {
         let begin = top + number as f64 * (height + BETWEEN);
         let last = number + 1 == panels.len();
         let axis = if last { x.clone() } else { x.clone().silent() };
-        let frame = Frame::new(Area::new(LEFT, begin, RIGHT, begin + height), axis, y.clone());
+        let frame = Frame::new(Area::new(left, begin, right, begin + height), axis, y.clone());
         frame.grid(&mut figure, theme);
         for (stop, left) in [(picture.stops.0, true), (picture.stops.1, false)] {
             if let Some(at) = stop.map(|x| x * 1e3).filter(|at| wall && (x.low..=x.high).contains(at)) {
@@ -108,7 +108,7 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
         if let Some(way) = way {
             figure.text(Text {
                 words: way.name().to_owned(),
-                at: (RIGHT, begin - 12.0),
+                at: (right, begin - 12.0),
                 size: style::AXIS,
                 ink: theme.ink,
                 bold: false,

@@ -7,8 +7,8 @@ use super::map::map;
 use super::mark::{Caption, REGIMES, Sample, legend, marker, regime};
 use super::quantity::{Quantity, quantities};
 use super::style::{self, Theme};
-use super::swept::{BOTTOM, LEFT, MARKER_ROOM, SweepPicture, TOP, label, missing_words, thinned, words};
-use super::walk::{walked_both, walked_lines, walked_maps};
+use super::swept::{LEAST, LEFT, MARKER_ROOM, SweepPicture, TOP, label, missing_words, thinned, words};
+use super::walk::{STACKED, walked_both, walked_lines, walked_maps};
 use crate::numeric::short;
 use crate::scene::{Excitation, Scene, Start};
 use crate::study::{DIRECTION, Grid, Table};
@@ -75,7 +75,7 @@ const MANY: usize = 3;
 pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) -> Result<Figure, NoPicture> {
     let SweepPicture { rows, grid, scene, until_settled, .. } = *picture;
     can_show(grid, picture.quantity, rows)?;
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, least(picture, theme));
     match (grid.columns(), few_lines(rows, grid)) {
         ([x], _) if walked_both(rows) => walked_lines(&mut figure, picture, x, theme),
         ([x, y], _) if walked_both(rows) => walked_maps(&mut figure, picture, (x, y), theme),
@@ -87,6 +87,12 @@ pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) ->
     let walked = rows.column(DIRECTION).is_some();
     caption.draw(&mut figure, theme, &sweep_about(grid, scene, walked, until_settled), LEFT);
     Ok(figure)
+}
+
+/// What the picture needs between its captions.
+fn least(picture: &SweepPicture, theme: &Theme) -> f64 {
+    let maps = picture.grid.axes().len() == 2 && walked_both(picture.rows);
+    if maps && theme.is_narrow() { STACKED } else { LEAST }
 }
 
 /// Of two swept fields the one to the right and the one of which each value has a line, where one has few.
@@ -134,7 +140,6 @@ pub fn sweep_about(grid: &Grid, scene: &Scene, walked: bool, until_settled: Opti
 
 /// The quantity over the field `x`, each value marked with its regime; a line for each value of `series`.
 fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&str>, theme: &Theme) {
-    const RIGHT: f64 = 1560.0;
     let SweepPicture { rows, ranges, .. } = *picture;
     let values = rows.numbers(x).unwrap_or_default();
     let quantity = Quantity::of(rows, picture.quantity);
@@ -175,20 +180,22 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     }
     let entries: Vec<(Sample, &str)> =
         entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
-    let top = TOP.max(legend(figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(figure, theme, &entries, ends, 146.0) + 18.0);
 
     let x_label = label(rows, x);
     let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     // Most quantities are never negative; the little room below 0 is for the markers.
     let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
-    let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);
+    let (left, right, bottom) = (Frame::left(figure, &up, LEFT), figure.right(), figure.bottom());
+    let frame = Frame::new(Area::new(left, top, right, bottom), across, up);
     frame.grid(figure, theme);
     for at in &missing {
         if lines {
             frame.vertical(figure, *at, style::LINE, theme.soft, Some(style::DOT));
         } else {
             let at = frame.across(*at);
-            figure.line(&[(at, BOTTOM - TICK), (at, BOTTOM)], style::FINE_LINE, theme.soft, frame.area);
+            figure.line(&[(at, bottom - TICK), (at, bottom)], style::FINE_LINE, theme.soft, frame.area);
         }
     }
     // One seed has nothing between it and the next, nor has one regime.
@@ -208,7 +215,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
                 .map(|row| (frame.place(point(row)), regimes.get(*row).copied().unwrap_or("")))
                 .filter(|(at, _)| frame.area.contains(*at))
                 .collect();
-            let room = (RIGHT - LEFT) / order.len().max(1) as f64;
+            let room = (right - left) / order.len().max(1) as f64;
             let size = if joined { 0.8 * style::MARKER } else { (0.55 * room).clamp(3.5, style::MARKER) };
             let apart = if joined { MARKER_ROOM * size } else { 0.0 };
             for (at, word) in thinned(&marks, apart, 1.5 * size) {

@@ -7,7 +7,8 @@ use crate::study::{Column, Grid, Table, Values};
 
 pub(super) const LEFT: f64 = 160.0;
 pub(super) const TOP: f64 = 185.0;
-pub(super) const BOTTOM: f64 = 868.0;
+/// What a picture with one frame needs between its captions.
+pub(super) const LEAST: f64 = 420.0;
 
 /// The lines over a map, each where it makes sense.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -8,7 +8,7 @@ use super::map::{Cell, Mosaic, colour_bar, meanings};
 use super::mark::{REGIMES, Sample, legend, marker, regime};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{BOTTOM, LEFT, MARKER_ROOM, SweepPicture, TOP, label, thinned, words};
+use super::swept::{LEFT, MARKER_ROOM, SweepPicture, TOP, label, thinned, words};
 use crate::study::{DIRECTION, Direction, Table};
 
 /// Whether the rows are those of a walk both ways.
@@ -34,7 +34,6 @@ fn strokes(theme: &Theme) -> [Stroke; 2] {
 
 /// The quantity over the field `x` on the way up and on the way down, each value marked with its regime.
 pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str, theme: &Theme) {
-    const RIGHT: f64 = 1560.0;
     let SweepPicture { rows, ranges, .. } = *picture;
     let values = rows.numbers(x).unwrap_or_default();
     let quantity = Quantity::of(rows, picture.quantity);
@@ -52,11 +51,13 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
             entries.push((Sample::Marker(shape, regime(name, theme).1), name));
         }
     }
-    let top = TOP.max(legend(figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(figure, theme, &entries, ends, 146.0) + 18.0);
     let x_label = label(rows, x);
     let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
-    let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);
+    let left = Frame::left(figure, &up, LEFT);
+    let frame = Frame::new(Area::new(left, top, figure.right(), figure.bottom()), across, up);
     let place = |row: &usize| frame.place((values[*row], quantity.values[*row]));
     let [ups, downs] = [Direction::Up, Direction::Down].map(|way| walked(rows, values, way));
     let pairs: Vec<(Point, Point)> = ups.iter().map(place).zip(downs.iter().map(place)).collect();
@@ -106,9 +107,32 @@ fn between(figure: &mut Figure, a: (Point, Point), b: (Point, Point), ink: Ink, 
     }
 }
 
-/// Panels: where they begin and end.
-const PANELS: [(f64, f64); 3] = [(150.0, 505.0), (541.0, 896.0), (1066.0, 1421.0)];
+/// Width of a colour bar.
 const BAR: f64 = 24.0;
+/// On a wide canvas: where the first panel begins, the gaps before the others, and the room after the last.
+const FIRST: f64 = 150.0;
+const GAPS: [f64; 2] = [36.0, 170.0];
+const AFTER: f64 = 179.0;
+/// On a narrow canvas, where they are stacked: between two of them, right of them, and what three need.
+const BETWEEN: f64 = 76.0;
+const BESIDE: f64 = 185.0;
+pub(super) const STACKED: f64 = 1100.0;
+
+/// Where the panels are: side by side, or one under the other with the first axis alone to the left.
+fn panels(figure: &Figure, y: &PlotAxis, top: f64) -> [Area; 3] {
+    let (width, bottom) = (figure.canvas.right, figure.bottom());
+    if figure.is_narrow() {
+        let (left, right) = (Frame::left(figure, y, FIRST), width - BESIDE);
+        let height = (bottom - top - 2.0 * BETWEEN) / 3.0;
+        return [0.0, 1.0, 2.0].map(|place| {
+            let top = top + place * (height + BETWEEN);
+            Area::new(left, top, right, top + height)
+        });
+    }
+    let own = (width - FIRST - GAPS[0] - GAPS[1] - AFTER) / 3.0;
+    let second = FIRST + own + GAPS[0];
+    [FIRST, second, second + own + GAPS[1]].map(|left| Area::new(left, top, left + own, bottom))
+}
 
 /// The quantity over two fields on the way up and on the way down, and what the way down has more.
 pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &str), theme: &Theme) {
@@ -129,20 +153,26 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
         let ink = if share < 0.0 { theme.regimes[1] } else { theme.regimes[3] };
         ink.over(theme.rest, share.abs())
     };
-    let top = 58.0 + TOP;
     let both: Vec<Cell> = up.cells.iter().chain(&down.cells).copied().collect();
     let mut entries = meanings(rows, &quantity, &both, theme);
     if quantity.regimes {
         entries.push((Sample::Patch(theme.ink, None), "differs"));
     }
+    let ends = (FIRST + 10.0, figure.right());
+    let top = (58.0 + TOP).max(legend(figure, theme, &entries, ends, 146.0) + 62.0);
     let last = Mosaic { cells: difference, ..up.clone() };
+    let labels = (label(rows, x), label(rows, y));
+    let whole = Area::new(0.0, 0.0, 1.0, 1.0);
+    let areas = panels(figure, &up.frame(whole, (&labels.0, &labels.1), ranges).y, top);
+    let stacked = figure.is_narrow();
     for (i, (mosaic, name)) in
         [(&up, "up"), (&down, "down"), (&last, "down \u{2212} up")].into_iter().enumerate()
     {
-        let (left, right) = PANELS[i];
-        let labels = (label(rows, x), label(rows, y));
-        let mut frame = mosaic.frame(Area::new(left, top, right, BOTTOM), (&labels.0, &labels.1), ranges);
-        if i > 0 {
+        let Area { left, right, top, .. } = areas[i];
+        let mut frame = mosaic.frame(areas[i], (&labels.0, &labels.1), ranges);
+        if stacked && i < 2 {
+            frame.x = frame.x.silent();
+        } else if !stacked && i > 0 {
             frame.y = frame.y.silent();
         }
         mosaic.paint(figure, &frame, theme, |value| match (i, quantity.regimes) {
@@ -166,13 +196,12 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
     }
     if !quantity.regimes {
         let beside = |panel: usize| {
-            let left = PANELS[panel].1 + 16.0;
-            Area::new(left, top, left + BAR, BOTTOM)
+            let Area { right, top, bottom, .. } = areas[panel];
+            Area::new(right + 16.0, top, right + 16.0 + BAR, bottom)
         };
         colour_bar(figure, beside(1), &bar, theme, viridis);
         colour_bar(figure, beside(2), &signed, theme, |share| tint((2.0 * share - 1.0) * reach));
     }
-    legend(figure, theme, &entries, LEFT, 1560.0, 146.0);
 }
 
 /// What the one cell has more than the other; of regimes, whether they differ.
