@@ -16,6 +16,8 @@ Examples:
   interwell --headless simulate --set stops.travel_limit_mm=2 --out run.csv --summary run.json
   interwell --headless simulate elastic-box --at 0,0.5,1 --events - --out /dev/null
   interwell --headless sweep --out map.csv --plot map.png
+  interwell --headless sweep paper --surface --plot map.pdf --plot-width-mm 85 --font-pt 8 --no-title
+  interwell --headless sweep paper --cut travel_limit_mm=1.5 --cut amplitude_g=1.2 --plot cuts.pdf
   interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
   interwell --headless sweep paper --over excitation.amplitude_g=0:2:0.02 --carry both --plot hysteresis.png
   interwell --headless section paper --over excitation.amplitude_g=0.5:1.5:0.005 --plot diagram.png

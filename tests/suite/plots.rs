@@ -3,6 +3,7 @@
 mod asked;
 mod lines;
 mod manifests;
+mod paper;
 mod studies;
 
 use std::path::{Path, PathBuf};
@@ -39,6 +40,9 @@ fn pixels(path: &Path) -> (u32, u32, Vec<u8>) {
 fn texts(path: &Path) -> Vec<String> {
     let svg = std::fs::read_to_string(path).unwrap();
     assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
+    // what made it is no part of what is seen
+    let (before, rest) = svg.split_once("<metadata>").unwrap();
+    let svg = before.to_owned() + rest.split_once("</metadata>").unwrap().1;
     let (mut open, mut texts) = (Vec::new(), Vec::new());
     for part in svg.split('<').skip(1) {
         let (tag, text) = part.split_once('>').unwrap();

@@ -3,6 +3,7 @@
 use serde_json::Map;
 
 use super::axis::PlotAxis;
+use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point, Text};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
@@ -66,7 +67,7 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
         .collect();
     let ends = (LEFT, figure.canvas.right - 30.0);
     let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 29.0);
-    let (left, right) = (Frame::left(&figure, &up, LEFT), ends.1);
+    let (left, right) = (Frame::left(&figure, &up, LEFT, HEIGHT), ends.1);
     let width = if stacked { right - left } else { (right - left - BETWEEN * (count - 1.0)) / count };
     for (i, problem) in shown.iter().enumerate() {
         let place = i as f64;
@@ -106,6 +107,11 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
             upright: false,
         });
     }
+    let mut drawn = Drawn::new(["cpu_s", "error"], &["problem", "method"]);
+    for row in 0..problems.len() {
+        drawn.put("run", &[times[row], errors[row]], &[problems[row], methods[row]]);
+    }
+    figure.data = drawn.table();
     caption.draw(&mut figure, theme, &subtitle, LEFT);
     figure
 }

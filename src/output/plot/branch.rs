@@ -2,6 +2,7 @@
 //! dashed, events marked.
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
@@ -48,7 +49,7 @@ pub fn branch_figure(
     let across =
         PlotAxis::around(branch.values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     let up = PlotAxis::around(millimetres, 0.08, 6, y_label).or_given(ranges.y, 6, y_label);
-    let left = Frame::left(&figure, &up, LEFT);
+    let left = Frame::left(&figure, &up, LEFT, figure.bottom() - top);
     let frame = Frame::new(Area::new(left, top, figure.right(), figure.bottom()), across, up);
     frame.grid(&mut figure, theme);
     // a stretch of one kind ends at the point where the other begins
@@ -73,6 +74,15 @@ pub fn branch_figure(
         }
     }
     frame.axes(&mut figure, theme);
+    let mut drawn = Drawn::new([table.columns()[0].name.as_str(), "x_m"], &["stable", "event"]);
+    for (i, value) in branch.values.iter().enumerate() {
+        if (frame.x.low..=frame.x.high).contains(value) {
+            let words =
+                [if stable[i] { "true" } else { "false" }, branch.events[i].map_or("", |own| own.name())];
+            drawn.put("branch", &[*value, branch.orbits[i].state.0], &words);
+        }
+    }
+    figure.data = drawn.table();
     let period = branch.orbits.first().map_or(1, |own| own.period);
     let about = format!(
         "{} periodic motions of period {period}, at the drive's phase {}\u{b0}; the branch ends {}",

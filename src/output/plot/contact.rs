@@ -1,6 +1,7 @@
 //! Picture of a compliant stop: restitution over impact speed, beside a rigid stop's constant.
 
 use super::axis::PlotAxis;
+use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Sample, legend};
@@ -30,7 +31,7 @@ pub fn contact_figure(table: &Table, stop: &Hertz, mass: f64, caption: &Caption,
     let ends = (LEFT, figure.right());
     let above = TOP.max(legend(&mut figure, theme, &entries, ends, 142.0) + 18.0);
     let up = PlotAxis::between(0.0, 1.05, 6, "restitution");
-    let left = Frame::left(&figure, &up, LEFT);
+    let left = Frame::left(&figure, &up, LEFT, figure.bottom() - above);
     let area = Area::new(left, above, figure.right(), figure.bottom() - 8.0);
     let frame = Frame::new(area, PlotAxis::between(0.0, top, 8, "impact speed, m/s"), up);
     let pairs =
@@ -42,6 +43,12 @@ pub fn contact_figure(table: &Table, stop: &Hertz, mass: f64, caption: &Caption,
     frame.dashed(&mut figure, &pairs("rigid_restitution"), style::LINE, theme.soft, style::DASH);
     frame.line(&mut figure, &pairs("restitution"), style::LINE + 0.8, theme.ink);
     frame.axes(&mut figure, theme);
+    let names = ["speed_m_per_s", "restitution", "rigid_restitution"];
+    let mut drawn = Drawn::new(names, &[]);
+    for row in 0..speeds.len() {
+        drawn.put("contact", &names.map(|name| column(name)[row]), &[]);
+    }
+    figure.data = drawn.table();
     let about = format!(
         "one contact alone: {} N/m^1.5, loss {} s/m; {} ms at {} m/s",
         short(stop.stiffness),

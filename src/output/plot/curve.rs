@@ -1,6 +1,7 @@
 //! Picture of a mechanism: force and potential over displacement, with equilibria, kinks and stops.
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point};
 use super::frame::{Frame, stretched};
 use super::mark::{Caption, Marker, Sample, legend, marker};
@@ -100,12 +101,32 @@ pub fn curve_figure(
     }
     frames.iter().for_each(|(frame, ..)| frame.axes(&mut figure, theme));
 
+    figure.data = drawn(table, mechanism, stops, inside);
     let mut words = subtitle(landscape);
     if let Some(wall) = wall(column("x_m"), column("force_n"), &frames[0].0.y, force) {
         words += &wall;
     }
     caption.draw(&mut figure, theme, &words, LEFT);
     figure
+}
+
+/// All that is drawn at the positions in m that lie `inside`.
+fn drawn(table: &Table, mechanism: &Mechanism, stops: (f64, f64), inside: impl Fn(f64) -> bool) -> Table {
+    let names = ["x_m", "force_n", "potential_j"];
+    let [x, force, potential] = names.map(|name| table.numbers(name).unwrap_or_default());
+    let mut drawn = Drawn::new(names, &[]);
+    for i in (0..x.len()).filter(|i| inside(x[*i])) {
+        drawn.put("curve", &[x[i], force[i], potential[i]], &[]);
+    }
+    for equilibrium in mechanism.landscape.equilibria.iter().filter(|own| inside(own.x)) {
+        let name = if equilibrium.stable { "stable_equilibrium" } else { "unstable_equilibrium" };
+        drawn.put(name, &[equilibrium.x, 0.0, mechanism.curve.potential(equilibrium.x)], &[]);
+    }
+    let kinks = mechanism.landscape.kinks.iter().map(|kink| ("kink", kink.x));
+    for (name, at) in kinks.chain([("stop", stops.0), ("stop", stops.1)]).filter(|own| inside(own.1)) {
+        drawn.put(name, &[at], &[]);
+    }
+    drawn.table()
 }
 
 fn kind(stable: bool, theme: &Theme) -> (Marker, style::Ink) {

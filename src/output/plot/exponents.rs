@@ -1,6 +1,7 @@
 //! Picture of Lyapunov exponents over a field: both of them, each with its standard error as a band.
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Sample, legend};
@@ -72,7 +73,8 @@ pub fn exponents_figure(
     }
     let ends = (LEFT, figure.right());
     let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
-    let (left, right, bottom) = (Frame::left(&figure, &up, LEFT), figure.right(), figure.bottom());
+    let (left, right, bottom) =
+        (Frame::left(&figure, &up, LEFT, figure.bottom() - top), figure.right(), figure.bottom());
     let frame = Frame::new(Area::new(left, top, right, bottom), across, up);
     frame.grid(&mut figure, theme);
     frame.horizontal(&mut figure, 0.0, style::THIN, theme.ink, None);
@@ -87,6 +89,14 @@ pub fn exponents_figure(
         figure.line(&[(at, bottom - TICK), (at, bottom)], style::FINE_LINE, ink, frame.area);
     }
     frame.axes(&mut figure, theme);
+    let names = ["exponent_1_per_s", "exponent_1_se", "exponent_2_per_s", "exponent_2_se"];
+    let columns = names.map(numbers);
+    let mut drawn = Drawn::new([x.as_str()].into_iter().chain(names), &[]);
+    for (row, at) in places.iter().enumerate().filter(|own| (frame.x.low..=frame.x.high).contains(own.1)) {
+        let [a, b, c, d] = columns.map(|own| own[row]);
+        drawn.put("exponents", &[*at, a, b, c, d], &[]);
+    }
+    figure.data = drawn.table();
     caption.draw(&mut figure, theme, &about(picture), LEFT);
     Ok(figure)
 }

@@ -22,6 +22,21 @@ pub struct Frame {
 /// Distance of the upward label's line from the frame, besides the width of the numbers between them.
 const BESIDE: f64 = style::TICK_LENGTH + 7.0 + 18.0;
 
+/// From the first line of an upward label to its second.
+const SECOND: f64 = 32.0;
+
+/// Whether a label can stand in full size beside a frame of this height.
+fn fits(label: &str, height: f64) -> bool {
+    font::width(label, style::AXIS, false) <= height + 20.0
+}
+
+/// A label in two lines, parted at the blank next to its middle.
+fn halves(label: &str) -> Option<(&str, &str)> {
+    let middle = label.len() / 2;
+    let blank = label.match_indices(' ').map(|own| own.0).min_by_key(|at| at.abs_diff(middle))?;
+    Some((&label[..blank], &label[blank + 1..]))
+}
+
 impl Frame {
     /// A frame at `area` with these axes.
     pub fn new(area: Area, x: PlotAxis, y: PlotAxis) -> Self {
@@ -29,13 +44,13 @@ impl Frame {
     }
 
     /// Where the left edge of a frame with this axis upward stands, so that numbers and label have room: on a
-    /// wide canvas at `wide`.
-    pub fn left(figure: &Figure, y: &PlotAxis, wide: f64) -> f64 {
+    /// wide canvas at `wide`. On a narrow one a label that is too long for the frame's `height` has two lines.
+    pub fn left(figure: &Figure, y: &PlotAxis, wide: f64, height: f64) -> f64 {
         if !figure.is_narrow() {
             return wide;
         }
         let numbers = y.ticks.iter().map(|tick| font::width(&tick.1, style::TICK, false)).fold(0.0, f64::max);
-        BESIDE + numbers + style::AXIS
+        BESIDE + numbers + style::AXIS + if fits(&y.label, height) { 0.0 } else { SECOND }
     }
 
     /// Where a value of x stands on the canvas.
@@ -81,7 +96,7 @@ impl Frame {
             align,
             upright: false,
         };
-        let numbered = self.numbered();
+        let (numbered, narrow) = (self.numbered(), figure.is_narrow());
         for (i, (value, words)) in self.x.ticks.iter().enumerate() {
             let at = self.across(*value);
             let words = if numbered(i) { words } else { "" };
@@ -98,23 +113,23 @@ impl Frame {
             figure.text(text(words, (left - style::TICK_LENGTH - 7.0, at + 0.5 * ascent), Align::Right));
         }
         // A label too long for its axis is smaller, so that it does not reach into the next one.
-        let label = |words: &str, at: Point, upright: bool| Text {
-            words: words.to_owned(),
-            at,
-            size: {
-                let room = if upright { bottom - top + 20.0 } else { right - left + 60.0 };
-                style::AXIS * (room / font::width(words, style::AXIS, false)).min(1.0)
-            },
-            ink: theme.ink,
-            bold: false,
-            align: Align::Centre,
-            upright,
+        let mut label = |words: &str, at: Point, upright: bool| {
+            let room = if upright { bottom - top + 20.0 } else { right - left + 60.0 };
+            let size = style::AXIS * (room / font::width(words, style::AXIS, false)).min(1.0);
+            figure.text(Text { size, upright, ..text(words, at, Align::Centre) });
         };
         let below = bottom + style::TICK_LENGTH + ascent + 16.0 + style::AXIS;
-        figure.text(label(&self.x.label, (0.5 * (left + right), below), false));
+        label(&self.x.label, (0.5 * (left + right), below), false);
         let near = BESIDE + widest;
         let beside = (left - self.gutter.map_or(near, |gutter| gutter.max(near))).max(style::AXIS);
-        figure.text(label(&self.y.label, (beside, 0.5 * (top + bottom)), true));
+        let middle = 0.5 * (top + bottom);
+        match halves(&self.y.label).filter(|_| narrow && !fits(&self.y.label, bottom - top)) {
+            Some((first, second)) => {
+                label(first, ((beside - SECOND).max(style::AXIS), middle), true);
+                label(second, (beside, middle), true);
+            }
+            None => label(&self.y.label, (beside, middle), true),
+        }
     }
 
     /// Which ticks to the right have their number: as many as stand apart, 0 among them.

@@ -1,13 +1,14 @@
 //! Picture of a sweep over two fields: a quantity as colour, and where motion begins as lines.
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
 use super::frame::Frame;
-use super::mark::{REGIMES, Sample, cross, legend};
+use super::mark::{Sample, cross, legend};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{LEFT, Overlay, SweepPicture, TOP, label, missing_words, words};
+use super::swept::{LEFT, Overlay, SweepPicture, TOP, drawn, label, missing_words, words};
 use crate::study::{Edges, Table, first_crossing_edge};
 
 /// What a cell of a map shows.
@@ -97,37 +98,84 @@ const NARROW_BAR: (f64, f64) = (22.0, 50.0);
 
 /// The quantity as colour over two fields.
 pub(super) fn map(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &str), theme: &Theme) {
-    let SweepPicture { rows, ranges, overlay, .. } = picture;
-    let quantity = Quantity::of(rows, picture.quantity);
-    let mosaic = Mosaic::new(rows, (x, y), &quantity, |_| true);
-    let lines = Lines::new((x, y), &mosaic, overlay);
-    let mut entries = meanings(rows, &quantity, &mosaic.cells, theme);
-    if lines.release.is_some() {
-        entries.push((RELEASE, "release in closed form, |F(limit)|/mass"));
-    }
-    if !lines.crossing.is_empty() {
-        entries.push((CROSSING, "first crossing cell"));
-    }
+    let map = Map::new(picture, (x, y));
     let ends = (LEFT, figure.right());
-    let top = TOP.max(legend(figure, theme, &entries, ends, 146.0) + 18.0);
-    let (beside, place) = match (figure.is_narrow(), quantity.regimes) {
-        (true, true) => (figure.canvas.right - figure.right(), NARROW_BAR),
-        (true, false) => (NARROW_BESIDE, NARROW_BAR),
-        (false, _) => (BESIDE, BAR),
+    let top = TOP.max(legend(figure, theme, &map.entries(picture, theme), ends, 146.0) + 18.0);
+    let canvas = figure.canvas.right;
+    let right = match (figure.is_narrow(), map.quantity.words.is_some()) {
+        (true, true) => figure.right(),
+        (true, false) => canvas - NARROW_BESIDE,
+        (false, _) => canvas - BESIDE,
     };
-    let (right, bottom) = (figure.canvas.right - beside, figure.bottom());
-    let labels = (label(rows, x), label(rows, y));
-    let mut frame = mosaic.frame(Area::new(LEFT, top, right, bottom), (&labels.0, &labels.1), *ranges);
-    frame.area.left = Frame::left(figure, &frame.y, LEFT);
-    let bar = quantity.axis(0.0, 6);
-    mosaic.paint(figure, &frame, theme, |value| match quantity.regimes {
-        true => theme.regimes[value as usize],
-        false => viridis(bar.share(value)),
-    });
-    lines.draw(figure, &frame);
-    frame.axes(figure, theme);
-    if !quantity.regimes {
-        colour_bar(figure, Area::new(right + place.0, top, right + place.1, bottom), &bar, theme, viridis);
+    let place = if figure.is_narrow() { NARROW_BAR } else { BAR };
+    map.draw(figure, (picture, (x, y)), (top, right, figure.bottom()), place, theme);
+    figure.data = map.drawn(picture, (x, y)).table();
+}
+
+/// A map of a sweep, before it has a place.
+pub(super) struct Map {
+    pub quantity: Quantity,
+    mosaic: Mosaic,
+    pub lines: Lines,
+}
+
+impl Map {
+    /// Of a picture over the fields `x` and `y`.
+    pub fn new(picture: &SweepPicture, (x, y): (&str, &str)) -> Self {
+        let quantity = Quantity::of(picture.rows, picture.quantity);
+        let mosaic = Mosaic::new(picture.rows, (x, y), &quantity, |_| true);
+        let lines = Lines::new((x, y), &mosaic, &picture.overlay);
+        Self { quantity, mosaic, lines }
+    }
+
+    /// What its legend says.
+    pub fn entries(&self, picture: &SweepPicture, theme: &Theme) -> Vec<(Sample, &'static str)> {
+        let mut entries = meanings(picture.rows, &self.quantity, &self.mosaic.cells, theme);
+        if self.lines.release.is_some() {
+            entries.push((RELEASE, "release in closed form, |F(limit)|/mass"));
+        }
+        if !self.lines.crossing.is_empty() {
+            entries.push((CROSSING, "first crossing cell"));
+        }
+        entries
+    }
+
+    /// Draws it between these upper, right and lower edges, with a colour bar at `bar` right of it; its frame.
+    pub fn draw(
+        &self,
+        figure: &mut Figure,
+        (picture, (x, y)): (&SweepPicture, (&str, &str)),
+        (top, right, bottom): (f64, f64, f64),
+        place: (f64, f64),
+        theme: &Theme,
+    ) -> Frame {
+        let labels = (label(picture.rows, x), label(picture.rows, y));
+        let area = Area::new(LEFT, top, right, bottom);
+        let mut frame = self.mosaic.frame(area, (&labels.0, &labels.1), picture.ranges);
+        frame.area.left = Frame::left(figure, &frame.y, LEFT, bottom - top);
+        let bar = self.quantity.axis(0.0, 6);
+        self.mosaic.paint(figure, &frame, theme, |value| match self.quantity.words {
+            Some(_) => self.quantity.ink(value, theme),
+            None => viridis(bar.share(value)),
+        });
+        self.lines.draw(figure, &frame);
+        frame.axes(figure, theme);
+        if self.quantity.words.is_none() {
+            let area = Area::new(right + place.0, top, right + place.1, bottom);
+            colour_bar(figure, area, &bar, theme, viridis);
+        }
+        frame
+    }
+
+    /// Its cells and the points of its lines.
+    pub fn drawn(&self, picture: &SweepPicture, (x, y): (&str, &str)) -> Drawn {
+        let mut drawn = drawn(picture, &[(x, picture.ranges.x), (y, picture.ranges.y)]);
+        let release = self.lines.release.iter().flatten().map(|own| ("release", own));
+        let crossing = self.lines.crossing.iter().flatten().map(|own| ("first_crossing", own));
+        for (series, (a, b)) in release.chain(crossing) {
+            drawn.put(series, &[*a, *b], &[]);
+        }
+        drawn
     }
 }
 
@@ -139,10 +187,9 @@ pub(super) fn meanings(
     theme: &Theme,
 ) -> Vec<(Sample, &'static str)> {
     let mut entries = Vec::new();
-    if quantity.regimes {
-        let there = |place: &usize| cells.contains(&Cell::Value(*place as f64));
-        let names = REGIMES.iter().enumerate().filter(|(place, _)| there(place));
-        entries.extend(names.map(|(place, (name, _))| (Sample::Patch(theme.regimes[place], None), *name)));
+    let there = |place: usize| cells.contains(&Cell::Value(place as f64));
+    for (place, name) in quantity.words.unwrap_or_default().iter().enumerate().filter(|own| there(own.0)) {
+        entries.push((Sample::Patch(quantity.ink(place as f64, theme), None), *name));
     }
     if cells.contains(&Cell::Rest) {
         entries.push((Sample::Patch(theme.rest, Some(theme.rest_hatch)), "at rest"));

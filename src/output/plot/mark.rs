@@ -238,13 +238,13 @@ impl Caption {
 
     /// Draws title, subtitle and footer, on a wide canvas from `left` on.
     pub fn draw(&self, figure: &mut Figure, theme: &Theme, subtitle: &str, left: f64) {
-        let (canvas, narrow) = (figure.canvas, figure.is_narrow());
+        let (canvas, on_paper) = (figure.canvas, figure.sheet.is_some());
         let (left, right) = figure.breadth((left, canvas.right - 30.0));
         let room = right - left;
         let mut row = |words: &str, size: f64, bold: bool, ink: Ink, height: f64| {
-            // On a narrow canvas the words are smaller before they are cut.
+            // On paper the words are smaller before they are cut.
             let share = (room / font::width(words, size, bold)).clamp(0.7, 1.0);
-            let size = if narrow { share * size } else { size };
+            let size = if on_paper { share * size } else { size };
             figure.text(Text {
                 words: fitted(words, size, bold, room),
                 at: (left, height),

@@ -9,6 +9,8 @@ mod basins;
 mod branch;
 mod contact;
 mod curve;
+mod cut;
+mod drawn;
 mod exponents;
 mod figure;
 mod font;
@@ -23,6 +25,7 @@ mod section;
 mod sheet;
 mod spectrum;
 mod style;
+mod surface;
 mod sweep;
 mod swept;
 mod threshold;
@@ -47,7 +50,7 @@ pub use sheet::Sheet;
 pub use spectrum::{SpectrumQuantity, spectrum_figure};
 pub use style::{Ink, Theme, viridis};
 pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_figure};
-pub use swept::{Overlay, SweepPicture};
+pub use swept::{Cut, Overlay, SweepPicture, View};
 pub use threshold::{ThresholdPicture, can_show_thresholds, threshold_figure};
 
 /// A kind of file that holds a picture.

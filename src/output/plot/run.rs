@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
 use super::frame::{Frame, stretched};
@@ -11,7 +12,7 @@ use super::style::{self, Ink, Theme};
 use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
-use crate::study::{Trace, Values};
+use crate::study::{Table, Trace, Values};
 
 const LEFT: f64 = 150.0;
 const GUTTER: f64 = 102.0;
@@ -29,7 +30,7 @@ struct Places {
 impl Places {
     /// What a run needs between its captions: narrow, the portrait is under the panels.
     fn least(theme: &Theme) -> f64 {
-        if theme.is_narrow() { 1050.0 } else { 800.0 }
+        if theme.is_narrow() { 1210.0 } else { 800.0 }
     }
 
     /// On the canvas of `figure`, `more` below their usual height.
@@ -40,7 +41,7 @@ impl Places {
         };
         if figure.is_narrow() {
             let (left, right) = (GUTTER + style::AXIS, figure.right());
-            let height = 0.37 * (bottom - top);
+            let height = 0.3 * (bottom - top);
             let beside = right.min(width - ACCOUNT);
             let portrait = Area::new(left, bottom - height, beside, bottom);
             let account = (beside + 20.0, portrait.top + 26.0);
@@ -101,6 +102,7 @@ pub fn run_figure(
     let places = Places::new(&figure, more);
     seen.panels(&mut figure, &places);
     seen.portrait(&mut figure, places.portrait);
+    figure.data = seen.drawn();
     account(&mut figure, places.account, (summary, trace), seen.speed, theme);
     caption.draw(&mut figure, theme, &subtitle(summary), LEFT);
     figure
@@ -142,6 +144,38 @@ impl Seen<'_> {
         let label = "displacement, mm";
         let own = PlotAxis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, 6, label);
         own.or_given(self.displacements, 6, label)
+    }
+
+    /// All that is drawn.
+    fn drawn(&self) -> Table {
+        let Self { trace, t, x, v, accel, .. } = *self;
+        let mut drawn = Drawn::new(["t_s", "x_m", "v_m_per_s", "base_accel_m_per_s2"], &["side"]);
+        for i in self.rows(trace.shown_from) {
+            drawn.put("run", &[t[i], x[i], v[i], accel[i]], &[]);
+        }
+        for i in self.rows(trace.portrait_from) {
+            drawn.put("portrait", &[t[i], x[i], v[i]], &[]);
+        }
+        let shown = trace.shown_from..=trace.shown_to;
+        let column = |table: &Table, name: &str| table.numbers(name).unwrap_or_default().to_vec();
+        let sides = words(trace.impacts.column("side").map(|column| &column.values));
+        for (at, side) in column(&trace.impacts, "t_s").iter().zip(sides).filter(|own| shown.contains(own.0))
+        {
+            let stop = if *side == "left" { trace.stops.0 } else { trace.stops.1 };
+            drawn.put("impact", &[*at, stop], &[side]);
+        }
+        let rests = column(&trace.rests, "from_s").into_iter().zip(column(&trace.rests, "to_s"));
+        for (from, to) in rests.filter(|(from, to)| *to >= trace.shown_from && *from <= trace.shown_to) {
+            drawn.put("rest_from", &[from.max(trace.shown_from)], &[]);
+            drawn.put("rest_to", &[to.min(trace.shown_to)], &[]);
+        }
+        for (at, side) in [(trace.stops.0, "left"), (trace.stops.1, "right")] {
+            if at.is_finite() {
+                drawn.put("stop", &[f64::NAN, at], &[side]);
+            }
+        }
+        self.wells.iter().for_each(|at| drawn.put("well", &[f64::NAN, *at], &[]));
+        drawn.table()
     }
 
     fn velocity(&self, v: &[f64], count: usize) -> PlotAxis {
@@ -337,10 +371,12 @@ fn account(
     }
     if summary.rms_velocity.is_some() {
         let share = summary.rested_share.filter(|share| *share > 0.0);
-        lines.push(match name {
-            "" => format!("{} impacts", summary.impacts),
-            _ => format!("{} crossings, {} impacts", summary.crossings, summary.impacts),
-        });
+        let impacts = format!("{} impacts", summary.impacts);
+        match name {
+            "" => lines.push(impacts),
+            _ if figure.is_narrow() => lines.extend([format!("{} crossings", summary.crossings), impacts]),
+            _ => lines.push(format!("{} crossings, {impacts}", summary.crossings)),
+        }
         let words = if summary.peak_contact_force.is_some() { "in contact" } else { "at rest" };
         lines.extend(share.map(|share| format!("{words} {:.0} % of the time", 100.0 * share)));
         if let Some(force) = summary.peak_contact_force.filter(|force| *force > 0.0) {

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Align, Area, Figure, Text};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, dot, legend};
@@ -62,7 +63,7 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
     if wall && (picture.stops.0.is_some() || picture.stops.1.is_some()) {
         entries.push((Sample::Patch(theme.wall_fill(), None), "stop"));
     }
-    let (across, up) = columns(rows, over, phase_deg.is_some());
+    let (across, up) = columns_of(rows, over, phase_deg.is_some());
     let ways = words(rows, DIRECTION);
     let both = [Direction::Up, Direction::Down].iter().all(|way| ways.contains(&way.name()));
     let panels: &[Option<Direction>] =
@@ -74,7 +75,8 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
     let x = x.or_given(ranges.x, 8, &across.label);
     let y = PlotAxis::around(up.values.iter().copied(), 0.06, 6, &up.label);
     let y = y.or_given(ranges.y, 6, &up.label);
-    let (left, right) = (Frame::left(&figure, &y, LEFT), figure.right());
+    let (left, right) =
+        (Frame::left(&figure, &y, LEFT, (figure.bottom() - top) / panels.len() as f64), figure.right());
     let height = (figure.bottom() - top - BETWEEN * (panels.len() - 1) as f64) / panels.len() as f64;
     for (number, way) in panels.iter().enumerate() {
         let begin = top + number as f64 * (height + BETWEEN);
@@ -117,8 +119,26 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
             });
         }
     }
+    figure.data = drawn(rows, over, phase_deg.is_some(), |at| (x.low..=x.high).contains(&at));
     caption.draw(&mut figure, theme, &about(rows, picture), LEFT);
     figure
+}
+
+/// The rows whose place to the right is `inside`.
+fn drawn(rows: &Table, over: Option<&str>, states: bool, inside: impl Fn(f64) -> bool) -> Table {
+    let series =
+        if states { ["state_without_impacts", "state_with_impacts"] } else { ["left_stop", "right_stop"] };
+    let own: &[&str] = if states { &["x_m", "v_m_per_s"] } else { &["phase_deg", "v_in_m_per_s"] };
+    let names: Vec<&str> = over.into_iter().chain(own.iter().copied()).collect();
+    let columns: Vec<&[f64]> = names.iter().map(|name| rows.numbers(name).unwrap_or_default()).collect();
+    let (kind, ways) = (kind_of(rows, states), words(rows, DIRECTION));
+    let (across, _) = columns_of(rows, over, states);
+    let mut drawn = Drawn::new(names, if ways.is_empty() { &[] } else { &[DIRECTION] });
+    for row in (0..rows.rows()).filter(|row| inside(across.values[*row])) {
+        let numbers: Vec<f64> = columns.iter().map(|own| own.get(row).copied().unwrap_or(f64::NAN)).collect();
+        drawn.put(series[kind(row)], &numbers, ways.get(row..=row).unwrap_or_default());
+    }
+    drawn.table()
 }
 
 /// The axis of a phase in degrees.
@@ -147,7 +167,7 @@ struct Along {
 }
 
 /// What stands to the right and what upward.
-fn columns(rows: &Table, over: Option<&str>, states: bool) -> (Along, Along) {
+fn columns_of(rows: &Table, over: Option<&str>, states: bool) -> (Along, Along) {
     let scaled = |name: &str, scale: f64, label: String| Along {
         values: rows.numbers(name).unwrap_or_default().iter().map(|value| value * scale).collect(),
         label,

@@ -25,7 +25,7 @@ impl Sheet {
     pub const FONT_PT: (f64, f64) = (4.0, 36.0);
 
     /// The widths and heights in mm.
-    pub const MM: (f64, f64) = (20.0, 2000.0);
+    pub const MM: (f64, f64) = (40.0, 2000.0);
 
     /// The resolutions in pixels an inch.
     pub const DPI: (f64, f64) = (30.0, 2400.0);

@@ -1,6 +1,7 @@
 //! Picture of a spectrum: amplitude or power spectral density, logarithmic, over frequency.
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Sample, legend};
@@ -76,12 +77,12 @@ pub fn spectrum_figure(
         [] => 135.0,
         some => TOP.max(legend(&mut figure, theme, some, ends, 146.0) + 18.0),
     };
-    let left = Frame::left(&figure, &up, LEFT);
+    let left = Frame::left(&figure, &up, LEFT, figure.bottom() - top);
     let area = Area::new(left, top, figure.right(), figure.bottom());
 
     let frame = Frame::new(area, across, up);
     frame.grid(&mut figure, theme);
-    for own in marked {
+    for own in marked.iter().copied() {
         frame.vertical(&mut figure, own, style::GUIDE, theme.shaking, Some(style::DASH));
     }
     let floor = frame.y.low - 1.0;
@@ -93,6 +94,15 @@ pub fn spectrum_figure(
         frame.dense_line(&mut figure, points, style::THIN, theme.ink);
     }
     frame.axes(&mut figure, theme);
+    let name = if quantity == SpectrumQuantity::Density { "psd" } else { "amplitude" };
+    let mut drawn = Drawn::new(["frequency_hz", name], &[]);
+    for (frequency, value) in frequencies.iter().zip(values) {
+        if (frame.x.low..=frame.x.high).contains(frequency) {
+            drawn.put("line", &[*frequency, *value], &[]);
+        }
+    }
+    marked.iter().for_each(|own| drawn.put("forcing", &[*own], &[]));
+    figure.data = drawn.table();
     caption.draw(&mut figure, theme, &spectrum.describe(), LEFT);
     figure
 }

@@ -169,6 +169,19 @@ impl Theme {
     }
 }
 
+/// Colours of kinds that have none of their own, such as attractors, the first ones farthest apart in lightness, so that they are told apart without
+/// colour too.
+pub const KINDS: [Ink; 8] = [
+    Ink(0x1e, 0x52, 0x8c),
+    Ink(0xf3, 0xb6, 0x40),
+    Ink(0x2a, 0x9a, 0x7c),
+    Ink(0xc4, 0xe2, 0xf5),
+    Ink(0xb0, 0x3a, 0x14),
+    Ink(0xde, 0x8c, 0xb4),
+    Ink(0x48, 0x1e, 0x5a),
+    Ink(0xa6, 0xa8, 0x9c),
+];
+
 /// White, for what lies over a map in either theme.
 pub const WHITE: Ink = Ink(0xff, 0xff, 0xff);
 /// Black, as the outline of what lies over a map.

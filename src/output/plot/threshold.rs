@@ -1,13 +1,14 @@
 //! Picture of thresholds: over one field lines, drawn here; over two a [`map`](super::map) or lines.
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::{Drawn, as_numbers};
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::map::map;
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Theme};
 use super::sweep::{NoPicture, distinct, few_lines};
-use super::swept::{LEAST, LEFT, Overlay, SweepPicture, TOP, label};
+use super::swept::{LEAST, LEFT, Overlay, SweepPicture, TOP, View, label};
 use crate::numeric::short;
 use crate::scene::{Scene, column_names};
 use crate::study::{Column, Grid, Onset, Table, Values};
@@ -60,10 +61,20 @@ pub fn threshold_figure(
             let named = rows.clone().with(&least, quantity.values);
             let (quantity, overlay) = (least.as_str(), Overlay::default());
             let until_settled = None;
-            let shown = SweepPicture { rows: &named, grid, scene, until_settled, quantity, overlay, ranges };
+            let view = View::Top;
+            let shown =
+                SweepPicture { rows: &named, grid, scene, until_settled, quantity, overlay, view, ranges };
             map(&mut figure, &shown, (&columns[0], &columns[1]), theme);
         }
     }
+    let mut drawn = Drawn::new(grid.columns().iter().map(String::as_str).chain([&*least, "windows"]), &[]);
+    let windows = rows.column("windows").and_then(as_numbers).unwrap_or_default();
+    for row in 0..rows.rows() {
+        let fields = grid.columns().iter().filter_map(|name| rows.numbers(name)).map(|own| own[row]);
+        let numbers: Vec<f64> = fields.chain([values[row], windows[row]]).collect();
+        drawn.put("threshold", &numbers, &[]);
+    }
+    figure.data = drawn.table();
     caption.draw(&mut figure, theme, about(onset), LEFT);
     Ok(figure)
 }
@@ -126,7 +137,8 @@ fn lines(
     let across = PlotAxis::around(places.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     let from_zero = values.iter().copied().chain([0.0]);
     let upward = PlotAxis::around(from_zero, 0.05, 6, up).or_given(ranges.y, 6, up);
-    let (left, right, bottom) = (Frame::left(figure, &upward, LEFT), figure.right(), figure.bottom());
+    let (left, right, bottom) =
+        (Frame::left(figure, &upward, LEFT, figure.bottom() - top), figure.right(), figure.bottom());
     let frame = Frame::new(Area::new(left, top, right, bottom), across, upward);
     frame.grid(figure, theme);
     for row in missing {

@@ -8,7 +8,7 @@ use super::map::{Cell, Mosaic, colour_bar, meanings};
 use super::mark::{REGIMES, Sample, legend, marker, regime};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{LEFT, MARKER_ROOM, SweepPicture, TOP, label, thinned, words};
+use super::swept::{LEFT, MARKER_ROOM, SweepPicture, TOP, drawn, label, thinned, words};
 use crate::study::{DIRECTION, Direction, Table};
 
 /// Whether the rows are those of a walk both ways.
@@ -43,7 +43,7 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
     for (direction, ink, dash) in strokes(theme) {
         entries.push((Sample::Line(ink, style::LINE, dash), direction.name()));
     }
-    if !quantity.regimes {
+    if quantity.words.is_none() {
         entries.push((Sample::Patch(shade, None), "hysteresis"));
     }
     for (name, shape) in REGIMES {
@@ -56,12 +56,12 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
     let x_label = label(rows, x);
     let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
-    let left = Frame::left(figure, &up, LEFT);
+    let left = Frame::left(figure, &up, LEFT, figure.bottom() - top);
     let frame = Frame::new(Area::new(left, top, figure.right(), figure.bottom()), across, up);
     let place = |row: &usize| frame.place((values[*row], quantity.values[*row]));
     let [ups, downs] = [Direction::Up, Direction::Down].map(|way| walked(rows, values, way));
     let pairs: Vec<(Point, Point)> = ups.iter().map(place).zip(downs.iter().map(place)).collect();
-    if !quantity.regimes {
+    if quantity.words.is_none() {
         pairs.windows(2).for_each(|two| between(figure, two[0], two[1], shade, frame.area));
     }
     frame.grid(figure, theme);
@@ -69,7 +69,7 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
         for part in order.split(|row| !quantity.values[*row].is_finite()) {
             let points: Vec<Point> = part.iter().map(place).collect();
             match dash {
-                _ if quantity.regimes => {}
+                _ if quantity.words.is_some() => {}
                 None => figure.line(&points, style::LINE, ink, frame.area),
                 Some(dash) => figure.dashed(&points, style::LINE, ink, dash, frame.area),
             }
@@ -85,6 +85,7 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
             }
         }
     }
+    figure.data = drawn(picture, &[(x, ranges.x)]).table();
     frame.axes(figure, theme);
 }
 
@@ -122,7 +123,7 @@ pub(super) const STACKED: f64 = 1100.0;
 fn panels(figure: &Figure, y: &PlotAxis, top: f64) -> [Area; 3] {
     let (width, bottom) = (figure.canvas.right, figure.bottom());
     if figure.is_narrow() {
-        let (left, right) = (Frame::left(figure, y, FIRST), width - BESIDE);
+        let (left, right) = (Frame::left(figure, y, FIRST, (bottom - top) / 3.0), width - BESIDE);
         let height = (bottom - top - 2.0 * BETWEEN) / 3.0;
         return [0.0, 1.0, 2.0].map(|place| {
             let top = top + place * (height + BETWEEN);
@@ -142,8 +143,12 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
     let [up, down] = [Direction::Up, Direction::Down]
         .map(|way| Mosaic::new(rows, (x, y), &quantity, |row| ways[row] == way.name()));
     let bar = quantity.axis(0.0, 6);
-    let difference: Vec<Cell> =
-        up.cells.iter().zip(&down.cells).map(|(up, down)| less(*down, *up, quantity.regimes)).collect();
+    let difference: Vec<Cell> = up
+        .cells
+        .iter()
+        .zip(&down.cells)
+        .map(|(up, down)| less(*down, *up, quantity.words.is_some()))
+        .collect();
     let values = difference.iter().filter_map(Cell::value).map(f64::abs);
     let largest = values.fold(0.0, f64::max);
     let reach = if largest > 0.0 { largest } else { 1.0 };
@@ -153,9 +158,10 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
         let ink = if share < 0.0 { theme.regimes[1] } else { theme.regimes[3] };
         ink.over(theme.rest, share.abs())
     };
+    figure.data = drawn(picture, &[(x, ranges.x), (y, ranges.y)]).table();
     let both: Vec<Cell> = up.cells.iter().chain(&down.cells).copied().collect();
     let mut entries = meanings(rows, &quantity, &both, theme);
-    if quantity.regimes {
+    if quantity.words.is_some() {
         entries.push((Sample::Patch(theme.ink, None), "differs"));
     }
     let ends = (FIRST + 10.0, figure.right());
@@ -175,15 +181,15 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
         } else if !stacked && i > 0 {
             frame.y = frame.y.silent();
         }
-        mosaic.paint(figure, &frame, theme, |value| match (i, quantity.regimes) {
+        mosaic.paint(figure, &frame, theme, |value| match (i, quantity.words.is_some()) {
             (2, true) if value == 0.0 => theme.rest,
             (2, true) => theme.ink,
             (2, false) => tint(value),
-            (_, true) => theme.regimes[value as usize],
+            (_, true) => quantity.ink(value, theme),
             (_, false) => viridis(bar.share(value)),
         });
         frame.axes(figure, theme);
-        let name = if quantity.regimes && i == 2 { "where they differ" } else { name };
+        let name = if quantity.words.is_some() && i == 2 { "where they differ" } else { name };
         figure.text(Text {
             words: name.to_owned(),
             at: (0.5 * (left + right), top - 16.0),
@@ -194,7 +200,7 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
             upright: false,
         });
     }
-    if !quantity.regimes {
+    if quantity.words.is_none() {
         let beside = |panel: usize| {
             let Area { right, top, bottom, .. } = areas[panel];
             Area::new(right + 16.0, top, right + 16.0 + BAR, bottom)
