@@ -61,8 +61,8 @@ impl<'a> Picture<'a> {
         }))
     }
 
-    /// What a picture's outputs are opened by: that of the picture and that of its data, where they were asked
-    /// for.
+    /// What a picture's outputs are opened by: that of the picture and that of its data, where they were
+    /// asked for.
     pub fn outputs(picture: Option<Self>) -> [Option<(&'static str, &'a Path)>; 2] {
         let data = picture.and_then(|own| own.data);
         [picture.map(|own| (own.option, own.path)), data.map(|path| ("--plot-data", path))]

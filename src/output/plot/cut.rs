@@ -171,7 +171,8 @@ impl Panel {
     }
 }
 
-/// Where a line meets the places whose first number (`upright`), or second one, is `value`: their other number.
+/// Where a line meets the places whose first number (`upright`), or second one, is `value`: their other
+/// number.
 fn met(line: &[Point], value: f64, upright: bool) -> Vec<f64> {
     let turned = |(a, b): Point| if upright { (a, b) } else { (b, a) };
     let meets = |pair: &[Point]| {

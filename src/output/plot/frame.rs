@@ -44,7 +44,8 @@ impl Frame {
     }
 
     /// Where the left edge of a frame with this axis upward stands, so that numbers and label have room: on a
-    /// wide canvas at `wide`. On a narrow one a label that is too long for the frame's `height` has two lines.
+    /// wide canvas at `wide`. On a narrow one a label that is too long for the frame's `height` has two
+    /// lines.
     pub fn left(figure: &Figure, y: &PlotAxis, wide: f64, height: f64) -> f64 {
         if !figure.is_narrow() {
             return wide;
@@ -123,9 +124,10 @@ impl Frame {
         let near = BESIDE + widest;
         let beside = (left - self.gutter.map_or(near, |gutter| gutter.max(near))).max(style::AXIS);
         let middle = 0.5 * (top + bottom);
-        match halves(&self.y.label).filter(|_| narrow && !fits(&self.y.label, bottom - top)) {
+        let two = narrow && beside >= style::AXIS + SECOND && !fits(&self.y.label, bottom - top);
+        match halves(&self.y.label).filter(|_| two) {
             Some((first, second)) => {
-                label(first, ((beside - SECOND).max(style::AXIS), middle), true);
+                label(first, (beside - SECOND, middle), true);
                 label(second, (beside, middle), true);
             }
             None => label(&self.y.label, (beside, middle), true),
@@ -250,8 +252,8 @@ impl Frame {
     }
 }
 
-/// Upper and lower edges of frames one under the other, drawn up or down so that they fill the room from `top`
-/// to `bottom`.
+/// Upper and lower edges of frames one under the other, drawn up or down so that they fill the room from
+/// `top` to `bottom`.
 pub fn stretched<const N: usize>(frames: [(f64, f64); N], top: f64, bottom: f64) -> [(f64, f64); N] {
     let (first, last) = (frames[0].0, frames[N - 1].1);
     let scale = (bottom - top) / (last - first);

@@ -140,7 +140,8 @@ impl Map {
         entries
     }
 
-    /// Draws it between these upper, right and lower edges, with a colour bar at `bar` right of it; its frame.
+    /// Draws it between these upper, right and lower edges, with a colour bar at `bar` right of it; its
+    /// frame.
     pub fn draw(
         &self,
         figure: &mut Figure,

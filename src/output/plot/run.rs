@@ -30,7 +30,7 @@ struct Places {
 impl Places {
     /// What a run needs between its captions: narrow, the portrait is under the panels.
     fn least(theme: &Theme) -> f64 {
-        if theme.is_narrow() { 1210.0 } else { 800.0 }
+        if theme.is_narrow() { 1290.0 } else { 800.0 }
     }
 
     /// On the canvas of `figure`, `more` below their usual height.

@@ -169,8 +169,8 @@ impl Theme {
     }
 }
 
-/// Colours of kinds that have none of their own, such as attractors, the first ones farthest apart in lightness, so that they are told apart without
-/// colour too.
+/// Colours of kinds that have none of their own, such as attractors, the first ones farthest apart in
+/// lightness, so that they are told apart without colour too.
 pub const KINDS: [Ink; 8] = [
     Ink(0x1e, 0x52, 0x8c),
     Ink(0xf3, 0xb6, 0x40),

@@ -1,7 +1,7 @@
 //! Picture of a sweep over two fields as a surface in projection: its height and its colour are the quantity.
 //!
-//! The projection is parallel, turned by 37.5 degrees and seen from 30 degrees above, with the least values of
-//! both fields in front. Faces are painted from back to front, which for a height over a grid is exact.
+//! The projection is parallel, turned by 37.5 degrees and seen from 30 degrees above, with the least values
+//! of both fields in front. Faces are painted from back to front, which for a height over a grid is exact.
 
 use super::axis::PlotAxis;
 use super::figure::{Align, Area, Figure, Point, Text};

@@ -68,8 +68,8 @@ pub enum NoPicture {
     },
 }
 
-/// Whether the column `quantity` of a sweep of this grid can be shown in this way; `table` is that of its rows,
-/// which may be missing.
+/// Whether the column `quantity` of a sweep of this grid can be shown in this way; `table` is that of its
+/// rows, which may be missing.
 pub fn can_show(grid: &Grid, (quantity, view): (&str, &View), table: &Table) -> Result<(), NoPicture> {
     if !quantities(table, grid).any(|own| own == quantity) {
         let mut known: Vec<&str> = quantities(table, grid).collect();

@@ -33,7 +33,7 @@ fn any_column_of_numbers_can_be_shown_and_the_regime() {
     for (name, word) in [("outcome", "left_table"), ("side", "both"), ("settled", "false")] {
         says(&format!("{line} --quantity {name}"), &[name, word]);
     }
-    says(&format!("{SMALL_MAP} --quantity side"), &["left", "both", "first crossing cell"]);
+    says(&format!("{SMALL_MAP} --quantity side"), &["right", "both", "first crossing cell"]);
     says(&format!("{line} --quantity travel_m"), &["travel, mm"]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");

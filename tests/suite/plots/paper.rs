@@ -41,8 +41,8 @@ fn boxes(svg: &str) -> Vec<(String, [f64; 4])> {
         let number = |name: &str| value(name).unwrap().parse::<f64>().unwrap();
         let (x, y, size) = (number(" x").max(0.0), number(" y"), number("font-size"));
         let words = words.trim().replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
-        // an average letter is somewhat more than half an em wide, a capital 0.73 em high
-        let long = 0.5 * size * words.chars().count() as f64;
+        // an average letter is about half an em wide, a capital 0.73 em high
+        let long = 0.47 * size * words.chars().count() as f64;
         let before = match value("text-anchor").unwrap().as_str() {
             "start" => 0.0,
             "middle" => 0.5 * long,
