@@ -59,7 +59,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub contact: Option<PathBuf>,
 
-    /// Draw restitution over impact speed, beside a rigid stop's constant; the name ends in .png or .svg
+    /// Draw restitution over impact speed, beside a rigid stop's constant; the name ends in .png, .svg or
+    /// .pdf
     #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub contact_plot: Option<PathBuf>,
 

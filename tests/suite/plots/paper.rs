@@ -40,7 +40,8 @@ fn boxes(svg: &str) -> Vec<(String, [f64; 4])> {
         };
         let number = |name: &str| value(name).unwrap().parse::<f64>().unwrap();
         let (x, y, size) = (number(" x").max(0.0), number(" y"), number("font-size"));
-        let words = words.trim().replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
+        let signs = [("&lt;", "<"), ("&gt;", ">"), ("&apos;", "'"), ("&quot;", "\""), ("&amp;", "&")];
+        let words = signs.iter().fold(words.trim().to_owned(), |own, (sign, is)| own.replace(sign, is));
         // an average letter is about half an em wide, a capital 0.73 em high
         let long = 0.47 * size * words.chars().count() as f64;
         let before = match value("text-anchor").unwrap().as_str() {
