@@ -48,7 +48,7 @@ pub enum NoPicture {
     Starts(u64),
     /// No map that a surface or a cut could be of.
     #[error(
-        "--surface and --cut show a sweep over two fields, each of at least two values, without --carry: give \
+        "--surface and --cut show a sweep over two fields, each of two values or more, without --carry: give \
          two --over"
     )]
     NoMap,
