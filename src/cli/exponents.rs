@@ -68,7 +68,7 @@ pub struct Arguments {
 
 /// Measures and writes the table.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     if !options.over.is_empty() {
         return over(options, picture);
     }
@@ -147,7 +147,8 @@ fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
     let asked = asked(options, &document, first.as_ref())?;
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
     let beside = beside.as_deref().map(|path| (MANIFEST, path));
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output()), beside];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data, beside];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
     let grid = cells.grid();
@@ -168,12 +169,12 @@ fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
     })?;
     if let Some((picture, rows)) = picture.zip(shown) {
         let shown = ExponentPicture { rows: &rows, grid, scene: &document.scene, ranges: axes };
-        picture.write(&mut sinks[1], exponents_figure(&shown, &caption(&document), picture.theme)?)?;
+        picture.write(&mut sinks[1..3], exponents_figure(&shown, &caption(&document), &picture.theme)?)?;
     }
-    if sinks[2].is_some() {
+    if sinks[3].is_some() {
         let origin = watch.origin(pool.count());
         let text = exponents_manifest(&document, grid, &tally, &origin, &file_name(common.out()));
-        write_text(&mut sinks[2], &text)?;
+        write_text(&mut sinks[3], &text)?;
     }
     finish(sinks)?;
     if !common.quiet && tally.cells == grid.cells() {

@@ -61,7 +61,7 @@ pub struct Arguments {
 /// Finds the motion, or follows its branch, and writes the table.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
     if picture.is_some() && options.branch.is_none() {
         return Err(Failure::argument("--plot shows a branch; add --branch FIELD=A:B, or leave it out"));
@@ -91,7 +91,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         )));
     }
     let cancel = interrupt::listen();
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let phase = phase_deg / 360.0;
     let failed = |own: NoOrbit, at: &str| match own {
@@ -108,8 +109,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
             bar.finish_and_clear();
             let found = found.map_err(|own| failed(own, &format!("at {field} = {from}: ")))?;
             if let Some(picture) = picture {
-                let figure = branch_figure(&found, phase_deg, axes, &caption(&document), picture.theme);
-                picture.write(&mut sinks[1], figure)?;
+                let figure = branch_figure(&found, phase_deg, axes, &caption(&document), &picture.theme);
+                picture.write(&mut sinks[1..3], figure)?;
             }
             if !common.quiet && found.end != BranchEnd::Range {
                 say(&told(&found));

@@ -78,7 +78,7 @@ const MOST_NAMED: usize = 8;
 /// Searches and writes the table.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
     // without --over no cell of the scene's own sweep is run
     let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
@@ -102,7 +102,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let own = same.then(|| mechanism(&document)).transpose()?;
     warn(&document, common, &warnings, own.as_deref());
     let pool = pool(common)?;
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let values = scan.values.len() as u64;
     let bar = bar(grid.as_ref().map_or(1, Grid::cells) * values, "values", common.quiet, common.out());
@@ -118,7 +119,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     if let Some((picture, grid)) = picture.zip(grid.as_ref()) {
         let scene = &document.scene;
         let shown = ThresholdPicture { rows: &table, grid, scene, field: &scan.field, onset, ranges: axes };
-        picture.write(&mut sinks[1], threshold_figure(&shown, &caption(&document), picture.theme)?)?;
+        picture.write(&mut sinks[1..3], threshold_figure(&shown, &caption(&document), &picture.theme)?)?;
     }
     finish(sinks)
 }

@@ -145,6 +145,23 @@ fn written(
     pretty(&all)
 }
 
+/// What made a picture of `document` with this `version` of the program, besides the arguments: the same
+/// names and values as in a manifest, and the scene with all arguments applied as its text.
+pub fn origin(document: &Document, version: &str) -> Map<String, Value> {
+    let scene = &document.scene;
+    let all = json!({
+        "program": PROGRAM,
+        "version": version,
+        "scene_name": document.name,
+        "changes": document.changes().collect::<Vec<_>>(),
+        "title": scene.title,
+        "tolerance": scene.run.tolerance,
+        "seed": seed(scene),
+        "scene_ron": crate::scene::write(scene).ok(),
+    });
+    if let Value::Object(all) = all { all } else { Map::new() }
+}
+
 /// The seed of the scene's random numbers: null where it has none, a list where it has several.
 pub fn seed(scene: &Scene) -> Value {
     let mut found = Vec::new();
