@@ -72,6 +72,7 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
         View::Displacement => trace::trace_ui(ui, TraceQuantity::Displacement, context),
         View::BeforeNow => before_now::before_now_ui(ui, context),
         View::PhasePortrait => phase::phase_ui(ui, context),
+        View::Section => phase::section_ui(ui, context),
         View::ForceCurve => force::force_ui(ui, context),
         View::Energy => energy::energy_ui(ui, context),
         View::Velocity => trace::trace_ui(ui, TraceQuantity::Velocity, context),

@@ -46,6 +46,20 @@ const STROBE: f32 = 3.0;
 
 /// Draws it.
 pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    states_ui(ui, context, false);
+}
+
+/// Draws the stroboscopic states alone: the section of the live motion.
+pub fn section_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    if context.session.shown().forcing_period().is_none() {
+        let text = "A section has a point once a forcing period, and the shaking of this scene has none.";
+        ui.label(egui::RichText::new(text).color(context.style.faint()));
+        return;
+    }
+    states_ui(ui, context, true);
+}
+
+fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
     if area.width() < 60.0 || area.height() < 80.0 {
         return too_small_ui(ui, &context.style, area);
@@ -65,7 +79,7 @@ pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     stops_ui(ui, context, chart.rect, edges, 0.0);
     let painter = ui.painter().with_clip_rect(chart.rect.expand(STATE));
     let is_periodic = context.session.shown().forcing_period().is_some();
-    let points_only = context.memory.points_only && is_periodic;
+    let points_only = is_section || context.memory.points_only && is_periodic;
     if !points_only {
         trail(&painter, context, &chart);
     }
@@ -85,7 +99,10 @@ pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         painter.extend(kind_shapes(Kind::Resting, at, STATE, style.mass()));
     }
     chart.numbers(ui, &style, "velocity (mm/s)", 1e-3);
-    let right = if is_periodic { points_ui(ui, area, &mut context.memory.points_only) } else { area.right() };
+    let right = match is_periodic && !is_section {
+        true => points_ui(ui, area, &mut context.memory.points_only),
+        false => area.right(),
+    };
     chart.legend(ui, &style, right, &legend);
     start_ui(ui, &response, context, &chart);
 }

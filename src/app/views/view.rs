@@ -51,6 +51,10 @@ views! {
         "Velocity over displacement: a moving mass runs clockwise. An impact is a jump of the velocity. \
          The separatrix needs just the energy to stand on the barrier. Click to let the motion go on from \
          a state.";
+    /// The state once a forcing period.
+    Section "Section"
+        "The state once in every forcing period, always at the same phase of the shaking: motion that \
+         repeats is a few points, chaos is a cloud with a shape. Click to let the motion go on from a state.";
     /// The force that holds the mass against the mechanism, over displacement.
     ForceCurve "Force curve"
         "The force that would hold the mass at a place, positive to the right; the mechanism pulls with as \
@@ -98,6 +102,6 @@ views! {
 impl View {
     /// Whether the displacement runs along it.
     pub fn is_along_x(self) -> bool {
-        matches!(self, Self::Mechanism | Self::Well | Self::PhasePortrait | Self::ForceCurve)
+        matches!(self, Self::Mechanism | Self::Well | Self::PhasePortrait | Self::Section | Self::ForceCurve)
     }
 }
