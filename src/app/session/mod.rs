@@ -8,6 +8,7 @@ mod build;
 mod companions;
 mod edit;
 pub mod editor;
+pub mod lesson;
 pub mod map;
 pub mod player;
 mod sentence;
@@ -76,6 +77,7 @@ impl Session {
             continued: false,
             remembered_stops,
             presses: None,
+            keeps_remedy: false,
             wake,
         };
         session.ask_settled();
