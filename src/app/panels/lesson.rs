@@ -16,8 +16,9 @@ use crate::scene::lesson::Step;
 /// Text sizes in points: where there is room, and where there is little.
 const LARGE: f32 = 16.0;
 
-/// Room in points for the steps and the ways back and on; size of the dot of a step, and their distance.
+/// Room in points for the steps and the ways back and on, and height of these; size of the dot of a step, and their distance.
 const WAYS: f32 = 158.0;
+const WAY: f32 = 24.0;
 const DOT: f32 = 4.5;
 const APART: f32 = 15.0;
 
@@ -67,7 +68,7 @@ pub fn lesson_ui(
             text_ui(ui, style, heading(step), step.text(), size);
             asked = below_ui(ui, lesson, session, style, size);
         });
-        ui.with_layout(Layout::top_down(Align::Max), |ui| {
+        ui.allocate_ui_with_layout(vec2(WAYS, 0.0), Layout::top_down(Align::Max), |ui| {
             dots_ui(ui, lesson, style);
             asked = asked.or(ways_ui(ui, lesson));
         });
@@ -232,7 +233,7 @@ fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
 /// The ways back and on.
 fn ways_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAct> {
     let mut asked = None;
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    ui.allocate_ui_with_layout(vec2(WAYS, WAY), Layout::right_to_left(Align::Center), |ui| {
         let name = if lesson.is_last() { "Finish" } else { "Next" };
         let open = match lesson.step() {
             Step::Predict { .. } => "First choose what you expect. A lecturer goes on with PageDown.",

@@ -121,9 +121,16 @@ impl Window {
         });
         self.follow_lesson(&ctx);
         if self.lessons.open.is_some() {
-            Panel::top("lesson").frame(frame(12, 6)).show(ui, |ui| {
+            // as high as it is in this very frame, which a panel is only in the next
+            let apart = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+            let strip = frame(12, 6).show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = apart;
+                ui.set_min_width(ui.available_width());
                 self.lesson_strip_ui(ui, &style, compact);
             });
+            ui.spacing_mut().item_spacing.y = apart;
+            let edge = ui.visuals().widgets.noninteractive.bg_stroke;
+            ui.painter().hline(strip.response.rect.x_range(), strip.response.rect.bottom(), edge);
             if self.lesson_has_controls() {
                 Panel::top("controls of the lesson").frame(line).show(ui, |ui| self.lesson_controls_ui(ui));
             }
