@@ -9,6 +9,7 @@ mod flexures;
 mod frame;
 mod guidance;
 mod keyboard;
+mod lessons;
 mod map;
 mod memory;
 mod newcomer;

@@ -204,7 +204,13 @@ fn below_ui(
 
 /// The reason of a student, in a word of their own.
 fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style, size: f32) {
-    let name = ui.label(RichText::new("Why, in one word?").size(size).color(style.faint()));
+    let text = "Why, in one word?";
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(size), style.faint());
+    // the field stands beside its name
+    if galley.size().x + REASON + 3.0 * ui.spacing().item_spacing.x > ui.available_size_before_wrap().x {
+        ui.end_row();
+    }
+    let name = ui.label(RichText::new(text).size(size).color(style.faint()));
     let word = lesson.why_mut();
     let field = TextEdit::singleline(word).desired_width(REASON).char_limit(MOST_LETTERS);
     ui.add(field.hint_text("if you like")).labelled_by(name.id);

@@ -62,12 +62,12 @@ const MEANINGS: &[(&str, &str)] = &[
     ("crossing", "The mass passes the top of the barrier between the two wells, in either direction."),
     (
         "intrawell",
-        "The mass stays on its side: the push never carries it over the barrier. It swings within one well, \
+        "It stays on its side: the push never carries it over the barrier. It swings within one well, \
          or hops on the stop there.",
     ),
     (
         "interwell",
-        "The mass crosses from well to well, again and again. Its crossings repeat after one or a few periods \
+        "It crosses from well to well, again and again. Its crossings repeat after one or a few periods \
          of the shaking.",
     ),
     (
