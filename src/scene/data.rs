@@ -261,6 +261,8 @@ pub enum Layout {
     Study,
     /// The map of RMS velocity.
     Map,
+    /// One setting turned up and down, beside the motion.
+    Explore,
 }
 
 /// RON would write the choice `None` as `r#None`, to tell it from an absent option.

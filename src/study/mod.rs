@@ -34,6 +34,7 @@ mod table;
 mod thresholds;
 mod times;
 mod trace;
+mod up_and_down;
 mod walk;
 mod watch;
 
@@ -77,6 +78,7 @@ pub use table::{Column, Table, Values};
 pub use thresholds::{Found, Onset, Scan, threshold, threshold_table};
 pub use times::{MAX_SAMPLES, SamplingStep, TimesError, even_times, listed_times};
 pub use trace::{Trace, simulate_with_trace};
+pub use up_and_down::{Visit, up_and_down};
 pub use walk::Carry;
 pub use watch::Watch;
 

@@ -4,6 +4,7 @@
 mod accuracy;
 mod advanced;
 mod documents;
+mod explore;
 mod first_minute;
 mod flexures;
 mod frame;

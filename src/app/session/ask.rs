@@ -96,7 +96,7 @@ impl Session {
     }
 
     /// Whether the scene can be run and no hand is about to change it or its motion.
-    fn stands_still(&self) -> bool {
+    pub(super) fn stands_still(&self) -> bool {
         !self.editor.in_gesture() && !self.player.is_held() && self.fault.is_none()
     }
 

@@ -8,6 +8,7 @@ mod build;
 mod companions;
 mod edit;
 pub mod editor;
+pub mod explore;
 pub mod lesson;
 pub mod map;
 pub mod player;
@@ -28,6 +29,7 @@ use accuracy::Accuracy;
 pub use build::CannotRun;
 use build::{differ_in_amplitude_alone, solved, unbuilt, why};
 use editor::Editor;
+use explore::Explore;
 use map::Mapping;
 use player::{Player, fitting_speed};
 pub use state::{Card, OpenedScales, Session};
@@ -63,6 +65,7 @@ impl Session {
             stops_that_cross: Latest::default(),
             accuracy: Accuracy::default(),
             map: Mapping::default(),
+            explore: Explore::default(),
             before: None,
             mechanism_of: scene.mechanism.clone(),
             hurried: false,
@@ -91,6 +94,7 @@ impl Session {
         self.thresholds.poll();
         self.stops_that_cross.poll();
         self.map.take();
+        self.explore.poll();
         self.apply();
         self.follow_accuracy();
     }

@@ -10,6 +10,7 @@ use crate::study::Thresholds;
 
 use super::accuracy::Accuracy;
 use super::editor::Editor;
+use super::explore::Explore;
 use super::map::Mapping;
 use super::player::Player;
 
@@ -61,6 +62,8 @@ pub struct Session {
     pub accuracy: Accuracy,
     /// The map of the scene.
     pub map: Mapping,
+    /// What the views of the layout Explore show.
+    pub explore: Explore,
     pub(super) before: Option<Card>,
     /// The scene that the model was built from.
     pub(super) built: Scene,

@@ -5,6 +5,7 @@
 //! other, and keep what they must remember between frames in [`Memory`].
 
 mod accuracy;
+mod axes;
 mod before_now;
 mod chart;
 mod context;
@@ -24,6 +25,7 @@ mod span;
 mod stops;
 mod timeline;
 mod trace;
+mod up_and_down;
 mod view;
 mod well;
 
@@ -79,6 +81,7 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
         View::BaseAcceleration => trace::trace_ui(ui, TraceQuantity::BaseAcceleration, context),
         View::Power => trace::trace_ui(ui, TraceQuantity::Power, context),
         View::Map => map::map_ui(ui, context),
+        View::UpAndDown => up_and_down::up_and_down_ui(ui, context),
         View::Accuracy => accuracy::accuracy_ui(ui, context),
     }
 }

@@ -78,6 +78,11 @@ views! {
     Map "Map"
         "What every combination of two settings comes to, each in a run of its own. Click to take the \
          scene there.";
+    /// What the motion is on the way up over a field and on the way down.
+    UpAndDown "Up and down"
+        "One setting, turned up and then down slowly: each run goes on from where the one before was. Where \
+         the two ways differ the motion remembers how it came: hysteresis. Drag along it to take the scene \
+         there.";
     /// What digits cost, and what a fixed step makes of the scene.
     Accuracy "Accuracy"
         "How far the computed motion is from the true one: what each digit costs, and what becomes of the \
@@ -97,6 +102,7 @@ impl From<LessonView> for View {
             LessonView::Velocity => Self::Velocity,
             LessonView::BaseAcceleration => Self::BaseAcceleration,
             LessonView::Map => Self::Map,
+            LessonView::UpAndDown => Self::UpAndDown,
         }
     }
 }

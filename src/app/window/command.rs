@@ -177,12 +177,13 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
             As("Scene", "copy the command line that runs it")),
     ]),
     ("View", &[
-        Row("Views", "Ctrl+1, 2, 3, 4", "arrange as Look, Study, Map, your own"),
+        Row("Views", "Ctrl+1 to 5", "arrange as Look, Study, Map, your own, Explore"),
         Part::Menu("Arrangement", &[
             Item("Look", control(Key::Num1), C::Arrange(Layout::Look), No),
             Item("Study", control(Key::Num2), C::Arrange(Layout::Study), No),
             Item("Map", control(Key::Num3), C::Arrange(Layout::Map), No),
             Item("Your own", control(Key::Num4), C::ArrangeOwn, No),
+            Item("Explore", control(Key::Num5), C::Arrange(Layout::Explore), No),
             Item("Keep this as your own", None, C::KeepOwn, No),
         ]),
         Part::Settings,

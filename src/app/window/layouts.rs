@@ -77,7 +77,7 @@ impl Tiling {
     /// The tiles of a layout.
     pub fn new(layout: Layout, room: Room) -> Self {
         let tree = match room {
-            Room::Compact if layout == Layout::Map => tabs_tree(&views_of(layout)),
+            Room::Compact if matches!(layout, Layout::Map | Layout::Explore) => tabs_tree(&views_of(layout)),
             Room::Compact => compact_tree(&views_of(layout)),
             Room::Wide | Room::Large => wide_tree(layout, room == Room::Large),
         };
@@ -209,6 +209,9 @@ fn views_of(layout: Layout) -> Vec<View> {
     match layout {
         Layout::Look => look.to_vec(),
         Layout::Map => vec![View::Map, View::Well, View::BeforeNow],
+        Layout::Explore => {
+            vec![View::UpAndDown, View::Well, View::PhasePortrait, View::Displacement]
+        }
         Layout::Study => look.into_iter().chain(study).collect(),
     }
 }
@@ -217,6 +220,7 @@ fn wide_tree(layout: Layout, large: bool) -> Tree<View> {
     match layout {
         Layout::Look => look_tree(large),
         Layout::Map => map_tree(),
+        Layout::Explore => explore_tree(),
         Layout::Study => study_tree(large),
     }
 }
@@ -292,6 +296,18 @@ fn map_tree() -> Tree<View> {
     let right = pair(&mut tiles, LinearDir::Vertical, well, card, DISPLACEMENT_SHARE);
     let root = pair(&mut tiles, LinearDir::Horizontal, map, right, MAP_SHARE);
     Tree::new(egui::Id::unique("map"), root, tiles)
+}
+
+/// One setting turned up and down, with the motion beside it.
+fn explore_tree() -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let mut pane = |view| tiles.insert_pane(view);
+    let walks = pane(View::UpAndDown);
+    let (well, phase, displacement) = (pane(View::Well), pane(View::PhasePortrait), pane(View::Displacement));
+    let tabs = tiles.insert_tab_tile(vec![phase, displacement]);
+    let right = pair(&mut tiles, LinearDir::Vertical, well, tabs, 0.45);
+    let root = pair(&mut tiles, LinearDir::Horizontal, walks, right, MAP_SHARE);
+    Tree::new(egui::Id::unique("explore"), root, tiles)
 }
 
 fn pair(tiles: &mut Tiles<View>, direction: LinearDir, first: TileId, second: TileId, share: f32) -> TileId {

@@ -134,6 +134,7 @@ impl Window {
         let mut session = Session::new(Editor::in_lesson(scene), Arc::clone(&self.wake))?;
         session.player.speed = lesson.lesson().speed.unwrap_or(session.player.speed);
         session.player.set_playing(plays);
+        session.explore.walks.chosen.clone_from(&lesson.lesson().walk);
         session.keeps_remedy = !lesson.tells_remedy();
         Ok(session)
     }
@@ -290,7 +291,8 @@ impl Window {
 
     /// Outlines around what the bold words of the step name: controls and views that are on the screen.
     pub(super) fn pointing_ui(&self, ctx: &egui::Context, style: &Style) {
-        let Some(lesson) = self.lessons.open.as_ref().filter(|_| self.filled.is_none()) else { return };
+        let shown = |own: &&OpenLesson| self.filled.is_none() && !own.is_covering();
+        let Some(lesson) = self.lessons.open.as_ref().filter(shown) else { return };
         let layer = LayerId::new(Order::Middle, Id::unique("pointing"));
         let painter = ctx.layer_painter(layer);
         for word in pointed(lesson.step().text()) {

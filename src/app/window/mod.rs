@@ -188,6 +188,7 @@ impl Window {
         self.pointing_ui(&ctx, &style);
         self.memory.grab = false;
         self.session.map.end_frame();
+        self.session.explore.end_frame();
         self.session.accuracy.end_frame();
         self.session.player.end_frame();
         for command in asked {

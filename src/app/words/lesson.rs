@@ -11,7 +11,8 @@ pub fn numbered(name: &str) -> String {
 
 /// What was expected and what came of it, where that is known.
 pub fn expected(choice: Option<&str>, outcome: Option<&str>) -> String {
-    match (choice, outcome) {
+    let whole = |text: &'_ str| plain(text.trim_end_matches('.'));
+    match (choice.map(whole), outcome.map(whole)) {
         (Some(choice), Some(outcome)) if choice == outcome => {
             format!("You expected: “{choice}”. So it did.")
         }

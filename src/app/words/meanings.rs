@@ -96,6 +96,13 @@ const MEANINGS: &[(&str, &str)] = &[
         "The states with just the energy to stand on top of the barrier: inside either loop the mass stays \
          in its well, outside it crosses, as long as nothing shakes it.",
     ),
+    ("turned up", "From the least value to the greatest, each run going on from where the one before was."),
+    ("turned down", "From the greatest value to the least, each run going on from where the one before was."),
+    (
+        "the two differ",
+        "At this value the motion is another one on the way down than on the way up: it remembers how it \
+         came, which is called hysteresis.",
+    ),
     ("once a period", "The state once a forcing period, always at the same phase of the shaking."),
     ("at rest on a stop", "The mechanism presses the mass on its stop, harder than the push pulls."),
     ("impacts", "The mass strikes a stop and rebounds; what it loses of its speed goes into the stop."),

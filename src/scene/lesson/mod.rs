@@ -91,6 +91,8 @@ pub enum LessonView {
     BaseAcceleration,
     /// What every combination of two fields comes to.
     Map,
+    /// One field turned up and down.
+    UpAndDown,
 }
 
 /// One step of a lesson.

@@ -7,7 +7,8 @@ use super::judge::Unjudged;
 use crate::dynamics::{Model, Outcome, Request, Summary};
 use crate::mechanics::Mechanism;
 use crate::scene::{Axis, Excitation, FieldPath, Files, Scene, Start, SweepAxis};
-use crate::study::Task;
+use crate::study::up_and_down::walk_over;
+use crate::study::{Family, Task};
 
 /// Runs that go side by side.
 const TOGETHER: usize = 32;
@@ -162,26 +163,18 @@ impl<'a> Subject<'a> {
         values: &[f64],
         mut each: impl FnMut(f64, &Summary) -> bool,
     ) -> Result<(), Unjudged> {
-        let path = FieldPath::new(field);
-        let mut last: Option<(Model, (f64, f64))> = None;
-        for value in values {
-            let mut scene = self.scene.clone();
-            if !path.set(&mut scene, *value) {
-                return Err(Unjudged::of(field, "the scene has no such field"));
-            }
-            let model = self.model(&scene)?;
-            let model = match &last {
-                Some((before, state)) => model.carried_on(before, *state),
-                None => model,
-            };
-            let run = model.run(&Request { carry: true, ..self.request() });
-            self.ended(&run.summary)?;
-            if !each(*value, &run.summary) {
-                return Ok(());
-            }
-            last = run.carried.map(|state| (model, state)).or(last);
+        let mechanism = self.mechanism_of(self.scene)?;
+        let family = Family::new(self.scene, self.files, &mechanism, field);
+        let request = Request { carry: true, ..self.request() };
+        let mut ended = Ok(());
+        let unfit = walk_over(&family, values, &request, |value, run| {
+            ended = self.ended(&run.summary);
+            ended.is_ok() && each(value, &run.summary)
+        });
+        match unfit {
+            0 => ended,
+            _ => Err(Unjudged::of(field, "a value of the walk makes no scene that can be run")),
         }
-        Ok(())
     }
 
     fn request(&self) -> Request<'_> {
@@ -201,30 +194,32 @@ impl<'a> Subject<'a> {
 
     fn ended(&self, summary: &Summary) -> Result<(), Unjudged> {
         (self.task.tick)();
-        match summary.outcome {
-            Outcome::Cancelled { .. } => Err(Unjudged::Cancelled),
-            _ => Ok(()),
-        }
+        let cancelled = self.task.is_cancelled() || matches!(summary.outcome, Outcome::Cancelled { .. });
+        if cancelled { Err(Unjudged::Cancelled) } else { Ok(()) }
     }
 
     /// The model of a scene that differs from the subject's in a few fields.
     fn model(&self, scene: &Scene) -> Result<Model, Unjudged> {
-        let build = |scene: &Scene| {
-            Mechanism::build(&scene.mechanism, self.files)
-                .map(Arc::new)
-                .map_err(|error| Unjudged::of("mechanism", &error.to_string()))
-        };
-        let mechanism = match scene.mechanism == self.scene.mechanism {
-            true => once(&self.mechanism, || build(scene))?.clone(),
-            false => build(scene)?,
-        };
-        Model::build(scene, mechanism).map_err(|faults| {
+        Model::build(scene, self.mechanism_of(scene)?).map_err(|faults| {
             let fault = faults.into_iter().next();
             fault.map_or_else(
                 || Unjudged::of("", "cannot be run"),
                 |own| Unjudged::of(&own.field, &own.problem),
             )
         })
+    }
+
+    /// Its mechanism: the subject's own where it is the same.
+    fn mechanism_of(&self, scene: &Scene) -> Result<Arc<Mechanism>, Unjudged> {
+        let build = || {
+            Mechanism::build(&scene.mechanism, self.files)
+                .map(Arc::new)
+                .map_err(|error| Unjudged::of("mechanism", &error.to_string()))
+        };
+        match scene.mechanism == self.scene.mechanism {
+            true => once(&self.mechanism, build).cloned(),
+            false => build(),
+        }
     }
 }
 

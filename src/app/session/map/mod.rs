@@ -19,7 +19,7 @@ use crate::system::clock::WallClock;
 use super::editor::Editor;
 
 pub use crate::numeric::short;
-pub use axes::{label, name_and_unit, over, part};
+pub use axes::{ground, label, name_and_unit, over, part};
 pub use cells::Map;
 
 /// Seconds for which a hand has to be still before a map is begun in the middle of a gesture.

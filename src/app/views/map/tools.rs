@@ -3,14 +3,14 @@
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{self, Align2, ComboBox, Painter, PopupCloseBehavior, Rect, RichText, Ui, pos2, vec2};
 
-use crate::app::session::map::{Map, name_and_unit};
-use crate::app::ui::knob::{Knob, refuse};
+use crate::app::session::map::Map;
+use crate::app::ui::knob::refuse;
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::kind_shapes;
-use crate::app::words::fields::Reach;
-use crate::scene::{SweepAxis, column_names};
+use crate::scene::SweepAxis;
 
 use super::super::ViewContext;
+use super::super::axes::{field_ui, range_row_ui};
 use super::picture::{self, Picture, kinds};
 use super::quantity::{Look, MapQuantity};
 
@@ -70,23 +70,12 @@ fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let mut wanted: Option<(usize, String)> = None;
     for (i, (axis, word)) in axes.iter().zip(["over", "and"]).enumerate() {
         ui.label(word);
-        let name = field_name(&axis.field);
-        let combo = ComboBox::from_id_salt(("axis", i)).width(112.0).selected_text(&name);
-        let inner = combo.show_ui(ui, |ui| {
-            for path in known.iter().filter(|path| **path != axes[1 - i].field) {
-                if ui.selectable_label(*path == axis.field, field_name(path)).clicked() {
-                    wanted = Some((i, path.clone()));
-                }
-            }
-        });
+        let others: Vec<String> = known.iter().filter(|path| **path != axes[1 - i].field).cloned().collect();
         let role = if i == 0 { "across" } else { "up" };
-        let spoken = format!("{role}: {name}");
-        inner.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, spoken.clone()));
-        let range = format!("The axis {role}: from {} to {} in steps of {}.", axis.from, axis.to, axis.step);
-        inner.response.on_hover_text(range);
+        wanted = field_ui(ui, axis, role, &others).map(|path| (i, path)).or(wanted);
     }
     ranges_ui(ui, context, &axes);
-    if let Some((i, path)) = wanted.filter(|(i, path)| axes[*i].field != *path) {
+    if let Some((i, path)) = wanted {
         let mut chosen = axes;
         chosen[i] = context.session.map_axis(&path);
         context.session.map.choose(Some(chosen));
@@ -103,20 +92,7 @@ fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) 
         let mut wanted = axes.clone();
         egui::Grid::new("ranges").num_columns(7).show(ui, |ui| {
             for (axis, role) in wanted.iter_mut().zip(["across", "up"]) {
-                ui.label(field_name(&axis.field));
-                let (_, unit) = crate::app::words::fields::name_and_unit(&axis.field);
-                let reach = Reach { low: axis.from, high: axis.to, step: axis.step };
-                let parts = [("from", &mut axis.from), ("to", &mut axis.to), ("step", &mut axis.step)];
-                for (part, value) in parts {
-                    ui.label(part);
-                    let name = format!("{role}, {part}");
-                    let typed = (-1e30, 1e30);
-                    let knob = Knob { name: &name, unit, reach, typed, hover: "", width: 0.0 };
-                    if let Some(typed) = knob.alone_ui(ui, *value) {
-                        *value = typed;
-                    }
-                }
-                ui.end_row();
+                range_row_ui(ui, axis, role);
             }
         });
         if wanted != *axes {
@@ -134,12 +110,6 @@ fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) 
         }
     });
     button.on_hover_text("Ends and steps of both axes. A box drawn over the map enlarges it as well.");
-}
-
-/// The name of a field without its unit.
-fn field_name(path: &str) -> String {
-    let column = column_names(&[path]).pop().unwrap_or_default();
-    name_and_unit(&column).0
 }
 
 fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {

@@ -1,0 +1,124 @@
+//! The scene walked up and down over a field, each run going on from where the one before was.
+
+use std::sync::Arc;
+
+use crate::app::session::Session;
+use crate::app::session::map::ground;
+use crate::app::task::pool;
+use crate::mechanics::Mechanism;
+use crate::scene::{Axis, FieldPath, Files, Scene, SweepAxis};
+use crate::study::{Family, Task, Visit, up_and_down};
+
+use super::Explored;
+
+/// Every so manieth value is walked over first.
+const COARSE: usize = 5;
+
+/// What is drawn of each run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WalkQuantity {
+    /// Displacements once a forcing period.
+    #[default]
+    Strobes,
+    /// RMS velocity.
+    RmsVelocity,
+}
+
+/// A scene without its own value of the field, and the axis over it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WalkQuestion {
+    /// The scene, from rest, with the first value of the axis.
+    pub scene: Scene,
+    /// The field and its values.
+    pub axis: SweepAxis,
+}
+
+/// The walks of a session.
+#[derive(Default)]
+pub struct Walks {
+    /// The axis that was chosen; none for one around the scene.
+    pub chosen: Option<SweepAxis>,
+    /// What is drawn.
+    pub quantity: WalkQuantity,
+    /// The runs as they come, with the stride of their values: coarse ones first.
+    pub found: Explored<WalkQuestion, (usize, Visit)>,
+    /// Why there are none.
+    pub problem: Option<String>,
+}
+
+impl Session {
+    /// The axis of the walks: the chosen one where the scene has its field, else the amplitude of the
+    /// shaking, else the first field that a map could go over. None where there is none.
+    pub fn walk_axis(&self) -> Option<SweepAxis> {
+        let has = |axis: &&SweepAxis| {
+            let ground = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(axis));
+            FieldPath::new(&axis.field).get(&ground).is_some()
+        };
+        if let Some(chosen) = self.explore.walks.chosen.as_ref().filter(has) {
+            return Some(chosen.clone());
+        }
+        let known = self.map_fields();
+        let own = known.iter().find(|path| path.ends_with("amplitude_g")).or(known.first())?;
+        Some(self.map_axis(own))
+    }
+
+    /// Asks for the walks of the scene as it stands, in a frame that shows them.
+    pub fn want_walks(&mut self) {
+        let still = self.stands_still();
+        let Some(axis) = self.walk_axis() else {
+            self.explore.walks.problem = Some("This scene has no field to walk over.".to_owned());
+            return;
+        };
+        let mut scene = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
+        let values = match Axis::from_scene(&axis, &scene) {
+            Ok(axis) => axis.values,
+            Err((part, problem)) => {
+                self.explore.walks.problem = Some(format!("{part}: {problem}"));
+                return;
+            }
+        };
+        if !self.model().repeats() {
+            let problem = "Each run goes on from the state of the one before at the drive's phase 0: that \
+                           needs shaking that repeats, such as a sine.";
+            self.explore.walks.problem = Some(problem.to_owned());
+            return;
+        }
+        self.explore.walks.problem = None;
+        let own_scene = scene.clone();
+        if !FieldPath::new(&axis.field).set(&mut scene, axis.from) {
+            return;
+        }
+        let question = WalkQuestion { scene, axis };
+        let (mechanism, files) = (Arc::clone(&self.mechanism), self.editor.document().files.clone());
+        let wake = Arc::clone(&self.wake);
+        self.explore.walks.found.want(&question, still, &wake, move |question, cancel, each| {
+            walk(question, (&own_scene, mechanism, &files), &values, &Task { tick: &|| (), cancel }, each);
+        });
+    }
+
+    /// Takes the field of the walks to a value, as part of a gesture.
+    pub fn drag_along_walk(&mut self, value: f64) {
+        let Some(axis) = self.walk_axis() else { return };
+        let value = ((value / axis.step).round() * axis.step).clamp(axis.from, axis.to);
+        // the refusal of a value within the axis is said where the scene is judged
+        let _ = self.set_number(&axis.field, crate::app::words::numbers::decimal(value));
+    }
+}
+
+/// The walks over every fifth value, then over all.
+fn walk(
+    question: &WalkQuestion,
+    (scene, mechanism, files): (&Scene, Arc<Mechanism>, &Files),
+    values: &[f64],
+    task: &Task,
+    each: &(dyn Fn((usize, Visit)) + Sync),
+) {
+    let Some(pool) = pool() else { return };
+    let family = Family::new(scene, files, &mechanism, &question.axis.field);
+    for stride in [COARSE, 1] {
+        let values: Vec<f64> = values.iter().step_by(stride).copied().collect();
+        if !up_and_down(&family, &values, &pool, task, &|visit| each((stride, visit))) {
+            return;
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Choice of a field for an axis, and of its ends and steps.
+
+use eframe::egui::{self, ComboBox, Ui};
+
+use crate::app::session::map::name_and_unit;
+use crate::app::ui::knob::Knob;
+use crate::app::words::fields::Reach;
+use crate::scene::{SweepAxis, column_names};
+
+/// The name of a field without its unit.
+pub fn field_name(path: &str) -> String {
+    let column = column_names(&[path]).pop().unwrap_or_default();
+    name_and_unit(&column).0
+}
+
+/// Lets one of the `known` fields be chosen for the axis that is called by its `role`; the new one.
+pub fn field_ui(ui: &mut Ui, axis: &SweepAxis, role: &str, known: &[String]) -> Option<String> {
+    let name = field_name(&axis.field);
+    let mut wanted = None;
+    let inner = ComboBox::from_id_salt(("axis", role)).width(112.0).selected_text(&name).show_ui(ui, |ui| {
+        for path in known {
+            if ui.selectable_label(*path == axis.field, field_name(path)).clicked() {
+                wanted = Some(path.clone());
+            }
+        }
+    });
+    let spoken = format!("{role}: {name}");
+    inner.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, spoken.clone()));
+    let range = format!("The axis {role}: from {} to {} in steps of {}.", axis.from, axis.to, axis.step);
+    inner.response.on_hover_text(range);
+    wanted.filter(|path| *path != axis.field)
+}
+
+/// Lets ends and step of an axis be typed, in a row of a grid.
+pub fn range_row_ui(ui: &mut Ui, axis: &mut SweepAxis, role: &str) {
+    ui.label(field_name(&axis.field));
+    let (_, unit) = crate::app::words::fields::name_and_unit(&axis.field);
+    let reach = Reach { low: axis.from, high: axis.to, step: axis.step };
+    for (part, value) in [("from", &mut axis.from), ("to", &mut axis.to), ("step", &mut axis.step)] {
+        ui.label(part);
+        let name = format!("{role}, {part}");
+        let knob = Knob { name: &name, unit, reach, typed: (-1e30, 1e30), hover: "", width: 0.0 };
+        if let Some(typed) = knob.alone_ui(ui, *value) {
+            *value = typed;
+        }
+    }
+    ui.end_row();
+}

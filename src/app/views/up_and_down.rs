@@ -1,0 +1,318 @@
+//! One field walked up and down: stroboscopic displacements or RMS velocity, and the hysteresis between.
+
+use eframe::egui::containers::menu::{MenuButton, MenuConfig};
+use eframe::egui::{self, Align2, PopupCloseBehavior, Rect, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
+use egui_plot::{
+    HLine, Line, LineStyle, MarkerShape, Plot, PlotBounds, PlotPoint, PlotPoints, Points, Polygon, VLine,
+};
+
+use crate::app::session::Session;
+use crate::app::session::explore::WalkQuantity;
+use crate::app::session::map::label;
+use crate::app::words::numbers::three;
+use crate::dynamics::Regime;
+use crate::numeric::short;
+use crate::scene::{FieldPath, SweepAxis, column_names};
+use crate::study::{Direction, Visit};
+
+use super::axes::{field_name, field_ui, range_row_ui};
+use super::labels::haloed;
+use super::legend::{LEGEND, Sign, legend};
+use super::trace::{marks, plain};
+use super::{ViewContext, too_small_ui};
+
+/// Height in points of the row of choices.
+const TOOLS: f32 = 30.0;
+
+/// Room in points between the edge and the name of the vertical axis, and width of that axis.
+const MARGIN: f32 = 6.0;
+const AXIS_WIDTH: f32 = 58.0;
+
+/// Two values that differ by less than this share of the picture are one.
+const SAME: f64 = 0.01;
+
+/// A direction as it is drawn: its runs by value, coarse ones where the fine ones are still to come.
+struct Way<'a> {
+    direction: Direction,
+    visits: Vec<&'a Visit>,
+}
+
+/// Draws it.
+pub fn up_and_down_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let area = ui.max_rect();
+    if area.width() < 200.0 || area.height() < 140.0 {
+        return too_small_ui(ui, &context.style, area);
+    }
+    ui.painter().rect_filled(area, 0.0, context.style.ground());
+    context.session.want_walks();
+    let Some(axis) = context.session.walk_axis() else {
+        ui.label("This scene has no field to walk over.");
+        return;
+    };
+    let tools = Rect::from_min_size(area.min, vec2(area.width(), TOOLS));
+    ui.scope_builder(UiBuilder::new().max_rect(tools), |ui| tools_ui(ui, context, &axis));
+    let below = area.with_min_y(tools.bottom());
+    if let Some(problem) = context.session.explore.walks.problem.clone() {
+        ui.scope_builder(UiBuilder::new().max_rect(below.shrink(10.0)), |ui| {
+            ui.label(RichText::new(problem).color(context.style.faint()));
+        });
+        return;
+    }
+    picture_ui(ui, context, &axis, below);
+}
+
+/// What is walked, and what is drawn.
+fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
+    let known = context.session.map_fields();
+    ui.horizontal_centered(|ui| {
+        ui.add_space(8.0);
+        let quantity = &mut context.session.explore.walks.quantity;
+        for (own, name, hover) in [
+            (WalkQuantity::Strobes, "Once a period", "Where the mass is once in every forcing period."),
+            (WalkQuantity::RmsVelocity, "RMS velocity", "Root of the mean square of the velocity."),
+        ] {
+            ui.selectable_value(quantity, own, name).on_hover_text(hover);
+        }
+        ui.label("over");
+        if let Some(path) = field_ui(ui, axis, "over", &known) {
+            context.session.explore.walks.chosen = Some(context.session.map_axis(&path));
+        }
+        let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        let (button, _) = MenuButton::new("Range").config(config).ui(ui, |ui| {
+            // numbers that can be typed look so, which a menu's would not
+            *ui.style_mut() = (*ui.ctx().global_style()).clone();
+            let mut wanted = axis.clone();
+            egui::Grid::new("walk").num_columns(7).show(ui, |ui| range_row_ui(ui, &mut wanted, "over"));
+            if wanted != *axis {
+                context.session.explore.walks.chosen = Some(wanted);
+            }
+        });
+        button.on_hover_text("Ends and step of the walk.");
+        let walks = &context.session.explore.walks;
+        if walks.found.is_running() {
+            ui.add(egui::Spinner::new().size(14.0)).on_hover_text("Runs are still to come.");
+        }
+    });
+}
+
+/// The runs of both directions: fine ones as far as they are known, then coarse ones.
+fn ways(parts: &[(usize, Visit)]) -> [Way<'_>; 2] {
+    [Direction::Up, Direction::Down].map(|direction| {
+        let own = || parts.iter().filter(|own| own.1.direction == direction);
+        let fine: Vec<&Visit> = own().filter(|own| own.0 == 1).map(|own| &own.1).collect();
+        let reached = fine.last().map(|last| last.value);
+        let ahead = |value: f64| match (direction, reached) {
+            (_, None) => true,
+            (Direction::Up, Some(reached)) => value > reached,
+            (Direction::Down, Some(reached)) => value < reached,
+        };
+        let coarse = own().filter(|own| own.0 > 1 && ahead(own.1.value)).map(|own| &own.1);
+        let mut visits: Vec<&Visit> = fine.iter().copied().chain(coarse).collect();
+        visits.sort_by(|a, b| a.value.total_cmp(&b.value));
+        Way { direction, visits }
+    })
+}
+
+/// RMS velocity in mm/s; NaN where there is none.
+fn rms(visit: &Visit) -> f64 {
+    visit.summary.rms_velocity.map_or(f64::NAN, |rms| rms * 1e3)
+}
+
+fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area: Rect) {
+    let style = context.style;
+    let session = &mut *context.session;
+    let walks = &session.explore.walks;
+    let (quantity, is_whole) = (walks.quantity, walks.found.is_whole());
+    let (parts, current) = walks.found.parts();
+    let of_field = walks.found.question().is_some_and(|own| own.axis.field == axis.field);
+    let ways = ways(if of_field { parts } else { &[] });
+    let span = &context.span;
+    let (low, high) = match quantity {
+        WalkQuantity::Strobes => {
+            let all = ways.iter().flat_map(|way| way.visits.iter().flat_map(|visit| &visit.strobes));
+            all.fold((span.low * 1e3, span.high * 1e3), |(low, high), x| {
+                (low.min(1.05e3 * x), high.max(1.05e3 * x))
+            })
+        }
+        WalkQuantity::RmsVelocity => {
+            let all = ways.iter().flat_map(|way| way.visits.iter().map(|visit| rms(visit)));
+            (0.0, 1.08 * all.filter(|rms| rms.is_finite()).fold(1e-3, f64::max))
+        }
+    };
+    let (up, down) = (style.motion(), style.base());
+    let entries = [
+        (Sign::Line(style.motion_stroke()), "turned up"),
+        (Sign::Dashed(style.base_stroke()), "turned down"),
+        (Sign::Shade(style.rest_shade()), "the two differ"),
+    ];
+    let vertical = match quantity {
+        WalkQuantity::Strobes => "displacement once a period (mm)",
+        WalkQuantity::RmsVelocity => "RMS velocity (mm/s)",
+    };
+    let across = label(&column_names(&[axis.field.as_str()]).pop().unwrap_or_default());
+    let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
+    let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
+    let (from, to) = (axis.from - 0.01 * (axis.to - axis.from), axis.to + 0.01 * (axis.to - axis.from));
+    let edge = 0.02 * (high - low);
+    let here = FieldPath::new(&axis.field).get(session.scene());
+    let state = session.player.state();
+    let live = (quantity == WalkQuantity::Strobes).then_some(state.x * 1e3);
+    let plot = Rect::from_min_max(area.min + vec2(MARGIN, LEGEND), area.max - vec2(MARGIN, 0.0));
+    let mut child = ui.new_child(UiBuilder::new().max_rect(plot));
+    child.style_mut().text_styles.insert(TextStyle::Body, style.small());
+    child.visuals_mut().override_text_color = Some(style.faint());
+    if !current {
+        child.set_opacity(0.4);
+    }
+    let shown = Plot::new("up and down")
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .show_background(false)
+        .show_grid(false)
+        .sense(Sense::click_and_drag())
+        .x_grid_spacer(|_| marks(from, to, columns))
+        .y_grid_spacer(|_| marks(low + edge, high - edge, rows))
+        .x_axis_label(across)
+        .y_axis_label(vertical)
+        .y_axis_min_width(AXIS_WIDTH)
+        .set_margin_fraction(vec2(0.0, 0.0))
+        .x_axis_formatter(|mark, _| plain(mark))
+        .y_axis_formatter(|mark, _| plain(mark))
+        .label_formatter(|_| None)
+        .show_crosshair(false)
+        .show(&mut child, |plot| {
+            plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
+            for mark in marks(low, high, rows) {
+                plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
+            }
+            for (a, b) in differing(&ways, high - low) {
+                let corners = vec![[a, low], [b, low], [b, high], [a, high]];
+                let shade = Polygon::new("", PlotPoints::from(corners)).fill_color(style.rest_shade());
+                plot.polygon(shade.stroke(egui::Stroke::NONE));
+            }
+            if let Some(here) = here {
+                plot.vline(VLine::new("here", here).stroke(style.focus_stroke()));
+            }
+            for way in &ways {
+                let (color, radius, shape) = match way.direction {
+                    Direction::Up => (up, 1.6, MarkerShape::Circle),
+                    Direction::Down => (down, 2.4, MarkerShape::Plus),
+                };
+                if quantity == WalkQuantity::RmsVelocity {
+                    let line: Vec<PlotPoint> =
+                        way.visits.iter().map(|visit| PlotPoint::new(visit.value, rms(visit))).collect();
+                    let line = Line::new(way.direction.name(), PlotPoints::Owned(line));
+                    plot.line(match way.direction {
+                        Direction::Up => line.stroke(style.motion_stroke()),
+                        Direction::Down => line.stroke(style.base_stroke()).style(LineStyle::dashed_dense()),
+                    });
+                    continue;
+                }
+                let points: Vec<PlotPoint> = way
+                    .visits
+                    .iter()
+                    .flat_map(|visit| strobes(visit).iter().map(|x| PlotPoint::new(visit.value, x * 1e3)))
+                    .collect();
+                let points = Points::new(way.direction.name(), PlotPoints::Owned(points));
+                plot.points(points.radius(radius).shape(shape).color(color));
+            }
+            if let (Some(here), Some(x)) = (here, live) {
+                let ball = Points::new("now", vec![[here, x]]);
+                plot.points(ball.radius(6.0).color(style.mass_edge()));
+                plot.points(Points::new("now", vec![[here, x]]).radius(4.5).color(style.mass()));
+            }
+        });
+    let (transform, response) = (shown.transform, shown.response);
+    let name = format!("{vertical} over {}, turned up and down", field_name(&axis.field));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, name.clone()));
+    let mut right = area.right();
+    if let Some(at) = response.hover_pos() {
+        let value = transform.value_from_position(at).x.clamp(axis.from, axis.to);
+        let painter = ui.painter().with_clip_rect(area);
+        let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
+        let text = reading(&ways, value);
+        right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
+    }
+    legend(ui, &style, area, right, &entries);
+    hand(session, &response, |at| transform.value_from_position(at).x);
+    let said = if is_whole { "" } else { "not all of it is known yet" };
+    if !said.is_empty() && area.height() > 220.0 {
+        let at = (area.right_bottom() - vec2(8.0, 3.0), Align2::RIGHT_BOTTOM);
+        haloed(ui.painter(), &style, at, said, (style.small(), style.faint()));
+    }
+}
+
+/// A click or a drag takes the scene to the value under the pointer.
+fn hand(session: &mut Session, response: &egui::Response, value: impl Fn(egui::Pos2) -> f64) {
+    if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {
+        session.drag_along_walk(value(at));
+    }
+    if response.drag_stopped() || response.clicked() {
+        session.end_gesture();
+    }
+}
+
+/// The stretches of the axis over which the two directions differ, each value standing for half the way to
+/// its neighbours.
+fn differing([up, down]: &[Way<'_>; 2], height: f64) -> Vec<(f64, f64)> {
+    let both: Vec<(f64, bool)> = up
+        .visits
+        .iter()
+        .filter_map(|own| {
+            let other = down.visits.iter().find(|other| other.value == own.value)?;
+            Some((own.value, differ(own, other, height)))
+        })
+        .collect();
+    let mut spans: Vec<(f64, f64)> = Vec::new();
+    for (i, (value, differs)) in both.iter().enumerate() {
+        if !differs {
+            continue;
+        }
+        let edge = |neighbour: Option<&(f64, bool)>| neighbour.map_or(*value, |own| 0.5 * (own.0 + value));
+        let (low, high) = (edge(i.checked_sub(1).and_then(|i| both.get(i))), edge(both.get(i + 1)));
+        match spans.last_mut().filter(|last| last.1 == low) {
+            Some(last) => last.1 = high,
+            None => spans.push((low, high)),
+        }
+    }
+    spans
+}
+
+/// Whether two runs at one value are different motions: one crosses in a rhythm and the other never, or both
+/// repeat and their RMS velocities differ. Mirror images are one.
+fn differ(a: &Visit, b: &Visit, height: f64) -> bool {
+    let (x, y) = (rms(a), rms(b));
+    let apart = (x - y).abs() > SAME * x.max(y).max(1e-6 * height);
+    let repeats = |own: &Visit| own.summary.period.is_some();
+    let crosses = |own: &Visit| own.summary.regime == Regime::Interwell;
+    let stays = |own: &Visit| own.summary.crossings == 0;
+    crosses(a) && stays(b) || stays(a) && crosses(b) || repeats(a) && repeats(b) && apart
+}
+
+/// The displacements of a run that are drawn: one of each where they repeat.
+fn strobes(visit: &Visit) -> &[f64] {
+    let count = visit.summary.period.map_or(visit.strobes.len(), |period| period as usize);
+    &visit.strobes[visit.strobes.len().saturating_sub(count)..]
+}
+
+/// What the walks say at the value nearest to one.
+fn reading(ways: &[Way<'_>; 2], value: f64) -> String {
+    let nearest = |way: &Way<'_>| {
+        way.visits
+            .iter()
+            .min_by(|a, b| (a.value - value).abs().total_cmp(&(b.value - value).abs()))
+            .map(|visit| (visit.value, visit.summary.regime.name(), rms(visit)))
+    };
+    let said =
+        |word: &str, (_, regime, rms): (f64, &str, f64)| format!("{word}: {regime}, {} mm/s", three(rms));
+    match (nearest(&ways[0]), nearest(&ways[1])) {
+        (Some(up), Some(down)) if up.0 == down.0 => {
+            format!("{}   {}   {}", short(up.0), said("up", up), said("down", down))
+        }
+        _ => three(value),
+    }
+}

@@ -1,0 +1,85 @@
+//! Walks over a field: runs each of which goes on from where the one before was, upwards and downwards.
+//!
+//! [`Sweep`](super::Sweep) makes tables of such walks; here the runs are handed over one by one, as a picture
+//! that grows needs them.
+
+use super::orbit::Family;
+use super::{Direction, Task};
+use crate::dynamics::{Model, Request, Run, Summary};
+use crate::system::threads::Pool;
+
+/// The most stroboscopic states that are kept of one run.
+const MOST_STROBES: usize = 60;
+
+/// A run of a walk.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Visit {
+    /// The direction of its walk.
+    pub direction: Direction,
+    /// The value of the field.
+    pub value: f64,
+    /// What it came to.
+    pub summary: Summary,
+    /// Displacements in m at the drive's phase 0, once a forcing period: the last 60 of the settled window.
+    pub strobes: Vec<f64>,
+}
+
+/// Walks a family over `values`, ascending, upwards and downwards side by side, and hands over each run as
+/// soon as it is known, those of a direction in their order. A value that makes no model is passed over.
+/// False where it was cancelled.
+pub fn up_and_down(
+    family: &Family,
+    values: &[f64],
+    pool: &Pool,
+    task: &Task,
+    each: &(dyn Fn(Visit) + Sync),
+) -> bool {
+    let request =
+        Request { section: Some(0.0), carry: true, cancel: Some(task.cancel), ..Request::default() };
+    let walk = |_: &mut (), number: usize| {
+        let direction = [Direction::Up, Direction::Down][number];
+        let mut values: Vec<f64> = values.to_vec();
+        if direction == Direction::Down {
+            values.reverse();
+        }
+        walk_over(family, &values, &request, |value, run| {
+            let skipped = run.section.len().saturating_sub(MOST_STROBES);
+            let strobes = run.section[skipped..].iter().map(|point| point.x).collect();
+            if !task.is_cancelled() {
+                each(Visit { direction, value, summary: run.summary, strobes });
+                (task.tick)();
+            }
+            !task.is_cancelled()
+        });
+        if task.is_cancelled() { Err(()) } else { Ok(()) }
+    };
+    pool.map(2, || (), walk).is_ok()
+}
+
+/// Runs the family at one value after the other, each from the state in which the one before ended, until
+/// `each` has seen enough. The values that make no model are passed over; how many there were.
+pub(super) fn walk_over(
+    family: &Family,
+    values: &[f64],
+    request: &Request,
+    mut each: impl FnMut(f64, &Run) -> bool,
+) -> usize {
+    let (mut last, mut unfit) = (None::<(Model, (f64, f64))>, 0);
+    for value in values {
+        let Some(model) = family.model(*value) else {
+            unfit += 1;
+            continue;
+        };
+        let model = match &last {
+            Some((before, state)) => model.carried_on(before, *state),
+            None => model,
+        };
+        let run = model.run(request);
+        if !each(*value, &run) {
+            break;
+        }
+        let finite = run.carried.filter(|(x, v)| x.is_finite() && v.is_finite());
+        last = finite.map(|state| (model, state)).or(last);
+    }
+    unfit
+}
