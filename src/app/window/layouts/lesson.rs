@@ -7,20 +7,27 @@ use crate::app::views::View;
 
 use super::{LEFT_SHARE, MAP_SHARE, MECHANISM_SHARE, Room, Tiling, pair};
 
-/// Share of the width that the first of two views has where room is short.
+/// Shares of the width that the first of two views has where room is short, and that a view has which needs
+/// much of it.
 const HALF: f32 = 0.5;
+const MUCH: f32 = 0.62;
+
+/// Whether a view has legends that need room.
+fn is_wide(view: View) -> bool {
+    matches!(view, View::Map | View::UpAndDown)
+}
 
 impl Tiling {
     /// The tiles of a lesson with these views. What has the displacement along it stands on the left, the
     /// mechanism over the others; a map has the left for itself. Where room is short all stand side by side,
-    /// from the fourth on as tabs.
+    /// from the fourth on, and beside a map, as tabs.
     pub fn of_lesson(views: &[View], room: Room) -> Self {
         let mut tiles = Tiles::default();
         let tree = match room {
             Room::Compact => beside(tiles, views),
             Room::Wide | Room::Large => {
-                let is_left = |view: &&View| match views.contains(&View::Map) {
-                    true => **view == View::Map,
+                let is_left = |view: &&View| match views.iter().any(|own| is_wide(*own)) {
+                    true => is_wide(**view),
                     false => view.is_along_x(),
                 };
                 let (mut left, mut right): (Vec<View>, Vec<View>) = views.iter().partition(is_left);
@@ -32,7 +39,7 @@ impl Tiling {
                 if right.is_empty() && left.len() == 2 && left[0] != View::Mechanism {
                     right = left.split_off(1);
                 }
-                let share = if left == [View::Map] { MAP_SHARE } else { LEFT_SHARE };
+                let share = if left.iter().any(|own| is_wide(*own)) { MAP_SHARE } else { LEFT_SHARE };
                 let columns: Vec<TileId> = [left, right]
                     .into_iter()
                     .filter(|own| !own.is_empty())
@@ -61,8 +68,19 @@ fn column(tiles: &mut Tiles<View>, views: &[View]) -> TileId {
     }
 }
 
-/// Views side by side, from the fourth on behind the third.
+/// Views side by side, from the fourth on behind the third; beside one that needs much room, all others
+/// behind each other.
 fn beside(mut tiles: Tiles<View>, views: &[View]) -> Tree<View> {
+    let (wide, others): (Vec<View>, Vec<View>) = views.iter().partition(|own| is_wide(**own));
+    if !wide.is_empty() && !others.is_empty() {
+        let mut tabs = |views: Vec<View>| {
+            let panes = views.into_iter().map(|view| tiles.insert_pane(view)).collect();
+            tiles.insert_tab_tile(panes)
+        };
+        let (left, right) = (tabs(wide), tabs(others));
+        let root = pair(&mut tiles, LinearDir::Horizontal, left, right, MUCH);
+        return Tree::new(egui::Id::unique("compact lesson"), root, tiles);
+    }
     let panes: Vec<TileId> = views.iter().map(|view| tiles.insert_pane(*view)).collect();
     let root = match panes[..] {
         [one] => one,
