@@ -2,22 +2,20 @@
 
 use std::path::Path;
 
-use eframe::egui::{Key, Modifiers, OutputCommand};
+use eframe::egui::{Key, OutputCommand};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use interwell::app::session::lesson::{Records, answers_text};
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Wanted, Window};
-use interwell::scene::lesson::{LESSONS, LessonDocument, Step};
-use interwell::scene::{Document, Stops};
-use interwell::study::result_fields;
+use interwell::scene::lesson::{LESSONS, Step};
 
 use crate::support::{LONG, PROJECTED, WIDE, command, is_painted, painted, sliced, wait_until, window};
 
-type Shown = Harness<'static, Window>;
+pub type Shown = Harness<'static, Window>;
 
-fn opened(lesson: &str, size: [f32; 2]) -> Shown {
+pub fn opened(lesson: &str, size: [f32; 2]) -> Shown {
     let mut harness = window("first-look", size, Settings::default());
     harness.state_mut().open_lesson(lesson);
     harness.run_steps(3);
@@ -26,7 +24,7 @@ fn opened(lesson: &str, size: [f32; 2]) -> Shown {
 }
 
 /// A lesson of which the tests know what it says.
-const OWN: &str = r#"(
+pub const OWN: &str = r#"(
     format: 1,
     title: "A stop that helps",
     goal: "A limit on travel can start travel, in the right place.",
@@ -67,26 +65,26 @@ const OWN: &str = r#"(
 )"#;
 
 /// A window in that lesson, which has no file any more.
-fn own(size: [f32; 2]) -> Shown {
+pub fn own(size: [f32; 2]) -> Shown {
     let folder = tempfile::tempdir().unwrap();
     opened(&written(folder.path(), OWN), size)
 }
 
-fn press(harness: &mut Shown, key: Key) {
+pub fn press(harness: &mut Shown, key: Key) {
     harness.key_press(key);
     harness.run_steps(3);
 }
 
-fn number(harness: &Shown) -> usize {
+pub fn number(harness: &Shown) -> usize {
     harness.state().lesson().unwrap().number()
 }
 
-fn step(harness: &Shown) -> Step {
+pub fn step(harness: &Shown) -> Step {
     harness.state().lesson().unwrap().step().clone()
 }
 
 /// Lets verdicts come and frames pass until a condition holds, which must come.
-fn until(harness: &mut Shown, what: &str, mut condition: impl FnMut(&Shown) -> bool) {
+pub fn until(harness: &mut Shown, what: &str, mut condition: impl FnMut(&Shown) -> bool) {
     wait_until(what, || {
         if let Some(lesson) = harness.state_mut().lesson_mut() {
             lesson.wait(LONG);
@@ -97,7 +95,7 @@ fn until(harness: &mut Shown, what: &str, mut condition: impl FnMut(&Shown) -> b
 }
 
 /// Goes on as a lecturer does until a step is of a kind; false where none is.
-fn go_to(harness: &mut Shown, is_wanted: fn(&Step) -> bool) -> bool {
+pub fn go_to(harness: &mut Shown, is_wanted: fn(&Step) -> bool) -> bool {
     while harness.state().lesson().is_some() {
         if is_wanted(&step(harness)) {
             return true;
@@ -130,8 +128,14 @@ fn solve(harness: &mut Shown) {
 }
 
 /// Whether a text is anywhere: read by a screen reader, or painted.
-fn is_anywhere(harness: &Shown, text: &str) -> bool {
+pub fn is_anywhere(harness: &Shown, text: &str) -> bool {
     harness.query_all_by_label_contains(text).next().is_some() || is_painted(harness, text)
+}
+
+pub fn written(folder: &Path, text: &str) -> String {
+    let path = folder.join("own.ron");
+    std::fs::write(&path, text).unwrap();
+    path.to_string_lossy().into_owned()
 }
 
 #[test]
@@ -320,161 +324,4 @@ fn progress_is_kept_and_answers_are_text() {
     command(&mut again, Command::LessonAnew);
     assert_eq!(number(&again), 0);
     assert_eq!(answers_text(&again.state().records()), None);
-}
-
-fn written(folder: &Path, text: &str) -> String {
-    let path = folder.join("own.ron");
-    std::fs::write(&path, text).unwrap();
-    path.to_string_lossy().into_owned()
-}
-
-#[test]
-fn a_file_with_faults_shows_them_all() {
-    let folder = tempfile::tempdir().unwrap();
-    let faulty = OWN.replace("minutes: 5", "minutes: 0").replace("\"stops.travel", "\"stops.trawel");
-    let path = written(folder.path(), &faulty);
-    let mut harness = window("first-look", WIDE, Settings::default());
-    harness.state_mut().open_another(&path);
-    harness.run_steps(3);
-    let text = harness.state().message().unwrap().to_owned();
-    for part in ["own.ron", "minutes", "stops.trawel_limit_mm", "did you mean"] {
-        assert!(text.contains(part), "{text}");
-    }
-    harness.get_by_label("This lesson cannot be opened");
-    assert!(harness.state().lesson().is_none());
-    // as the argument of the program, too
-    let window = Window::start(Some(&path), Settings::default(), std::sync::Arc::new(|| ())).unwrap();
-    assert_eq!(window.message(), Some(text.as_str()));
-    // and mended it opens, whatever is unsaved
-    let path = written(folder.path(), OWN);
-    press(&mut harness, Key::Escape);
-    harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
-    harness.state_mut().open_another(&path);
-    harness.run_steps(3);
-    assert!(harness.state().lesson().is_some() && harness.state().recent[0].ends_with("own.ron"));
-    let window = Window::open(Some(&path), Settings::default(), std::sync::Arc::new(|| ())).unwrap();
-    assert!(window.lesson().is_some() && window.session.editor.path().is_none());
-    // another scene asks about what the lesson has put aside
-    command(&mut harness, Command::OpenPreset("duffing"));
-    harness.get_by_label("Save the changes?");
-    assert!(harness.state().lesson().is_none() && harness.state().session.scene().mass_g == 16.0);
-}
-
-#[test]
-fn the_longest_texts_fit() {
-    let long = |begin: &str, count: usize| {
-        let words = begin.chars().chain("the mass hops from stop to stop ".chars().cycle());
-        format!("{}.", words.take(count - 1).collect::<String>())
-    };
-    let (text, option) = (long("Every ", 240), |begin: &str| long(begin, 80));
-    let own = OWN
-        .replace("Shaken at 1 g it rattles in one well.", &text)
-        .replace("We put stops at ±4 mm and shake as before. The mass ...", &text)
-        .replace("crosses every period\"", &format!("{}\"", option("a ")))
-        .replace("rattles between home and stop", &option("b "))
-        .replace("does not move at all", &option("c "))
-        .replace("Where does the force curve lie below 0.149 N, the push of 1 g?", &text)
-        .replace("A stop inside the home holds the mass up on the hillside.", &text);
-    assert!(LessonDocument::from_text("own", &own, None, &result_fields()).is_ok());
-    let folder = tempfile::tempdir().unwrap();
-    let path = written(folder.path(), &own);
-    for size in [PROJECTED, WIDE] {
-        let mut harness = opened(&path, size);
-        let whole = |harness: &Shown, number: usize| {
-            assert_eq!(sliced(harness), [""; 0], "{size:?} {number}");
-            for name in ["Well", "Displacement", "pause", "play", "Next", "Finish"] {
-                let inside = harness.query_by_label(name).is_none_or(|own| own.rect().bottom() <= size[1]);
-                assert!(inside, "{name}");
-            }
-            // a view has room to show something
-            let bar = harness.get_by_label("Well").rect().bottom();
-            let foot =
-                harness.query_by_label("play").or(harness.query_by_label("pause")).unwrap().rect().top();
-            assert!(foot - bar > 100.0, "{size:?} {number}: {}", foot - bar);
-        };
-        while harness.state().lesson().is_some() {
-            let number = number(&harness);
-            whole(&harness, number);
-            match step(&harness) {
-                Step::Predict { .. } => {
-                    for letter in ["A", "B", "C"] {
-                        harness.get_by_label_contains(&format!("{letter}   "));
-                    }
-                    press(&mut harness, Key::C);
-                    until(&mut harness, "what it did", |own| {
-                        own.state().lesson().unwrap().answer().outcome.is_some()
-                    });
-                    harness.run_steps(2);
-                    whole(&harness, number);
-                }
-                Step::Do { .. } => {
-                    press(&mut harness, Key::H);
-                    assert!(is_anywhere(&harness, "Hint: "));
-                    whole(&harness, number);
-                }
-                _ => {}
-            }
-            press(&mut harness, Key::PageDown);
-        }
-    }
-}
-
-#[test]
-fn only_what_the_lesson_names_can_be_set() {
-    let mut harness = own(WIDE);
-    assert!(harness.query_by_label("More").is_none());
-    let sliders = harness.query_all_by_role(eframe::egui::accesskit::Role::Slider);
-    let names: Vec<String> = sliders.filter_map(|own| own.accesskit_node().label()).collect();
-    assert!(!names.iter().any(|own| own == "amplitude"), "{names:?}");
-    assert!(names.iter().any(|own| own == "travel limit ±"), "{names:?}");
-    for (view, shown) in [(View::Well, true), (View::Displacement, true), (View::BeforeNow, false)] {
-        assert_eq!(harness.state().tiling().shows(view), shown);
-    }
-    command(&mut harness, Command::LeaveLesson);
-    harness.get_by_label("More");
-    assert!(harness.state().tiling().shows(View::BeforeNow));
-    assert_eq!(harness.state().session.scene().stops, Stops::None);
-}
-
-#[test]
-fn the_first_line_leads_to_the_first_lesson() {
-    let mut harness = window("first-look", WIDE, Settings::default());
-    harness.get_by_label_contains("Make it cross");
-    let name = LESSONS[0].name.split('-').next().unwrap().trim_start_matches('0');
-    harness.get_by_label(&format!("Lesson {name}")).click();
-    harness.run_steps(3);
-    let lesson = harness.state().lesson().unwrap().lesson().title.clone();
-    let own = LessonDocument::load(LESSONS[0].name, &result_fields()).unwrap().lesson.title;
-    assert_eq!(lesson, own);
-}
-
-#[test]
-fn the_lecturer_s_notes_come_only_when_asked_for() {
-    let mut harness = own(WIDE);
-    let notes = harness.state().lesson().unwrap().lesson().lecturer.clone();
-    let begin: String = notes.chars().take(20).collect();
-    assert!(!is_anywhere(&harness, &begin));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::L);
-    harness.run_steps(3);
-    assert!(is_anywhere(&harness, &begin));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::L);
-    harness.run_steps(3);
-    assert!(!is_anywhere(&harness, &begin));
-    press(&mut harness, Key::F2);
-    assert!(is_anywhere(&harness, "Glossary") && is_anywhere(&harness, "rebounds from a stop"));
-    press(&mut harness, Key::F2);
-    assert!(!is_anywhere(&harness, "rebounds from a stop"));
-}
-
-#[test]
-fn the_command_line_of_a_lesson_says_all_that_was_changed() {
-    let mut harness = own(WIDE);
-    let line = interwell::app::export::command_line(&harness.state().session).unwrap().0;
-    let mut own = Document::load("first-look").unwrap();
-    for set in line.split(" --set ").skip(1) {
-        own.set(set.trim_matches('\'')).unwrap();
-    }
-    assert_eq!(own.scene, *harness.state().session.scene(), "{line}");
-    assert_ne!(own.scene, Document::load("first-look").unwrap().scene);
-    harness.run_steps(1);
 }

@@ -63,11 +63,12 @@ fn covered_ui(ui: &mut Ui, style: &Style) {
 fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
     match context.cover {
         Cover::None => {}
+        Cover::Surveys if !view.is_survey() => {}
         Cover::Future if view.is_static() => {
             ui.disable();
             ui.set_opacity(1.0);
         }
-        Cover::Future | Cover::All => return covered_ui(ui, &context.style),
+        Cover::Surveys | Cover::Future | Cover::All => return covered_ui(ui, &context.style),
     }
     match view {
         View::Mechanism => mechanism::mechanism_ui(ui, context),

@@ -113,6 +113,11 @@ impl View {
         matches!(self, Self::Mechanism | Self::Well | Self::ForceCurve)
     }
 
+    /// Whether it shows what other settings than the present ones come to.
+    pub fn is_survey(self) -> bool {
+        matches!(self, Self::Map | Self::UpAndDown)
+    }
+
     /// Whether the displacement runs along it.
     pub fn is_along_x(self) -> bool {
         matches!(self, Self::Mechanism | Self::Well | Self::PhasePortrait | Self::ForceCurve)

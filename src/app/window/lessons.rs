@@ -184,6 +184,11 @@ impl Window {
         self.lessons.records = self.records();
     }
 
+    /// Whether the motion is covered, by a key or by a prediction.
+    pub(super) fn motion_is_covered(&self) -> bool {
+        matches!(self.cover(), Cover::Future | Cover::All)
+    }
+
     /// Whether a prediction covers the motion.
     pub(super) fn lesson_covers(&self) -> bool {
         self.lessons.open.as_ref().is_some_and(OpenLesson::is_covering)
@@ -191,10 +196,11 @@ impl Window {
 
     /// What is covered.
     pub(super) fn cover(&self) -> Cover {
-        match (self.covered, self.lesson_covers()) {
-            (true, _) => Cover::All,
-            (false, true) => Cover::Future,
-            (false, false) => Cover::None,
+        match &self.lessons.open {
+            _ if self.covered => Cover::All,
+            Some(lesson) if lesson.is_covering() => Cover::Future,
+            Some(lesson) if lesson.hides_surveys() => Cover::Surveys,
+            _ => Cover::None,
         }
     }
 
@@ -296,10 +302,11 @@ impl Window {
         let layer = LayerId::new(Order::Middle, Id::unique("pointing"));
         let painter = ctx.layer_painter(layer);
         for word in pointed(lesson.step().text()) {
-            let control = self.lessons.controls.iter().find(|own| names_control(&word, &own.0));
-            let view = || self.tiling.place_of(view_named(&word)?);
-            if let Some(rect) = control.map(|own| own.1.expand(AROUND)).or_else(view) {
-                painter.rect_stroke(rect, 4.0, style.pointing_stroke(), StrokeKind::Inside);
+            let stroke = style.pointing_stroke();
+            if let Some(own) = self.lessons.controls.iter().find(|own| names_control(&word, &own.0)) {
+                painter.rect_stroke(own.1.expand(AROUND), 4.0, stroke, StrokeKind::Outside);
+            } else if let Some(rect) = view_named(&word).and_then(|view| self.tiling.place_of(view)) {
+                painter.rect_stroke(rect, 4.0, stroke, StrokeKind::Inside);
             }
         }
     }
@@ -333,7 +340,7 @@ fn names_control(word: &str, path: &str) -> bool {
         "stops" => ["stops", "stop"].contains(&word),
         "excitation.amplitude_g" | "excitation.rms_g" => word == "shaking" || word == own,
         "stops.travel_limit_mm" => ["travel limit", "position"].contains(&word),
-        "start.v_m_per_s" => word == "flick" || word == own,
+        "start.v_m_per_s" => ["flick", "start", "velocity", own.as_str()].contains(&word),
         _ => word == own,
     }
 }

@@ -35,7 +35,7 @@ pub fn menu_ui(
         let shown = Shown { session, tiling, settings, recent, lessons };
         for (name, parts) in &MENUS {
             ui.menu_button(*name, |ui| match *name {
-                "View" => scroll_ui(ui, |ui| parts_ui(ui, &mut asked, parts, &shown)),
+                "View" | "Lessons" => scroll_ui(ui, |ui| parts_ui(ui, &mut asked, parts, &shown)),
                 _ => parts_ui(ui, &mut asked, parts, &shown),
             });
         }

@@ -9,7 +9,7 @@ use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
-use crate::app::views::{self, Cover, ViewContext};
+use crate::app::views::{self, ViewContext};
 use crate::app::words::lesson::numbered;
 use crate::scene::lesson::LESSONS;
 
@@ -76,7 +76,7 @@ impl Window {
         }
         let seconds = ctx.input(|input| f64::from(input.stable_dt));
         self.session.player.tick(seconds);
-        if let Some(reached) = self.session.player.take_reached().filter(|_| self.cover() == Cover::None) {
+        if let Some(reached) = self.session.player.take_reached().filter(|_| !self.motion_is_covered()) {
             self.messages.tell_reached(reached, self.session.player.time());
         }
         if self.session.player.is_playing() {
@@ -106,7 +106,7 @@ impl Window {
         });
         let height = status_line::height(ui, &self.session, compact);
         Panel::top("status").frame(line).exact_size(height).show(ui, |ui| {
-            if self.cover() != Cover::None {
+            if self.motion_is_covered() {
                 covered_ui(ui, !self.covered);
             } else {
                 status_ui(ui, &mut self.session, &mut self.announcer, &style, compact);
@@ -116,7 +116,7 @@ impl Window {
             if self.lesson_covers() {
                 ui.disable();
             }
-            let covered = self.cover() != Cover::None;
+            let covered = self.motion_is_covered();
             transport::transport_ui(ui, &mut self.session, &style, covered);
         });
         self.follow_lesson(&ctx);

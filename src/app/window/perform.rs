@@ -51,6 +51,8 @@ impl Window {
             return self.messages.tell("First choose what you expect");
         }
         match command {
+            // the views of a lesson are its own
+            Command::Arrange(_) | Command::ArrangeOwn | Command::KeepOwn if self.lesson().is_some() => {}
             Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
             Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
             Command::Open => self.leave_for(ctx, Next::Choose),

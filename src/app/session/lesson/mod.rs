@@ -136,6 +136,13 @@ impl OpenLesson {
         matches!(self.step(), Step::Predict { .. }) && !self.answer().shown
     }
 
+    /// Whether what other settings would come to is covered: until the first prediction is shown.
+    pub fn hides_surveys(&self) -> bool {
+        let is_prediction = |step: &Step| matches!(step, Step::Predict { .. });
+        let first = self.lesson().steps.iter().position(is_prediction);
+        first.is_some_and(|number| !self.is_settled(number))
+    }
+
     /// Whether a step has been answered or done; one that only tells something has.
     pub fn is_settled(&self, number: usize) -> bool {
         match (&self.lesson().steps[number], &self.progress.answers[number]) {
