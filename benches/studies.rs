@@ -1,7 +1,7 @@
 //! Time and error of the studies: `cargo bench --bench studies`.
 //!
-//! A row a study. The error is against an answer that is known in closed form, named beside it; the time is
-//! that of one thread.
+//! A row a study. The error is against an answer that is known in closed form, or another run of the study,
+//! named beside it; the time is that of one thread.
 
 mod shared;
 
@@ -10,9 +10,11 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::study::{
-    Branch, BranchEvent, ExponentOptions, Family, Onset, Orbit, Scan, Signal, SpectrumOptions, Task, branch,
-    exponents, spectrum, threshold,
+    Answer, Basins, Branch, BranchEvent, EvenRange, ExponentOptions, Family, Grid, Onset, Orbit, Scan,
+    SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Table, Task, branch, exponents,
+    spectrum, threshold,
 };
+use interwell::system::threads::Pool;
 
 /// Times that each study is done.
 const ROUNDS: usize = 21;
@@ -24,13 +26,15 @@ fn main() {
     thresholds();
     branches();
     growth();
+    diagrams();
+    maps();
 }
 
 /// Does `study`, which gives its error, several times, and prints its row.
 fn row(study: &str, problem: &str, against: &str, mut work: impl FnMut() -> f64) {
     let mut error = 0.0;
     let rounds = shared::rounds(ROUNDS);
-    let mut times: Vec<f64> = (0..rounds).map(|_| shared::cpu(|| error = work())).collect();
+    let mut times: Vec<f64> = (0..rounds).map(|_| shared::cpu_of_all(|| error = work())).collect();
     let us = shared::median(&mut times) * 1e6;
     println!("| {study} | {problem} | {error:.1e} | {against} | {us:.1} us |");
 }
@@ -133,5 +137,77 @@ fn growth() {
     row("exponents", "`duffing-chaos`, 1000 periods", "the sum of both", || {
         let found = exponents(&chaos, &options, &never).unwrap();
         (found.sum / found.exact_sum.unwrap() - 1.0).abs()
+    });
+}
+
+/// The states of 100 forcing periods after 200, at 90 degrees, over 400 amplitudes.
+fn diagram(name: &str, changes: &[&str]) -> Table {
+    let document = shared::changed(name, changes);
+    let axes = document.axes(&["excitation.amplitude_g=0.6025:1.6:0.0025"]).unwrap();
+    let options = SectionOptions {
+        at: SectionAt::Phase(90.0),
+        periods: Some((200, 100)),
+        until_settled: None,
+        carry: None,
+    };
+    let sections = Sections::new(&document.scene, &document.files, Grid::new(axes).unwrap(), options);
+    let never = AtomicBool::new(false);
+    let task = Task { tick: &|| (), cancel: &never };
+    let mut all = Table::new();
+    let write = |table: &Table| {
+        all.append(table);
+        Ok::<_, ()>(true)
+    };
+    sections.run(&Pool::new(1).unwrap(), &task, write).unwrap();
+    all
+}
+
+fn diagrams() {
+    let changes =
+        ["mechanism.cubic_n_per_m3=0", "damping=Coefficient(c_n_s_per_m: 0.2)", "run.tolerance=1e-13"];
+    let linear = shared::preset("monostable", &changes);
+    let (k, m, c, w) = (40.0, linear.mass(), linear.damping(), TAU * 3.0);
+    let (re, im) = (k - m * w * w, c * w);
+    // -m A sin(w t) of the base, at a quarter of the period
+    let exact = -m * STANDARD_GRAVITY * re / (re * re + im * im);
+    let problem = "linear spring, 400 amplitudes of 300 periods";
+    row("section --over", problem, "its response", || {
+        let own = diagram("monostable", &changes);
+        let rows = own.numbers("amplitude_g").unwrap().iter().zip(own.numbers("x_m").unwrap());
+        rows.fold(0.0, |worst: f64, (g, x)| worst.max((x / (exact * g) - 1.0).abs()))
+    });
+    let far = |a: &Table, b: &Table| {
+        let [a, b] = [a, b].map(|own| own.numbers("x_m").unwrap());
+        a.iter().zip(b).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs() / 1.5e-3))
+    };
+    let fine = diagram("paper", &["run.tolerance=1e-13"]);
+    row("section --over", "`paper`, 400 amplitudes of 300 periods", "the same at 1e-13", || {
+        far(&diagram("paper", &[]), &fine)
+    });
+}
+
+/// The map of 200 x 200 starts within the stops.
+fn basins(tolerance: &str) -> Answer {
+    let document = shared::changed("paper", &["excitation.amplitude_g=0.7", tolerance]);
+    let mechanism = shared::mechanism(&document);
+    let range = |end: f64| EvenRange { from: -end, to: end, count: 200 };
+    let starts = Starts::grid(&range(1.5), &range(0.5)).unwrap();
+    let mut basins = Basins::new(&document.scene, mechanism, starts).unwrap();
+    let never = AtomicBool::new(false);
+    let task = Task { tick: &|| (), cancel: &never };
+    let pool = Pool::new(1).unwrap();
+    while !basins.is_whole() {
+        basins.run_level(&pool, &task);
+    }
+    basins.answer(&task).unwrap()
+}
+
+fn maps() {
+    let fine = basins("run.tolerance=1e-13");
+    row("basins", "`paper` at 0.7 g, 40 000 starts", "the share of others at 1e-13", || {
+        let own = basins("run.tolerance=1e-9");
+        let to = |answer: &Answer, row: usize| answer.rows[row].map(|own| own.0);
+        let others = (0..own.rows.len()).filter(|row| to(&own, *row) != to(&fine, *row)).count();
+        others as f64 / own.rows.len() as f64
     });
 }

@@ -13,8 +13,8 @@ mod scenes;
 
 use std::hint::black_box;
 
-use cpu_time::ThreadTime;
-pub use scenes::{changed, preset};
+use cpu_time::{ProcessTime, ThreadTime};
+pub use scenes::{changed, mechanism, preset};
 
 /// `many` under `cargo bench`; 1 where the benches are only tried, as `cargo test --benches` does.
 pub fn rounds(many: usize) -> usize {
@@ -29,6 +29,13 @@ pub fn is_measured() -> bool {
 /// CPU time of `work` in s.
 pub fn cpu<R>(work: impl FnOnce() -> R) -> f64 {
     let watch = ThreadTime::now();
+    black_box(work());
+    watch.elapsed().as_secs_f64()
+}
+
+/// The same of all threads: of work on a pool, while nothing else runs.
+pub fn cpu_of_all<R>(work: impl FnOnce() -> R) -> f64 {
+    let watch = ProcessTime::now();
     black_box(work());
     watch.elapsed().as_secs_f64()
 }

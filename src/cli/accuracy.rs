@@ -60,7 +60,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
             "{option} needs a SCENE, such as interwell --headless accuracy paper {option} .."
         )));
     }
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let selection = if options.case.is_empty() { Selection::all() } else { Selection::of(&options.case)? };
     if options.list {
         let mut sinks = open(&[], [Some(("--list", std::path::Path::new("-")))])?;
@@ -75,7 +75,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         )));
     }
     let out = common.out.as_deref().map(|path| ("--out", path));
-    let mut sinks = open(&[], [out, picture.map(|own| own.output())])?;
+    let [plot, data] = Picture::outputs(picture);
+    let mut sinks = open(&[], [out, plot, data])?;
 
     let bar = bar(selection.parts(), common.quiet);
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
@@ -89,13 +90,13 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     if interrupt::came() {
         return Err(Failure::interrupted());
     }
-    let [csv, plot] = &mut sinks;
+    let [csv, pictures @ ..] = &mut sinks;
     if csv.is_some() {
         write_table(csv, &report.table())?;
     }
     if let Some(picture) = picture {
-        let figure = accuracy_figure(&report.work_table(), env!("CARGO_PKG_VERSION"), picture.theme);
-        picture.write(plot, figure)?;
+        let figure = accuracy_figure(&report.work_table(), env!("CARGO_PKG_VERSION"), &picture.theme);
+        picture.write(pictures, figure)?;
     }
     let to_stdout = csv.as_ref().is_some_and(Sink::is_stdout);
     finish(sinks)?;

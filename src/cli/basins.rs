@@ -60,7 +60,7 @@ pub struct Arguments {
 /// Follows the starts and writes a row for each.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let starts = starts(options)?;
     if picture.is_some() {
         can_show_starts(&starts)?;
@@ -84,7 +84,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let pool = pool(common)?;
     let attractors = options.attractors.as_deref().map(|path| ("--attractors", path));
     let beside = beside.as_deref().map(|path| (MANIFEST, path));
-    let outputs = [Some(("--out", common.out())), attractors, picture.map(|own| own.output()), beside];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data, attractors, beside];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
 
     let bar = bar(count, "starts", common.quiet, common.out());
@@ -95,15 +96,16 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     bar.finish_and_clear();
     let answer = answer.ok_or_else(Failure::interrupted)?;
     write_rows(&mut sinks[0], &basins, &answer)?;
-    write_table(&mut sinks[1], &answer.attractors_table())?;
+    write_table(&mut sinks[3], &answer.attractors_table())?;
     if let Some(picture) = picture {
-        picture.write(&mut sinks[2], basins_figure(&basins, &answer, &caption(&document), picture.theme))?;
+        picture
+            .write(&mut sinks[1..3], basins_figure(&basins, &answer, &caption(&document), &picture.theme))?;
     }
-    if sinks[3].is_some() {
+    if sinks[4].is_some() {
         let name = common.out().file_name();
         let data = name.map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let text = basins_manifest(&document, &basins, &answer, &watch.origin(pool.count()), &data);
-        write_text(&mut sinks[3], &text)?;
+        write_text(&mut sinks[4], &text)?;
     }
     finish(sinks)?;
     if !common.quiet {

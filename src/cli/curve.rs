@@ -16,7 +16,7 @@ use interwell::study::{
 };
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{Common, PlotOptions, RangeOptions, whole};
 use super::picture::{Picture, caption, ranges};
 use super::support::{finish, inputs, load_with_mechanism, numbers, open, write_table, write_text};
 use super::{interrupt, say};
@@ -34,7 +34,7 @@ pub struct Arguments {
 
     /// Number of positions over the range [default: 401, for --shapes 21]
     #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "at_mm",
-          value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
+          value_parser = whole::<u32>(2..=10_000_000))]
     pub points: Option<u32>,
 
     /// At these positions in mm, in this order
@@ -59,7 +59,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub contact: Option<PathBuf>,
 
-    /// Draw restitution over impact speed, beside a rigid stop's constant; the name ends in .png or .svg
+    /// Draw restitution over impact speed, beside a rigid stop's constant; the name ends in .png, .svg or
+    /// .pdf
     #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub contact_plot: Option<PathBuf>,
 
@@ -93,9 +94,10 @@ const PICTURE_POINTS: usize = 3001;
 /// Writes the curve as CSV and, where asked for, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
-    let contact_picture = Picture::of("--contact-plot", options.contact_plot.as_deref(), &options.plot)?;
+    let contact_picture =
+        Picture::of("--contact-plot", options.contact_plot.as_deref(), &options.plot, common)?;
     let rigid = restitution(&options.rigid)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let range = options.range_mm.as_deref().map(range).transpose()?;
@@ -116,22 +118,17 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         }
     }
     let contact_path = options.contact.as_deref().map(|path| ("--contact", path));
-    let contacts = match contact_path.or(contact_picture.map(|own| own.output())) {
+    let contacts = match contact_path.or(Picture::outputs(contact_picture)[0]) {
         Some((option, _)) => Some(contact_table(&document, &mechanism, option, rigid)?),
         None => None,
     };
     let landscape_path = options.landscape.as_deref().map(|path| ("--landscape", path));
     let shapes_path = options.shapes.as_deref().map(|path| ("--shapes", path));
+    let [plot, data] = Picture::outputs(picture);
+    let [contact_plot, _] = Picture::outputs(contact_picture);
     let mut sinks = open(
         &inputs(&options.scene, &document),
-        [
-            Some(("--out", common.out())),
-            landscape_path,
-            picture.map(|own| own.output()),
-            shapes_path,
-            contact_path,
-            contact_picture.map(|own| own.output()),
-        ],
+        [Some(("--out", common.out())), landscape_path, shapes_path, contact_path, plot, data, contact_plot],
     )?;
     let table = if options.full {
         let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
@@ -149,18 +146,18 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         // The picture shows the curve however few positions were asked for.
         let table = curve(&mechanism, even(PICTURE_POINTS))?;
         let stops = stop_positions(&document.scene);
-        let figure = curve_figure(&table, &mechanism, stops, axes, &caption(&document), picture.theme);
-        picture.write(&mut sinks[2], figure)?;
+        let figure = curve_figure(&table, &mechanism, stops, axes, &caption(&document), &picture.theme);
+        picture.write(&mut sinks[4..6], figure)?;
     }
     if shapes_path.is_some() {
         let drawn = solved(&mechanism, &positions(SHAPES), &document.name, "--shapes")?;
-        write_table(&mut sinks[3], &shapes(&drawn))?;
+        write_table(&mut sinks[2], &shapes(&drawn))?;
     }
     if let Some((table, model)) = &contacts {
-        write_table(&mut sinks[4], table)?;
+        write_table(&mut sinks[3], table)?;
         if let Some((picture, stop)) = contact_picture.zip(model.compliant()) {
-            let figure = contact_figure(table, &stop, model.mass(), &caption(&document), picture.theme);
-            picture.write(&mut sinks[5], figure)?;
+            let figure = contact_figure(table, &stop, model.mass(), &caption(&document), &picture.theme);
+            picture.write(&mut sinks[6..], figure)?;
         }
     }
     finish(sinks)

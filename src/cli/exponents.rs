@@ -2,7 +2,9 @@
 
 use clap::Args;
 use interwell::dynamics::Model;
-use interwell::output::{ExponentPicture, Sink, can_show_exponents, exponents_figure, header, rows};
+use interwell::output::{
+    ExponentPicture, Sink, can_show_exponents, exponents_figure, exponents_manifest, header, rows,
+};
 use interwell::scene::Document;
 use interwell::study::{
     ExponentCells, ExponentOptions, ExponentTally, Exponents, Grid, NoExponents, SweepEnd, Table, Task,
@@ -10,12 +12,13 @@ use interwell::study::{
 };
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{Common, PlotOptions, RangeOptions, whole};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
-    Watch, finish, inputs, load, load_with_mechanism, open, until_settled, warn, write_table, write_text,
+    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, until_settled, warn, write_table,
+    write_text,
 };
-use super::sweep::{bar, located, pool};
+use super::sweep::{bar, file_name, located, manifest_path, pool};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -42,7 +45,7 @@ pub struct Arguments {
     /// Forcing periods that a motion is averaged over which does not repeat, 1 to 10000000; without a drive
     /// periods of small oscillations [default: 1000]
     #[arg(long, value_name = "N", allow_hyphen_values = true,
-          value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+          value_parser = whole::<u32>(1..=10_000_000))]
     pub periods: Option<u32>,
 
     /// Let the motion go on, window after window, until it repeats, or up to this time in s, before anything
@@ -65,7 +68,7 @@ pub struct Arguments {
 
 /// Measures and writes the table.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     if !options.over.is_empty() {
         return over(options, picture);
     }
@@ -127,7 +130,11 @@ fn about(found: &Exponents, forced: bool) -> String {
 fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
     let common = &options.common;
     let axes = ranges(&options.ranges, "--plot-x")?;
-    let (document, warnings) = load(&options.scene, common, Some(&options.over))?;
+    let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
+    let beside = manifest_path(common.out());
+    if beside.is_some() {
+        document.hold_files();
+    }
     let grid = Grid::new(document.axes(&options.over)?)?;
     if picture.is_some() {
         can_show_exponents(Some(&grid))?;
@@ -139,7 +146,9 @@ fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
     let first = cells.first_model(&task).and_then(Result::ok);
     let asked = asked(options, &document, first.as_ref())?;
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let beside = beside.as_deref().map(|path| (MANIFEST, path));
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data, beside];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
     let grid = cells.grid();
@@ -160,7 +169,12 @@ fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
     })?;
     if let Some((picture, rows)) = picture.zip(shown) {
         let shown = ExponentPicture { rows: &rows, grid, scene: &document.scene, ranges: axes };
-        picture.write(&mut sinks[1], exponents_figure(&shown, &caption(&document), picture.theme)?)?;
+        picture.write(&mut sinks[1..3], exponents_figure(&shown, &caption(&document), &picture.theme)?)?;
+    }
+    if sinks[3].is_some() {
+        let origin = watch.origin(pool.count());
+        let text = exponents_manifest(&document, grid, &tally, &origin, &file_name(common.out()));
+        write_text(&mut sinks[3], &text)?;
     }
     finish(sinks)?;
     if !common.quiet && tally.cells == grid.cells() {

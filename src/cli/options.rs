@@ -1,5 +1,6 @@
 //! The arguments of the command line, and the text of `--help`.
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, Parser, Subcommand};
@@ -16,6 +17,8 @@ Examples:
   interwell --headless simulate --set stops.travel_limit_mm=2 --out run.csv --summary run.json
   interwell --headless simulate elastic-box --at 0,0.5,1 --events - --out /dev/null
   interwell --headless sweep --out map.csv --plot map.png
+  interwell --headless sweep paper --surface --plot map.pdf --plot-width-mm 85 --font-pt 8 --no-title
+  interwell --headless sweep paper --cut travel_limit_mm=1.5 --cut amplitude_g=1.2 --plot cuts.pdf
   interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
   interwell --headless sweep paper --over excitation.amplitude_g=0:2:0.02 --carry both --plot hysteresis.png
   interwell --headless section paper --over excitation.amplitude_g=0.5:1.5:0.005 --plot diagram.png
@@ -132,6 +135,17 @@ pub fn command_names() -> String {
     format!("{} or {last}", others.join(", "))
 }
 
+/// Reads a whole number of a range for clap, and says in words what it takes.
+pub fn whole<T: TryFrom<u64>>(
+    range: RangeInclusive<u64>,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.trim().parse().ok().filter(|own| range.contains(own));
+        let wrong = || format!("give a whole number from {} to {}", range.start(), range.end());
+        number.and_then(|own| T::try_from(own).ok()).ok_or_else(wrong)
+    }
+}
+
 /// What every command takes, before its name or after it.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Common options")]
@@ -150,7 +164,7 @@ pub struct Common {
 
     /// Threads to use [default: one per core]
     #[arg(long, value_name = "N", allow_hyphen_values = true,
-          value_parser = clap::value_parser!(u16).range(1..=1024))]
+          value_parser = whole::<u16>(1..=1024))]
     pub jobs: Option<u16>,
 
     /// Say nothing on standard error but errors
@@ -204,8 +218,8 @@ impl Common {
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("picture").multiple(true))]
 pub struct PlotOptions {
-    /// Draw a picture; the name ends in .png or .svg. A run is drawn from samples of its own, over the times
-    /// that --at spans
+    /// Draw a picture; the name ends in .png, .svg or .pdf. A run is drawn from samples of its own, over the
+    /// times that --at spans
     #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub plot: Option<PathBuf>,
 
@@ -217,6 +231,39 @@ pub struct PlotOptions {
     /// of 8 to 5 (an 85 mm column at 300 dpi is 1004 pixels wide) [default: 1600x1000]
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, requires = "picture")]
     pub plot_size: Option<String>,
+
+    /// With a picture: its width on paper in mm, such as 85 for a column; it is laid out for that width, with
+    /// text of --font-pt
+    #[arg(
+        long,
+        value_name = "MM",
+        allow_hyphen_values = true,
+        requires = "picture",
+        conflicts_with = "plot_size"
+    )]
+    pub plot_width_mm: Option<String>,
+
+    /// With --plot-width-mm: its height in mm [default: what its kind needs, about 5/8 of the width]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, requires = "plot_width_mm")]
+    pub plot_height_mm: Option<String>,
+
+    /// With --plot-width-mm: the size in points of numbers and legends; labels of axes are a tenth larger
+    #[arg(
+        long,
+        value_name = "PT",
+        allow_hyphen_values = true,
+        requires = "plot_width_mm",
+        default_value = "8"
+    )]
+    pub font_pt: String,
+
+    /// With --plot-width-mm and a PNG: pixels an inch [default: 300]
+    #[arg(long, value_name = "DPI", allow_hyphen_values = true, requires = "plot_width_mm")]
+    pub dpi: Option<String>,
+
+    /// With --plot: write the numbers that are drawn as CSV
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, requires = "plot")]
+    pub plot_data: Option<PathBuf>,
 
     /// With a picture: without title, subtitle and footer, for a page that has a caption
     #[arg(long, requires = "picture")]

@@ -11,9 +11,9 @@ use interwell::scene::{Axis, Document};
 use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, orbit, orbit_table};
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{Common, PlotOptions, RangeOptions, whole};
 use super::picture::{Picture, caption, ranges};
-use super::support::{finish, inputs, load_with_mechanism, open, write_table};
+use super::support::{finish, inputs, mechanism, open, read, warn, write_table};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -32,7 +32,8 @@ pub struct Arguments {
     pub scene: String,
 
     /// Forcing periods after which the motion repeats [default: those of the run's settled motion]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", allow_hyphen_values = true,
+          value_parser = whole::<u32>(1..=1000))]
     pub period: Option<u32>,
 
     /// Phase of the drive at which states are taken, in degrees
@@ -60,13 +61,26 @@ pub struct Arguments {
 /// Finds the motion, or follows its branch, and writes the table.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
     if picture.is_some() && options.branch.is_none() {
         return Err(Failure::argument("--plot shows a branch; add --branch FIELD=A:B, or leave it out"));
     }
     let phase_deg = phase(&options.phase_deg)?;
-    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
+    let mut document = read(&options.scene, common)?;
+    let branch_range = options.branch.as_deref().map(|text| range(text, &document)).transpose()?;
+    if let Some((field, from, _)) = &branch_range {
+        // a branch begins there, and the scene's own value is never run
+        document.assign(
+            field,
+            &from.to_string(),
+            &format!("--branch {}", options.branch.as_deref().unwrap_or_default()),
+        )?;
+    }
+    let moved = document.settle_within();
+    let warnings: Vec<String> = moved.into_iter().chain(document.check()?).collect();
+    let mechanism = mechanism(&document)?;
+    warn(&document, common, &warnings, Some(&mechanism));
     let model = Model::build(&document.scene, Arc::clone(&mechanism))
         .map_err(|faults| Failure::from(document.error_from(faults)))?;
     if !model.repeats() || !model.is_shaken() {
@@ -76,9 +90,9 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
             document.name
         )));
     }
-    let branch_range = options.branch.as_deref().map(|text| range(text, &document)).transpose()?;
     let cancel = interrupt::listen();
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let phase = phase_deg / 360.0;
     let failed = |own: NoOrbit, at: &str| match own {
@@ -95,8 +109,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
             bar.finish_and_clear();
             let found = found.map_err(|own| failed(own, &format!("at {field} = {from}: ")))?;
             if let Some(picture) = picture {
-                let figure = branch_figure(&found, phase_deg, axes, &caption(&document), picture.theme);
-                picture.write(&mut sinks[1], figure)?;
+                let figure = branch_figure(&found, phase_deg, axes, &caption(&document), &picture.theme);
+                picture.write(&mut sinks[1..3], figure)?;
             }
             if !common.quiet && found.end != BranchEnd::Range {
                 say(&told(&found));

@@ -2,67 +2,179 @@
 
 use std::path::Path;
 
-use interwell::output::{Caption, Figure, Format, Ranges, Sink, Theme};
+use clap::parser::ValueSource;
+use clap::{ArgAction, ArgMatches, CommandFactory};
+use interwell::output::{Caption, Figure, Format, Ranges, Sheet, Sink, Theme};
 use interwell::scene::Document;
 
 use super::failure::Failure;
-use super::options::{PlotOptions, RangeOptions};
-use super::support::numbers;
+use super::options::{Common, Options, PlotOptions, RangeOptions};
+use super::say;
+use super::support::{numbers, write_table};
 
 /// A picture that was asked for.
 #[derive(Debug, Clone, Copy)]
 pub struct Picture<'a> {
     /// Where it goes.
     pub path: &'a Path,
-    /// Light or dark.
-    pub theme: &'static Theme,
+    /// Its sheet of paper; light or dark.
+    pub theme: Theme,
     option: &'static str,
+    data: Option<&'a Path>,
     format: Format,
     size: Option<(u32, u32)>,
     titled: bool,
+    quiet: bool,
 }
 
 impl<'a> Picture<'a> {
     /// The picture that `options` ask for; an error where its name does not end like one.
-    pub fn asked(options: &'a PlotOptions) -> Result<Option<Self>, Failure> {
-        Self::of("--plot", options.plot.as_deref(), options)
+    pub fn asked(options: &'a PlotOptions, common: &Common) -> Result<Option<Self>, Failure> {
+        let picture = Self::of("--plot", options.plot.as_deref(), options, common)?;
+        Ok(picture.map(|own| Self { data: options.plot_data.as_deref(), ..own }))
     }
 
-    /// The picture at `path`, which `option` gave; light or dark as `options` say.
+    /// The picture at `path`, which `option` gave; laid out as `options` say.
     pub fn of(
         option: &'static str,
         path: Option<&'a Path>,
         options: &PlotOptions,
+        common: &Common,
     ) -> Result<Option<Self>, Failure> {
         let Some(path) = path else { return Ok(None) };
         let format = Format::of(path)
             .map_err(|problem| Failure::argument(format!("{option} {}: {problem}", path.display())))?;
-        let size = options.plot_size.as_deref().map(size).transpose()?;
+        if let Some(dpi) = options.dpi.as_deref().filter(|_| format != Format::Png) {
+            let name = path.display();
+            let message = format!("--dpi {dpi}: {option} {name} has no pixels; name a .png, or leave it out");
+            return Err(Failure::argument(message));
+        }
         Ok(Some(Self {
             path,
-            theme: Theme::of(options.dark),
+            theme: Theme::of(options.dark, sheet(options, format)?),
             option,
+            data: None,
             format,
-            size,
+            size: options.plot_size.as_deref().map(size).transpose()?,
             titled: !options.no_title,
+            quiet: common.quiet,
         }))
     }
 
-    /// What an output is opened by.
-    pub fn output(&self) -> (&'static str, &'a Path) {
-        (self.option, self.path)
+    /// What a picture's outputs are opened by: that of the picture and that of its data, where they were
+    /// asked for.
+    pub fn outputs(picture: Option<Self>) -> [Option<(&'static str, &'a Path)>; 2] {
+        let data = picture.and_then(|own| own.data);
+        [picture.map(|own| (own.option, own.path)), data.map(|path| ("--plot-data", path))]
     }
 
-    /// Writes the picture.
-    pub fn write(&self, sink: &mut Option<Sink>, figure: Figure) -> Result<(), Failure> {
-        let Some(sink) = sink else { return Ok(()) };
-        let figure = if self.titled { figure } else { figure.without_title() };
-        let bytes = self
-            .format
-            .bytes(&Figure { size: self.size, ..figure })
-            .map_err(|error| Failure::Failed(error.into()))?;
+    /// Writes the picture to the first of its sinks and its data to the second, where there is one.
+    pub fn write(&self, sinks: &mut [Option<Sink>], figure: Figure) -> Result<(), Failure> {
+        let mut figure = if self.titled { figure } else { figure.without_title() };
+        figure.size = self.size;
+        figure.origin.insert("arguments".into(), arguments().into());
+        if let Some(words) = figure.grown().filter(|_| !self.quiet) {
+            say(&format!("warning: --plot-height-mm: {words}"));
+        }
+        let [plot, data @ ..] = sinks else { return Ok(()) };
+        if let Some(data) = data.first_mut() {
+            write_table(data, &figure.data)?;
+        }
+        let Some(sink) = plot else { return Ok(()) };
+        let bytes = self.format.bytes(&figure).map_err(|error| Failure::Failed(error.into()))?;
         sink.put_bytes(&bytes).map_err(|error| Failure::writing(sink.name(), error))
     }
+}
+
+/// The arguments that this call of the program makes its pictures of, in the order of `--help`: those that
+/// change nothing on a picture, such as the number of threads and the places of files, are left out, so that
+/// the same picture is the same bytes.
+fn arguments() -> Vec<String> {
+    const IDLE: [&str; 12] = [
+        "headless",
+        "out",
+        "jobs",
+        "quiet",
+        "plot_data",
+        "events",
+        "summary",
+        "landscape",
+        "shapes",
+        "contact",
+        "attractors",
+        "strict",
+    ];
+    let program = Options::command();
+    let Ok(matches) = program.clone().try_get_matches_from(std::env::args_os()) else { return Vec::new() };
+    let Some((word, own)) = matches.subcommand() else { return Vec::new() };
+    let mut words = vec!["--headless".to_owned(), word.to_owned()];
+    for argument in program.find_subcommand(word).iter().flat_map(|command| command.get_arguments()) {
+        let id = argument.get_id().as_str();
+        // common options may also stand before the command
+        let given = |matches: &ArgMatches| -> Vec<String> {
+            let known = matches.try_contains_id(id).is_ok();
+            if !known || matches.value_source(id) != Some(ValueSource::CommandLine) {
+                return Vec::new();
+            }
+            let values = matches.get_raw(id).into_iter().flatten();
+            values.map(|value| value.to_string_lossy().into_owned()).collect()
+        };
+        if IDLE.contains(&id) {
+            continue;
+        }
+        for value in given(&matches).into_iter().chain(given(own)) {
+            let option = argument.get_long().map(|long| format!("--{long}"));
+            let is_flag = matches!(argument.get_action(), ArgAction::SetTrue);
+            // the place of a picture is no part of it, its kind is
+            let ending = Path::new(&value).extension().map(|own| own.to_string_lossy().to_ascii_lowercase());
+            let value = match (id, ending) {
+                ("plot" | "contact_plot", Some(ending)) => format!("{id}.{ending}"),
+                _ => value,
+            };
+            words.extend(option);
+            words.extend(Some(value).filter(|_| !is_flag));
+        }
+    }
+    words
+}
+
+/// The sheet of paper that `options` ask for.
+fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure> {
+    let Some(width) = &options.plot_width_mm else { return Ok(None) };
+    let within = |option: &str, text: &str, (least, most): (f64, f64), what: &str, such: &str| {
+        let number = text.trim().parse().ok().filter(|own: &f64| (least..=most).contains(own));
+        let message = format!("{option} {text}: give {what}, {least} to {most}, such as {such}");
+        number.ok_or_else(|| Failure::argument(message))
+    };
+    let width_mm = within("--plot-width-mm", width, Sheet::MM, "a width in mm", "85")?;
+    let height_mm = options.plot_height_mm.as_deref();
+    let height_mm = height_mm
+        .map(|text| within("--plot-height-mm", text, Sheet::MM, "a height in mm", "60"))
+        .transpose()?;
+    let font_pt = within("--font-pt", &options.font_pt, Sheet::FONT_PT, "a size in points", "8")?;
+    let dpi = options.dpi.as_deref();
+    let dpi = dpi.map_or(Ok(300.0), |text| {
+        within("--dpi", text, Sheet::DPI, "a resolution in pixels an inch", "300")
+    })?;
+    let most = Sheet::largest_font_pt(width_mm);
+    if font_pt > most {
+        return Err(Failure::argument(format!(
+            "--font-pt {}: a picture {width_mm} mm wide has room for text of at most {} points",
+            options.font_pt,
+            (10.0 * most).floor() / 10.0
+        )));
+    }
+    let sheet = Sheet { width_mm, height_mm, font_pt, dpi, titled: !options.no_title };
+    let longest = width_mm.max(height_mm.unwrap_or(0.0));
+    if format == Format::Png && f64::from(sheet.pixels(longest)) > Sheet::MOST_PIXELS {
+        return Err(Failure::argument(format!(
+            "--dpi {dpi}: {longest} mm would be {} pixels; at most {} are drawn, which is {} an inch",
+            (longest / 25.4 * dpi).round(),
+            Sheet::MOST_PIXELS,
+            (Sheet::MOST_PIXELS * 25.4 / longest).floor()
+        )));
+    }
+    Ok(Some(sheet))
 }
 
 /// What stands over and under a picture of this scene.

@@ -10,7 +10,7 @@ use interwell::study::{
 };
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{Common, PlotOptions, RangeOptions, whole};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
     MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, until_settled, warn, write_table,
@@ -53,12 +53,12 @@ pub struct Arguments {
 
     /// Forcing periods to skip, in place of run.settle_s; needs --keep
     #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "keep",
-          value_parser = clap::value_parser!(u64).range(0..=1_000_000_000))]
+          value_parser = whole::<u64>(0..=1_000_000_000))]
     pub skip: Option<u64>,
 
     /// Forcing periods of the settled window after those, in place of run.duration_s; needs --skip
     #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "skip",
-          value_parser = clap::value_parser!(u64).range(1..=MAX_SECTION))]
+          value_parser = whole::<u64>(1..=MAX_SECTION))]
     pub keep: Option<u64>,
 
     /// Let each run go on, window after window, until its motion repeats, or up to this time in s
@@ -109,12 +109,13 @@ fn section_at(options: &Arguments) -> Result<SectionAt, Failure> {
 /// The section of one run.
 fn one(options: &Arguments, mut asked: SectionOptions) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
     asked.until_settled = until_settled(options.until_settled.as_deref(), &document, &asked.run_of(&model))?;
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let found = section(&model, &document.scene, &asked, interrupt::listen());
     let (table, summary) = found.map_err(|fault| document.error_from(vec![fault]))?;
@@ -127,7 +128,7 @@ fn one(options: &Arguments, mut asked: SectionOptions) -> Result<(), Failure> {
         let stops = model.stop_positions();
         let shown =
             SectionPicture { rows: &table, over: None, phase_deg: phase(&asked), stops, ranges: axes };
-        picture.write(&mut sinks[1], section_figure(&shown, &caption(&document), picture.theme))?;
+        picture.write(&mut sinks[1..3], section_figure(&shown, &caption(&document), &picture.theme))?;
     }
     finish(sinks)?;
     tell_early(&document, &summary);
@@ -149,7 +150,7 @@ fn phase(asked: &SectionOptions) -> Option<f64> {
 /// The sections of all cells.
 fn diagram(options: &Arguments, asked: SectionOptions) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let beside = manifest_path(common.out());
@@ -174,7 +175,8 @@ fn diagram(options: &Arguments, asked: SectionOptions) -> Result<(), Failure> {
     warn(&document, common, &warnings, first.as_ref().map(|model| &**model.mechanism()));
     let pool = pool(common)?;
     let beside = beside.as_deref().map(|path| (MANIFEST, path));
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output()), beside];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data, beside];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
 
@@ -206,13 +208,13 @@ fn diagram(options: &Arguments, asked: SectionOptions) -> Result<(), Failure> {
         let over = sections.grid().columns().first().map(String::as_str);
         let phase_deg = phase(&asked);
         let shown = SectionPicture { rows: &rows, over, phase_deg, stops: (None, None), ranges: axes };
-        picture.write(&mut sinks[1], section_figure(&shown, &caption(&document), picture.theme))?;
+        picture.write(&mut sinks[1..3], section_figure(&shown, &caption(&document), &picture.theme))?;
     }
-    if sinks[2].is_some() {
+    if sinks[3].is_some() {
         let origin = watch.origin(pool.count());
         let data = file_name(common.out());
         let text = manifest(("section", &document), sections.grid(), &tally, &origin, &data);
-        write_text(&mut sinks[2], &text)?;
+        write_text(&mut sinks[3], &text)?;
     }
     finish(sinks)?;
     if !common.quiet && tally.cells == sections.runs() {

@@ -64,7 +64,7 @@ pub struct Arguments {
 /// Runs the scene and writes samples, events and summary.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-time")?;
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
@@ -87,7 +87,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     }
     let events = options.events.as_deref().map(|path| ("--events", path));
     let summary_path = options.summary.as_deref().map(|path| ("--summary", path));
-    let outputs = [Some(("--out", common.out())), events, summary_path, picture.map(|own| own.output())];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), events, summary_path, plot, data];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
 
     let cancel = interrupt::listen();
@@ -103,14 +104,14 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     if interrupt::came() {
         return Err(Failure::interrupted());
     }
-    let [samples, events, about, plot] = &mut sinks;
+    let [samples, events, about, pictures @ ..] = &mut sinks;
     write_table(samples, &simulation.samples)?;
     write_table(events, &simulation.events)?;
     write_text(about, &summary(&simulation.summary, &document.scene, &watch.origin(1)))?;
     if let Some((picture, trace)) = picture.zip(trace) {
         let (about, mechanism) = (caption(&document), &model.mechanism());
-        let figure = run_figure(&trace, &simulation.summary, mechanism, axes, &about, picture.theme);
-        picture.write(plot, figure)?;
+        let figure = run_figure(&trace, &simulation.summary, mechanism, axes, &about, &picture.theme);
+        picture.write(pictures, figure)?;
     }
     finish(sinks)?;
     if let Some(warning) = yield_warning(&model, &simulation.summary).filter(|_| !common.quiet) {

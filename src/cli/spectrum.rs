@@ -70,7 +70,7 @@ pub struct Arguments {
 /// Runs the scene and writes the spectrum of its settled motion.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
     if let Some((low, high)) = axes.y.filter(|(low, _)| !(*low > 0.0)) {
         return Err(Failure::argument(format!(
@@ -90,7 +90,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         rate_hz: options.rate_hz.as_deref().map(rate).transpose()?,
         until_settled,
     };
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let task = Task { tick: &|| (), cancel: interrupt::listen() };
     let found = spectrum(&model, &asked, &task).map_err(|problem| match problem {
@@ -102,14 +103,16 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
             Failure::argument(format!("--rate-hz {given}: {}: {problem}", document.name))
         }
     })?;
-    let [lines, plot] = &mut sinks;
-    write_table(lines, &found.table)?;
+    write_table(&mut sinks[0], &found.table)?;
     if let Some(picture) = picture {
         let quantity = match options.quantity.as_str() {
             "psd" => SpectrumQuantity::Density,
             _ => SpectrumQuantity::Amplitude,
         };
-        picture.write(plot, spectrum_figure(&found, quantity, axes, &caption(&document), picture.theme))?;
+        picture.write(
+            &mut sinks[1..],
+            spectrum_figure(&found, quantity, axes, &caption(&document), &picture.theme),
+        )?;
     }
     finish(sinks)?;
     if !common.quiet {

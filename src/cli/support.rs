@@ -59,13 +59,7 @@ pub fn load(
     common: &Common,
     over: Option<&[String]>,
 ) -> Result<(Document, Vec<String>), SceneError> {
-    let mut document = Document::of_argument(spec)?;
-    for argument in &common.set {
-        document.set(argument)?;
-    }
-    if let Some(tolerance) = &common.tolerance {
-        document.assign("run.tolerance", tolerance, &format!("--tolerance {tolerance}"))?;
-    }
+    let mut document = read(spec, common)?;
     let moved = document.settle_within();
     let warnings = match over {
         None => document.check()?,
@@ -78,6 +72,18 @@ pub fn load(
         }
     };
     Ok((document, moved.into_iter().chain(warnings).collect()))
+}
+
+/// The same, not checked yet.
+pub fn read(spec: &str, common: &Common) -> Result<Document, SceneError> {
+    let mut document = Document::of_argument(spec)?;
+    for argument in &common.set {
+        document.set(argument)?;
+    }
+    if let Some(tolerance) = &common.tolerance {
+        document.assign("run.tolerance", tolerance, &format!("--tolerance {tolerance}"))?;
+    }
+    Ok(document)
 }
 
 /// The files that a scene is made of: its own and those that it names.

@@ -7,7 +7,9 @@ use std::sync::Arc;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use interwell::mechanics::{BuildError, Mechanism};
-use interwell::output::{Overlay, SweepPicture, can_show, header, is_regular, manifest, rows, sweep_figure};
+use interwell::output::{
+    Cut, Overlay, SweepPicture, View, can_show, header, is_regular, manifest, rows, sweep_figure,
+};
 use interwell::scene::Document;
 use interwell::study::{
     Carry, DIRECTION, Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, SummaryField, Sweep, SweepEnd, SweepOptions,
@@ -48,9 +50,18 @@ pub struct Arguments {
     #[arg(long, value_name = "up|down|both", value_parser = ["up", "down", "both"])]
     pub carry: Option<String>,
 
-    /// With --plot: the column that is shown, any one with numbers, or regime
+    /// With --plot: the column that is shown, any one of --columns all
     #[arg(long, value_name = "COLUMN", requires = "plot", default_value = "rms_velocity_m_per_s")]
     pub quantity: String,
+
+    /// With --plot, over two fields: a surface whose height is the quantity
+    #[arg(long, requires = "plot", conflicts_with = "cut")]
+    pub surface: bool,
+
+    /// With --plot, over two fields: beside the map the quantity along a line through it, at this value of a
+    /// field (repeatable, at most twice)
+    #[arg(long, value_name = "FIELD=VALUE", allow_hyphen_values = true, requires = "plot")]
+    pub cut: Vec<String>,
 
     /// The picture.
     #[command(flatten)]
@@ -68,7 +79,7 @@ pub struct Arguments {
 /// Runs the grid and writes a row a cell.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let beside = manifest_path(common.out());
@@ -85,15 +96,20 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         Some(model) => until_settled(options.until_settled.as_deref(), &document, model)?,
         None => None, // said below, cell by cell
     };
-    let fields = columns.iter().filter_map(|name| SummaryField::find(name)).collect();
+    // what is shown need not be written
+    let asked = picture.is_some().then_some(&options.quantity);
+    let shown = asked.filter(|name| !columns.contains(name));
+    let fields = columns.iter().chain(shown).filter_map(|name| SummaryField::find(name)).collect();
     let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry });
     warn(&document, common, &warnings, mechanism.as_deref());
+    let view = view(options, sweep.grid())?;
     if picture.is_some() {
-        can_show(sweep.grid(), &options.quantity, &sweep.empty_table())?;
+        can_show(sweep.grid(), (&options.quantity, &view), &sweep.empty_table())?;
     }
     let pool = pool(common)?;
     let beside = beside.as_deref().map(|path| (MANIFEST, path));
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output()), beside];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data, beside];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let mut shown = picture.map(|_| Table::new());
 
@@ -131,15 +147,15 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
             },
         };
         let (rows, scene, quantity) = (&rows, &document.scene, &*options.quantity);
-        let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, ranges: axes };
-        picture.write(&mut sinks[1], sweep_figure(&shown, &caption(&document), picture.theme)?)?;
+        let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges: axes };
+        picture.write(&mut sinks[1..3], sweep_figure(&shown, &caption(&document), &picture.theme)?)?;
     }
-    if sinks[2].is_some() {
+    if sinks[3].is_some() {
         let data = file_name(common.out());
         let grid = sweep.grid();
         let origin = watch.origin(pool.count());
         let text = manifest(("sweep", &document), grid, &tally, &origin, &data);
-        write_text(&mut sinks[2], &text)?;
+        write_text(&mut sinks[3], &text)?;
     }
     finish(sinks)?;
     // Fewer cells than there are: the reader of a pipe has gone, which is no news to anyone.
@@ -162,6 +178,48 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// The most cuts beside a map.
+const MOST_CUTS: usize = 2;
+
+/// How the picture shows a sweep of this grid.
+fn view(options: &Arguments, grid: &Grid) -> Result<View, Failure> {
+    if options.surface {
+        return Ok(View::Surface);
+    }
+    let mut cuts: Vec<Cut> = Vec::new();
+    for text in &options.cut {
+        let wrong = |problem: String| Failure::argument(format!("--cut {text}: {problem}"));
+        let known = || grid.columns().join(", ");
+        let form = || wrong(format!("write FIELD=VALUE with a field of the sweep: {}", known()));
+        let (field, value) = text.split_once('=').ok_or_else(form)?;
+        let field = field.trim();
+        let place = grid
+            .axes()
+            .iter()
+            .zip(grid.columns())
+            .position(|(axis, column)| axis.field == field || column == field);
+        let place = place.ok_or_else(|| wrong(format!("no field of the sweep; these are: {}", known())))?;
+        let value: f64 = value.trim().parse().map_err(|_| form())?;
+        let column = grid.columns()[place].clone();
+        let values = &grid.axes()[place].values;
+        if !values.contains(&value) {
+            let mut near: Vec<f64> = values.clone();
+            near.sort_by(|a, b| (a - value).abs().total_cmp(&(b - value).abs()));
+            near.truncate(2);
+            let near: Vec<String> = near.iter().map(f64::to_string).collect();
+            return Err(wrong(format!(
+                "the sweep has no such value; the nearest are {}",
+                near.join(" and ")
+            )));
+        }
+        if cuts.len() == MOST_CUTS {
+            return Err(wrong(format!("at most {MOST_CUTS} cuts stand beside a map")));
+        }
+        cuts.push(Cut { column, value });
+    }
+    Ok(if cuts.is_empty() { View::Top } else { View::Cuts(cuts) })
 }
 
 /// The columns of the rows: those of the swept fields, the direction of a walk, and what was asked for.

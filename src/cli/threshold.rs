@@ -3,14 +3,14 @@
 use clap::Args;
 use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_figure};
 use interwell::scene::{Axis, Document};
-use interwell::study::{CellFaults, Grid, Onset, Scan, Task, threshold_table};
+use interwell::study::{CellFaults, Grid, Onset, Scan, Table, Task, threshold_table};
 
 use super::failure::Failure;
-use super::interrupt;
 use super::options::{Common, PlotOptions, RangeOptions};
 use super::picture::{Picture, caption, ranges};
 use super::support::{finish, inputs, load, mechanism, open, warn, write_table};
 use super::sweep::{bar, located, pool};
+use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -78,7 +78,7 @@ const MOST_NAMED: usize = 8;
 /// Searches and writes the table.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
-    let picture = Picture::asked(&options.plot)?;
+    let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
     // without --over no cell of the scene's own sweep is run
     let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
@@ -102,7 +102,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let own = same.then(|| mechanism(&document)).transpose()?;
     warn(&document, common, &warnings, own.as_deref());
     let pool = pool(common)?;
-    let outputs = [Some(("--out", common.out())), picture.map(|own| own.output())];
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), plot, data];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let values = scan.values.len() as u64;
     let bar = bar(grid.as_ref().map_or(1, Grid::cells) * values, "values", common.quiet, common.out());
@@ -112,12 +113,42 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     bar.finish_and_clear();
     let table = found.ok_or_else(Failure::interrupted)?.map_err(|cells| wrong(&document, cells))?;
     write_table(&mut sinks[0], &table)?;
+    if let Some(words) = missing(&table, (&scan, onset), grid.as_ref()).filter(|_| !common.quiet) {
+        say(&format!("{}: {words}", document.name));
+    }
     if let Some((picture, grid)) = picture.zip(grid.as_ref()) {
         let scene = &document.scene;
         let shown = ThresholdPicture { rows: &table, grid, scene, field: &scan.field, onset, ranges: axes };
-        picture.write(&mut sinks[1], threshold_figure(&shown, &caption(&document), picture.theme)?)?;
+        picture.write(&mut sinks[1..3], threshold_figure(&shown, &caption(&document), &picture.theme)?)?;
     }
     finish(sinks)
+}
+
+/// What an empty `value` means, where there are some.
+fn missing(table: &Table, (scan, onset): (&Scan, Onset), grid: Option<&Grid>) -> Option<String> {
+    let values = table.numbers("value")?;
+    let count = values.iter().filter(|own| own.is_nan()).count();
+    let rows = match (count, values.len()) {
+        (0, _) => return None,
+        (1, 1) => "the row has no value".to_owned(),
+        (count, all) => format!("{count} of {all} rows have no value"),
+    };
+    let what = match onset {
+        Onset::Release => "releases the mass from a stop",
+        Onset::Crossing => "makes the settled motion cross",
+        Onset::Interwell => "makes the settled motion interwell",
+    };
+    let ends = scan.values.first().zip(scan.values.last());
+    let (low, high) = ends.map_or((f64::NAN, f64::NAN), |(low, high)| (*low, *high));
+    let unsolved = match grid.is_some_and(Grid::changes_mechanism) || scan.field.starts_with("mechanism") {
+        true => ", or the flexures are not solved",
+        false => "",
+    };
+    Some(format!(
+        "{rows}: no {} that was tried from {low} to {high} {what}{unsolved}; give --field a wider range or \
+         smaller steps",
+        scan.field
+    ))
 }
 
 /// An error that names the cells that are wrong.

@@ -1,4 +1,4 @@
-//! Manifests of a sweep and of a map of basins, and the origin of a result.
+//! Manifests of a sweep, of exponents over a grid and of a map of basins, and the origin of a result.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::json::pretty;
 use crate::scene::{Document, PROGRAM, Scene};
-use crate::study::{Answer, Basins, Grid, Tally};
+use crate::study::{Answer, Basins, ExponentTally, Grid, Tally};
 
 /// Where a result came from, besides its scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +36,43 @@ pub fn manifest(
     origin: &Provenance,
     data: &str,
 ) -> String {
+    let counts = |counts: &BTreeMap<&'static str, u64>| -> Value {
+        counts.iter().map(|(word, n)| ((*word).to_owned(), json!(n))).collect::<Map<_, _>>().into()
+    };
+    let own = json!({
+        "cells": tally.cells,
+        "mechanisms": tally.mechanisms,
+        "outcomes": counts(&tally.outcomes),
+        "regimes": counts(&tally.regimes),
+    });
+    swept((command, document), grid, own, origin, data)
+}
+
+/// The manifest of exponents over a grid as text: as that of a sweep, with how many cells rest on a stop and
+/// how many have no exponents in place of outcomes and regimes.
+pub fn exponents_manifest(
+    document: &Document,
+    grid: &Grid,
+    tally: &ExponentTally,
+    origin: &Provenance,
+    data: &str,
+) -> String {
+    let own = json!({
+        "cells": tally.cells,
+        "resting": tally.resting,
+        "without_exponents": tally.missing,
+    });
+    swept(("exponents", document), grid, own, origin, data)
+}
+
+/// The manifest of rows over a grid, with what else there is to say of them.
+fn swept(
+    (command, document): (&str, &Document),
+    grid: &Grid,
+    more: Value,
+    origin: &Provenance,
+    data: &str,
+) -> String {
     let axes: Vec<Value> = grid
         .axes()
         .iter()
@@ -44,16 +81,10 @@ pub fn manifest(
         .collect();
     let sweep = grid.axes().iter().map(|axis| axis.to_scene(&document.scene)).collect();
     let scene = &Scene { sweep, ..document.scene.clone() };
-    let counts = |counts: &BTreeMap<&'static str, u64>| -> Value {
-        counts.iter().map(|(word, n)| ((*word).to_owned(), json!(n))).collect::<Map<_, _>>().into()
-    };
-    let own = json!({
-        "grid": axes,
-        "cells": tally.cells,
-        "mechanisms": tally.mechanisms,
-        "outcomes": counts(&tally.outcomes),
-        "regimes": counts(&tally.regimes),
-    });
+    let mut own = json!({ "grid": axes });
+    if let (Value::Object(own), Value::Object(more)) = (&mut own, more) {
+        own.extend(more);
+    }
     written((document, scene), command, own, origin, data)
 }
 
@@ -112,6 +143,23 @@ fn written(
         }
     }
     pretty(&all)
+}
+
+/// What made a picture of `document` with this `version` of the program, besides the arguments: the same
+/// names and values as in a manifest, and the scene with all arguments applied as its text.
+pub fn origin(document: &Document, version: &str) -> Map<String, Value> {
+    let scene = &document.scene;
+    let all = json!({
+        "program": PROGRAM,
+        "version": version,
+        "scene_name": document.name,
+        "changes": document.changes().collect::<Vec<_>>(),
+        "title": scene.title,
+        "tolerance": scene.run.tolerance,
+        "seed": seed(scene),
+        "scene_ron": crate::scene::write(scene).ok(),
+    });
+    if let Value::Object(all) = all { all } else { Map::new() }
 }
 
 /// The seed of the scene's random numbers: null where it has none, a list where it has several.

@@ -15,6 +15,7 @@ mod curve;
 mod dense_output;
 mod edges;
 mod exponents;
+mod family;
 mod fields;
 mod flexures;
 mod grid;
@@ -56,6 +57,7 @@ pub use exponents::{
     Estimate, ExponentCells, ExponentOptions, ExponentTally, Exponents, NoExponents, average_exponents,
     drive_fault, exponents, exponents_row,
 };
+pub use family::Family;
 pub use fields::{Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
@@ -66,9 +68,7 @@ pub use lesson::{
 pub use levels::{Levels, STRIDES};
 pub use map::{first_crossing, release_line};
 pub use models::Held;
-pub use orbit::{
-    Branch, BranchEnd, BranchEvent, Family, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table,
-};
+pub use orbit::{Branch, BranchEnd, BranchEvent, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table};
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use settled::{Standing, lasts, settled, standing};
 pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};

@@ -9,12 +9,13 @@ use std::sync::Arc;
 
 use super::Task;
 use super::cell::CellFaults;
+use super::family::Family;
 use super::grid::Grid;
 use super::push::{AMPLITUDE, frees_at};
 use super::table::Table;
 use crate::dynamics::{Model, Regime, Summary};
 use crate::mechanics::{BuildError, Mechanism};
-use crate::scene::{Fault, FieldPath, Files, Scene, Start};
+use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::Pool;
 
 /// What begins at a threshold.
@@ -98,7 +99,8 @@ pub fn threshold(
     (scan, onset): (&Scan, Onset),
     task: &Task,
 ) -> Option<Found> {
-    let mut search = Search::new(scene, mechanism, files, (scan, onset), task);
+    let trial = from_rest(scene);
+    let search = Search::new(&trial, mechanism, files, (scan, onset), task);
     if onset == Onset::Release
         && scan.field == AMPLITUDE
         && let Some(value) = frees_at(scene, mechanism)
@@ -160,7 +162,10 @@ pub fn threshold_table(
             return Err(());
         }
         let faults = match prepared(scene, index) {
-            Ok(mechanism) => Search::new(scene, &mechanism, files, asked, task).faults(&asked.0.values),
+            Ok(mechanism) => {
+                let trial = from_rest(scene);
+                Search::new(&trial, &mechanism, files, asked, task).faults(&asked.0.values)
+            }
             Err(BuildError::Unsolved(_)) => return Ok(None),
             Err(BuildError::Wrong(fault)) => Some(vec![fault]),
         };
@@ -195,36 +200,37 @@ fn build(scene: &Scene, files: &Files) -> Result<Arc<Mechanism>, BuildError> {
     Mechanism::build(&scene.mechanism, files).map(Arc::new)
 }
 
+fn from_rest(scene: &Scene) -> Scene {
+    Scene { start: Start::Rest, ..scene.clone() }
+}
+
 struct Search<'a> {
-    trial: Scene,
-    mechanism: &'a Arc<Mechanism>,
-    files: &'a Files,
-    path: FieldPath,
+    trial: &'a Scene,
+    family: Family<'a>,
     onset: Onset,
     task: &'a Task<'a>,
 }
 
 impl<'a> Search<'a> {
     fn new(
-        scene: &Scene,
+        trial: &'a Scene,
         mechanism: &'a Arc<Mechanism>,
         files: &'a Files,
         (scan, onset): (&Scan, Onset),
         task: &'a Task<'a>,
     ) -> Self {
-        let trial = Scene { start: Start::Rest, ..scene.clone() };
-        Self { trial, mechanism, files, path: FieldPath::new(&scan.field), onset, task }
+        Self { trial, family: Family::new(trial, files, mechanism, &scan.field), onset, task }
     }
 
     /// Which of the values do it.
-    fn ask(&mut self, values: &[f64]) -> Option<Vec<bool>> {
+    fn ask(&self, values: &[f64]) -> Option<Vec<bool>> {
         let mut does = vec![false; values.len()];
         let (mut models, mut places) = (Vec::new(), Vec::new());
         for (place, value) in values.iter().enumerate() {
             if self.task.is_cancelled() {
                 return None;
             }
-            if let Some(Ok(model)) = self.model(*value) {
+            if let Ok(model) = self.family.model(*value) {
                 models.push(model);
                 places.push(place);
             }
@@ -238,32 +244,14 @@ impl<'a> Search<'a> {
         (!self.task.is_cancelled()).then_some(does)
     }
 
-    /// The model at a value, or its faults; none where its mechanism is not solved.
-    fn model(&mut self, value: f64) -> Option<Result<Model, Vec<Fault>>> {
-        let before = self.trial.mechanism.clone();
-        if !self.path.set(&mut self.trial, value) {
-            return None;
-        }
-        let mechanism = match self.trial.mechanism == before {
-            true => Ok(Arc::clone(self.mechanism)),
-            false => build(&self.trial, self.files),
-        };
-        let model = match mechanism {
-            Ok(mechanism) => Some(Model::build(&self.trial, mechanism)),
-            Err(BuildError::Wrong(fault)) => Some(Err(vec![fault])),
-            Err(BuildError::Unsolved(_)) => None,
-        };
-        self.trial.mechanism = before;
-        model
-    }
-
     /// The faults of the model at the first of the values, where none of them makes one that can do it.
-    fn faults(&mut self, values: &[f64]) -> Option<Vec<Fault>> {
+    fn faults(&self, values: &[f64]) -> Option<Vec<Fault>> {
         let mut first = None;
         for value in values {
-            let faults = match self.model(*value)? {
+            let faults = match self.family.model(*value) {
                 Ok(model) if self.onset != Onset::Interwell || model.repeats() => return None,
                 Ok(_) => vec![self.no_period()],
+                Err(faults) if faults.is_empty() => return None,
                 Err(faults) => faults,
             };
             first = first.or(Some(faults));
@@ -281,7 +269,7 @@ impl<'a> Search<'a> {
 
     /// The least multiple of the resolution, as far as bisection tells, that does it, between a value that
     /// does not and one that does.
-    fn locate(&mut self, before: Option<f64>, value: f64, resolution: f64) -> Option<f64> {
+    fn locate(&self, before: Option<f64>, value: f64, resolution: f64) -> Option<f64> {
         let (Some(mut low), mut high) = (before, value) else { return Some(value) };
         loop {
             let middle = multiple(0.5 * (low + high), resolution);

@@ -3,7 +3,7 @@
 //! [`Sweep`](super::Sweep) makes tables of such walks; here the runs are handed over one by one, as a picture
 //! that grows needs them.
 
-use super::orbit::Family;
+use super::family::Family;
 use super::{Direction, Task};
 use crate::dynamics::{Model, Request, Run, Summary};
 use crate::system::threads::Pool;
@@ -66,7 +66,7 @@ pub(super) fn walk_over(
 ) -> usize {
     let (mut last, mut unfit) = (None::<(Model, (f64, f64))>, 0);
     for value in values {
-        let Some(model) = family.model(*value) else {
+        let Ok(model) = family.model(*value) else {
             unfit += 1;
             continue;
         };

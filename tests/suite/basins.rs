@@ -200,6 +200,18 @@ fn a_mass_that_nothing_frees_rests_on_the_stop_that_it_falls_to() {
     }
 }
 
+/// At 1 g without stops the strobes of both intrawell motions lie near a kink of the force.
+#[test]
+fn a_motion_that_passes_a_kink_is_known_by_an_ellipse() {
+    let document = Document::load("paper-unconstrained").unwrap();
+    let (_, answer) = map(&document, (-8.0, 8.0, 9), (-0.6, 0.6, 7));
+    let longest = answer.rows.iter().flatten().map(|own| own.1).max();
+    assert!(answer.undecided == 0 && longest < Some(300), "{longest:?} {}", answer.undecided);
+    assert!(answer.attractors.iter().all(|own| own.period == Some(1)), "{:?}", answer.attractors);
+    let sides = answer.attractors.iter().filter(|own| own.regime.name() == "intrawell").count();
+    assert_eq!(sides, 2);
+}
+
 /// Chaos in the double well (Holmes 1979): one irregular attractor, into whose region every start comes.
 #[test]
 fn an_irregular_attractor_is_one() {

@@ -17,6 +17,7 @@ mod impacts;
 mod lanes;
 mod layers;
 mod lesson_format;
+mod lessons;
 mod live;
 mod mechanics;
 mod notes;

@@ -1,5 +1,8 @@
 //! Periodic motions, their multipliers and branches against closed forms.
 
+mod leaps;
+mod one_stop;
+
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

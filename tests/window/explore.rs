@@ -5,8 +5,8 @@ use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::explore::WalkQuantity;
 use interwell::app::ui::settings::Settings;
 use interwell::app::window::{Command, Window};
-use interwell::scene::Layout;
-use interwell::study::Direction;
+use interwell::scene::{Layout, Start};
+use interwell::study::{Direction, Signal};
 
 use crate::shared::axis;
 use crate::support::{PROJECTED, WIDE, command, wait_until, window};
@@ -81,4 +81,53 @@ fn a_scene_that_cannot_be_walked_says_why() {
     let mut harness = window("random-shaking", PROJECTED, Settings::default());
     command(&mut harness, Command::Arrange(Layout::Explore));
     harness.get_by_label_contains("that needs shaking that repeats");
+}
+
+#[test]
+fn basins_come_coarse_first_and_a_click_begins_there() {
+    let mut harness = window("paper", WIDE, Settings::default());
+    command(&mut harness, Command::Arrange(Layout::Explore));
+    harness.get_by_label("Basins").click();
+    wait_until("the basins", || {
+        harness.run_steps(1);
+        harness.state().session.explore.basins.is_whole()
+    });
+    let (parts, current) = harness.state().session.explore.basins.parts();
+    assert!(current && parts.len() > 1);
+    let last = parts.last().unwrap().as_ref().unwrap();
+    // a motion that rests on a stop forgets its start: one attractor, and all starts go to it
+    assert_eq!((last.answer.attractors.len(), last.answer.lost + last.answer.undecided), (1, 0));
+    assert_eq!(last.answer.attractors[0].starts, last.answer.rows.iter().flatten().count() as u64);
+    let before = harness.state().session.scene().clone();
+    let place = harness.get_by_role_and_label(Role::Canvas, "basins of attraction").rect();
+    harness.drag_at(place.center());
+    harness.run_steps(1);
+    harness.drop_at(place.center());
+    harness.run_steps(1);
+    let session = &mut harness.state_mut().session;
+    let Start::At { x_mm, .. } = session.scene().start else { panic!("{:?}", session.scene().start) };
+    assert!(x_mm.abs() < 1.0, "{x_mm}");
+    assert!(session.player.watch().time() < 0.5);
+    // the start has no part in the question
+    assert!(session.explore.basins.is_whole());
+    assert!(session.undo() && *session.scene() == before);
+}
+
+#[test]
+fn a_spectrum_has_lines_where_the_motion_repeats() {
+    let mut harness = window("paper", WIDE, Settings::default());
+    command(&mut harness, Command::Arrange(Layout::Explore));
+    harness.get_by_label("Spectrum").click();
+    wait_until("the spectrum", || {
+        harness.run_steps(1);
+        harness.state().session.explore.spectra.found.is_whole()
+    });
+    harness.run_steps(2);
+    harness.get_by_label("spectrum of displacement");
+    let (parts, _) = harness.state().session.explore.spectra.found.parts();
+    let spectrum = parts[0].as_ref().unwrap();
+    assert_eq!(spectrum.period, Some(1));
+    harness.state_mut().session.explore.spectra.signal = Signal::BaseAcceleration;
+    harness.run_steps(2);
+    assert!(harness.state().session.explore.spectra.found.is_running());
 }

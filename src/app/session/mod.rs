@@ -124,7 +124,7 @@ impl Session {
     }
 
     /// Lets the mass go on as the scene now says, where that has changed.
-    fn apply(&mut self) {
+    pub(super) fn apply(&mut self) {
         if *self.editor.scene() == self.built {
             return;
         }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId, Stroke, TextStyle, Theme};
 
 use crate::app::words::kind::Kind;
-use crate::output::{Ink, viridis};
+use crate::output::{Ink, attractor_colour, viridis};
 
 /// Zoom of the projector mode.
 pub const PROJECTOR_ZOOM: f32 = 1.5;
@@ -218,6 +218,12 @@ impl Style {
     /// A share from 0 to 1 of a map's scale.
     pub fn scale(&self, share: f64) -> Color32 {
         let Ink(red, green, blue) = viridis(share);
+        Color32::from_rgb(red, green, blue)
+    }
+
+    /// The colour of an attractor, by its place from 0.
+    pub fn attractor(&self, place: usize) -> Color32 {
+        let Ink(red, green, blue) = attractor_colour(place);
         Color32::from_rgb(red, green, blue)
     }
 

@@ -6,6 +6,7 @@
 
 mod accuracy;
 mod axes;
+mod basins;
 mod before_now;
 mod chart;
 mod context;
@@ -22,6 +23,7 @@ mod phase;
 mod ranges;
 mod schematic;
 mod span;
+mod spectrum;
 mod stops;
 mod timeline;
 mod trace;
@@ -83,6 +85,8 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
         View::Power => trace::trace_ui(ui, TraceQuantity::Power, context),
         View::Map => map::map_ui(ui, context),
         View::UpAndDown => up_and_down::up_and_down_ui(ui, context),
+        View::Basins => basins::basins_ui(ui, context),
+        View::Spectrum => spectrum::spectrum_ui(ui, context),
         View::Accuracy => accuracy::accuracy_ui(ui, context),
     }
 }

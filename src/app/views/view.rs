@@ -83,6 +83,14 @@ views! {
         "One setting, turned up and then down slowly: each run goes on from where the one before was. Where \
          the two ways differ the motion remembers how it came: hysteresis. Drag along it to take the scene \
          there.";
+    /// Where the motion goes from every start.
+    Basins "Basins"
+        "Where the motion goes from every start, by colour, and what it is there. Each start is a \
+         displacement and a velocity at time 0 of the shaking. Click to begin there.";
+    /// What oscillations the motion is made of.
+    Spectrum "Spectrum"
+        "The oscillations that the settled motion is made of: their frequencies and amplitudes. One that \
+         repeats has lines at multiples of its own frequency and nothing between; chaos fills the gaps.";
     /// What digits cost, and what a fixed step makes of the scene.
     Accuracy "Accuracy"
         "How far the computed motion is from the true one: what each digit costs, and what becomes of the \

@@ -210,7 +210,14 @@ fn views_of(layout: Layout) -> Vec<View> {
         Layout::Look => look.to_vec(),
         Layout::Map => vec![View::Map, View::Well, View::BeforeNow],
         Layout::Explore => {
-            vec![View::UpAndDown, View::Well, View::PhasePortrait, View::Displacement]
+            vec![
+                View::UpAndDown,
+                View::Basins,
+                View::Spectrum,
+                View::Well,
+                View::PhasePortrait,
+                View::Displacement,
+            ]
         }
         Layout::Study => look.into_iter().chain(study).collect(),
     }
@@ -298,15 +305,16 @@ fn map_tree() -> Tree<View> {
     Tree::new(egui::Id::unique("map"), root, tiles)
 }
 
-/// One setting turned up and down, with the motion beside it.
+/// What the studies say, with the motion beside it.
 fn explore_tree() -> Tree<View> {
     let mut tiles = Tiles::default();
     let mut pane = |view| tiles.insert_pane(view);
-    let walks = pane(View::UpAndDown);
+    let studies = [View::UpAndDown, View::Basins, View::Spectrum].map(&mut pane);
     let (well, phase, displacement) = (pane(View::Well), pane(View::PhasePortrait), pane(View::Displacement));
+    let studies = tiles.insert_tab_tile(studies.to_vec());
     let tabs = tiles.insert_tab_tile(vec![phase, displacement]);
     let right = pair(&mut tiles, LinearDir::Vertical, well, tabs, 0.45);
-    let root = pair(&mut tiles, LinearDir::Horizontal, walks, right, MAP_SHARE);
+    let root = pair(&mut tiles, LinearDir::Horizontal, studies, right, MAP_SHARE);
     Tree::new(egui::Id::unique("explore"), root, tiles)
 }
 

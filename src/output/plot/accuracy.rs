@@ -1,26 +1,30 @@
 //! Picture of work against precision: error over CPU time, both logarithmic, a frame for each problem.
 
+use serde_json::Map;
+
 use super::axis::PlotAxis;
+use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point, Text};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Ink, Theme};
 use super::swept::words;
+use crate::scene::PROGRAM;
 use crate::study::Table;
 use crate::study::accuracy::{OWN, PROBLEMS};
 
 const LEFT: f64 = 150.0;
-const RIGHT: f64 = 1570.0;
 const TOP: f64 = 270.0;
-const BOTTOM: f64 = 868.0;
 const BETWEEN: f64 = 45.0;
+/// On a narrow canvas, where the frames are stacked: a frame's height, and what lies between two.
+const HEIGHT: f64 = 420.0;
+const UNDER: f64 = 150.0;
 
 /// Errors below this are all that a double can tell.
 const LEAST: f64 = 1e-17;
 
 /// The picture of a table as [`work_table`](crate::study::accuracy::Report::work_table) gives it.
 pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
-    let mut figure = Figure::new(theme.paper);
     let (problems, methods) = (words(table, "problem"), words(table, "method"));
     let column = |name: &str| table.numbers(name).unwrap_or_default();
     let (errors, times) = (column("error"), column("cpu_s"));
@@ -38,11 +42,45 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
     let told = times.iter().zip(errors).filter(|(_, error)| error.is_finite()).map(|(time, _)| *time);
     let across = PlotAxis::decades(told, 4, "CPU time, s");
     let up = PlotAxis::decades(errors.iter().map(|error| floored(*error).min(10.0)), 9, "error");
-    let width = (RIGHT - LEFT - BETWEEN * (shown.len().max(1) - 1) as f64) / shown.len().max(1) as f64;
+    let title = "What accuracy costs".to_owned();
+    let footer = format!("interwell {version} \u{b7} CPU time on one core of the machine that drew this");
+    let about = PROBLEMS.iter().filter(|own| shown.contains(&own.name)).count();
+    let subtitle = match about {
+        1 => "ten seconds of motion: error against the same motion in twice the digits".to_owned(),
+        n => format!("{n} problems of ten seconds each: error against the same motion in twice the digits"),
+    };
+    let mut origin = Map::new();
+    origin.insert("program".into(), PROGRAM.into());
+    origin.insert("version".into(), version.into());
+    let caption = &Caption { title, footer, origin };
+    let count = shown.len().max(1) as f64;
+    let stacked = theme.is_narrow();
+    let mut figure =
+        Figure::new(theme, caption, if stacked { 160.0 + count * (HEIGHT + UNDER) } else { 420.0 });
+    let entries: Vec<(Sample, &str)> = named
+        .iter()
+        .enumerate()
+        .map(|(k, method)| {
+            let (shape, ink) = look(k, theme);
+            (Sample::Marker(shape, ink), *method)
+        })
+        .collect();
+    let ends = (LEFT, figure.canvas.right - 30.0);
+    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 29.0);
+    let (left, right) = (Frame::left(&figure, &up, LEFT, HEIGHT), ends.1);
+    let width = if stacked { right - left } else { (right - left - BETWEEN * (count - 1.0)) / count };
     for (i, problem) in shown.iter().enumerate() {
-        let left = LEFT + i as f64 * (width + BETWEEN);
-        let y = if i == 0 { up.clone() } else { up.clone().silent() };
-        let frame = Frame::new(Area::new(left, TOP, left + width, BOTTOM), across.clone(), y);
+        let place = i as f64;
+        let area = if stacked {
+            let top = top + place * (HEIGHT + UNDER);
+            Area::new(left, top, right, top + HEIGHT)
+        } else {
+            let left = left + place * (width + BETWEEN);
+            Area::new(left, top, left + width, figure.bottom())
+        };
+        let Area { left, top, .. } = area;
+        let y = if i == 0 || stacked { up.clone() } else { up.clone().silent() };
+        let frame = Frame::new(area, across.clone(), y);
         frame.grid(&mut figure, theme);
         // the own method last, so that it lies on top
         for (k, method) in named.iter().enumerate().rev() {
@@ -61,7 +99,7 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
         frame.axes(&mut figure, theme);
         figure.text(Text {
             words: super::figure::fitted(heading(problem), style::AXIS, true, width),
-            at: (left, TOP - 16.0),
+            at: (left, top - 16.0),
             size: style::AXIS,
             ink: theme.ink,
             bold: true,
@@ -69,23 +107,12 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
             upright: false,
         });
     }
-    let entries: Vec<(Sample, &str)> = named
-        .iter()
-        .enumerate()
-        .map(|(k, method)| {
-            let (shape, ink) = look(k, theme);
-            (Sample::Marker(shape, ink), *method)
-        })
-        .collect();
-    legend(&mut figure, theme, &entries, LEFT, RIGHT, 146.0);
-    let title = "What accuracy costs".to_owned();
-    let footer = format!("interwell {version} \u{b7} CPU time on one core of the machine that drew this");
-    let about = PROBLEMS.iter().filter(|own| shown.contains(&own.name)).count();
-    let subtitle = match about {
-        1 => "ten seconds of motion: error against the same motion in twice the digits".to_owned(),
-        n => format!("{n} problems of ten seconds each: error against the same motion in twice the digits"),
-    };
-    Caption { title, footer }.draw(&mut figure, theme, &subtitle, LEFT);
+    let mut drawn = Drawn::new(["cpu_s", "error"], &["problem", "method"]);
+    for row in 0..problems.len() {
+        drawn.put("run", &[times[row], errors[row]], &[problems[row], methods[row]]);
+    }
+    figure.data = drawn.table();
+    caption.draw(&mut figure, theme, &subtitle, LEFT);
     figure
 }
 

@@ -1,30 +1,17 @@
 //! Picture of basins of attraction: the attractor of each start as colour, and where the attractors are.
 
 use super::axis::PlotAxis;
+use super::drawn::Drawn;
 use super::figure::{Area, Figure};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
-use super::style::{self, Ink, Theme};
+use super::style::{self, Ink, KINDS, Theme};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
-use super::swept::{BOTTOM, LEFT, TOP};
-use crate::dynamics::Regime;
+use super::swept::{LEAST, LEFT, TOP};
 use crate::numeric::short;
-use crate::study::{Answer, Attractor, Basins, Edges, Starts};
+use crate::study::{Answer, Attractor, Basins, Edges, Starts, Table};
 
-/// Colours of attractors, the first ones farthest apart in lightness, so that they are told apart without
-/// colour too. Beyond these they come again, hatched.
-const COLOURS: [Ink; 8] = [
-    Ink(0x1e, 0x52, 0x8c),
-    Ink(0xf3, 0xb6, 0x40),
-    Ink(0x2a, 0x9a, 0x7c),
-    Ink(0xc4, 0xe2, 0xf5),
-    Ink(0xb0, 0x3a, 0x14),
-    Ink(0xde, 0x8c, 0xb4),
-    Ink(0x48, 0x1e, 0x5a),
-    Ink(0xa6, 0xa8, 0x9c),
-];
-
-/// Their markers, in turn.
+/// Markers of attractors, in turn.
 const MARKERS: [Marker; 4] = [Marker::Disc, Marker::Square, Marker::Diamond, Marker::Triangle];
 
 /// The most attractors that the legend names, those with the largest shares.
@@ -38,12 +25,11 @@ pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
 
 /// The picture of a map as far as it is known.
 pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme: &Theme) -> Figure {
-    const RIGHT: f64 = 1560.0;
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, LEAST);
     let entries = entries(basins, answer, theme);
     let entries: Vec<(Sample, &str)> = entries.iter().map(|(own, words)| (*own, words.as_str())).collect();
-    let top = TOP.max(legend(&mut figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
-    let area = Area::new(LEFT, top, RIGHT, BOTTOM);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
     let (across, up) = match basins.starts().axes() {
         Some((x_mm, v)) => (Edges::new(x_mm).ends(), Edges::new(v).ends()),
         None => {
@@ -55,11 +41,11 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
             (around(all().map(|own| own.0).collect()), around(all().map(|own| own.1).collect()))
         }
     };
-    let frame = Frame::new(
-        area,
-        PlotAxis::between(across.0, across.1, 8, "displacement at the start, mm"),
-        PlotAxis::between(up.0, up.1, 7, "velocity at the start, m/s"),
-    );
+    let upward = PlotAxis::between(up.0, up.1, 7, "velocity at the start, m/s");
+    let left = Frame::left(&figure, &upward, LEFT, figure.bottom() - top);
+    let area = Area::new(left, top, figure.right(), figure.bottom());
+    let frame =
+        Frame::new(area, PlotAxis::between(across.0, across.1, 8, "displacement at the start, mm"), upward);
     match basins.starts().axes() {
         Some((x_mm, v)) => cells(&mut figure, &frame, (x_mm, v), (basins, answer), theme),
         None => dots(&mut figure, &frame, (basins, answer), theme),
@@ -75,17 +61,36 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
             let at = frame.place((1e3 * x, *v));
             if area.contains(at) {
                 marker(&mut figure, shape(place), at, style::MARKER + 5.0, style::BLACK, style::BLACK);
-                marker(&mut figure, shape(place), at, style::MARKER, ink(place), style::WHITE);
+                marker(&mut figure, shape(place), at, style::MARKER, attractor_colour(place), style::WHITE);
             }
         }
     }
     frame.axes(&mut figure, theme);
+    figure.data = drawn(basins, answer);
     caption.draw(&mut figure, theme, &about(basins, answer), LEFT);
     figure
 }
 
-fn ink(place: usize) -> Ink {
-    COLOURS[place % COLOURS.len()]
+/// The starts with the attractors that they go to, and the states of these.
+fn drawn(basins: &Basins, answer: &Answer) -> Table {
+    let mut drawn = Drawn::new(["x_mm", "v_m_per_s", "attractor"], &[]);
+    let stand_in = standing(basins);
+    for row in 0..answer.rows.len() {
+        let (x_mm, v) = basins.starts().at(row);
+        let number = answer.rows[stand_in(row)].map_or(f64::NAN, |own| f64::from(own.0));
+        drawn.put("start", &[x_mm, v, number], &[]);
+    }
+    for (place, attractor) in answer.attractors.iter().enumerate() {
+        for (x, v) in &attractor.states {
+            drawn.put("attractor", &[1e3 * x, *v, (place + 1) as f64], &[]);
+        }
+    }
+    drawn.table()
+}
+
+/// The colour of an attractor, by its place from 0; beyond eight they come again.
+pub fn attractor_colour(place: usize) -> Ink {
+    KINDS[place % KINDS.len()]
 }
 
 fn shape(place: usize) -> Marker {
@@ -95,8 +100,8 @@ fn shape(place: usize) -> Marker {
 /// The hatching of an attractor whose colour is another one's too.
 fn hatch(place: usize) -> Option<Ink> {
     let dark = |Ink(r, g, b): Ink| 2 * u32::from(r) + 5 * u32::from(g) + u32::from(b) < 8 * 128;
-    let over = if dark(ink(place)) { style::WHITE } else { style::BLACK };
-    (place >= COLOURS.len()).then_some(over)
+    let over = if dark(attractor_colour(place)) { style::WHITE } else { style::BLACK };
+    (place >= KINDS.len()).then_some(over)
 }
 
 /// The attractor of each start of a grid as the colour of its cell.
@@ -122,7 +127,7 @@ fn cells(
             let Some(area) = Area::new(left, top, right, bottom).common(frame.area) else { continue };
             match run[0].map(|number| number as usize - 1) {
                 Some(place) => {
-                    figure.rect(area, ink(place));
+                    figure.rect(area, attractor_colour(place));
                     if let Some(over) = hatch(place) {
                         figure.hatch(area, style::HATCH, over);
                     }
@@ -156,7 +161,7 @@ fn dots(figure: &mut Figure, frame: &Frame, (basins, answer): (&Basins, &Answer)
         }
         let at = frame.place((x_mm, v));
         figure.disc(at, size, theme.soft);
-        figure.disc(at, 0.85 * size, own.map_or(theme.rest, |own| ink(own.0 as usize - 1)));
+        figure.disc(at, 0.85 * size, own.map_or(theme.rest, |own| attractor_colour(own.0 as usize - 1)));
     }
 }
 
@@ -169,7 +174,7 @@ fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, Stri
     let mut entries: Vec<(Sample, String)> = Vec::new();
     for place in named {
         let words = words(place, &answer.attractors[place], basins.starts().is_grid());
-        entries.push((Sample::Patch(ink(place), hatch(place)), words));
+        entries.push((Sample::Patch(attractor_colour(place), hatch(place)), words));
     }
     if more > 0 {
         entries.push((Sample::Patch(theme.paper, None), format!("{more} more")));
@@ -182,19 +187,7 @@ fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, Stri
 
 /// An attractor in words, with its number and its share; of random starts with its interval.
 fn words(place: usize, own: &Attractor, is_grid: bool) -> String {
-    let regime = match own.regime.name() {
-        "" => "one well",
-        name => name,
-    };
-    let mut words = format!("{} {regime}", place + 1);
-    if let Some(side) = own.side.map(|side| side.name()).filter(|side| *side != "both") {
-        words += &format!(" {side}");
-    }
-    if let Some(period) = own.period {
-        words += &format!(", period {period}");
-    } else if own.regime == Regime::Intrawell {
-        words += ", no period";
-    }
+    let mut words = format!("{} {}", place + 1, own.words());
     let percent = |share: f64| short((1e3 * share).round() / 10.0);
     let share = &own.share;
     words += &match is_grid {

@@ -2,15 +2,14 @@
 //! dashed, events marked.
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Theme};
-use super::swept::{BOTTOM, LEFT, TOP, label};
+use super::swept::{LEAST, LEFT, TOP, label};
 use crate::numeric::short;
 use crate::study::{Branch, BranchEvent};
-
-const RIGHT: f64 = 1560.0;
 
 /// The kinds of events with their markers.
 const EVENTS: [(BranchEvent, Marker); 4] = [
@@ -28,7 +27,7 @@ pub fn branch_figure(
     caption: &Caption,
     theme: &Theme,
 ) -> Figure {
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, LEAST);
     let table = branch.table();
     let millimetres: Vec<f64> = branch.orbits.iter().map(|own| own.state.0 * 1e3).collect();
     let points: Vec<Point> = branch.values.iter().copied().zip(millimetres.iter().copied()).collect();
@@ -43,13 +42,15 @@ pub fn branch_figure(
     for (event, shape) in EVENTS.into_iter().filter(|own| branch.events.contains(&Some(own.0))) {
         entries.push((Sample::Marker(shape, theme.soft), event.name()));
     }
-    let top = TOP.max(legend(&mut figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
     let x_label = label(&table, &table.columns()[0].name);
     let y_label = "displacement at the strobe, mm";
     let across =
         PlotAxis::around(branch.values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     let up = PlotAxis::around(millimetres, 0.08, 6, y_label).or_given(ranges.y, 6, y_label);
-    let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);
+    let left = Frame::left(&figure, &up, LEFT, figure.bottom() - top);
+    let frame = Frame::new(Area::new(left, top, figure.right(), figure.bottom()), across, up);
     frame.grid(&mut figure, theme);
     // a stretch of one kind ends at the point where the other begins
     let mut from = 0;
@@ -73,6 +74,15 @@ pub fn branch_figure(
         }
     }
     frame.axes(&mut figure, theme);
+    let mut drawn = Drawn::new([table.columns()[0].name.as_str(), "x_m"], &["stable", "event"]);
+    for (i, value) in branch.values.iter().enumerate() {
+        if (frame.x.low..=frame.x.high).contains(value) {
+            let words =
+                [if stable[i] { "true" } else { "false" }, branch.events[i].map_or("", |own| own.name())];
+            drawn.put("branch", &[*value, branch.orbits[i].state.0], &words);
+        }
+    }
+    figure.data = drawn.table();
     let period = branch.orbits.first().map_or(1, |own| own.period);
     let about = format!(
         "{} periodic motions of period {period}, at the drive's phase {}\u{b0}; the branch ends {}",

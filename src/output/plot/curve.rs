@@ -1,8 +1,9 @@
 //! Picture of a mechanism: force and potential over displacement, with equilibria, kinks and stops.
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point};
-use super::frame::Frame;
+use super::frame::{Frame, stretched};
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Theme};
 use crate::mechanics::{Landscape, Mechanism};
@@ -10,8 +11,11 @@ use crate::numeric::short;
 use crate::study::Table;
 
 const LEFT: f64 = 160.0;
-const RIGHT: f64 = 1560.0;
 const GUTTER: f64 = 110.0;
+/// Upper and lower edges of the frames on the canvas for a screen.
+const FRAMES: [(f64, f64); 2] = [(175.0, 520.0), (550.0, 860.0)];
+/// What the frames need between the captions.
+const LEAST: f64 = 560.0;
 const TICKS: usize = 5;
 
 /// The picture of the curve in `table` (as [`curve`](crate::study::curve) gives it), with stops at these
@@ -24,7 +28,7 @@ pub fn curve_figure(
     caption: &Caption,
     theme: &Theme,
 ) -> Figure {
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, LEAST);
     let column = |name: &str| table.numbers(name).unwrap_or_default();
     let x: Vec<f64> = column("x_m").iter().map(|x| x * 1e3).collect();
     let pairs =
@@ -41,12 +45,31 @@ pub fn curve_figure(
     let height = |(low, high): (f64, f64), scale: f64, least: f64, label: &str| {
         PlotAxis::around([low * scale, high * scale, least], 0.08, TICKS, label)
     };
-    let upper = Area::new(LEFT, 175.0, RIGHT, 520.0);
-    let lower = Area::new(LEFT, 550.0, RIGHT, 860.0);
     let force_label = format!("force to hold, {force_unit}");
     let force_axis = height(force_range, force, 0.0, &force_label).or_given(ranges.y, TICKS, &force_label);
     let potential_axis =
         height(potential_range, potential, f64::NAN, &format!("potential, {potential_unit}"));
+    let kinks: Vec<f64> = landscape.kinks.iter().map(|kink| kink.x).filter(|x| inside(*x)).collect();
+    let mut entries = Vec::new();
+    let any = |stable: bool| landscape.equilibria.iter().any(|own| own.stable == stable && inside(own.x));
+    for (stable, words) in [(true, "stable equilibrium"), (false, "unstable equilibrium")] {
+        if any(stable) {
+            let (shape, ink) = kind(stable, theme);
+            entries.push((Sample::Marker(shape, ink), words));
+        }
+    }
+    if !kinks.is_empty() {
+        entries.push((Sample::Line(theme.soft, style::LINE, Some(style::DOT)), "kink of the force"));
+    }
+    if inside(stops.0) || inside(stops.1) {
+        entries.push((Sample::Patch(theme.wall_fill(), Some(theme.wall_hatch())), "stop"));
+    }
+    let ends = (LEFT, figure.right());
+    let more = (legend(&mut figure, theme, &entries, ends, 142.0) - 161.0).max(0.0);
+    let left = if figure.is_narrow() { GUTTER + style::AXIS } else { LEFT };
+    let bottom = figure.bottom() - 8.0;
+    let [upper, lower] = stretched(FRAMES, 175.0 + more, bottom)
+        .map(|(top, bottom)| Area::new(left, top, figure.right(), bottom));
     let framed = |area, x, y| Frame { gutter: Some(GUTTER), ..Frame::new(area, x, y) };
     let frames = [
         (framed(upper, across.clone().silent(), force_axis), pairs(column("force_n"), force), theme.ink),
@@ -56,7 +79,6 @@ pub fn curve_figure(
             theme.second,
         ),
     ];
-    let kinks: Vec<f64> = landscape.kinks.iter().map(|kink| kink.x).filter(|x| inside(*x)).collect();
     for (frame, line, ink) in &frames {
         frame.grid(&mut figure, theme);
         for (at, left) in [(stops.0, true), (stops.1, false)] {
@@ -79,27 +101,32 @@ pub fn curve_figure(
     }
     frames.iter().for_each(|(frame, ..)| frame.axes(&mut figure, theme));
 
-    let mut entries = Vec::new();
-    let any = |stable: bool| landscape.equilibria.iter().any(|own| own.stable == stable && inside(own.x));
-    for (stable, words) in [(true, "stable equilibrium"), (false, "unstable equilibrium")] {
-        if any(stable) {
-            let (shape, ink) = kind(stable, theme);
-            entries.push((Sample::Marker(shape, ink), words));
-        }
-    }
-    if !kinks.is_empty() {
-        entries.push((Sample::Line(theme.soft, style::LINE, Some(style::DOT)), "kink of the force"));
-    }
-    if inside(stops.0) || inside(stops.1) {
-        entries.push((Sample::Patch(theme.wall_fill(), Some(theme.wall_hatch())), "stop"));
-    }
-    legend(&mut figure, theme, &entries, LEFT, RIGHT, 142.0);
+    figure.data = drawn(table, mechanism, stops, inside);
     let mut words = subtitle(landscape);
     if let Some(wall) = wall(column("x_m"), column("force_n"), &frames[0].0.y, force) {
         words += &wall;
     }
     caption.draw(&mut figure, theme, &words, LEFT);
     figure
+}
+
+/// All that is drawn at the positions in m that lie `inside`.
+fn drawn(table: &Table, mechanism: &Mechanism, stops: (f64, f64), inside: impl Fn(f64) -> bool) -> Table {
+    let names = ["x_m", "force_n", "potential_j"];
+    let [x, force, potential] = names.map(|name| table.numbers(name).unwrap_or_default());
+    let mut drawn = Drawn::new(names, &[]);
+    for i in (0..x.len()).filter(|i| inside(x[*i])) {
+        drawn.put("curve", &[x[i], force[i], potential[i]], &[]);
+    }
+    for equilibrium in mechanism.landscape.equilibria.iter().filter(|own| inside(own.x)) {
+        let name = if equilibrium.stable { "stable_equilibrium" } else { "unstable_equilibrium" };
+        drawn.put(name, &[equilibrium.x, 0.0, mechanism.curve.potential(equilibrium.x)], &[]);
+    }
+    let kinks = mechanism.landscape.kinks.iter().map(|kink| ("kink", kink.x));
+    for (name, at) in kinks.chain([("stop", stops.0), ("stop", stops.1)]).filter(|own| inside(own.1)) {
+        drawn.put(name, &[at], &[]);
+    }
+    drawn.table()
 }
 
 fn kind(stable: bool, theme: &Theme) -> (Marker, style::Ink) {

@@ -1,12 +1,13 @@
 //! Picture of Lyapunov exponents over a field: both of them, each with its standard error as a band.
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Sample, legend};
 use super::style::{self, Ink, Theme};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
-use super::swept::{BOTTOM, LEFT, TOP, label};
+use super::swept::{LEAST, LEFT, TOP, label};
 use crate::numeric::short;
 use crate::scene::{Excitation, Scene};
 use crate::study::{Grid, Table};
@@ -23,8 +24,6 @@ pub struct ExponentPicture<'a> {
     /// The axes.
     pub ranges: Ranges,
 }
-
-const RIGHT: f64 = 1560.0;
 
 /// Whether exponents over this grid can be shown; none is a single motion.
 pub fn can_show_exponents(grid: Option<&Grid>) -> Result<(), NoPicture> {
@@ -45,7 +44,7 @@ pub fn exponents_figure(
 ) -> Result<Figure, NoPicture> {
     can_show_exponents(Some(picture.grid))?;
     let ExponentPicture { rows, grid, ranges, .. } = *picture;
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, LEAST);
     let x = &grid.columns()[0];
     let numbers = |name: &str| rows.numbers(name).unwrap_or_default();
     let places = numbers(x);
@@ -72,8 +71,11 @@ pub fn exponents_figure(
     if first.iter().any(|own| own.is_nan()) {
         entries.push((Sample::Ticks(theme.soft), "no value"));
     }
-    let top = TOP.max(legend(&mut figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
-    let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
+    let (left, right, bottom) =
+        (Frame::left(&figure, &up, LEFT, figure.bottom() - top), figure.right(), figure.bottom());
+    let frame = Frame::new(Area::new(left, top, right, bottom), across, up);
     frame.grid(&mut figure, theme);
     frame.horizontal(&mut figure, 0.0, style::THIN, theme.ink, None);
     let mut order: Vec<usize> = (0..places.len()).collect();
@@ -84,9 +86,17 @@ pub fn exponents_figure(
     for (place, own) in places.iter().zip(first).filter(|(_, own)| !own.is_finite()) {
         let ink = if own.is_nan() { theme.soft } else { theme.ink };
         let at = frame.across(*place);
-        figure.line(&[(at, BOTTOM - TICK), (at, BOTTOM)], style::FINE_LINE, ink, frame.area);
+        figure.line(&[(at, bottom - TICK), (at, bottom)], style::FINE_LINE, ink, frame.area);
     }
     frame.axes(&mut figure, theme);
+    let names = ["exponent_1_per_s", "exponent_1_se", "exponent_2_per_s", "exponent_2_se"];
+    let columns = names.map(numbers);
+    let mut drawn = Drawn::new([x.as_str()].into_iter().chain(names), &[]);
+    for (row, at) in places.iter().enumerate().filter(|own| (frame.x.low..=frame.x.high).contains(own.1)) {
+        let [a, b, c, d] = columns.map(|own| own[row]);
+        drawn.put("exponents", &[*at, a, b, c, d], &[]);
+    }
+    figure.data = drawn.table();
     caption.draw(&mut figure, theme, &about(picture), LEFT);
     Ok(figure)
 }

@@ -3,8 +3,14 @@
 //! The plots write down what they show; [`paint`](super::paint) turns that into pixels or SVG. So
 //! each plot is written once for both, and a test can read what a picture says.
 
+use serde_json::{Map, Value};
+
 use super::font;
-use super::style::{BETWEEN_CAPTIONS, Ink, SIZE};
+use super::mark::Caption;
+use super::sheet::{Sheet, canvas_width};
+use super::style::{self, CAPTIONS, Ink, SIZE, Theme};
+use crate::numeric::short;
+use crate::study::Table;
 
 /// A place on the canvas: to the right and down from the upper left corner.
 pub type Point = (f64, f64);
@@ -113,24 +119,95 @@ pub enum Shape {
 pub struct Figure {
     /// The shapes in the order in which they are painted.
     pub shapes: Vec<Shape>,
+    /// All that can be drawn on.
+    pub canvas: Area,
     /// What of the canvas is painted.
     pub shown: Area,
     /// Width and height in pixels; left out, one for each unit of the canvas. What is shown keeps its
     /// proportions and stands in their middle.
     pub size: Option<(u32, u32)>,
+    /// The sheet of paper that it is laid out for; none for a screen.
+    pub sheet: Option<Sheet>,
+    /// What made it: names and values, as in a manifest.
+    pub origin: Map<String, Value>,
+    /// What is drawn: a row a point, a cell or a mark, its kind in the column `series`.
+    pub data: Table,
+    /// How much higher than one line the footer is.
+    foot: f64,
 }
 
+/// What the canvas keeps free at its right edge, and below the frames for numbers, label and footer.
+const RIGHT: f64 = 40.0;
+const BELOW: f64 = 132.0;
+
+/// What captions and legends leave free at both edges of a narrow canvas.
+const NARROW_LEFT: f64 = 24.0;
+
+/// Height of the data on a sheet over its width.
+const PROPORTION: f64 = 0.625;
+
 impl Figure {
-    /// A canvas of this colour.
-    pub fn new(paper: Ink) -> Self {
-        let shown = Self::canvas();
-        Self { shapes: vec![Shape::Rect(shown, paper)], shown, size: None }
+    /// An empty canvas for a picture with this caption. On a sheet that leaves the height open, what stands
+    /// between the captions has at least `least` units.
+    pub fn new(theme: &Theme, caption: &Caption, least: f64) -> Self {
+        let sheet = theme.sheet;
+        let width = canvas_width(sheet.as_ref());
+        let foot = style::FOOTER_LINE * (caption.footer_lines(width).len() as f64 - 1.0).max(0.0);
+        let captions = CAPTIONS.0 + CAPTIONS.1 + foot;
+        let height = sheet.map_or(f64::from(SIZE.1), |sheet| {
+            let around = if sheet.titled { captions } else { 0.0 };
+            let asked = sheet.height_mm.map_or(PROPORTION * width, |mm| mm / sheet.unit_mm() - around);
+            captions + asked.max(least)
+        });
+        let canvas = Area::new(0.0, 0.0, width, height);
+        Self {
+            shapes: vec![Shape::Rect(canvas, theme.paper)],
+            canvas,
+            shown: canvas,
+            size: None,
+            sheet,
+            foot,
+            origin: caption.origin.clone(),
+            data: Table::new(),
+        }
+    }
+
+    /// Makes the canvas higher by `more`, where its sheet leaves the height open. Before anything is drawn.
+    pub fn grow(&mut self, more: f64) {
+        if self.sheet.is_some_and(|sheet| sheet.height_mm.is_none()) {
+            self.canvas.bottom += more;
+            self.shown = self.canvas;
+            if let Some(Shape::Rect(paper, _)) = self.shapes.first_mut() {
+                *paper = self.canvas;
+            }
+        }
+    }
+
+    /// Whether the canvas is narrow.
+    pub fn is_narrow(&self) -> bool {
+        self.canvas.right < style::NARROW
+    }
+
+    /// From where to where captions and legends stand: between these `ends` on a wide canvas.
+    pub fn breadth(&self, ends: (f64, f64)) -> (f64, f64) {
+        if self.is_narrow() { (NARROW_LEFT, self.canvas.right - NARROW_LEFT) } else { ends }
+    }
+
+    /// Where the rightmost frame ends.
+    pub fn right(&self) -> f64 {
+        self.canvas.right - RIGHT
+    }
+
+    /// Where the lowest frame ends.
+    pub fn bottom(&self) -> f64 {
+        self.canvas.bottom - BELOW - self.foot
     }
 
     /// The picture without what stands over and under it, as for a page that has a caption of its own.
     #[must_use]
     pub fn without_title(mut self) -> Self {
-        (self.shown.top, self.shown.bottom) = BETWEEN_CAPTIONS;
+        self.shown.top = CAPTIONS.0;
+        self.shown.bottom = self.canvas.bottom - CAPTIONS.1 - self.foot;
         let shown = self.shown;
         self.shapes.retain_mut(|shape| match shape {
             Shape::Text(text) => (shown.top..=shown.bottom).contains(&text.at.1),
@@ -140,14 +217,33 @@ impl Figure {
         self
     }
 
-    /// The whole canvas.
-    pub fn canvas() -> Area {
-        Area::new(0.0, 0.0, f64::from(SIZE.0), f64::from(SIZE.1))
+    /// What is said where the height that was asked for has no room for the picture; it is then higher.
+    pub fn grown(&self) -> Option<String> {
+        let (asked, made) = (self.sheet?.height_mm?, self.size_mm()?.1);
+        let words = || format!("{asked} mm are too low; the picture is {} mm high", short(made));
+        (made > asked + 1e-6).then(words)
+    }
+
+    /// What made it, as JSON in one line.
+    pub fn made(&self) -> String {
+        Value::Object(self.origin.clone()).to_string()
+    }
+
+    /// Program and version that made it.
+    pub fn software(&self) -> String {
+        let word = |key: &str| self.origin.get(key).and_then(Value::as_str).unwrap_or_default();
+        format!("{} {}", word("program"), word("version"))
+    }
+
+    /// Width and height in mm of what is shown, on a sheet.
+    pub fn size_mm(&self) -> Option<(f64, f64)> {
+        let unit = self.sheet?.unit_mm();
+        Some(((self.shown.right - self.shown.left) * unit, (self.shown.bottom - self.shown.top) * unit))
     }
 
     /// Adds a filled rectangle; what lies outside the canvas is cut off.
     pub fn rect(&mut self, area: Area, ink: Ink) {
-        if let Some(area) = area.common(Self::canvas()) {
+        if let Some(area) = area.common(self.canvas) {
             self.shapes.push(Shape::Rect(area, ink));
         }
     }
@@ -170,14 +266,14 @@ impl Figure {
 
     /// Adds a filled convex polygon where all of it lies on the canvas.
     pub fn polygon(&mut self, points: Vec<Point>, ink: Ink) {
-        if points.iter().all(|point| on_canvas(*point)) {
+        if points.iter().all(|point| self.canvas.contains(*point)) {
             self.shapes.push(Shape::Polygon(points, ink));
         }
     }
 
     /// Adds a filled disc where its centre lies on the canvas.
     pub fn disc(&mut self, centre: Point, radius: f64, ink: Ink) {
-        if on_canvas(centre) {
+        if self.canvas.contains(centre) {
             self.shapes.push(Shape::Disc(centre, radius, ink));
         }
     }
@@ -185,14 +281,14 @@ impl Figure {
     /// Adds a text; control characters become blanks.
     pub fn text(&mut self, mut text: Text) {
         text.words = text.words.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-        if on_canvas(text.at) && !text.words.trim().is_empty() {
+        if self.canvas.contains(text.at) && !text.words.trim().is_empty() {
             self.shapes.push(Shape::Text(text));
         }
     }
 
     /// Hatches `area` with lines that go up to the right, in step with every other hatching.
     pub fn hatch(&mut self, area: Area, (step, width): (f64, f64), ink: Ink) {
-        let Some(area) = area.common(Self::canvas()) else { return };
+        let Some(area) = area.common(self.canvas) else { return };
         // Lines x + y = k step.
         let first = ((area.left + area.top) / step).ceil() as i64;
         let last = ((area.right + area.bottom) / step).floor() as i64;
@@ -226,10 +322,6 @@ pub fn fitted(words: &str, size: f64, bold: bool, room: f64) -> String {
         }
         letters.pop();
     }
-}
-
-fn on_canvas(at: Point) -> bool {
-    Figure::canvas().contains(at)
 }
 
 /// The parts of a line that lie inside.

@@ -17,12 +17,17 @@ pub const LINE_HEIGHT: f64 = 2478.0 / 2048.0;
 /// Height of a capital letter in ems.
 pub const CAPITAL: f64 = 1490.0 / 2048.0;
 
+/// The files of the font, regular and bold.
+pub const FACES: [&[u8]; 2] = [
+    include_bytes!("../../../assets/fonts/Inter-Regular.ttf"),
+    include_bytes!("../../../assets/fonts/Inter-SemiBold.ttf"),
+];
+
 /// The font in a size given as plotters' bitmaps understand it.
 pub fn font(plotters_size: f64, bold: bool) -> FontDesc<'static> {
     static REGISTER: Once = Once::new();
     REGISTER.call_once(|| {
-        let regular = include_bytes!("../../../assets/fonts/Inter-Regular.ttf");
-        let bold = include_bytes!("../../../assets/fonts/Inter-SemiBold.ttf");
+        let [regular, bold] = FACES;
         // A font that were broken would show as an error of every drawing; a test draws.
         let _ = register_font(FAMILY, FontStyle::Normal, regular);
         let _ = register_font(FAMILY, FontStyle::Bold, bold);

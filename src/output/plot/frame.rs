@@ -19,10 +19,39 @@ pub struct Frame {
     pub gutter: Option<f64>,
 }
 
+/// Distance of the upward label's line from the frame, besides the width of the numbers between them.
+const BESIDE: f64 = style::TICK_LENGTH + 7.0 + 18.0;
+
+/// From the first line of an upward label to its second.
+const SECOND: f64 = 32.0;
+
+/// Whether a label can stand in full size beside a frame of this height.
+fn fits(label: &str, height: f64) -> bool {
+    font::width(label, style::AXIS, false) <= height + 20.0
+}
+
+/// A label in two lines, parted at the blank next to its middle.
+fn halves(label: &str) -> Option<(&str, &str)> {
+    let middle = label.len() / 2;
+    let blank = label.match_indices(' ').map(|own| own.0).min_by_key(|at| at.abs_diff(middle))?;
+    Some((&label[..blank], &label[blank + 1..]))
+}
+
 impl Frame {
     /// A frame at `area` with these axes.
     pub fn new(area: Area, x: PlotAxis, y: PlotAxis) -> Self {
         Self { area, x, y, gutter: None }
+    }
+
+    /// Where the left edge of a frame with this axis upward stands, so that numbers and label have room: on a
+    /// wide canvas at `wide`. On a narrow one a label that is too long for the frame's `height` has two
+    /// lines.
+    pub fn left(figure: &Figure, y: &PlotAxis, wide: f64, height: f64) -> f64 {
+        if !figure.is_narrow() {
+            return wide;
+        }
+        let numbers = y.ticks.iter().map(|tick| font::width(&tick.1, style::TICK, false)).fold(0.0, f64::max);
+        BESIDE + numbers + style::AXIS + if fits(&y.label, height) { 0.0 } else { SECOND }
     }
 
     /// Where a value of x stands on the canvas.
@@ -57,7 +86,7 @@ impl Frame {
     pub fn axes(&self, figure: &mut Figure, theme: &Theme) {
         let Area { left, top, right, bottom } = self.area;
         let outline = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-        figure.line(&outline, style::FRAME, theme.ink, Figure::canvas());
+        figure.line(&outline, style::FRAME, theme.ink, figure.canvas);
         let ascent = style::TICK * font::CAPITAL;
         let text = |words: &str, at: Point, align: Align| Text {
             words: words.to_owned(),
@@ -68,40 +97,41 @@ impl Frame {
             align,
             upright: false,
         };
-        let numbered = self.numbered();
+        let (numbered, narrow) = (self.numbered(), figure.is_narrow());
         for (i, (value, words)) in self.x.ticks.iter().enumerate() {
             let at = self.across(*value);
             let words = if numbered(i) { words } else { "" };
             let tick = [(at, bottom), (at, bottom + style::TICK_LENGTH)];
-            figure.line(&tick, style::FRAME, theme.ink, Figure::canvas());
+            figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
             figure.text(text(words, (at, bottom + style::TICK_LENGTH + ascent + 8.0), Align::Centre));
         }
         let mut widest: f64 = 0.0;
         for (value, words) in &self.y.ticks {
             let at = self.down(*value);
             let tick = [(left - style::TICK_LENGTH, at), (left, at)];
-            figure.line(&tick, style::FRAME, theme.ink, Figure::canvas());
+            figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
             widest = widest.max(font::width(words, style::TICK, false));
             figure.text(text(words, (left - style::TICK_LENGTH - 7.0, at + 0.5 * ascent), Align::Right));
         }
         // A label too long for its axis is smaller, so that it does not reach into the next one.
-        let label = |words: &str, at: Point, upright: bool| Text {
-            words: words.to_owned(),
-            at,
-            size: {
-                let room = if upright { bottom - top + 20.0 } else { right - left + 60.0 };
-                style::AXIS * (room / font::width(words, style::AXIS, false)).min(1.0)
-            },
-            ink: theme.ink,
-            bold: false,
-            align: Align::Centre,
-            upright,
+        let mut label = |words: &str, at: Point, upright: bool| {
+            let room = if upright { bottom - top + 20.0 } else { right - left + 60.0 };
+            let size = style::AXIS * (room / font::width(words, style::AXIS, false)).min(1.0);
+            figure.text(Text { size, upright, ..text(words, at, Align::Centre) });
         };
         let below = bottom + style::TICK_LENGTH + ascent + 16.0 + style::AXIS;
-        figure.text(label(&self.x.label, (0.5 * (left + right), below), false));
-        let near = style::TICK_LENGTH + 7.0 + widest + 18.0;
+        label(&self.x.label, (0.5 * (left + right), below), false);
+        let near = BESIDE + widest;
         let beside = (left - self.gutter.map_or(near, |gutter| gutter.max(near))).max(style::AXIS);
-        figure.text(label(&self.y.label, (beside, 0.5 * (top + bottom)), true));
+        let middle = 0.5 * (top + bottom);
+        let two = narrow && beside >= style::AXIS + SECOND && !fits(&self.y.label, bottom - top);
+        match halves(&self.y.label).filter(|_| two) {
+            Some((first, second)) => {
+                label(first, (beside - SECOND, middle), true);
+                label(second, (beside, middle), true);
+            }
+            None => label(&self.y.label, (beside, middle), true),
+        }
     }
 
     /// Which ticks to the right have their number: as many as stand apart, 0 among them.
@@ -220,6 +250,14 @@ impl Frame {
         }
         figure.line(&[(left, at), (right, at)], style::LINE, theme.wall, self.area);
     }
+}
+
+/// Upper and lower edges of frames one under the other, drawn up or down so that they fill the room from
+/// `top` to `bottom`.
+pub fn stretched<const N: usize>(frames: [(f64, f64); N], top: f64, bottom: f64) -> [(f64, f64); N] {
+    let (first, last) = (frames[0].0, frames[N - 1].1);
+    let scale = (bottom - top) / (last - first);
+    frames.map(|(from, to)| (top + scale * (from - first), top + scale * (to - first)))
 }
 
 /// First, least, greatest and last of a column, in their order.

@@ -1,13 +1,14 @@
 //! Picture of a sweep over two fields: a quantity as colour, and where motion begins as lines.
 
 use super::axis::{PlotAxis, Ranges};
-use super::figure::{Align, Area, Figure, Text};
+use super::drawn::Drawn;
+use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
 use super::frame::Frame;
-use super::mark::{REGIMES, Sample, cross, legend};
+use super::mark::{Sample, cross, legend};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{BOTTOM, LEFT, Overlay, SweepPicture, TOP, label, missing_words, words};
+use super::swept::{LEFT, Overlay, SweepPicture, TOP, drawn, label, missing_words, words};
 use crate::study::{Edges, Table, first_crossing_edge};
 
 /// What a cell of a map shows.
@@ -88,27 +89,95 @@ impl Mosaic {
     }
 }
 
+/// Room right of the frame for a colour bar with its numbers and its label, and the bar's place in it: on a
+/// wide canvas and on a narrow one.
+const BESIDE: f64 = 290.0;
+const BAR: (f64, f64) = (60.0, 100.0);
+const NARROW_BESIDE: f64 = 175.0;
+const NARROW_BAR: (f64, f64) = (22.0, 50.0);
+
 /// The quantity as colour over two fields.
 pub(super) fn map(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &str), theme: &Theme) {
-    const RIGHT: f64 = 1310.0;
-    let SweepPicture { rows, ranges, overlay, .. } = picture;
-    let quantity = Quantity::of(rows, picture.quantity);
-    let mosaic = Mosaic::new(rows, (x, y), &quantity, |_| true);
-    let frame =
-        mosaic.frame(Area::new(LEFT, TOP, RIGHT, BOTTOM), (&label(rows, x), &label(rows, y)), *ranges);
-    let bar = quantity.axis(0.0, 6);
-    mosaic.paint(figure, &frame, theme, |value| match quantity.regimes {
-        true => theme.regimes[value as usize],
-        false => viridis(bar.share(value)),
-    });
-    let Mosaic { across, up, cells } = &mosaic;
-    let mut entries = meanings(rows, &quantity, cells, theme);
-    entries.extend(over(figure, &frame, (x, y), across, up, overlay));
-    frame.axes(figure, theme);
-    if !quantity.regimes {
-        colour_bar(figure, Area::new(1370.0, TOP, 1410.0, BOTTOM), &bar, theme, viridis);
+    let map = Map::new(picture, (x, y));
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(figure, theme, &map.entries(picture, theme), ends, 146.0) + 18.0);
+    let canvas = figure.canvas.right;
+    let right = match (figure.is_narrow(), map.quantity.words.is_some()) {
+        (true, true) => figure.right(),
+        (true, false) => canvas - NARROW_BESIDE,
+        (false, _) => canvas - BESIDE,
+    };
+    let place = if figure.is_narrow() { NARROW_BAR } else { BAR };
+    map.draw(figure, (picture, (x, y)), (top, right, figure.bottom()), place, theme);
+    figure.data = map.drawn(picture, (x, y)).table();
+}
+
+/// A map of a sweep, before it has a place.
+pub(super) struct Map {
+    pub quantity: Quantity,
+    mosaic: Mosaic,
+    pub lines: Lines,
+}
+
+impl Map {
+    /// Of a picture over the fields `x` and `y`.
+    pub fn new(picture: &SweepPicture, (x, y): (&str, &str)) -> Self {
+        let quantity = Quantity::of(picture.rows, picture.quantity);
+        let mosaic = Mosaic::new(picture.rows, (x, y), &quantity, |_| true);
+        let lines = Lines::new((x, y), &mosaic, &picture.overlay);
+        Self { quantity, mosaic, lines }
     }
-    legend(figure, theme, &entries, LEFT, 1560.0, 146.0);
+
+    /// What its legend says.
+    pub fn entries(&self, picture: &SweepPicture, theme: &Theme) -> Vec<(Sample, &'static str)> {
+        let mut entries = meanings(picture.rows, &self.quantity, &self.mosaic.cells, theme);
+        if self.lines.release.is_some() {
+            entries.push((RELEASE, "release in closed form, |F(limit)|/mass"));
+        }
+        if !self.lines.crossing.is_empty() {
+            entries.push((CROSSING, "first crossing cell"));
+        }
+        entries
+    }
+
+    /// Draws it between these upper, right and lower edges, with a colour bar at `bar` right of it; its
+    /// frame.
+    pub fn draw(
+        &self,
+        figure: &mut Figure,
+        (picture, (x, y)): (&SweepPicture, (&str, &str)),
+        (top, right, bottom): (f64, f64, f64),
+        place: (f64, f64),
+        theme: &Theme,
+    ) -> Frame {
+        let labels = (label(picture.rows, x), label(picture.rows, y));
+        let area = Area::new(LEFT, top, right, bottom);
+        let mut frame = self.mosaic.frame(area, (&labels.0, &labels.1), picture.ranges);
+        frame.area.left = Frame::left(figure, &frame.y, LEFT, bottom - top);
+        let bar = self.quantity.axis(0.0, 6);
+        self.mosaic.paint(figure, &frame, theme, |value| match self.quantity.words {
+            Some(_) => self.quantity.ink(value, theme),
+            None => viridis(bar.share(value)),
+        });
+        self.lines.draw(figure, &frame);
+        frame.axes(figure, theme);
+        if self.quantity.words.is_none() {
+            let area = Area::new(right + place.0, top, right + place.1, bottom);
+            colour_bar(figure, area, &bar, theme, viridis);
+        }
+        frame
+    }
+
+    /// Its cells and the points of its lines.
+    pub fn drawn(&self, picture: &SweepPicture, (x, y): (&str, &str)) -> Drawn {
+        let mut drawn = drawn(picture, &[(x, picture.ranges.x), (y, picture.ranges.y)]);
+        let release = self.lines.release.iter().flatten().map(|own| ("release", own));
+        let crossing = self.lines.crossing.iter().flatten().map(|own| ("first_crossing", own));
+        for (series, (a, b)) in release.chain(crossing) {
+            drawn.put(series, &[*a, *b], &[]);
+        }
+        drawn
+    }
 }
 
 /// What a legend says of cells that no colour bar explains.
@@ -119,10 +188,9 @@ pub(super) fn meanings(
     theme: &Theme,
 ) -> Vec<(Sample, &'static str)> {
     let mut entries = Vec::new();
-    if quantity.regimes {
-        let there = |place: &usize| cells.contains(&Cell::Value(*place as f64));
-        let names = REGIMES.iter().enumerate().filter(|(place, _)| there(place));
-        entries.extend(names.map(|(place, (name, _))| (Sample::Patch(theme.regimes[place], None), *name)));
+    let there = |place: usize| cells.contains(&Cell::Value(place as f64));
+    for (place, name) in quantity.words.unwrap_or_default().iter().enumerate().filter(|own| there(own.0)) {
+        entries.push((Sample::Patch(quantity.ink(place as f64, theme), None), *name));
     }
     if cells.contains(&Cell::Rest) {
         entries.push((Sample::Patch(theme.rest, Some(theme.rest_hatch)), "at rest"));
@@ -134,35 +202,41 @@ pub(super) fn meanings(
     entries
 }
 
-/// The lines over the map; what the legend says of them.
-fn over(
-    figure: &mut Figure,
-    frame: &Frame,
-    (x, y): (&str, &str),
-    across: &Edges,
-    up: &Edges,
-    overlay: &Overlay,
-) -> Vec<(Sample, &'static str)> {
-    let mut entries = Vec::new();
-    let pairs = |table: &Table| -> Option<Vec<(f64, f64)>> {
-        Some(table.numbers(x)?.iter().copied().zip(table.numbers(y)?.iter().copied()).collect())
-    };
-    if let Some(table) = &overlay.first_crossing {
-        let parts = first_crossing_edge(table, (x, y), across, up);
+/// How the lines over a map look in its legend.
+const RELEASE: Sample = Sample::Outlined(style::WHITE, Some(style::DASH));
+const CROSSING: Sample = Sample::Line(style::OVER_MAP, style::GUIDE, None);
+
+/// The lines over a map, in its fields.
+pub(super) struct Lines {
+    /// The release in closed form.
+    pub release: Option<Vec<Point>>,
+    /// The edges of the first crossing cells.
+    pub crossing: Vec<Vec<Point>>,
+}
+
+impl Lines {
+    /// Over the fields `x` and `y` of a map.
+    pub fn new((x, y): (&str, &str), mosaic: &Mosaic, overlay: &Overlay) -> Self {
+        let pairs = |table: &Table| -> Option<Vec<Point>> {
+            Some(table.numbers(x)?.iter().copied().zip(table.numbers(y)?.iter().copied()).collect())
+        };
+        let crossing = overlay.first_crossing.as_ref();
+        let edge = |table| first_crossing_edge(table, (x, y), &mosaic.across, &mosaic.up);
+        Self {
+            release: overlay.release.as_ref().and_then(pairs),
+            crossing: crossing.map(edge).unwrap_or_default(),
+        }
+    }
+
+    fn draw(&self, figure: &mut Figure, frame: &Frame) {
         for (width, ink) in [(style::GUIDE + 4.0, style::WHITE), (style::GUIDE, style::OVER_MAP)] {
-            parts.iter().for_each(|part| frame.line(figure, part, width, ink));
+            self.crossing.iter().for_each(|part| frame.line(figure, part, width, ink));
         }
-        if !parts.is_empty() {
-            entries.push((Sample::Line(style::OVER_MAP, style::GUIDE, None), "first crossing cell"));
+        if let Some(points) = &self.release {
+            frame.line(figure, points, style::GUIDE + 4.0, style::BLACK);
+            frame.dashed(figure, points, style::GUIDE, style::WHITE, style::DASH);
         }
     }
-    if let Some(points) = overlay.release.as_ref().and_then(pairs) {
-        frame.line(figure, &points, style::GUIDE + 4.0, style::BLACK);
-        frame.dashed(figure, &points, style::GUIDE, style::WHITE, style::DASH);
-        let sample = Sample::Outlined(style::WHITE, Some(style::DASH));
-        entries.insert(0, (sample, "release in closed form, |F(limit)|/mass"));
-    }
-    entries
 }
 
 /// A bar at `area` with the colours of the shares from 0 to 1.
@@ -182,7 +256,7 @@ pub(super) fn colour_bar(
     }
     let Area { left, top, right, bottom } = area;
     let outline = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-    figure.line(&outline, style::FRAME, theme.ink, Figure::canvas());
+    figure.line(&outline, style::FRAME, theme.ink, figure.canvas);
     let mut widest: f64 = 0.0;
     let text = |words: &str, at, size, align, upright| Text {
         words: words.to_owned(),
@@ -196,13 +270,14 @@ pub(super) fn colour_bar(
     for (value, words) in &axis.ticks {
         let at = bottom - axis.share(*value) * (bottom - top);
         let tick = [(right, at), (right + style::TICK_LENGTH, at)];
-        figure.line(&tick, style::FRAME, theme.ink, Figure::canvas());
+        figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
         widest = widest.max(font::width(words, style::TICK, false));
         let place = (right + style::TICK_LENGTH + 7.0, at + 0.5 * style::TICK * font::CAPITAL);
         figure.text(text(words, place, style::TICK, Align::Left, false));
     }
     let place = (
-        (right + style::TICK_LENGTH + 7.0 + widest + 16.0 + style::AXIS * font::CAPITAL).min(1592.0),
+        (right + style::TICK_LENGTH + 7.0 + widest + 16.0 + style::AXIS * font::CAPITAL)
+            .min(figure.canvas.right - 8.0),
         0.5 * (top + bottom),
     );
     figure.text(text(&axis.label, place, style::AXIS, Align::Centre, true));

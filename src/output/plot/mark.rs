@@ -1,8 +1,11 @@
 //! Markers, legends, and the lines above and below a picture.
 
+use serde_json::{Map, Value};
+
 use super::figure::{Align, Area, Figure, Point, Text, fitted};
 use super::font;
 use super::style::{self, Ink, Theme};
+use crate::output::manifest::origin;
 use crate::scene::Document;
 
 /// A shape that stands for something.
@@ -82,26 +85,45 @@ pub enum Sample {
     Ticks(Ink),
 }
 
-/// Draws a row of entries from `left` on at the height `middle`; those that do not fit start another row
-/// below. Returns the lower edge.
+/// Width of a legend's sample, and its distance from the words.
+const SAMPLE: f64 = 44.0;
+const GAP: f64 = 12.0;
+/// From one row of a legend to the next.
+const ROW: f64 = 38.0;
+
+/// Where the entries of a legend between `left` and `right` begin, each with its row: those that do not fit
+/// start another one.
+fn laid_out(entries: &[(Sample, &str)], left: f64, right: f64) -> Vec<(f64, usize)> {
+    const BETWEEN: f64 = 38.0;
+    let (mut x, mut row) = (left, 0);
+    let place = |(_, words): &(Sample, &str)| {
+        let width = SAMPLE + GAP + font::width(words, style::TICK, false);
+        if x > left && x + width > right {
+            (x, row) = (left, row + 1);
+        }
+        let own = (x, row);
+        x += width + BETWEEN;
+        own
+    };
+    entries.iter().map(place).collect()
+}
+
+/// Draws rows of entries, the first one at the height `middle`, between these ends; on a narrow canvas from
+/// edge to edge. A sheet that leaves its height open becomes higher by the rows after the first, so a legend
+/// comes before the frames. Returns the lower edge.
 pub fn legend(
     figure: &mut Figure,
     theme: &Theme,
     entries: &[(Sample, &str)],
-    left: f64,
-    right: f64,
+    ends: (f64, f64),
     middle: f64,
 ) -> f64 {
-    const SAMPLE: f64 = 44.0;
-    const GAP: f64 = 12.0;
-    const BETWEEN: f64 = 38.0;
-    const ROW: f64 = 38.0;
-    let (mut x, mut y) = (left, middle);
-    for (sample, words) in entries {
-        let width = SAMPLE + GAP + font::width(words, style::TICK, false);
-        if x > left && x + width > right {
-            (x, y) = (left, y + ROW);
-        }
+    let (left, right) = figure.breadth(ends);
+    let places = laid_out(entries, left, right);
+    let rows = places.last().map_or(0, |own| own.1);
+    figure.grow(ROW * rows as f64);
+    for ((sample, words), (x, row)) in entries.iter().zip(places) {
+        let y = middle + ROW * row as f64;
         entry(figure, theme, *sample, Area::new(x, y - 12.0, x + SAMPLE, y + 12.0));
         figure.text(Text {
             words: fitted(words, style::TICK, false, right - x - SAMPLE - GAP),
@@ -112,16 +134,15 @@ pub fn legend(
             align: Align::Left,
             upright: false,
         });
-        x += width + BETWEEN;
     }
-    y + 0.5 * ROW
+    middle + ROW * (rows as f64 + 0.5)
 }
 
 fn entry(figure: &mut Figure, theme: &Theme, sample: Sample, area: Area) {
     let Area { left, top, right, bottom } = area;
     let middle = (0.5 * (left + right), 0.5 * (top + bottom));
     let ends = [(left, middle.1), (right, middle.1)];
-    let canvas = Figure::canvas();
+    let canvas = figure.canvas;
     let mut across = |width: f64, ink: Ink, dash: Option<(f64, f64)>| match dash {
         Some(dash) => figure.dashed(&ends, width, ink, dash, canvas),
         None => figure.line(&ends, width, ink, canvas),
@@ -156,7 +177,7 @@ fn entry(figure: &mut Figure, theme: &Theme, sample: Sample, area: Area) {
 fn outline(figure: &mut Figure, area: Area, ink: Ink) {
     let Area { left, top, right, bottom } = area;
     let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-    figure.line(&corners, style::GRID, ink, Figure::canvas());
+    figure.line(&corners, style::GRID, ink, figure.canvas);
 }
 
 /// A cross from corner to corner.
@@ -173,25 +194,57 @@ pub struct Caption {
     pub title: String,
     /// Under it: what was run.
     pub footer: String,
+    /// What made it, for the picture's file.
+    pub origin: Map<String, Value>,
 }
+
+/// What stands between the parts of a footer.
+const PART: &str = " \u{b7} ";
 
 impl Caption {
     /// The caption of a picture of a document, made by this `version`: its title, where it came from and what
     /// arguments changed.
     pub fn new(document: &Document, version: &str) -> Self {
         let (scene, name) = (&document.scene, &document.name);
-        let mut footer =
-            format!("interwell {version} \u{b7} {name} \u{b7} tolerance {:e}", scene.run.tolerance);
+        let mut footer = format!("interwell {version}{PART}{name}{PART}tolerance {:e}", scene.run.tolerance);
         for change in document.changes() {
-            footer += &format!(" \u{b7} {change}");
+            footer += PART;
+            footer += change;
         }
-        Self { title: scene.title.clone(), footer }
+        Self { title: scene.title.clone(), footer, origin: origin(document, version) }
     }
 
-    /// Draws title, subtitle and footer between `left` and the right edge.
+    /// The footer in lines that fit on a canvas of this `width`; what does not fit into the last one is cut.
+    pub fn footer_lines(&self, width: f64) -> Vec<String> {
+        const MOST: usize = 4;
+        let room = width - if width < style::NARROW { 48.0 } else { 220.0 };
+        let fits = |words: &str| font::width(words, style::FOOTER, false) <= room;
+        let mut lines: Vec<String> = Vec::new();
+        for part in self.footer.split(PART) {
+            match lines.last_mut() {
+                Some(line) if fits(&format!("{line}{PART}{part}")) => {
+                    line.push_str(PART);
+                    line.push_str(part);
+                }
+                _ => lines.push(part.to_owned()),
+            }
+        }
+        if lines.len() > MOST {
+            let rest = lines.split_off(MOST - 1).join(PART);
+            lines.push(rest);
+        }
+        lines.iter().map(|line| fitted(line, style::FOOTER, false, room)).collect()
+    }
+
+    /// Draws title, subtitle and footer, on a wide canvas from `left` on.
     pub fn draw(&self, figure: &mut Figure, theme: &Theme, subtitle: &str, left: f64) {
-        let room = f64::from(style::SIZE.0) - left - 30.0;
+        let (canvas, on_paper) = (figure.canvas, figure.sheet.is_some());
+        let (left, right) = figure.breadth((left, canvas.right - 30.0));
+        let room = right - left;
         let mut row = |words: &str, size: f64, bold: bool, ink: Ink, height: f64| {
+            // On paper the words are smaller before they are cut.
+            let share = (room / font::width(words, size, bold)).clamp(0.7, 1.0);
+            let size = if on_paper { share * size } else { size };
             figure.text(Text {
                 words: fitted(words, size, bold, room),
                 at: (left, height),
@@ -204,6 +257,10 @@ impl Caption {
         };
         row(&self.title, style::TITLE, true, theme.ink, 58.0);
         row(subtitle, style::SUBTITLE, false, theme.soft, 100.0);
-        row(&self.footer, style::FOOTER, false, theme.soft, f64::from(style::SIZE.1) - 16.0);
+        let lines = self.footer_lines(canvas.right);
+        for (above, line) in lines.iter().rev().enumerate() {
+            let height = canvas.bottom - 16.0 - style::FOOTER_LINE * above as f64;
+            row(line, style::FOOTER, false, theme.soft, height);
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures as PNG or SVG.
+//! Pictures as PNG, SVG or PDF.
 //!
 //! A plot writes a [`Figure`], a list of plain shapes; [`Format::bytes`] paints it. Light or dark, the data
 //! and their places are the same, and the same data give the same bytes.
@@ -9,6 +9,8 @@ mod basins;
 mod branch;
 mod contact;
 mod curve;
+mod cut;
+mod drawn;
 mod exponents;
 mod figure;
 mod font;
@@ -16,11 +18,14 @@ mod frame;
 mod map;
 mod mark;
 mod paint;
+mod pdf;
 mod quantity;
 mod run;
 mod section;
+mod sheet;
 mod spectrum;
 mod style;
+mod surface;
 mod sweep;
 mod swept;
 mod threshold;
@@ -30,7 +35,7 @@ use std::path::Path;
 
 pub use accuracy::accuracy_figure;
 pub use axis::{PlotAxis, Ranges};
-pub use basins::{basins_figure, can_show_starts};
+pub use basins::{attractor_colour, basins_figure, can_show_starts};
 pub use branch::branch_figure;
 pub use contact::contact_figure;
 pub use curve::curve_figure;
@@ -41,10 +46,11 @@ pub use paint::PaintError;
 pub use quantity::{RMS, quantities};
 pub use run::{run_figure, speed_unit};
 pub use section::{SectionPicture, section_figure};
+pub use sheet::Sheet;
 pub use spectrum::{SpectrumQuantity, spectrum_figure};
 pub use style::{Ink, Theme, viridis};
 pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_figure};
-pub use swept::{Overlay, SweepPicture};
+pub use swept::{Cut, Overlay, SweepPicture, View};
 pub use threshold::{ThresholdPicture, can_show_thresholds, threshold_figure};
 
 /// A kind of file that holds a picture.
@@ -54,11 +60,13 @@ pub enum Format {
     Png,
     /// Shapes.
     Svg,
+    /// Shapes on a page, with their font.
+    Pdf,
 }
 
 /// A file name that tells no kind of picture.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("a picture's name ends in .png or .svg")]
+#[error("a picture's name ends in .png, .svg or .pdf")]
 pub struct UnknownFormat;
 
 impl Format {
@@ -68,6 +76,7 @@ impl Format {
         match ending.as_deref() {
             Some("png") => Ok(Self::Png),
             Some("svg") => Ok(Self::Svg),
+            Some("pdf") => Ok(Self::Pdf),
             _ => Err(UnknownFormat),
         }
     }
@@ -77,6 +86,7 @@ impl Format {
         match self {
             Self::Png => paint::png(figure),
             Self::Svg => paint::svg(figure).map(String::into_bytes),
+            Self::Pdf => pdf::pdf(figure),
         }
     }
 }

@@ -8,16 +8,19 @@ use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, TextStyle};
 
+use png::{PixelDimensions, Unit};
+
 use super::figure::{Align, Area, Figure, Point, Shape, Text};
 use super::font::{LINE_HEIGHT, font};
-use super::style::{Ink, SIZE};
+use super::style::Ink;
+use crate::numeric::short;
 
 /// Why a picture could not be made.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the picture cannot be drawn: {0}")]
 pub struct PaintError(String);
 
-fn failed(error: impl std::fmt::Display) -> PaintError {
+pub(super) fn failed(error: impl std::fmt::Display) -> PaintError {
     PaintError(error.to_string())
 }
 
@@ -45,7 +48,11 @@ struct Terms {
 /// The picture as PNG.
 pub fn png(figure: &Figure) -> Result<Vec<u8>, PaintError> {
     let (wide, high) = (figure.shown.right - figure.shown.left, figure.shown.bottom - figure.shown.top);
-    let (width, height) = figure.size.unwrap_or((wide.round() as u32, high.round() as u32));
+    let (width, height) = match (figure.sheet.zip(figure.size_mm()), figure.size) {
+        (Some((sheet, (width, height))), _) => (sheet.pixels(width), sheet.pixels(height)),
+        (None, Some(size)) => size,
+        (None, None) => (wide.round() as u32, high.round() as u32),
+    };
     let share = (f64::from(width) / wide).min(f64::from(height) / high);
     let spare = (f64::from(width) / share - wide, f64::from(height) / share - high);
     let large = (width * FINER, height * FINER);
@@ -68,6 +75,14 @@ pub fn png(figure: &Figure) -> Result<Vec<u8>, PaintError> {
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Balanced);
+    if let Some(sheet) = figure.sheet {
+        let a_metre = (sheet.dpi / 0.0254).round() as u32;
+        let dims = PixelDimensions { xppu: a_metre, yppu: a_metre, unit: Unit::Meter };
+        encoder.set_pixel_dims(Some(dims));
+    }
+    for (keyword, words) in [("Software", figure.software()), ("Description", figure.made())] {
+        encoder.add_itxt_chunk(keyword.to_owned(), words).map_err(failed)?;
+    }
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(&pixels).map_err(failed)?;
     writer.finish().map_err(failed)?;
@@ -87,15 +102,21 @@ pub fn svg(figure: &Figure) -> Result<String, PaintError> {
         baseline: 0.76,
         lines: true,
     };
-    draw(figure, &mut SVGBackend::with_string(&mut text, (SIZE.0 * SVG_UNITS, SIZE.1 * SVG_UNITS)), terms)?;
+    let whole = (units(figure.canvas.right), units(figure.canvas.bottom));
+    draw(figure, &mut SVGBackend::with_string(&mut text, whole), terms)?;
     let body = text.split_once('>').map_or("", |(_, body)| body);
     // Without crisp edges the paper shines through between the cells of a map.
     let body = body.replace("<rect ", "<rect shape-rendering=\"crispEdges\" ");
-    let (width, height) =
-        figure.size.unwrap_or((units(right - left) / SVG_UNITS, units(bottom - top) / SVG_UNITS));
+    let (width, height) = match (figure.size_mm(), figure.size) {
+        (Some((width, height)), _) => (format!("{}mm", short(width)), format!("{}mm", short(height))),
+        (None, Some((width, height))) => (width.to_string(), height.to_string()),
+        (None, None) => [right - left, bottom - top].map(|own| (units(own) / SVG_UNITS).to_string()).into(),
+    };
+    let made = figure.made().replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     Ok(format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"{} {} {} {}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">{body}",
+         viewBox=\"{} {} {} {}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n\
+         <metadata>{made}</metadata>{body}",
         units(left),
         units(top),
         units(right - left),

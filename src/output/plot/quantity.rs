@@ -1,14 +1,36 @@
 //! Column of a sweep that a picture shows, in units that suit it.
 
 use super::axis::PlotAxis;
-use super::mark::REGIMES;
+use super::style::{self, Ink, Theme};
 use crate::study::{Grid, Table, Values};
 
 /// The column that is shown where none is named.
 pub const RMS: &str = "rms_velocity_m_per_s";
 
-/// The one column of words that can be shown.
-const REGIME: &str = "regime";
+/// The columns of words, with all words that they can have, in the order of their colours.
+const WORDS: [(&str, &[&str]); 4] = [
+    ("regime", &["rest", "intrawell", "irregular", "interwell"]),
+    ("side", &["left", "right", "both"]),
+    ("settled", &["true", "false"]),
+    (
+        "outcome",
+        &[
+            "done",
+            "inaccurate",
+            "left_table",
+            "impact_budget",
+            "step_budget",
+            "not_finite",
+            "cancelled",
+            "not_converged",
+        ],
+    ),
+];
+
+/// The words that the column called `name` can have; none where it has numbers.
+pub(super) fn words_of(name: &str) -> Option<&'static [&'static str]> {
+    WORDS.iter().find(|own| own.0 == name).map(|own| own.1)
+}
 
 /// A column to show.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,16 +39,18 @@ pub(super) struct Quantity {
     pub values: Vec<f64>,
     /// What stands at its axis.
     pub label: String,
-    /// Whether the values are places in [`REGIMES`].
-    pub regimes: bool,
+    /// The words that the values are places of, where it has words.
+    pub words: Option<&'static [&'static str]>,
+    /// Whether these are the regimes.
+    regimes: bool,
     /// Whether it is the velocity, which is 0 at rest.
     pub velocity: bool,
 }
 
-/// The columns of `table` that can be shown, which are those of numbers and counts that are not swept, and
-/// the regime.
+/// The columns of `table` that can be shown, which are those of the summary and of thresholds, not the swept
+/// fields.
 pub fn quantities<'a>(table: &'a Table, grid: &'a Grid) -> impl Iterator<Item = &'a str> {
-    let shown = |name: &str, values: &Values| !matches!(values, Values::Words(_)) || name == REGIME;
+    let shown = |name: &str, values: &Values| !matches!(values, Values::Words(_)) || words_of(name).is_some();
     let columns = table.columns().iter().filter(move |own| shown(&own.name, &own.values));
     columns.map(|own| own.name.as_str()).filter(|name| !grid.columns().iter().any(|own| own == name))
 }
@@ -39,7 +63,8 @@ impl Quantity {
             Some(Values::Numbers(values)) => values.clone(),
             Some(Values::Counts(values)) => values.iter().map(|n| n.map_or(f64::NAN, |n| n as f64)).collect(),
             Some(Values::Words(words)) => {
-                let place = |word: &&str| REGIMES.iter().position(|(own, _)| own == word);
+                let known = words_of(name).unwrap_or_default();
+                let place = |word: &&str| known.iter().position(|own| own == word);
                 words.iter().map(|word| place(word).map_or(f64::NAN, |place| place as f64)).collect()
             }
             None => Vec::new(),
@@ -59,21 +84,21 @@ impl Quantity {
             _ => (1.0, words.to_owned()),
         };
         let values = values.into_iter().map(|value| value * scale).collect();
-        Self { values, label, regimes: name == REGIME, velocity: name == RMS }
+        Self { values, label, words: words_of(name), regimes: name == "regime", velocity: name == RMS }
+    }
+
+    /// The colour of a value that is the place of a word.
+    pub fn ink(&self, value: f64, theme: &Theme) -> Ink {
+        let all: &[Ink] = if self.regimes { &theme.regimes } else { &style::KINDS };
+        all[value as usize % all.len()]
     }
 
     /// Its axis: from 0, or from below where there are negative values, with `margin` of the range as room;
-    /// the names of the regimes where it has those.
+    /// the words where it has those.
     pub fn axis(&self, margin: f64, count: usize) -> PlotAxis {
-        if self.regimes {
-            let ticks =
-                REGIMES.iter().enumerate().map(|(i, (name, _))| (i as f64, (*name).to_owned())).collect();
-            return PlotAxis {
-                low: -0.5,
-                high: REGIMES.len() as f64 - 0.5,
-                ticks,
-                label: self.label.clone(),
-            };
+        if let Some(words) = self.words {
+            let ticks = words.iter().enumerate().map(|(i, name)| (i as f64, (*name).to_owned())).collect();
+            return PlotAxis { low: -0.5, high: words.len() as f64 - 0.5, ticks, label: self.label.clone() };
         }
         PlotAxis::around(self.values.iter().copied().chain([0.0]), margin, count, &self.label)
     }

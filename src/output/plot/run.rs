@@ -3,21 +3,59 @@
 use std::ops::Range;
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
-use super::frame::Frame;
+use super::frame::{Frame, stretched};
 use super::mark::{Caption, Marker, Sample, legend, marker, regime};
 use super::style::{self, Ink, Theme};
 use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
-use crate::study::{Trace, Values};
+use crate::study::{Table, Trace, Values};
 
 const LEFT: f64 = 150.0;
-const MIDDLE: f64 = 985.0;
 const GUTTER: f64 = 102.0;
-const PORTRAIT: Area = Area { left: 1150.0, top: 175.0, right: 1565.0, bottom: 600.0 };
+/// Upper and lower edges of the panels over time on the canvas for a screen.
 const PANELS: [(f64, f64); 3] = [(175.0, 425.0), (447.0, 657.0), (679.0, 869.0)];
+
+/// Where the parts stand.
+struct Places {
+    panels: [Area; 3],
+    portrait: Area,
+    /// Beginning of the first line of the account.
+    account: Point,
+}
+
+impl Places {
+    /// What a run needs between its captions: narrow, the portrait is under the panels.
+    fn least(theme: &Theme) -> f64 {
+        if theme.is_narrow() { 1290.0 } else { 800.0 }
+    }
+
+    /// On the canvas of `figure`, `more` below their usual height.
+    fn new(figure: &Figure, more: f64) -> Self {
+        let (width, bottom, top) = (figure.canvas.right, figure.bottom() + 1.0, PANELS[0].0 + more);
+        let panels = |left: f64, right: f64, bottom: f64| {
+            stretched(PANELS, top, bottom).map(|(top, bottom)| Area::new(left, top, right, bottom))
+        };
+        if figure.is_narrow() {
+            let (left, right) = (GUTTER + style::AXIS, figure.right());
+            let height = 0.3 * (bottom - top);
+            let beside = right.min(width - ACCOUNT);
+            let portrait = Area::new(left, bottom - height, beside, bottom);
+            let account = (beside + 20.0, portrait.top + 26.0);
+            return Self { panels: panels(left, right, portrait.top - 146.0), portrait, account };
+        }
+        let high = 425.0 * (bottom - top) / (PANELS[2].1 - PANELS[0].0);
+        let portrait = Area::new(width - 450.0, top, width - 35.0, top + high);
+        let account = (portrait.left, portrait.bottom + 138.0);
+        Self { panels: panels(LEFT, width - 615.0, bottom), portrait, account }
+    }
+}
+
+/// Room for the account beside the portrait.
+const ACCOUNT: f64 = 370.0;
 
 /// The picture of a run from its trace and its summary. The trace says which times it shows; `ranges` may
 /// give the axis of the displacement, in mm.
@@ -29,7 +67,7 @@ pub fn run_figure(
     caption: &Caption,
     theme: &Theme,
 ) -> Figure {
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, Places::least(theme));
     let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
     let stable = mechanism.landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
     let seen = Seen {
@@ -43,9 +81,7 @@ pub fn run_figure(
         speed: speed_unit(column("v_m_per_s").iter().copied()),
         displacements: ranges.y,
     };
-    let reach = seen.panels(&mut figure);
-    seen.portrait(&mut figure);
-
+    let reach = seen.displacement(&seen.x[seen.rows(trace.shown_from)]);
     let mut entries = Vec::new();
     if trace.impacts.rows() > 0 {
         entries.push((Sample::Ticks(theme.ink), "impact"));
@@ -61,8 +97,13 @@ pub fn run_figure(
     if seen.wells.iter().any(|well| (reach.low..=reach.high).contains(&(well * 1e3))) {
         entries.push((Sample::Line(theme.stable, style::LINE, Some(style::DASH)), "well"));
     }
-    legend(&mut figure, theme, &entries, LEFT, MIDDLE, 142.0);
-    account(&mut figure, summary, trace, seen.speed, theme);
+    let ends = (LEFT, figure.canvas.right - 615.0);
+    let more = (legend(&mut figure, theme, &entries, ends, 142.0) - 161.0).max(0.0);
+    let places = Places::new(&figure, more);
+    seen.panels(&mut figure, &places);
+    seen.portrait(&mut figure, places.portrait);
+    figure.data = seen.drawn();
+    account(&mut figure, places.account, (summary, trace), seen.speed, theme);
     caption.draw(&mut figure, theme, &subtitle(summary), LEFT);
     figure
 }
@@ -105,26 +146,56 @@ impl Seen<'_> {
         own.or_given(self.displacements, 6, label)
     }
 
+    /// All that is drawn.
+    fn drawn(&self) -> Table {
+        let Self { trace, t, x, v, accel, .. } = *self;
+        let mut drawn = Drawn::new(["t_s", "x_m", "v_m_per_s", "base_accel_m_per_s2"], &["side"]);
+        for i in self.rows(trace.shown_from) {
+            drawn.put("run", &[t[i], x[i], v[i], accel[i]], &[]);
+        }
+        for i in self.rows(trace.portrait_from) {
+            drawn.put("portrait", &[t[i], x[i], v[i]], &[]);
+        }
+        let shown = trace.shown_from..=trace.shown_to;
+        let column = |table: &Table, name: &str| table.numbers(name).unwrap_or_default().to_vec();
+        let sides = words(trace.impacts.column("side").map(|column| &column.values));
+        for (at, side) in column(&trace.impacts, "t_s").iter().zip(sides).filter(|own| shown.contains(own.0))
+        {
+            let stop = if *side == "left" { trace.stops.0 } else { trace.stops.1 };
+            drawn.put("impact", &[*at, stop], &[side]);
+        }
+        let rests = column(&trace.rests, "from_s").into_iter().zip(column(&trace.rests, "to_s"));
+        for (from, to) in rests.filter(|(from, to)| *to >= trace.shown_from && *from <= trace.shown_to) {
+            drawn.put("rest_from", &[from.max(trace.shown_from)], &[]);
+            drawn.put("rest_to", &[to.min(trace.shown_to)], &[]);
+        }
+        for (at, side) in [(trace.stops.0, "left"), (trace.stops.1, "right")] {
+            if at.is_finite() {
+                drawn.put("stop", &[f64::NAN, at], &[side]);
+            }
+        }
+        self.wells.iter().for_each(|at| drawn.put("well", &[f64::NAN, *at], &[]));
+        drawn.table()
+    }
+
     fn velocity(&self, v: &[f64], count: usize) -> PlotAxis {
         let (scale, unit) = self.speed;
         PlotAxis::around(v.iter().map(|v| v * scale), 0.08, count, &format!("velocity, {unit}"))
     }
 
-    /// Displacement, velocity and base acceleration over time; the axis of displacement.
-    fn panels(&self, figure: &mut Figure) -> PlotAxis {
+    /// Displacement, velocity and base acceleration over time.
+    fn panels(&self, figure: &mut Figure, places: &Places) {
         let Self { trace, theme, .. } = *self;
         let time = PlotAxis::between(trace.shown_from, trace.shown_to, 6, "time, s");
         let shown = self.rows(trace.shown_from);
         let in_g = self.accel[shown.clone()].iter().map(|a| a / STANDARD_GRAVITY);
         let g_axis = PlotAxis::around(in_g.chain([0.0]), 0.1, 4, "base accel., g");
-        let framed = |(top, bottom): (f64, f64), x, y| {
-            let frame = Frame::new(Area::new(LEFT, top, MIDDLE, bottom), x, y);
-            Frame { gutter: Some(GUTTER), ..frame }
-        };
+        let framed = |area, x, y| Frame { gutter: Some(GUTTER), ..Frame::new(area, x, y) };
+        let [first, second, third] = places.panels;
         let frames = [
-            framed(PANELS[0], time.clone().silent(), self.displacement(&self.x[shown.clone()])),
-            framed(PANELS[1], time.clone().silent(), self.velocity(&self.v[shown.clone()], 5)),
-            framed(PANELS[2], time, g_axis),
+            framed(first, time.clone().silent(), self.displacement(&self.x[shown.clone()])),
+            framed(second, time.clone().silent(), self.velocity(&self.v[shown.clone()], 5)),
+            framed(third, time, g_axis),
         ];
         for (frame, strength) in frames.iter().zip([1.0, 0.5, 0.5]) {
             rests(figure, frame, trace, theme.rest.over(theme.paper, strength));
@@ -151,16 +222,14 @@ impl Seen<'_> {
         }
         impacts(figure, &frames[0], trace, theme);
         frames.iter().for_each(|frame| frame.axes(figure, theme));
-        let [Frame { y, .. }, ..] = frames;
-        y
     }
 
     /// Velocity over displacement.
-    fn portrait(&self, figure: &mut Figure) {
+    fn portrait(&self, figure: &mut Figure, area: Area) {
         let Self { trace, theme, .. } = *self;
         let shown = self.rows(trace.portrait_from);
         let (x, v) = (&self.x[shown.clone()], &self.v[shown]);
-        let frame = Frame::new(PORTRAIT, self.displacement(x), self.velocity(v, 8));
+        let frame = Frame::new(area, self.displacement(x), self.velocity(v, 8));
         frame.grid(figure, theme);
         for (stop, left) in [(trace.stops.0, true), (trace.stops.1, false)] {
             if stop.is_finite() {
@@ -183,7 +252,7 @@ impl Seen<'_> {
             }
             from => format!("phase portrait from {from} s on"),
         };
-        note(figure, &words, (PORTRAIT.left, 152.0), style::TICK, theme.ink, false);
+        note(figure, &words, (area.left, area.top - 23.0), style::TICK, theme.ink, false);
     }
 }
 
@@ -281,13 +350,18 @@ fn subtitle(summary: &Summary) -> String {
 }
 
 /// Regime and numbers, under the phase portrait.
-fn account(figure: &mut Figure, summary: &Summary, trace: &Trace, (scale, unit): (f64, &str), theme: &Theme) {
-    let mut y = 738.0;
+fn account(
+    figure: &mut Figure,
+    (left, mut y): Point,
+    (summary, trace): (&Summary, &Trace),
+    (scale, unit): (f64, &str),
+    theme: &Theme,
+) {
     let name = summary.regime.name();
     if summary.rms_velocity.is_some() && !name.is_empty() {
         let (shape, ink) = regime(name, theme);
-        marker(figure, shape, (PORTRAIT.left + 14.0, y - 10.0), style::MARKER + 1.0, ink, theme.ink);
-        note(figure, name, (PORTRAIT.left + 42.0, y), style::SUBTITLE, theme.ink, true);
+        marker(figure, shape, (left + 14.0, y - 10.0), style::MARKER + 1.0, ink, theme.ink);
+        note(figure, name, (left + 42.0, y), style::SUBTITLE, theme.ink, true);
         y += 40.0;
     }
     let mut lines = Vec::new();
@@ -297,10 +371,12 @@ fn account(figure: &mut Figure, summary: &Summary, trace: &Trace, (scale, unit):
     }
     if summary.rms_velocity.is_some() {
         let share = summary.rested_share.filter(|share| *share > 0.0);
-        lines.push(match name {
-            "" => format!("{} impacts", summary.impacts),
-            _ => format!("{} crossings, {} impacts", summary.crossings, summary.impacts),
-        });
+        let impacts = format!("{} impacts", summary.impacts);
+        match name {
+            "" => lines.push(impacts),
+            _ if figure.is_narrow() => lines.extend([format!("{} crossings", summary.crossings), impacts]),
+            _ => lines.push(format!("{} crossings, {impacts}", summary.crossings)),
+        }
         let words = if summary.peak_contact_force.is_some() { "in contact" } else { "at rest" };
         lines.extend(share.map(|share| format!("{words} {:.0} % of the time", 100.0 * share)));
         if let Some(force) = summary.peak_contact_force.filter(|force| *force > 0.0) {
@@ -311,13 +387,13 @@ fn account(figure: &mut Figure, summary: &Summary, trace: &Trace, (scale, unit):
         lines.push("ended before its settled window".to_owned());
     }
     for line in lines {
-        note(figure, &line, (PORTRAIT.left, y), style::TICK, theme.ink, false);
+        note(figure, &line, (left, y), style::TICK, theme.ink, false);
         y += 36.0;
     }
 }
 
 fn note(figure: &mut Figure, words: &str, at: Point, size: f64, ink: Ink, bold: bool) {
-    let room = f64::from(style::SIZE.0) - at.0 - 10.0;
+    let room = figure.canvas.right - at.0 - 10.0;
     let words = super::figure::fitted(words, size, bold, room);
     debug_assert!(font::width(&words, size, bold) <= room + 1.0);
     figure.text(Text { words, at, size, ink, bold, align: Align::Left, upright: false });

@@ -3,16 +3,15 @@
 use std::collections::HashSet;
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Align, Area, Figure, Text};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, dot, legend};
 use super::run::speed_unit;
 use super::style::{self, Ink, Theme};
-use super::swept::{BOTTOM, LEFT, TOP, label, words};
+use super::swept::{LEAST, LEFT, TOP, label, words};
 use crate::numeric::short;
 use crate::study::{DIRECTION, Direction, IMPACTS, Table, Values};
-
-const RIGHT: f64 = 1560.0;
 
 /// Half the size of a point: one of few, and one of many; as many or more of them.
 const LARGE: f64 = 6.0;
@@ -47,7 +46,7 @@ struct Kind {
 
 /// The picture of a section.
 pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme) -> Figure {
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, LEAST);
     let SectionPicture { rows, over, phase_deg, ranges, .. } = *picture;
     let kinds = match phase_deg {
         Some(_) => [("without impacts", Marker::Disc, 1), ("with impacts", Marker::Triangle, 3)],
@@ -64,23 +63,26 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
     if wall && (picture.stops.0.is_some() || picture.stops.1.is_some()) {
         entries.push((Sample::Patch(theme.wall_fill(), None), "stop"));
     }
-    let (across, up) = columns(rows, over, phase_deg.is_some());
+    let (across, up) = columns_of(rows, over, phase_deg.is_some());
     let ways = words(rows, DIRECTION);
     let both = [Direction::Up, Direction::Down].iter().all(|way| ways.contains(&way.name()));
     let panels: &[Option<Direction>] =
         if both { &[Some(Direction::Up), Some(Direction::Down)] } else { &[None] };
-    let top = TOP.max(legend(&mut figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
     let x = PlotAxis::around(across.values.iter().copied(), 0.02, 8, &across.label);
     let x = if over.is_none() && phase_deg.is_none() { turn(&across.label) } else { x };
     let x = x.or_given(ranges.x, 8, &across.label);
     let y = PlotAxis::around(up.values.iter().copied(), 0.06, 6, &up.label);
     let y = y.or_given(ranges.y, 6, &up.label);
-    let height = (BOTTOM - top - BETWEEN * (panels.len() - 1) as f64) / panels.len() as f64;
+    let (left, right) =
+        (Frame::left(&figure, &y, LEFT, (figure.bottom() - top) / panels.len() as f64), figure.right());
+    let height = (figure.bottom() - top - BETWEEN * (panels.len() - 1) as f64) / panels.len() as f64;
     for (number, way) in panels.iter().enumerate() {
         let begin = top + number as f64 * (height + BETWEEN);
         let last = number + 1 == panels.len();
         let axis = if last { x.clone() } else { x.clone().silent() };
-        let frame = Frame::new(Area::new(LEFT, begin, RIGHT, begin + height), axis, y.clone());
+        let frame = Frame::new(Area::new(left, begin, right, begin + height), axis, y.clone());
         frame.grid(&mut figure, theme);
         for (stop, left) in [(picture.stops.0, true), (picture.stops.1, false)] {
             if let Some(at) = stop.map(|x| x * 1e3).filter(|at| wall && (x.low..=x.high).contains(at)) {
@@ -108,7 +110,7 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
         if let Some(way) = way {
             figure.text(Text {
                 words: way.name().to_owned(),
-                at: (RIGHT, begin - 12.0),
+                at: (right, begin - 12.0),
                 size: style::AXIS,
                 ink: theme.ink,
                 bold: false,
@@ -117,8 +119,26 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
             });
         }
     }
+    figure.data = drawn(rows, over, phase_deg.is_some(), |at| (x.low..=x.high).contains(&at));
     caption.draw(&mut figure, theme, &about(rows, picture), LEFT);
     figure
+}
+
+/// The rows whose place to the right is `inside`.
+fn drawn(rows: &Table, over: Option<&str>, states: bool, inside: impl Fn(f64) -> bool) -> Table {
+    let series =
+        if states { ["state_without_impacts", "state_with_impacts"] } else { ["left_stop", "right_stop"] };
+    let own: &[&str] = if states { &["x_m", "v_m_per_s"] } else { &["phase_deg", "v_in_m_per_s"] };
+    let names: Vec<&str> = over.into_iter().chain(own.iter().copied()).collect();
+    let columns: Vec<&[f64]> = names.iter().map(|name| rows.numbers(name).unwrap_or_default()).collect();
+    let (kind, ways) = (kind_of(rows, states), words(rows, DIRECTION));
+    let (across, _) = columns_of(rows, over, states);
+    let mut drawn = Drawn::new(names, if ways.is_empty() { &[] } else { &[DIRECTION] });
+    for row in (0..rows.rows()).filter(|row| inside(across.values[*row])) {
+        let numbers: Vec<f64> = columns.iter().map(|own| own.get(row).copied().unwrap_or(f64::NAN)).collect();
+        drawn.put(series[kind(row)], &numbers, ways.get(row..=row).unwrap_or_default());
+    }
+    drawn.table()
 }
 
 /// The axis of a phase in degrees.
@@ -147,7 +167,7 @@ struct Along {
 }
 
 /// What stands to the right and what upward.
-fn columns(rows: &Table, over: Option<&str>, states: bool) -> (Along, Along) {
+fn columns_of(rows: &Table, over: Option<&str>, states: bool) -> (Along, Along) {
     let scaled = |name: &str, scale: f64, label: String| Along {
         values: rows.numbers(name).unwrap_or_default().iter().map(|value| value * scale).collect(),
         label,

@@ -1,10 +1,12 @@
 //! Picture of a spectrum: amplitude or power spectral density, logarithmic, over frequency.
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Sample, legend};
 use super::style::{self, Theme};
+use super::swept::{LEAST, TOP};
 use crate::numeric::{Taper, short};
 use crate::study::{Signal, Spectrum};
 
@@ -17,7 +19,8 @@ pub enum SpectrumQuantity {
     Density,
 }
 
-const FRAME: Area = Area { left: 190.0, top: 185.0, right: 1560.0, bottom: 868.0 };
+/// Where the frame begins on a wide canvas.
+const LEFT: f64 = 190.0;
 
 /// The share of the power up to the right edge, where no range was asked for.
 const POWER: f64 = 0.9999;
@@ -36,7 +39,7 @@ pub fn spectrum_figure(
     caption: &Caption,
     theme: &Theme,
 ) -> Figure {
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, LEAST);
     let column = |name: &str| spectrum.table.numbers(name).unwrap_or_default();
     let (frequencies, density) = (column("frequency_hz"), column("psd"));
     let (values, label) = match quantity {
@@ -69,12 +72,17 @@ pub fn spectrum_figure(
     if !marked.is_empty() {
         entries.push((Sample::Line(theme.shaking, style::GUIDE, Some(style::DASH)), words.as_str()));
     }
-    let area = if entries.is_empty() { Area { top: 135.0, ..FRAME } } else { FRAME };
-    legend(&mut figure, theme, &entries, area.left, area.right, 146.0);
+    let ends = (LEFT, figure.right());
+    let top = match entries.as_slice() {
+        [] => 135.0,
+        some => TOP.max(legend(&mut figure, theme, some, ends, 146.0) + 18.0),
+    };
+    let left = Frame::left(&figure, &up, LEFT, figure.bottom() - top);
+    let area = Area::new(left, top, figure.right(), figure.bottom());
 
     let frame = Frame::new(area, across, up);
     frame.grid(&mut figure, theme);
-    for own in marked {
+    for own in marked.iter().copied() {
         frame.vertical(&mut figure, own, style::GUIDE, theme.shaking, Some(style::DASH));
     }
     let floor = frame.y.low - 1.0;
@@ -86,7 +94,16 @@ pub fn spectrum_figure(
         frame.dense_line(&mut figure, points, style::THIN, theme.ink);
     }
     frame.axes(&mut figure, theme);
-    caption.draw(&mut figure, theme, &spectrum.describe(), area.left);
+    let name = if quantity == SpectrumQuantity::Density { "psd" } else { "amplitude" };
+    let mut drawn = Drawn::new(["frequency_hz", name], &[]);
+    for (frequency, value) in frequencies.iter().zip(values) {
+        if (frame.x.low..=frame.x.high).contains(frequency) {
+            drawn.put("line", &[*frequency, *value], &[]);
+        }
+    }
+    marked.iter().for_each(|own| drawn.put("forcing", &[*own], &[]));
+    figure.data = drawn.table();
+    caption.draw(&mut figure, theme, &spectrum.describe(), LEFT);
     figure
 }
 

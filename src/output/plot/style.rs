@@ -1,8 +1,11 @@
 //! Colours, widths and sizes of the pictures.
 //!
 //! Colours are those of Okabe and Ito (2008, "Color Universal Design"), one meaning each; what differs by
-//! colour also differs by shape, hatching or dashes. Sizes are in units of a canvas of 1600 by 1000, chosen
-//! so that the smallest text can still be read at half of it.
+//! colour also differs by shape, hatching or dashes. Sizes are in units of a canvas of 1600 by 1000 on a
+//! screen, chosen so that the smallest text can still be read at half of it. On paper the canvas is as many
+//! units wide as the size of the text there makes it.
+
+use super::sheet::{Sheet, canvas_width};
 
 /// A colour: red, green, blue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,11 +21,17 @@ impl Ink {
     }
 }
 
-/// Width and height of the canvas.
+/// Width and height of the canvas for a screen.
 pub const SIZE: (u32, u32) = (1600, 1000);
 
-/// Where on the canvas the subtitle has ended and the footer not begun.
-pub const BETWEEN_CAPTIONS: (f64, f64) = (116.0, 956.0);
+/// How far below the upper edge the subtitle has ended, and above the lower one a footer of one line begun.
+pub const CAPTIONS: (f64, f64) = (116.0, 44.0);
+
+/// Canvases of less width are narrow.
+pub const NARROW: f64 = 1150.0;
+
+/// From one line of the footer to the next.
+pub const FOOTER_LINE: f64 = 26.0;
 
 /// Text sizes: the height of an em.
 pub const TITLE: f64 = 40.0;
@@ -67,9 +76,11 @@ const BLUE: Ink = Ink(0x00, 0x72, 0xb2);
 const VERMILION: Ink = Ink(0xd5, 0x5e, 0x00);
 const PURPLE: Ink = Ink(0xcc, 0x79, 0xa7);
 
-/// The colours of one picture by what they mean.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The look of one picture: the sheet that it is laid out for, and its colours by what they mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Theme {
+    /// The sheet of paper; none for a screen.
+    pub sheet: Option<Sheet>,
     /// Behind everything.
     pub paper: Ink,
     /// Text, frames, and the first line of a panel.
@@ -99,6 +110,7 @@ pub struct Theme {
 impl Theme {
     /// Dark on light, for paper and projectors.
     pub const LIGHT: Self = Self {
+        sheet: None,
         paper: Ink(0xff, 0xff, 0xff),
         ink: Ink(0x1a, 0x1a, 0x1a),
         soft: Ink(0x5a, 0x5a, 0x5a),
@@ -115,6 +127,7 @@ impl Theme {
 
     /// Light on dark.
     pub const DARK: Self = Self {
+        sheet: None,
         paper: Ink(0x14, 0x17, 0x1c),
         ink: Ink(0xf2, 0xf2, 0xf2),
         soft: Ink(0xb0, 0xb5, 0xbd),
@@ -145,11 +158,29 @@ impl Theme {
         if self.ink.0 > self.paper.0 { viridis(0.3 + 0.7 * share) } else { viridis(0.85 * share) }
     }
 
-    /// Light or dark.
-    pub fn of(dark: bool) -> &'static Self {
-        if dark { &Self::DARK } else { &Self::LIGHT }
+    /// Light or dark, on a screen or on a sheet of paper.
+    pub fn of(dark: bool, sheet: Option<Sheet>) -> Self {
+        Self { sheet, ..if dark { Self::DARK } else { Self::LIGHT } }
+    }
+
+    /// Whether the canvas is so narrow that what else stands side by side is stacked.
+    pub fn is_narrow(&self) -> bool {
+        canvas_width(self.sheet.as_ref()) < NARROW
     }
 }
+
+/// Colours of kinds that have none of their own, such as attractors, the first ones farthest apart in
+/// lightness, so that they are told apart without colour too.
+pub const KINDS: [Ink; 8] = [
+    Ink(0x1e, 0x52, 0x8c),
+    Ink(0xf3, 0xb6, 0x40),
+    Ink(0x2a, 0x9a, 0x7c),
+    Ink(0xc4, 0xe2, 0xf5),
+    Ink(0xb0, 0x3a, 0x14),
+    Ink(0xde, 0x8c, 0xb4),
+    Ink(0x48, 0x1e, 0x5a),
+    Ink(0xa6, 0xa8, 0x9c),
+];
 
 /// White, for what lies over a map in either theme.
 pub const WHITE: Ink = Ink(0xff, 0xff, 0xff);

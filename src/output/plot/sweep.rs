@@ -1,17 +1,21 @@
 //! Picture of a sweep: lines over one field, drawn here; over two a [`map`](super::map).
 
 use super::axis::PlotAxis;
+use super::cut::{self, map_with_cuts};
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::map::map;
 use super::mark::{Caption, REGIMES, Sample, legend, marker, regime};
-use super::quantity::{Quantity, quantities};
+use super::quantity::{Quantity, quantities, words_of};
 use super::style::{self, Theme};
-use super::swept::{BOTTOM, LEFT, MARKER_ROOM, SweepPicture, TOP, label, missing_words, thinned, words};
-use super::walk::{walked_both, walked_lines, walked_maps};
+use super::surface::{MAX_SURFACE_CELLS, SURFACE, surface};
+use super::swept::{
+    LEAST, LEFT, MARKER_ROOM, SweepPicture, TOP, View, drawn, label, missing_words, thinned, words,
+};
+use super::walk::{STACKED, walked_both, walked_lines, walked_maps};
 use crate::numeric::short;
 use crate::scene::{Excitation, Scene, Start};
-use crate::study::{DIRECTION, Grid, Table};
+use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
 
 /// The most cells that a picture shows: more than it has pixels to tell apart.
 pub const MAX_PICTURE_CELLS: u64 = 500_000;
@@ -42,8 +46,20 @@ pub enum NoPicture {
     /// More starts than a picture tells apart.
     #[error("--plot shows at most {MAX_PICTURE_CELLS} starts, not {0}: take fewer, or leave --plot out")]
     Starts(u64),
+    /// No map that a surface or a cut could be of.
+    #[error(
+        "--surface and --cut show a sweep over two fields, each of two values or more, without --carry: give \
+         two --over"
+    )]
+    NoMap,
+    /// Words instead of heights.
+    #[error("--surface shows heights, and --quantity {0} has words: name a column of numbers")]
+    FlatWords(String),
+    /// More faces than can be told apart.
+    #[error("--surface shows at most {MAX_SURFACE_CELLS} cells, not {0}: take longer steps, or leave it out")]
+    SurfaceCells(u64),
     /// No column that can be shown.
-    #[error("--quantity {asked}: the rows have no such column to show; they have: {known}")]
+    #[error("--quantity {asked}: no such column to show; there are: {known}")]
     Quantity {
         /// The column asked for.
         asked: String,
@@ -52,12 +68,28 @@ pub enum NoPicture {
     },
 }
 
-/// Whether the column `quantity` of a sweep of this grid can be shown; `table` is that of its rows, which may
-/// be missing.
-pub fn can_show(grid: &Grid, quantity: &str, table: &Table) -> Result<(), NoPicture> {
+/// Whether the column `quantity` of a sweep of this grid can be shown in this way; `table` is that of its
+/// rows, which may be missing.
+pub fn can_show(grid: &Grid, (quantity, view): (&str, &View), table: &Table) -> Result<(), NoPicture> {
     if !quantities(table, grid).any(|own| own == quantity) {
-        let known = quantities(table, grid).collect::<Vec<_>>().join(", ");
+        let mut known: Vec<&str> = quantities(table, grid).collect();
+        let more = SUMMARY_FIELDS.iter().map(|field| field.name).filter(|name| !known.contains(name));
+        let more: Vec<&str> = more.collect();
+        known.extend(more);
+        let known = known.join(", ");
         return Err(NoPicture::Quantity { asked: quantity.to_owned(), known });
+    }
+    if *view != View::Top {
+        let lengths = || grid.axes().iter().map(|axis| axis.values.len());
+        match (view, grid.cells()) {
+            _ if lengths().count() != 2 || lengths().min() < Some(2) => return Err(NoPicture::NoMap),
+            _ if table.column(DIRECTION).is_some() => return Err(NoPicture::NoMap),
+            (View::Surface, _) if words_of(quantity).is_some() => {
+                return Err(NoPicture::FlatWords(quantity.to_owned()));
+            }
+            (View::Surface, n) if n > MAX_SURFACE_CELLS => return Err(NoPicture::SurfaceCells(n)),
+            _ => {}
+        }
     }
     match grid.axes().len() {
         1 | 2 if grid.cells() > MAX_PICTURE_CELLS => Err(NoPicture::Cells(grid.cells())),
@@ -74,9 +106,13 @@ const MANY: usize = 3;
 /// has few.
 pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) -> Result<Figure, NoPicture> {
     let SweepPicture { rows, grid, scene, until_settled, .. } = *picture;
-    can_show(grid, picture.quantity, rows)?;
-    let mut figure = Figure::new(theme.paper);
+    can_show(grid, (picture.quantity, &picture.view), rows)?;
+    let mut figure = Figure::new(theme, caption, least(picture, theme));
     match (grid.columns(), few_lines(rows, grid)) {
+        ([x, y], _) if picture.view == View::Surface => surface(&mut figure, picture, (x, y), theme),
+        ([x, y], _) if let View::Cuts(cuts) = &picture.view => {
+            map_with_cuts(&mut figure, picture, ((x, y), cuts), theme);
+        }
         ([x], _) if walked_both(rows) => walked_lines(&mut figure, picture, x, theme),
         ([x, y], _) if walked_both(rows) => walked_maps(&mut figure, picture, (x, y), theme),
         ([x], _) => lines(&mut figure, picture, x, None, theme),
@@ -84,9 +120,22 @@ pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) ->
         ([x, y], None) => map(&mut figure, picture, (x, y), theme),
         (other, None) => return Err(NoPicture::Fields(other.len())),
     }
-    let walked = rows.column(DIRECTION).is_some();
-    caption.draw(&mut figure, theme, &sweep_about(grid, scene, walked, until_settled), LEFT);
+    let ways = words(rows, DIRECTION);
+    let walked = [Direction::Up, Direction::Down].into_iter().filter(|way| ways.contains(&way.name()));
+    let walked: Vec<Direction> = walked.collect();
+    caption.draw(&mut figure, theme, &sweep_about(grid, scene, &walked, until_settled), LEFT);
     Ok(figure)
+}
+
+/// What the picture needs between its captions.
+fn least(picture: &SweepPicture, theme: &Theme) -> f64 {
+    let maps = picture.grid.axes().len() == 2 && walked_both(picture.rows);
+    match &picture.view {
+        View::Surface => SURFACE,
+        View::Cuts(cuts) => cut::least(cuts.len(), theme),
+        View::Top if maps && theme.is_narrow() => STACKED,
+        View::Top => LEAST,
+    }
 }
 
 /// Of two swept fields the one to the right and the one of which each value has a line, where one has few.
@@ -109,18 +158,25 @@ pub(super) fn distinct(values: &[f64]) -> Vec<f64> {
     values
 }
 
-/// What was run, in one line; `walked`, where each run went on from the one before, and up to when in s runs
-/// went on until they repeat, where they did.
-pub fn sweep_about(grid: &Grid, scene: &Scene, walked: bool, until_settled: Option<f64>) -> String {
-    let counts: Vec<String> = grid.axes().iter().map(|axis| axis.values.len().to_string()).collect();
+/// What was run, in one line; in which directions it was `walked`, where each run went on from the one
+/// before, and up to when in s runs went on until they repeat, where they did.
+pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settled: Option<f64>) -> String {
+    let lengths = grid.axes().iter().map(|axis| axis.values.len());
+    let counts: Vec<String> = Some(walked.len())
+        .filter(|ways| *ways > 1)
+        .into_iter()
+        .chain(lengths)
+        .map(|n| n.to_string())
+        .collect();
     let swept = |field: &str| grid.axes().iter().any(|axis| axis.field == field);
     let mut parts = vec![format!("{} runs", counts.join(" \u{d7} "))];
     if !swept("run.duration_s") {
         let longest = until_settled.map_or_else(String::new, |until| format!(" to {}", short(until)));
         parts[0] += &format!(" of {}{longest} s", short(scene.run.duration_s));
     }
-    if walked {
-        parts.push("each from where the one before was".to_owned());
+    if !walked.is_empty() {
+        let ways: Vec<&str> = walked.iter().map(|way| way.name()).collect();
+        parts.push(format!("{}, each from where the one before was", ways.join(" and ")));
     } else if scene.start == Start::Rest {
         parts.push("each from rest".to_owned());
     }
@@ -134,7 +190,6 @@ pub fn sweep_about(grid: &Grid, scene: &Scene, walked: bool, until_settled: Opti
 
 /// The quantity over the field `x`, each value marked with its regime; a line for each value of `series`.
 fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&str>, theme: &Theme) {
-    const RIGHT: f64 = 1560.0;
     let SweepPicture { rows, ranges, .. } = *picture;
     let values = rows.numbers(x).unwrap_or_default();
     let quantity = Quantity::of(rows, picture.quantity);
@@ -175,24 +230,27 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     }
     let entries: Vec<(Sample, &str)> =
         entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
-    let top = TOP.max(legend(figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(figure, theme, &entries, ends, 146.0) + 18.0);
 
     let x_label = label(rows, x);
     let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     // Most quantities are never negative; the little room below 0 is for the markers.
     let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
-    let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);
+    let (left, right, bottom) =
+        (Frame::left(figure, &up, LEFT, figure.bottom() - top), figure.right(), figure.bottom());
+    let frame = Frame::new(Area::new(left, top, right, bottom), across, up);
     frame.grid(figure, theme);
     for at in &missing {
         if lines {
             frame.vertical(figure, *at, style::LINE, theme.soft, Some(style::DOT));
         } else {
             let at = frame.across(*at);
-            figure.line(&[(at, BOTTOM - TICK), (at, BOTTOM)], style::FINE_LINE, theme.soft, frame.area);
+            figure.line(&[(at, bottom - TICK), (at, bottom)], style::FINE_LINE, theme.soft, frame.area);
         }
     }
     // One seed has nothing between it and the next, nor has one regime.
-    let joined = !(x == "seed" || x.ends_with(".seed") || quantity.regimes);
+    let joined = !(x == "seed" || x.ends_with(".seed") || quantity.words.is_some());
     for (i, own) in each.iter().enumerate() {
         let mut order: Vec<usize> =
             (0..values.len()).filter(|row| series.is_none() || of_series[*row] == *own).collect();
@@ -208,7 +266,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
                 .map(|row| (frame.place(point(row)), regimes.get(*row).copied().unwrap_or("")))
                 .filter(|(at, _)| frame.area.contains(*at))
                 .collect();
-            let room = (RIGHT - LEFT) / order.len().max(1) as f64;
+            let room = (right - left) / order.len().max(1) as f64;
             let size = if joined { 0.8 * style::MARKER } else { (0.55 * room).clamp(3.5, style::MARKER) };
             let apart = if joined { MARKER_ROOM * size } else { 0.0 };
             for (at, word) in thinned(&marks, apart, 1.5 * size) {
@@ -217,6 +275,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
             }
         }
     }
+    figure.data = drawn(picture, &[(x, ranges.x)]).table();
     frame.axes(figure, theme);
 }
 

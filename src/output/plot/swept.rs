@@ -1,13 +1,15 @@
 //! Rows of a sweep as its pictures need them: what a picture is drawn from, places, words, marks.
 
 use super::axis::Ranges;
+use super::drawn::{Drawn, as_numbers};
 use super::figure::Point;
 use crate::scene::Scene;
-use crate::study::{Column, Grid, Table, Values};
+use crate::study::{Column, DIRECTION, Grid, Table, Values};
 
 pub(super) const LEFT: f64 = 160.0;
 pub(super) const TOP: f64 = 185.0;
-pub(super) const BOTTOM: f64 = 868.0;
+/// What a picture with one frame needs between its captions.
+pub(super) const LEAST: f64 = 420.0;
 
 /// The lines over a map, each where it makes sense.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -16,6 +18,27 @@ pub struct Overlay {
     pub release: Option<Table>,
     /// The first crossing cell along the amplitude.
     pub first_crossing: Option<Table>,
+}
+
+/// How a sweep over two fields is shown.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum View {
+    /// From the top, the quantity as colour, or as a line for each value of a field that has few.
+    #[default]
+    Top,
+    /// As a surface whose height is the quantity.
+    Surface,
+    /// From the top, with lines through it beside it.
+    Cuts(Vec<Cut>),
+}
+
+/// A line through a map along which one of its fields has a value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cut {
+    /// Column of that field.
+    pub column: String,
+    /// Its value, one of the map's.
+    pub value: f64,
 }
 
 /// What the picture of a sweep is drawn from.
@@ -33,8 +56,35 @@ pub struct SweepPicture<'a> {
     pub quantity: &'a str,
     /// The lines over a map.
     pub overlay: Overlay,
+    /// How a sweep over two fields is shown.
+    pub view: View,
     /// The axes of the fields, and over one field that of the quantity upward.
     pub ranges: Ranges,
+}
+
+/// The cells with the quantity and their words, those alone whose fields lie in the ranges `asked` for.
+pub(super) fn drawn(picture: &SweepPicture, asked: &[(&str, Option<(f64, f64)>)]) -> Drawn {
+    let SweepPicture { rows, grid, quantity, .. } = picture;
+    let fields = grid.columns();
+    let value = rows.column(quantity).and_then(as_numbers);
+    let names = fields.iter().map(String::as_str).chain(value.is_some().then_some(*quantity));
+    let ways = words(rows, DIRECTION);
+    let regimes = words(rows, "regime");
+    let mut drawn = Drawn::new(names, if ways.is_empty() { &["regime"] } else { &["regime", DIRECTION] });
+    let columns: Vec<&[f64]> = fields.iter().filter_map(|name| rows.numbers(name)).collect();
+    for row in 0..rows.rows() {
+        let within = |(name, range): &(&str, Option<(f64, f64)>)| {
+            let own = rows.numbers(name).map_or(f64::NAN, |own| own[row]);
+            range.is_none_or(|(low, high)| (low..=high).contains(&own))
+        };
+        if asked.iter().all(within) {
+            let places = columns.iter().map(|own| own[row]);
+            let numbers: Vec<f64> = places.chain(value.as_ref().map(|own| own[row])).collect();
+            let said: Vec<&str> = [regimes, ways].iter().filter_map(|own| own.get(row).copied()).collect();
+            drawn.put("cell", &numbers, &said);
+        }
+    }
+    drawn
 }
 
 pub(super) fn words<'a>(rows: &'a Table, name: &str) -> &'a [&'static str] {

@@ -1,18 +1,17 @@
 //! Picture of thresholds: over one field lines, drawn here; over two a [`map`](super::map) or lines.
 
 use super::axis::{PlotAxis, Ranges};
+use super::drawn::{Drawn, as_numbers};
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::map::map;
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Theme};
 use super::sweep::{NoPicture, distinct, few_lines};
-use super::swept::{BOTTOM, LEFT, Overlay, SweepPicture, TOP, label};
+use super::swept::{LEAST, LEFT, Overlay, SweepPicture, TOP, View, label};
 use crate::numeric::short;
 use crate::scene::{Scene, column_names};
 use crate::study::{Column, Grid, Onset, Table, Values};
-
-const RIGHT: f64 = 1560.0;
 
 /// What the picture of thresholds is drawn from.
 #[derive(Debug, Clone, Copy)]
@@ -49,7 +48,7 @@ pub fn threshold_figure(
 ) -> Result<Figure, NoPicture> {
     can_show_thresholds(Some(picture.grid))?;
     let ThresholdPicture { rows, grid, scene, onset, ranges, .. } = *picture;
-    let mut figure = Figure::new(theme.paper);
+    let mut figure = Figure::new(theme, caption, LEAST);
     let least = format!("least_{}", column_names(&[picture.field]).concat());
     let values = rows.numbers("value").unwrap_or_default();
     let quantity = Column { name: least.clone(), values: Values::Numbers(values.to_vec()) };
@@ -62,10 +61,20 @@ pub fn threshold_figure(
             let named = rows.clone().with(&least, quantity.values);
             let (quantity, overlay) = (least.as_str(), Overlay::default());
             let until_settled = None;
-            let shown = SweepPicture { rows: &named, grid, scene, until_settled, quantity, overlay, ranges };
+            let view = View::Top;
+            let shown =
+                SweepPicture { rows: &named, grid, scene, until_settled, quantity, overlay, view, ranges };
             map(&mut figure, &shown, (&columns[0], &columns[1]), theme);
         }
     }
+    let mut drawn = Drawn::new(grid.columns().iter().map(String::as_str).chain([&*least, "windows"]), &[]);
+    let windows = rows.column("windows").and_then(as_numbers).unwrap_or_default();
+    for row in 0..rows.rows() {
+        let fields = grid.columns().iter().filter_map(|name| rows.numbers(name)).map(|own| own[row]);
+        let numbers: Vec<f64> = fields.chain([values[row], windows[row]]).collect();
+        drawn.put("threshold", &numbers, &[]);
+    }
+    figure.data = drawn.table();
     caption.draw(&mut figure, theme, about(onset), LEFT);
     Ok(figure)
 }
@@ -121,23 +130,26 @@ fn lines(
         entries.push((Sample::Ticks(theme.soft), "none in the range".to_owned()));
     }
     let entries: Vec<(Sample, &str)> = entries.iter().map(|(own, words)| (*own, words.as_str())).collect();
-    let top = TOP.max(legend(figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(figure, theme, &entries, ends, 146.0) + 18.0);
 
     let x_label = label(rows, x);
     let across = PlotAxis::around(places.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     let from_zero = values.iter().copied().chain([0.0]);
     let upward = PlotAxis::around(from_zero, 0.05, 6, up).or_given(ranges.y, 6, up);
-    let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, upward);
+    let (left, right, bottom) =
+        (Frame::left(figure, &upward, LEFT, figure.bottom() - top), figure.right(), figure.bottom());
+    let frame = Frame::new(Area::new(left, top, right, bottom), across, upward);
     frame.grid(figure, theme);
     for row in missing {
         let at = frame.across(places[row]);
-        figure.line(&[(at, BOTTOM - TICK), (at, BOTTOM)], style::LINE, theme.soft, frame.area);
+        figure.line(&[(at, bottom - TICK), (at, bottom)], style::LINE, theme.soft, frame.area);
     }
     for (i, own) in each.iter().enumerate() {
         let mut order: Vec<usize> =
             (0..values.len()).filter(|row| series.is_none() || of_series[*row] == *own).collect();
         order.sort_by(|a, b| places[*a].total_cmp(&places[*b]));
-        let size = (0.3 * (RIGHT - LEFT) / order.len().max(1) as f64).clamp(3.5, style::MARKER);
+        let size = (0.3 * (right - left) / order.len().max(1) as f64).clamp(3.5, style::MARKER);
         for part in order.split(|row| !values[*row].is_finite()) {
             let points: Vec<Point> = part.iter().map(|row| (places[*row], values[*row])).collect();
             frame.line(figure, &points, style::LINE, ink(i));

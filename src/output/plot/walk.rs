@@ -8,7 +8,7 @@ use super::map::{Cell, Mosaic, colour_bar, meanings};
 use super::mark::{REGIMES, Sample, legend, marker, regime};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{BOTTOM, LEFT, MARKER_ROOM, SweepPicture, TOP, label, thinned, words};
+use super::swept::{LEFT, MARKER_ROOM, SweepPicture, TOP, drawn, label, thinned, words};
 use crate::study::{DIRECTION, Direction, Table};
 
 /// Whether the rows are those of a walk both ways.
@@ -32,19 +32,27 @@ fn strokes(theme: &Theme) -> [Stroke; 2] {
     [(Direction::Up, theme.ink, None), (Direction::Down, theme.second, Some(style::DASH))]
 }
 
+/// The distance between two lines as a share of the axis upward from which on they are seen apart.
+const VISIBLE: f64 = 2e-3;
+
 /// The quantity over the field `x` on the way up and on the way down, each value marked with its regime.
 pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str, theme: &Theme) {
-    const RIGHT: f64 = 1560.0;
     let SweepPicture { rows, ranges, .. } = *picture;
     let values = rows.numbers(x).unwrap_or_default();
     let quantity = Quantity::of(rows, picture.quantity);
     let regimes = words(rows, "regime");
     let shade = theme.shaking.over(theme.paper, 0.3);
+    let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
+    let [ups, downs] = [Direction::Up, Direction::Down].map(|way| walked(rows, values, way));
+    let apart = |(a, b): (&usize, &usize)| {
+        let [a, b] = [a, b].map(|row| up.share(quantity.values[*row]));
+        (a - b).abs() > VISIBLE
+    };
     let mut entries = vec![];
     for (direction, ink, dash) in strokes(theme) {
         entries.push((Sample::Line(ink, style::LINE, dash), direction.name()));
     }
-    if !quantity.regimes {
+    if quantity.words.is_none() && ups.iter().zip(&downs).any(apart) {
         entries.push((Sample::Patch(shade, None), "hysteresis"));
     }
     for (name, shape) in REGIMES {
@@ -52,15 +60,15 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
             entries.push((Sample::Marker(shape, regime(name, theme).1), name));
         }
     }
-    let top = TOP.max(legend(figure, theme, &entries, LEFT, RIGHT, 146.0) + 18.0);
+    let ends = (LEFT, figure.right());
+    let top = TOP.max(legend(figure, theme, &entries, ends, 146.0) + 18.0);
     let x_label = label(rows, x);
     let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
-    let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
-    let frame = Frame::new(Area::new(LEFT, top, RIGHT, BOTTOM), across, up);
+    let left = Frame::left(figure, &up, LEFT, figure.bottom() - top);
+    let frame = Frame::new(Area::new(left, top, figure.right(), figure.bottom()), across, up);
     let place = |row: &usize| frame.place((values[*row], quantity.values[*row]));
-    let [ups, downs] = [Direction::Up, Direction::Down].map(|way| walked(rows, values, way));
     let pairs: Vec<(Point, Point)> = ups.iter().map(place).zip(downs.iter().map(place)).collect();
-    if !quantity.regimes {
+    if quantity.words.is_none() {
         pairs.windows(2).for_each(|two| between(figure, two[0], two[1], shade, frame.area));
     }
     frame.grid(figure, theme);
@@ -68,7 +76,7 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
         for part in order.split(|row| !quantity.values[*row].is_finite()) {
             let points: Vec<Point> = part.iter().map(place).collect();
             match dash {
-                _ if quantity.regimes => {}
+                _ if quantity.words.is_some() => {}
                 None => figure.line(&points, style::LINE, ink, frame.area),
                 Some(dash) => figure.dashed(&points, style::LINE, ink, dash, frame.area),
             }
@@ -84,6 +92,7 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
             }
         }
     }
+    figure.data = drawn(picture, &[(x, ranges.x)]).table();
     frame.axes(figure, theme);
 }
 
@@ -106,9 +115,32 @@ fn between(figure: &mut Figure, a: (Point, Point), b: (Point, Point), ink: Ink, 
     }
 }
 
-/// Panels: where they begin and end.
-const PANELS: [(f64, f64); 3] = [(150.0, 505.0), (541.0, 896.0), (1066.0, 1421.0)];
+/// Width of a colour bar.
 const BAR: f64 = 24.0;
+/// On a wide canvas: where the first panel begins, the gaps before the others, and the room after the last.
+const FIRST: f64 = 150.0;
+const GAPS: [f64; 2] = [36.0, 170.0];
+const AFTER: f64 = 179.0;
+/// On a narrow canvas, where they are stacked: between two of them, right of them, and what three need.
+const BETWEEN: f64 = 76.0;
+const BESIDE: f64 = 185.0;
+pub(super) const STACKED: f64 = 1100.0;
+
+/// Where the panels are: side by side, or one under the other with the first axis alone to the left.
+fn panels(figure: &Figure, y: &PlotAxis, top: f64) -> [Area; 3] {
+    let (width, bottom) = (figure.canvas.right, figure.bottom());
+    if figure.is_narrow() {
+        let (left, right) = (Frame::left(figure, y, FIRST, (bottom - top) / 3.0), width - BESIDE);
+        let height = (bottom - top - 2.0 * BETWEEN) / 3.0;
+        return [0.0, 1.0, 2.0].map(|place| {
+            let top = top + place * (height + BETWEEN);
+            Area::new(left, top, right, top + height)
+        });
+    }
+    let own = (width - FIRST - GAPS[0] - GAPS[1] - AFTER) / 3.0;
+    let second = FIRST + own + GAPS[0];
+    [FIRST, second, second + own + GAPS[1]].map(|left| Area::new(left, top, left + own, bottom))
+}
 
 /// The quantity over two fields on the way up and on the way down, and what the way down has more.
 pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &str), theme: &Theme) {
@@ -118,8 +150,12 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
     let [up, down] = [Direction::Up, Direction::Down]
         .map(|way| Mosaic::new(rows, (x, y), &quantity, |row| ways[row] == way.name()));
     let bar = quantity.axis(0.0, 6);
-    let difference: Vec<Cell> =
-        up.cells.iter().zip(&down.cells).map(|(up, down)| less(*down, *up, quantity.regimes)).collect();
+    let difference: Vec<Cell> = up
+        .cells
+        .iter()
+        .zip(&down.cells)
+        .map(|(up, down)| less(*down, *up, quantity.words.is_some()))
+        .collect();
     let values = difference.iter().filter_map(Cell::value).map(f64::abs);
     let largest = values.fold(0.0, f64::max);
     let reach = if largest > 0.0 { largest } else { 1.0 };
@@ -129,31 +165,38 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
         let ink = if share < 0.0 { theme.regimes[1] } else { theme.regimes[3] };
         ink.over(theme.rest, share.abs())
     };
-    let top = 58.0 + TOP;
+    figure.data = drawn(picture, &[(x, ranges.x), (y, ranges.y)]).table();
     let both: Vec<Cell> = up.cells.iter().chain(&down.cells).copied().collect();
     let mut entries = meanings(rows, &quantity, &both, theme);
-    if quantity.regimes {
+    if quantity.words.is_some() {
         entries.push((Sample::Patch(theme.ink, None), "differs"));
     }
+    let ends = (FIRST + 10.0, figure.right());
+    let top = (58.0 + TOP).max(legend(figure, theme, &entries, ends, 146.0) + 62.0);
     let last = Mosaic { cells: difference, ..up.clone() };
+    let labels = (label(rows, x), label(rows, y));
+    let whole = Area::new(0.0, 0.0, 1.0, 1.0);
+    let areas = panels(figure, &up.frame(whole, (&labels.0, &labels.1), ranges).y, top);
+    let stacked = figure.is_narrow();
     for (i, (mosaic, name)) in
         [(&up, "up"), (&down, "down"), (&last, "down \u{2212} up")].into_iter().enumerate()
     {
-        let (left, right) = PANELS[i];
-        let labels = (label(rows, x), label(rows, y));
-        let mut frame = mosaic.frame(Area::new(left, top, right, BOTTOM), (&labels.0, &labels.1), ranges);
-        if i > 0 {
+        let Area { left, right, top, .. } = areas[i];
+        let mut frame = mosaic.frame(areas[i], (&labels.0, &labels.1), ranges);
+        if stacked && i < 2 {
+            frame.x = frame.x.silent();
+        } else if !stacked && i > 0 {
             frame.y = frame.y.silent();
         }
-        mosaic.paint(figure, &frame, theme, |value| match (i, quantity.regimes) {
+        mosaic.paint(figure, &frame, theme, |value| match (i, quantity.words.is_some()) {
             (2, true) if value == 0.0 => theme.rest,
             (2, true) => theme.ink,
             (2, false) => tint(value),
-            (_, true) => theme.regimes[value as usize],
+            (_, true) => quantity.ink(value, theme),
             (_, false) => viridis(bar.share(value)),
         });
         frame.axes(figure, theme);
-        let name = if quantity.regimes && i == 2 { "where they differ" } else { name };
+        let name = if quantity.words.is_some() && i == 2 { "where they differ" } else { name };
         figure.text(Text {
             words: name.to_owned(),
             at: (0.5 * (left + right), top - 16.0),
@@ -164,15 +207,14 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
             upright: false,
         });
     }
-    if !quantity.regimes {
+    if quantity.words.is_none() {
         let beside = |panel: usize| {
-            let left = PANELS[panel].1 + 16.0;
-            Area::new(left, top, left + BAR, BOTTOM)
+            let Area { right, top, bottom, .. } = areas[panel];
+            Area::new(right + 16.0, top, right + 16.0 + BAR, bottom)
         };
         colour_bar(figure, beside(1), &bar, theme, viridis);
         colour_bar(figure, beside(2), &signed, theme, |share| tint((2.0 * share - 1.0) * reach));
     }
-    legend(figure, theme, &entries, LEFT, 1560.0, 146.0);
 }
 
 /// What the one cell has more than the other; of regimes, whether they differ.

@@ -20,7 +20,16 @@ macro_rules! lessons {
 }
 
 lessons! {
+    "01-two-wells-and-a-hill"
+    "02-shake-it-over"
     "03-a-stop-that-helps"
+    "04-letting-go-is-not-crossing"
+    "05-the-price-of-a-stop"
+    "06-bouncy-or-dead"
+    "07-a-coin-toss"
+    "08-design-it"
+    "09-up-is-not-down"
+    "10-noise-has-no-rhythm"
 }
 
 /// A lesson to begin one's own from.

@@ -93,6 +93,10 @@ pub enum LessonView {
     Map,
     /// One field turned up and down.
     UpAndDown,
+    /// Where the motion goes from every start.
+    Basins,
+    /// What oscillations the motion is made of.
+    Spectrum,
 }
 
 /// One step of a lesson.

@@ -54,6 +54,26 @@ pub struct Attractor {
     pub share: Shares,
 }
 
+impl Attractor {
+    /// Its regime, side and period in words.
+    pub fn words(&self) -> String {
+        let mut words = match self.regime.name() {
+            "" => "one well",
+            name => name,
+        }
+        .to_owned();
+        if let Some(side) = self.side.map(Place::name).filter(|side| *side != Place::Both.name()) {
+            words += &format!(" {side}");
+        }
+        if let Some(period) = self.period {
+            words += &format!(", period {period}");
+        } else if self.regime == Regime::Intrawell {
+            words += ", no period";
+        }
+        words
+    }
+}
+
 /// What a map of basins has come to so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {

@@ -5,7 +5,8 @@
 //! finds the orbit near by, and the Lyapunov equation M = J^T M J + I a norm in which the linear map shrinks
 //! everything; without a solution the orbit is unstable, as that of a transient near a saddle is. How far
 //! from the orbit the map itself shrinks in that norm is then measured, on circles of growing radius, and the
-//! largest one up to which all do is the ellipse: every motion that enters it goes to the orbit.
+//! largest one up to which all do is the ellipse: every motion that enters it goes to the orbit. Where there
+//! is none, the map of some times the period is looked at.
 
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Capture, Jacobian, Outcome};
@@ -33,6 +34,9 @@ const AROUND: usize = 16;
 
 /// States nearer to an orbit than this share of the scales have arrived, as for a repetition of states.
 const NEAR: f64 = 1e-3;
+
+/// How many times its period a map is taken over around an orbit, each twice the one before.
+const TIMES: [u32; 6] = [1, 2, 4, 8, 16, 32];
 
 /// Doublings of the series of the norm; a contraction by 1e-9 a period takes half of them.
 const DOUBLINGS: usize = 60;
@@ -74,11 +78,34 @@ fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Foun
     orbit.extend_from_slice(&states[..period as usize - 1]);
     for own in orbit {
         let Some((_, jacobian)) = jacobian(scope, period, own) else { return Some(Found::Nothing) };
-        let Some(norm) = lyapunov(&jacobian) else { return Some(Found::Unstable(scope.state(root))) };
-        let Some(radius) = radius(scope, period, own, &norm)? else { return Some(Found::Nothing) };
-        captures.push(capture(scope, own, &norm, radius));
+        if lyapunov(&jacobian).is_none() {
+            return Some(Found::Unstable(scope.state(root)));
+        }
+        let Some(own) = ellipse(scope, period, own, jacobian)? else { return Some(Found::Nothing) };
+        captures.push(own);
     }
     Some(Found::Stable(captures))
+}
+
+/// The ellipse around a fixed point of the map of `period` forcing periods, by the map of as few times as
+/// many as has one; none where none of them does.
+///
+/// Where a motion passes a kink of the force the map bends sharply, and near an orbit it need not shrink at
+/// once in the norm of its derivative; after some periods more it does, however it bends.
+fn ellipse(scope: &Stroboscope, period: u32, at: Point, mut jacobian: Matrix) -> Option<Option<Capture>> {
+    for times in TIMES {
+        let Some(norm) = lyapunov(&jacobian) else { break };
+        if let Some(radius) = radius(scope, times * period, at, &norm)? {
+            return Some(Some(capture(scope, at, &norm, radius)));
+        }
+        jacobian = squared(&jacobian);
+    }
+    Some(None)
+}
+
+/// The product of a matrix with itself.
+fn squared([[p, q], [r, s]]: &Matrix) -> Matrix {
+    [[p * p + q * r, p * q + q * s], [r * p + s * r, r * q + s * s]]
 }
 
 fn distance(a: &Point, b: &Point) -> f64 {
@@ -135,7 +162,7 @@ fn lyapunov(jacobian: &Matrix) -> Option<[f64; 3]> {
         if more[0] + more[2] <= f64::EPSILON * (sum[0] + sum[2]) {
             return Some(sum);
         }
-        power = [[p * p + q * r, p * q + q * s], [r * p + s * r, r * q + s * s]];
+        power = squared(&power);
     }
     None
 }

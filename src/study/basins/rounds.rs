@@ -21,6 +21,9 @@ const LONGEST_ROUND: usize = 8192;
 /// Regions that are looked for around motions of one kind.
 const MOST_SEARCHES: usize = 4;
 
+/// Motions of one verdict whose exponents are asked for in vain.
+const MOST_DOUBTS: usize = 4;
+
 /// States closer than this share of the scales count as one, of a proposal and of an unstable orbit.
 const SAME_PROPOSAL: f64 = 1e-3;
 const ON_ORBIT: f64 = 1e-6;
@@ -83,6 +86,8 @@ pub(super) struct Rounds {
     regions: Vec<Region>,
     region_of: Vec<u32>,
     searches: Vec<u32>,
+    /// Verdicts on motions without a period whose exponent does not bear them out.
+    doubted: Vec<Verdict>,
     next_round: usize,
 }
 
@@ -99,6 +104,7 @@ impl Rounds {
             regions: Vec::new(),
             region_of: Vec::new(),
             searches: Vec::new(),
+            doubted: Vec::new(),
             next_round: FIRST_ROUND,
         }
     }
@@ -147,16 +153,28 @@ impl Rounds {
                 let fate = match verdict(&summary, on_unstable) {
                     Verdict::Lost => Fate::Lost,
                     Verdict::Undecided => Fate::Undecided,
-                    own @ Verdict::Settled { .. } => {
-                        let same = |kind: &Kind| matches!(kind, Kind::Judged(other, _) if *other == own);
-                        Fate::Kind(self.kind(same, || Kind::Judged(own, summary)), 0)
-                    }
+                    own @ Verdict::Settled { .. } => self.judged(own, summary, scope),
                 };
                 (fate, PATIENCE)
             }
         };
         self.put(item, fate, periods);
         None
+    }
+
+    /// The kind of a motion that was judged. Of those without a period the first one must be irregular by its
+    /// exponent, else one of the next few: it may be a motion that is slow to settle.
+    fn judged(&mut self, own: Verdict, summary: Box<Summary>, scope: &Stroboscope) -> Fate {
+        let same = |kind: &Kind| matches!(kind, Kind::Judged(other, _) if *other == own);
+        let repeats = matches!(own, Verdict::Settled { period: Some(_), .. });
+        if !repeats && !self.kinds.iter().any(same) {
+            let doubts = self.doubted.iter().filter(|other| **other == own).count();
+            if doubts >= MOST_DOUBTS || !scope.is_irregular((summary.final_x, summary.final_v)) {
+                self.doubted.push(own);
+                return Fate::Undecided;
+            }
+        }
+        Fate::Kind(self.kind(same, || Kind::Judged(own, summary)), 0)
     }
 
     fn put(&mut self, item: Item, fate: Fate, periods: u64) {
@@ -277,7 +295,7 @@ fn round(
     }
     // Followed again, they enter the region at their own time.
     next.extend(unsettled.into_iter().filter(|own| rounds.is_surrounded(own.1)).map(|own| own.0));
-    Some(next)
+    (!task.is_cancelled()).then_some(next)
 }
 
 impl Basins {

@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use crate::dynamics::{Arrival, Model, Outcome, Pursuit, Request};
+use crate::study::exponents::{ExponentOptions, average_exponents};
 use crate::system::threads::Pool;
 
 /// A displacement and a velocity in units of the scene's scales.
@@ -99,6 +100,13 @@ impl Stroboscope<'_> {
         let all = self.pool.map(starts.len(), || (), path).ok()?;
         let all: Option<Vec<_>> = all.into_iter().collect();
         Some(all.map(|all| all.iter().flatten().map(|sample| (sample.x, sample.v)).collect()))
+    }
+
+    /// Whether the motion that has a state in m and m/s once a period is irregular by its exponent.
+    pub fn is_irregular(&self, state: (f64, f64)) -> bool {
+        let phase = self.model.drive_phase(0.0).unwrap_or(0.0);
+        let found = average_exponents(self.model, (state, phase), ExponentOptions::PERIODS, self.cancel);
+        found.is_ok_and(|own| own.is_irregular())
     }
 
     /// What pursuits come to, in their order; `tick` is called for each. None where it was cancelled.

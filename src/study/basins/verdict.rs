@@ -22,11 +22,12 @@ pub(super) enum Verdict {
 }
 
 /// The verdict by the summary of a pursuit, whose window is its last hundred forcing periods, and whether it
-/// ended on an orbit that is unstable.
+/// ended on an orbit that is unstable. That of a motion without a period is borne out by an exponent, of one
+/// motion of its kind.
 ///
-/// An exponent would tell irregular motion from a long transient no better: the transients of a double well
-/// are themselves irregular, and end by chance. So a motion is called irregular after a thousand periods in
-/// which it found no other.
+/// An exponent tells irregular motion from a motion that is slow to settle, but not from a long transient:
+/// the transients of a double well are themselves irregular, and end by chance. So a motion is called
+/// irregular only after a thousand periods in which it found no other.
 pub(super) fn verdict(summary: &Summary, on_unstable: bool) -> Verdict {
     match summary.outcome {
         Outcome::Done if on_unstable || summary.settled != Some(true) => Verdict::Undecided,

@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 
 use super::corrector::{Corrector, Point, Units};
 use super::events::{BranchEvent, between, differ, grazes};
-use super::family::Family;
-use super::{NoOrbit, Orbit, orbit, with_orbits};
+use super::{NoOrbit, Orbit, SAME, orbit, with_orbits};
 use crate::scene::column_names;
+use crate::study::family::Family;
 use crate::study::{Table, Task};
 
 /// Steps of the walk in the units of the branch: the first, the longest, and the one below which it does not
@@ -21,8 +21,11 @@ const SHORTEST: f64 = 1e-9;
 /// the root of the distance, and steps would become ever shorter.
 const NEAR_A_GRAZING: f64 = 1e-5;
 
-/// Cosine of the angle by which the direction may turn in a step.
+/// Cosine of the angle by which the direction may turn in a step, and by which a step may lie beside it.
 const STRAIGHT: f64 = 0.9;
+
+/// The change in a step of where a mass is that rests on its way, as a share of its room.
+const CHANGE: f64 = 0.1;
 
 /// The most points.
 const MOST_POINTS: usize = 5000;
@@ -36,11 +39,14 @@ const AROUND: [f64; 4] = [3e-3, 1e-3, 1e-4, 1e-5];
 pub enum BranchEnd {
     /// At an end of the range.
     Range,
-    /// It came back to where it began.
+    /// It came back to where it had been.
     Closed,
     /// The motion touches a stop without speed, and no motion near to it goes on.
     Grazing,
-    /// Newton's method finds no motion near the last one: it jumps, changes too fast, or ends early.
+    /// A motion that rests on its way leaps to another one: the mass, released as before, no longer goes
+    /// where it went, as where it just fails to pass the barrier.
+    Leap,
+    /// Newton's method finds no motion near the last one: it leaps, changes too fast, or ends early.
     Lost,
     /// At the most points.
     Points,
@@ -50,9 +56,13 @@ impl fmt::Display for BranchEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Range => "at an end of the range",
-            Self::Closed => "where it began",
+            Self::Closed => "where it had been before",
             Self::Grazing => "where the motion touches a stop without speed, and none near to it goes on",
-            Self::Lost => "where no motion near the last one was found: it may jump, or end early",
+            Self::Leap => "where the motion leaps to another one",
+            Self::Lost => {
+                "where no motion near the last one was found: it may leap to another, change too \
+                 fast, or end early"
+            }
             Self::Points => "after 5000 motions",
         })
     }
@@ -95,14 +105,13 @@ pub fn branch(
     (phase, period): (f64, Option<u32>),
     task: &Task,
 ) -> Result<Branch, NoOrbit> {
-    let model = family.model(from).ok_or(NoOrbit::NotConverged)?;
+    let model = family.model(from).map_err(|_| NoOrbit::NotConverged)?;
     let first = orbit(&model, phase, period, task.cancel)?;
     let scales = model.scales();
     let units = Units { length: scales.length, speed: scales.speed, range: (to - from).abs() };
     let corrector = Corrector { family, phase, periods: first.period, units };
     let upwards = Vector3::new(0.0, 0.0, (to - from).signum());
-    let start = corrector.at(first.state, from);
-    let point = corrector.correct(start, &upwards).ok_or(NoOrbit::NotConverged)?;
+    let point = corrector.correct(corrector.at(first.state, from), &upwards).ok_or(NoOrbit::NotConverged)?;
     let along = corrector.tangent(&point, &upwards).ok_or(NoOrbit::Grazing)?;
     let branch = Branch {
         field: field.to_owned(),
@@ -112,7 +121,12 @@ pub fn branch(
         end: BranchEnd::Points,
     };
     let ends = [from.min(to), from.max(to)].map(|own| own / units.range);
-    let mut walk = Walk { corrector, branch, ends, phase, start, farthest: 0.0, at: (point, along) };
+    let room = match model.stop_positions() {
+        (Some(left), Some(right)) => scales.length.min(0.5 * (right - left)),
+        _ => scales.length,
+    };
+    let mut walk =
+        Walk { corrector, branch, ends, room, phase, told: Vec::new(), meets: false, at: (point, along) };
     walk.add(None, &walk.at.0.clone());
     walk.branch.end = walk.run_out(task)?;
     Ok(walk.branch)
@@ -125,11 +139,14 @@ struct Walk<'a> {
     branch: Branch,
     /// The ends of the range in its unit.
     ends: [f64; 2],
-    /// The phase at which motions are told, in forcing periods, and the first one there.
+    /// A length in m that is a share of the room that the mass has.
+    room: f64,
+    /// The phase at which motions are told, in forcing periods.
     phase: f64,
-    start: Vector3<f64>,
-    /// How far from it the branch has been.
-    farthest: f64,
+    /// The motions there, with their distance along the branch from the first.
+    told: Vec<(Vector3<f64>, f64)>,
+    /// Whether the last of them is one that the branch had left behind.
+    meets: bool,
     /// The last point, and the direction there.
     at: (Point, Vector3<f64>),
 }
@@ -148,18 +165,18 @@ impl Walk<'_> {
             let guess = point.at + along * step;
             let leaves = |to: f64| self.ends.into_iter().find(|end| (to - end) * (point.at.z - end) < 0.0);
             let mut beyond = leaves(guess.z);
-            let mut next = None;
+            let mut found = None;
             if beyond.is_none()
                 && let Some(point) = self.corrector.correct(guess, along)
             {
                 beyond = leaves(point.at.z);
-                let onward = self.corrector.tangent(&point, along);
-                next = onward.filter(|own| own.dot(along) > STRAIGHT).map(|onward| (point, onward));
+                found = self.corrector.tangent(&point, along).map(|onward| (point, onward));
             }
             if let Some(end) = beyond {
-                next = self.last(end);
+                found = self.last(end);
             }
-            match next {
+            let leaps = found.is_some() && self.at.0.forgets();
+            match found.filter(|next| self.follows(next)) {
                 Some(next) => {
                     self.go_to(next);
                     if beyond.is_some() {
@@ -175,12 +192,20 @@ impl Walk<'_> {
             let at_a_grazing = step < NEAR_A_GRAZING && grazes(&self.at.0, &self.corrector.units);
             if at_a_grazing && let Some(next) = self.past_a_grazing() {
                 self.go_to(next);
+                if self.is_closed(0.0) {
+                    return Ok(BranchEnd::Closed);
+                }
                 step = FIRST * 0.1;
             } else if step < SHORTEST {
-                if let Some(event) = self.branch.events.last_mut().filter(|_| at_a_grazing) {
-                    *event = Some(BranchEvent::Grazing);
-                }
-                return Ok(if at_a_grazing { BranchEnd::Grazing } else { BranchEnd::Lost });
+                return Ok(match self.branch.events.last_mut() {
+                    // each impact of a mass that chatters may be gentle
+                    _ if leaps => BranchEnd::Leap,
+                    Some(event) if at_a_grazing => {
+                        *event = Some(BranchEvent::Grazing);
+                        BranchEnd::Grazing
+                    }
+                    _ => BranchEnd::Lost,
+                });
             }
         }
         Ok(BranchEnd::Points)
@@ -196,20 +221,54 @@ impl Walk<'_> {
         ((next.at - point.at).norm() <= 2.0 * LONGEST).then_some((next, onward))
     }
 
+    /// Whether a point continues the branch: it lies in its direction, and so does its own direction.
+    fn follows(&self, (next, onward): &(Point, Vector3<f64>)) -> bool {
+        let (point, along) = &self.at;
+        let step = next.at - point.at;
+        // a motion that is a function of the field does not turn back
+        let turns = point.forgets() && next.forgets() && onward.z * along.z < 0.0;
+        !turns
+            && onward.dot(along) > STRAIGHT
+            && step.dot(along) > STRAIGHT * step.norm()
+            && self.is_near(next)
+    }
+
+    /// Whether a motion that rests on its way, which begins anew at each release whatever it was before, is
+    /// where the last one was all the time.
+    fn is_near(&self, next: &Point) -> bool {
+        let point = &self.at.0;
+        if !point.forgets() && !next.forgets() {
+            return true;
+        }
+        let all = |point: &Point| self.corrector.displacements(point);
+        let Some((before, after)) = all(point).zip(all(next)) else { return false };
+        let far = before.iter().zip(&after).map(|(a, b)| (a - b).abs());
+        far.fold(0.0, f64::max) <= CHANGE * self.room
+    }
+
     fn go_to(&mut self, next: (Point, Vector3<f64>)) {
         let (point, along) = &self.at;
         for (event, there) in between(&self.corrector, (point, along.z), (&next.0, next.1.z)) {
             self.add(Some(event), &there);
         }
-        self.add(None, &next.0);
+        if !self.meets {
+            self.add(None, &next.0);
+        }
         self.at = next;
     }
 
     /// Adds a motion, told at the phase that was asked for.
     fn add(&mut self, event: Option<BranchEvent>, point: &Point) {
         let told = self.corrector.at_phase(&point.orbit, point.value, self.phase);
+        let told = told.unwrap_or_else(|| point.orbit.clone());
+        let at = self.corrector.at(told.state, point.value);
+        let far = self.told.last().map_or(0.0, |(last, far)| far + (at - last).norm());
+        // only where something happens does it come to the same motion again, and not beside it
+        let left = self.told.iter().take_while(|(_, own)| far - own > LONGEST);
+        self.meets |= left.into_iter().any(|(own, _)| (at - own).amax() <= SAME);
+        self.told.push((at, far));
         self.branch.values.push(point.value);
-        self.branch.orbits.push(told.unwrap_or_else(|| point.orbit.clone()));
+        self.branch.orbits.push(told);
         self.branch.events.push(event);
     }
 
@@ -229,13 +288,11 @@ impl Walk<'_> {
         }
     }
 
-    fn is_closed(&mut self, step: f64) -> bool {
-        let (Some(last), Some(value)) = (self.branch.orbits.last(), self.branch.values.last()) else {
-            return false;
-        };
-        let far = (self.corrector.at(last.state, *value) - self.start).norm();
-        self.farthest = self.farthest.max(far);
-        far < 0.5 * step && self.farthest > 10.0 * step
+    /// Whether the last motion is the first one, but for the length of a step, or the branch has met itself.
+    fn is_closed(&self, step: f64) -> bool {
+        let Some(((last, _), (first, _))) = self.told.last().zip(self.told.first()) else { return false };
+        let farthest = self.told.iter().map(|(own, _)| (own - first).norm()).fold(0.0, f64::max);
+        self.meets || (last - first).norm() < 0.5 * step && farthest > 10.0 * step
     }
 
     /// A motion that touches the stops otherwise, near the last one, and the direction away from it.
@@ -249,7 +306,8 @@ impl Walk<'_> {
             };
             let away = point.at - last.at;
             let far = away.norm();
-            if !(0.3 * distance..=3.0 * distance).contains(&far) || !differ(last, &point) {
+            let beside = (0.3 * distance..=3.0 * distance).contains(&far);
+            if !beside || !differ(last, &point) || !self.is_near(&point) {
                 continue;
             }
             if let Some(onward) = self.corrector.tangent(&point, &(away / far)) {

@@ -3,18 +3,20 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::family::Family;
 use super::{Orbit, allowed, map_of};
-use crate::dynamics::{EventKind, Outcome, StroboscopicMap};
+use crate::dynamics::{EventKind, Outcome, Passage, StroboscopicMap};
+use crate::study::family::Family;
 
 /// The most steps to a point.
 const MOST_STEPS: usize = 24;
 
-/// Half the distance over which the map is differenced by the field, as a share of its range. Where the
-/// motion stretches what is near to it a thousandfold, the direction of the branch is what is left of large
-/// numbers, and the quotient must be true to their digits: the error grows with the square of the distance,
-/// that of the map's rounding with its inverse.
+/// Half the distance over which the map is differenced by the field, as a share of its range, where it
+/// stretches what is near to it by less than that much. The direction of the branch is what is left of
+/// numbers as large as that: the error of the quotient grows with the square of the distance, that of the
+/// map's rounding with its inverse. Where the map stretches more the distance is less, unless the mass
+/// strikes a stop: then a touch may be what stretches, and nearer to it nothing is gained.
 const DIFFERENCE: f64 = 3e-8;
+const STRETCHED: f64 = 1e3;
 
 /// The time in forcing periods up to which an event at a stop is near, and the phases that are looked at.
 const NEAR_AN_EVENT: f64 = 0.02;
@@ -22,6 +24,9 @@ const CHOICES: u32 = 64;
 
 /// How far beside a motion that touches a stop without speed the map is differentiated.
 const BESIDE: f64 = 1e-5;
+
+/// Parts of a forcing period at which a motion is compared with another.
+const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// The largest correction of a predicted point.
 const LARGEST: f64 = 0.2;
@@ -53,6 +58,14 @@ pub(super) struct Point {
     by_field: [f64; 2],
 }
 
+impl Point {
+    /// Whether the mass rests on its way, which makes it forget its past: the motion is then a function of
+    /// the field alone.
+    pub fn forgets(&self) -> bool {
+        self.orbit.determinant() == 0.0
+    }
+}
+
 /// What all points of a branch share.
 pub(super) struct Corrector<'a> {
     pub family: &'a Family<'a>,
@@ -63,7 +76,7 @@ pub(super) struct Corrector<'a> {
 
 impl Corrector<'_> {
     fn map(&self, value: f64) -> Option<StroboscopicMap> {
-        map_of(&self.family.model(value)?, self.phase)
+        map_of(&self.family.model(value).ok()?, self.phase)
     }
 
     /// The same motion at another phase of the drive; none where it ends early.
@@ -94,6 +107,22 @@ impl Corrector<'_> {
         (room(best) > 2.0 * room(0.0)).then_some(best)
     }
 
+    /// Displacements in m at the quarters of each forcing period of a motion; none where it ends early.
+    pub fn displacements(&self, point: &Point) -> Option<Vec<f64>> {
+        let map = self.map(point.value)?;
+        let done = |passage: Passage| (passage.outcome == Outcome::Done).then_some(passage.state);
+        let mut state = point.orbit.state;
+        let mut all = Vec::new();
+        for _ in 0..self.periods {
+            all.push(state.0);
+            for part in QUARTERS {
+                all.push(done(map.pass_part(state, part))?.0);
+            }
+            state = done(map.pass(state, 1))?;
+        }
+        Some(all)
+    }
+
     /// The coordinates of a state at a value of the field.
     pub fn at(&self, state: (f64, f64), value: f64) -> Vector3<f64> {
         let Units { length, speed, range } = self.units;
@@ -115,8 +144,8 @@ impl Corrector<'_> {
     }
 
     /// The derivative of the map by the field, in the units; from one side where the other is no scene.
-    fn by_field(&self, state: (f64, f64), value: f64) -> Option<[f64; 2]> {
-        let step = DIFFERENCE * self.units.range;
+    fn by_field(&self, state: (f64, f64), value: f64, stretch: f64) -> Option<[f64; 2]> {
+        let step = DIFFERENCE * (STRETCHED / stretch).min(1.0) * self.units.range;
         let side = |value: f64| self.map(value).and_then(|map| Some((self.change(&map, state)?, value)));
         let here = || side(value);
         let (above, below) = match (side(value + step), side(value - step)) {
@@ -162,6 +191,13 @@ impl Corrector<'_> {
             at += step;
         }
         None
+    }
+
+    /// The motion at a place so near to a point that nothing else of it changes, where it touches a stop.
+    pub fn moved(&self, point: Point, at: Vector3<f64>) -> Point {
+        let mut orbit = Orbit { state: self.state(&at), ..point.orbit };
+        orbit.passage.nearest_miss = Some(0.0);
+        Point { at, value: at.z * self.units.range, orbit, ..point }
     }
 
     /// The direction of the branch at a point, on the side of `along`.
@@ -212,8 +248,15 @@ impl Corrector<'_> {
         let state = allowed(map.model(), self.state(at));
         let (passage, jacobian) = map.pass_with_jacobian(state, self.periods);
         let finite = jacobian.rows.as_flattened().iter().all(|own| own.is_finite());
-        let by_field = self.by_field(state, value).filter(|_| finite && passage.outcome == Outcome::Done)?;
+        if !finite || passage.outcome != Outcome::Done {
+            return None;
+        }
         let orbit = Orbit { period: self.periods, state, passage, jacobian };
+        let stretch = match orbit.passage.impacts() {
+            0 => self.matrix(&orbit, [0.0; 2], &Vector3::zeros()).amax(),
+            _ => 0.0,
+        };
+        let by_field = self.by_field(state, value, stretch)?;
         Some(Point { at: self.at(state, value), value, orbit, by_field })
     }
 }

@@ -1,5 +1,7 @@
 //! Events on a branch between two of its points: where they are, to some 1e-9 of the range.
 
+use nalgebra::Vector3;
+
 use super::corrector::{Corrector, Point, Units};
 
 /// What happens to a periodic motion at a value of the field.
@@ -35,6 +37,11 @@ const LOCATED: f64 = 1e-10;
 /// the stop: the speed is as the root of the distance.
 const NEAR: f64 = 1e-5;
 const SLOW: f64 = 1e-2;
+
+/// How far from a touch in the units of the branch a motion is sought that misses: farther than the map is
+/// differenced by the field; and how far it is sought at most.
+const TRIAL: f64 = 3e-7;
+const FARTHEST: f64 = 1e-3;
 
 /// The most points for it.
 const MOST_POINTS: usize = 80;
@@ -81,9 +88,8 @@ pub(super) fn between(
     let direction = chord / length;
     let at = |share: f64| corrector.correct(from.at + chord * share, &direction);
     let mut found: Vec<(f64, BranchEvent, Point)> = Vec::new();
-    // A mass that rests forgets its past: what it does between two rests changes without a bifurcation.
-    let forgets = |point: &Point| point.orbit.determinant() == 0.0;
-    let touches = differ(from, to) && !(forgets(from) && forgets(to));
+    // What a mass does between two rests changes without a bifurcation.
+    let touches = differ(from, to) && !(from.forgets() && to.forgets());
     if touches {
         // From the side that misses the stop: on the other the map changes as the root of the distance.
         let misses = from.orbit.contacts().len() <= to.orbit.contacts().len();
@@ -105,7 +111,8 @@ pub(super) fn between(
         let before = before.unwrap_or_else(|| free.clone());
         let grazes = |point: &Point| grazes(point, &corrector.units);
         if grazes(&before) || after.as_ref().is_some_and(grazes) {
-            found.push((share(low), BranchEvent::Grazing, before));
+            let own = touching(corrector, &before).unwrap_or(before);
+            found.push((share(low), BranchEvent::Grazing, own));
         }
     }
     // Across a grazing the multipliers jump: none passes through the unit circle there.
@@ -127,6 +134,35 @@ pub(super) fn between(
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     found.into_iter().map(|(_, event, point)| (event, point)).collect()
+}
+
+/// The motion that touches a stop without speed, on the branch through one that misses it narrowly: there the
+/// distance changes in proportion, and it is followed down to where a difference by the field would touch.
+fn touching(corrector: &Corrector, narrow: &Point) -> Option<Point> {
+    let miss = |point: &Point| point.orbit.passage.nearest_miss.map(|miss| miss / corrector.units.length);
+    let mut near = narrow.clone();
+    let mut along = corrector.tangent(narrow, &Vector3::z())?;
+    let mut step = -TRIAL;
+    for _ in 0..MOST_POINTS {
+        let Some(next) = corrector.correct(near.at + along * step, &along).filter(|own| !differ(narrow, own))
+        else {
+            step *= -0.5; // the other way, or not as far
+            continue;
+        };
+        along = corrector.tangent(&next, &along)?;
+        let slope = (miss(&next)? - miss(&near)?) / (next.at - near.at).dot(&along);
+        near = next;
+        let left = -miss(&near)? / slope;
+        if left.abs() <= 2.0 * TRIAL {
+            let at = near.at + along * left;
+            return Some(corrector.moved(near, at));
+        }
+        step = left - 0.5 * TRIAL.copysign(left);
+        if !(step.abs() < FARTHEST) {
+            return None;
+        }
+    }
+    None
 }
 
 /// Where a quantity with these values at the ends of a chord is 0, by the secant method kept in its bracket

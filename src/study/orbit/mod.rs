@@ -11,7 +11,6 @@
 mod branch;
 mod corrector;
 mod events;
-mod family;
 
 use std::fmt;
 use std::sync::atomic::AtomicBool;
@@ -24,7 +23,6 @@ use crate::dynamics::{
 
 pub use branch::{Branch, BranchEnd, branch};
 pub use events::BranchEvent;
-pub use family::Family;
 
 /// The most steps of Newton's method.
 const MOST_STEPS: usize = 40;

@@ -98,7 +98,7 @@ fn the_cases_are_listed_with_their_reasons() {
 fn a_wrong_argument_names_the_remedy() {
     refused(headless("accuracy --case grasing"), &["`grasing`", "grazing", "p1, p2, flexures, separatrix"]);
     refused(headless("accuracy --case grazing --plot a.png"), &["--plot", "--case p1 or p2 or flexures"]);
-    refused(headless("accuracy --case p1 --plot a.txt"), &["--plot", ".png or .svg"]);
+    refused(headless("accuracy --case p1 --plot a.txt"), &["--plot", ".png, .svg or .pdf"]);
     refused(headless("accuracy --case p1 --dark"), &["--plot"]);
     refused(headless("accuracy --case grazing --out no/such/a.csv"), &["no folder"]);
 }

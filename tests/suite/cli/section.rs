@@ -79,8 +79,19 @@ fn a_diagram_has_a_manifest_and_pictures() {
     assert!(!folder.path().join("s.csv.json").exists(), "one run has no manifest");
     run("section paper --at impacts --plot i.svg --out i.csv");
     assert!(fs::read_to_string(folder.path().join("i.svg")).unwrap().contains("phase of the drive"));
+    run("sweep monostable --over excitation.frequency_hz=12:16:1 --carry both --out w.csv --plot w.svg");
+    let text = fs::read_to_string(folder.path().join("w.svg")).unwrap();
+    assert!(text.contains("\nhysteresis\n"));
+    assert!(
+        text.contains("2 \u{d7} 5 runs of ") && text.contains(", up and down, each from where"),
+        "{text}"
+    );
+    // with stops both ways are the same: no hysteresis is named
     run("sweep paper --over excitation.amplitude_g=0.5:1:0.05 --carry both --out w.csv --plot w.svg");
-    assert!(fs::read_to_string(folder.path().join("w.svg")).unwrap().contains("\nhysteresis\n"));
+    assert!(!fs::read_to_string(folder.path().join("w.svg")).unwrap().contains("hysteresis"));
+    run("sweep paper --over excitation.amplitude_g=0.5:1:0.05 --carry down --out w.csv --plot w.svg");
+    let text = fs::read_to_string(folder.path().join("w.svg")).unwrap();
+    assert!(text.contains("11 runs of ") && text.contains(", down, each from where"), "{text}");
     run("sweep paper --over stops.travel_limit_mm=1.5:3:0.5 --over excitation.amplitude_g=0.5,1 \
          --carry both --out m.csv --plot m.svg");
     let text = fs::read_to_string(folder.path().join("m.svg")).unwrap();
@@ -108,7 +119,12 @@ fn sections_and_walks_that_cannot_be_are_refused() {
     refused(headless(&format!("section paper {many}")), &["1000000000 cells"]);
     refused(headless(&format!("sweep paper {many} --carry both")), &["1000000000 cells"]);
     refused(headless("section paper --skip 5"), &["--keep"]);
-    refused(headless("section paper --skip 5 --keep 0"), &["--keep"]);
+    refused(
+        headless("section paper --skip 5 --keep 0"),
+        &["--keep", "'0'", "whole number from 1 to 4194304"],
+    );
+    refused(headless("section paper --skip 5 --keep 1e9"), &["--keep", "'1e9'", "whole number from 1 to"]);
+    refused(headless("section paper --skip -1 --keep 9"), &["--skip", "'-1'", "whole number from 0 to"]);
     refused(headless("section paper --quiet --set run.settle_s=9.9"), &["run.duration_s", "forcing period"]);
     refused(headless("section paper --quiet --set run.duration_s=9e6"), &["run.duration_s", "4194304"]);
     let two = "--over stops.travel_limit_mm=1,2 --plot a.png";

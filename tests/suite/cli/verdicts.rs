@@ -93,6 +93,18 @@ fn thresholds_are_tables() {
         stdout("threshold paper --field excitation.amplitude_g=0:0.5"),
         "of,value,windows\ncrossing,,\n"
     );
+    // that is said
+    let told = |line: &str| {
+        let assert = headless(line).assert().success();
+        String::from_utf8_lossy(&assert.get_output().stderr).into_owned()
+    };
+    let line = "threshold paper --field excitation.amplitude_g=0:0.5:0.1";
+    let words = "the row has no value: no excitation.amplitude_g that was tried from 0 to 0.5 makes";
+    assert!(told(line).contains(words), "{}", told(line));
+    assert_eq!(told(&format!("{line} --quiet")), "");
+    let some = "threshold paper --of release --field excitation.amplitude_g=0:0.7:0.1 \
+                --over stops.travel_limit_mm=1.5,4";
+    assert!(told(some).contains("1 of 2 rows have no value"), "{}", told(some));
     let csv = stdout("threshold paper --field stops.travel_limit_mm=1:3:0.1 --of interwell");
     assert_eq!(column(&csv, "windows"), ["1"], "it ends where the stops hold the mass too hard: {csv}");
 }

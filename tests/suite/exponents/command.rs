@@ -64,6 +64,20 @@ fn cells_have_their_fields_first_and_the_same_bytes_for_any_threads() {
 }
 
 #[test]
+fn cells_have_a_manifest_beside_their_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "exponents paper --over excitation.amplitude_g=0.5,1 --quiet --out e.csv";
+    headless(line).current_dir(folder.path()).assert().success();
+    let text = std::fs::read_to_string(folder.path().join("e.csv.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let counts = ["cells", "resting", "without_exponents"].map(|key| manifest[key].as_u64());
+    assert_eq!((counts, &manifest["command"]), ([Some(2), Some(2), Some(0)], &"exponents".into()));
+    assert_eq!(manifest["grid"][0]["values"], serde_json::json!([0.5, 1.0]));
+    headless("exponents paper --quiet --out one.csv").current_dir(folder.path()).assert().success();
+    assert!(!folder.path().join("one.csv.json").exists(), "one motion has no manifest");
+}
+
+#[test]
 fn what_cannot_be_measured_is_refused() {
     for scene in ["paper-ramp", "random-shaking", "walking"] {
         refused(headless(&format!("exponents {scene} --quiet")), &["excitation", "period", "Sine"]);

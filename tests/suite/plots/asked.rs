@@ -29,11 +29,16 @@ fn any_column_of_numbers_can_be_shown_and_the_regime() {
     let line = format!("sweep {SHORT} --over excitation.amplitude_g=0,1,2");
     says(&format!("{line} --quantity crossings"), &["crossings", "amplitude, g"]);
     says(&format!("{line} --quantity regime"), &["regime", "irregular"]);
+    // whether or not it is written
+    for (name, word) in [("outcome", "left_table"), ("side", "both"), ("settled", "false")] {
+        says(&format!("{line} --quantity {name}"), &[name, word]);
+    }
+    says(&format!("{SMALL_MAP} --quantity side"), &["right", "both", "first crossing cell"]);
+    says(&format!("{line} --quantity travel_m"), &["travel, mm"]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
     for (name, words) in [
         ("speed", &["--quantity speed", "rms_velocity_m_per_s", "regime"][..]),
-        ("outcome", &["outcome"]),
         ("amplitude_g", &["amplitude_g"]),
     ] {
         refused(with_plot(&format!("{line} --quantity {name}"), &path), words);
@@ -148,7 +153,7 @@ fn a_run_is_drawn_over_the_times_that_were_asked_for() {
         &["1.0", "1.2", "2.0", "phase portrait, 1 to 2 s", "\u{2212}4"],
     );
     let folder = tempfile::tempdir().unwrap();
-    let bytes = |line: &str| std::fs::read(plot(line, folder.path(), "a.png")).unwrap();
+    let bytes = |line: &str| pixels(&plot(line, folder.path(), "a.png")).2;
     let window = bytes(&format!("{line} --plot-time 1:2"));
     assert!(window != bytes(line));
     // The times that are listed span it; the steps of --dt are those of the rows.

@@ -1,10 +1,14 @@
 //! Studies of the open scene for the views that show them: asked for frame by frame, begun when no hand
 //! changes the scene, stopped when no view looks.
 
+mod basins;
 mod explored;
+mod spectra;
 mod walks;
 
+pub use basins::{BasinsFound, Level};
 pub use explored::Explored;
+pub use spectra::Spectra;
 pub use walks::{WalkQuantity, WalkQuestion, Walks};
 
 /// What the views of the layout Explore ask.
@@ -12,16 +16,24 @@ pub use walks::{WalkQuantity, WalkQuestion, Walks};
 pub struct Explore {
     /// The scene walked up and down over a field.
     pub walks: Walks,
+    /// Where the motion goes from every start.
+    pub basins: BasinsFound,
+    /// The spectrum of the settled motion.
+    pub spectra: Spectra,
 }
 
 impl Explore {
     /// Takes in what has come.
     pub(super) fn poll(&mut self) {
         self.walks.found.poll();
+        self.basins.poll();
+        self.spectra.found.poll();
     }
 
     /// To be called once a frame: what no view has asked for stops.
     pub fn end_frame(&mut self) {
         self.walks.found.end_frame();
+        self.basins.end_frame();
+        self.spectra.found.end_frame();
     }
 }

@@ -46,7 +46,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let key = (context.session.map.version(), quantity, style, current);
     let picture = Picture::of(ui, old, map, &scale, key);
     let painter = ui.painter().with_clip_rect(area);
-    let about = sweep_about(map.grid(), &map.question.scene, false, None);
+    let about = sweep_about(map.grid(), &map.question.scene, &[], None);
     let legend = tools::legend(&painter, area, &picture, map, &style, &about);
     let frame = Coordinates::new(area.with_min_y(legend), map, scale.bar.is_some());
     let spoken = ui.interact(frame.rect, ui.scope_id().with("cells"), Sense::hover());

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::dynamics::Model;
-use crate::mechanics::Mechanism;
-use crate::scene::{FieldPath, Files, Scene};
+use crate::mechanics::{BuildError, Mechanism};
+use crate::scene::{Fault, FieldPath, Files, Scene};
 
 /// A scene, the field that changes, and the mechanism of the scene as it is.
 #[derive(Debug)]
@@ -21,16 +21,21 @@ impl<'a> Family<'a> {
         Self { scene, files, mechanism, path: FieldPath::new(field) }
     }
 
-    /// The model where the field has this value; none where that makes no valid scene.
-    pub fn model(&self, value: f64) -> Option<Model> {
+    /// The model where the field has this value; else what is wrong with the scene, which is nothing where it
+    /// has no such number or its mechanism is not solved.
+    pub fn model(&self, value: f64) -> Result<Model, Vec<Fault>> {
         let mut scene = self.scene.clone();
         if !self.path.set(&mut scene, value) {
-            return None;
+            return Err(Vec::new());
         }
         let mechanism = match scene.mechanism == self.scene.mechanism {
             true => Arc::clone(self.mechanism),
-            false => Arc::new(Mechanism::build(&scene.mechanism, self.files).ok()?),
+            false => match Mechanism::build(&scene.mechanism, self.files) {
+                Ok(mechanism) => Arc::new(mechanism),
+                Err(BuildError::Wrong(fault)) => return Err(vec![fault]),
+                Err(BuildError::Unsolved(_)) => return Err(Vec::new()),
+            },
         };
-        Model::build(&scene, mechanism).ok()
+        Model::build(&scene, mechanism)
     }
 }

@@ -1,0 +1,108 @@
+//! Where the motion goes from every start: basins of attraction, coarse first.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use crate::app::session::Session;
+use crate::app::task::pool;
+use crate::mechanics::Mechanism;
+use crate::scene::{Scene, Start};
+use crate::study::{Answer, Basins, EvenRange, NoBasins, Starts, Task};
+
+use super::Explored;
+
+/// Starts across and up.
+const STARTS: u64 = 81;
+
+/// A scene without its own start, and the starts in mm and m/s.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BasinsQuestion {
+    /// The scene.
+    pub scene: Scene,
+    /// Ends of the displacements in mm.
+    pub x_mm: (f64, f64),
+    /// Ends of the velocities in m/s.
+    pub v: (f64, f64),
+}
+
+/// What is known after a level of starts.
+#[derive(Debug, Clone)]
+pub struct Level {
+    /// The attractors, and what each start goes to.
+    pub answer: Answer,
+    /// For each start the one whose answer is shown: its own, or a neighbour's.
+    pub shown: Vec<usize>,
+    /// Displacements in mm and velocities in m/s of the starts.
+    pub axes: (Vec<f64>, Vec<f64>),
+    /// Displacements in m that the mass may have.
+    pub room: (f64, f64),
+}
+
+/// The basins as they become known, level by level, or why there are none.
+pub type BasinsFound = Explored<BasinsQuestion, Result<Level, String>>;
+
+impl Session {
+    /// Asks for the basins of the scene as it stands, in a frame that shows them over these displacements in
+    /// m and velocities up to `speed` in m/s.
+    pub fn want_basins(&mut self, (low, high): (f64, f64), speed: f64) {
+        let still = self.stands_still();
+        let scene = Scene {
+            start: Start::Rest,
+            title: String::new(),
+            notes: String::new(),
+            sweep: Vec::new(),
+            app: None,
+            ..self.scene().clone()
+        };
+        let question = BasinsQuestion { scene, x_mm: (low * 1e3, high * 1e3), v: (-speed, speed) };
+        let (mechanism, wake) = (Arc::clone(&self.mechanism), Arc::clone(&self.wake));
+        self.explore.basins.want(&question, still, &wake, move |question, cancel, each| {
+            if let Err(problem) = find(question, mechanism, cancel, &|level| each(Ok(level))) {
+                each(Err(problem));
+            }
+        });
+    }
+
+    /// Has the scene begin at a displacement in m and a velocity in m/s, from now on; one step of undo.
+    pub fn start_at(&mut self, x: f64, v: f64) {
+        let rounded = |value: f64, unit: f64| (value / unit).round() * unit;
+        let x_mm = crate::app::words::numbers::decimal(rounded(x * 1e3, 1e-3));
+        let v_m_per_s = crate::app::words::numbers::decimal(rounded(v, 1e-4));
+        if self.edit_once(|scene| scene.start = Start::At { x_mm, v_m_per_s }) {
+            self.apply();
+            self.restart();
+        }
+    }
+}
+
+/// Finds them, level by level; the error is why there are none.
+fn find(
+    question: &BasinsQuestion,
+    mechanism: Arc<Mechanism>,
+    cancel: &AtomicBool,
+    each: &dyn Fn(Level),
+) -> Result<(), String> {
+    let range = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
+    let starts = Starts::grid(&range(question.x_mm), &range(question.v)).map_err(|own| own.to_string())?;
+    let said = |own: NoBasins| match own {
+        NoBasins::Faults(faults) => faults.first().map_or(String::new(), |fault| fault.problem.clone()),
+        other => other.to_string(),
+    };
+    let mut basins = Basins::new(&question.scene, mechanism, starts).map_err(said)?;
+    let task = Task { tick: &|| (), cancel };
+    let Some(pool) = pool() else { return Ok(()) };
+    while !basins.is_whole() {
+        let Some(answer) = basins.run_level(&pool, &task).then(|| basins.answer(&task)).flatten() else {
+            return Ok(());
+        };
+        let (levels, done) = basins.levels();
+        let stand_in = |row: usize| match basins.is_whole() {
+            true => row,
+            false => levels.stand_in(row as u64, done - 1) as usize,
+        };
+        let shown = (0..basins.starts().count()).map(stand_in).collect();
+        let axes = basins.starts().axes().map(|(x, v)| (x.to_vec(), v.to_vec())).unwrap_or_default();
+        each(Level { answer, shown, axes, room: basins.room() });
+    }
+    Ok(())
+}

@@ -1,0 +1,58 @@
+//! Spectrum of the settled motion.
+
+use std::sync::Arc;
+
+use crate::app::session::Session;
+use crate::dynamics::Model;
+use crate::study::{Signal, Spectrum, SpectrumOptions, Task, spectrum};
+
+use super::Explored;
+
+/// A model, and what of its motion.
+#[derive(Debug, Clone)]
+pub struct SpectrumQuestion {
+    model: Arc<Model>,
+    signal: Signal,
+}
+
+impl PartialEq for SpectrumQuestion {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.model, &other.model) && self.signal == other.signal
+    }
+}
+
+/// The spectrum of a session.
+pub struct Spectra {
+    /// Of what it is.
+    pub signal: Signal,
+    /// The spectrum, or why there is none.
+    pub found: Explored<SpectrumQuestion, Result<Spectrum, String>>,
+}
+
+impl Default for Spectra {
+    fn default() -> Self {
+        Self { signal: Signal::Displacement, found: Explored::default() }
+    }
+}
+
+impl Session {
+    /// Asks for the spectrum of the scene as it stands, in a frame that shows it.
+    pub fn want_spectrum(&mut self) {
+        let still = self.stands_still();
+        let question =
+            SpectrumQuestion { model: Arc::clone(&self.model), signal: self.explore.spectra.signal };
+        let wake = Arc::clone(&self.wake);
+        self.explore.spectra.found.want(&question, still, &wake, |question, cancel, each| {
+            let until_settled = longest(&question.model);
+            let options =
+                SpectrumOptions { signal: question.signal, taper: None, rate_hz: None, until_settled };
+            let found = spectrum(&question.model, &options, &Task { tick: &|| (), cancel });
+            each(found.map_err(|own| own.to_string()));
+        });
+    }
+}
+
+/// For how long in s the motion is waited for to repeat, where it may.
+fn longest(model: &Model) -> Option<f64> {
+    model.forcing_period().filter(|_| model.can_settle()).map(|period| model.duration() + 200.0 * period)
+}

@@ -1,0 +1,159 @@
+//! Basins of attraction: the start plane in the colours of where the motion goes.
+
+use eframe::egui::{
+    self, Align2, Color32, Mesh, Painter, RichText, Sense, Shape, Stroke, Ui, UiBuilder, vec2,
+};
+
+use crate::app::session::explore::Level;
+use crate::app::ui::style::Style;
+use crate::app::words::numbers::three;
+use crate::numeric::short;
+use crate::study::{Attractor, Edges};
+
+use super::chart::Chart;
+use super::labels::{haloed, rests};
+use super::legend::{LEGEND, Sign};
+use super::stops::stops_ui;
+use super::{ViewContext, too_small_ui};
+
+/// Radius in points of the mark of an attractor.
+const MARK: f32 = 5.0;
+
+/// The most attractors that the legend names, those that most starts go to.
+const MOST_NAMED: usize = 6;
+
+/// Draws it.
+pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
+    if area.width() < 100.0 || area.height() < 100.0 {
+        return too_small_ui(ui, &context.style, area);
+    }
+    let style = context.style;
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "basins of attraction"));
+    let speed = context.memory.ranges.follow(context.session).speed();
+    let span = context.span;
+    context.session.want_basins((span.low, span.high), speed);
+    let chart = Chart::new(area, span, -speed, speed);
+    chart.axes(ui, context, 1e-3);
+    let (parts, current) = context.session.explore.basins.parts();
+    let level = parts.last().cloned();
+    let whole = context.session.explore.basins.is_whole() && current;
+    let mut legend: Vec<(Sign, String)> = Vec::new();
+    match &level {
+        Some(Ok(level)) => {
+            let painter = ui.painter().with_clip_rect(chart.rect);
+            cells(&painter, &style, &chart, level, current);
+            attractors(&painter, &style, &chart, level);
+            legend = entries(&style, &level.answer.attractors);
+        }
+        Some(Err(problem)) => {
+            ui.scope_builder(UiBuilder::new().max_rect(chart.rect.shrink(12.0)), |ui| {
+                ui.label(RichText::new(problem).color(style.faint()));
+            });
+        }
+        None => {}
+    }
+    let edges = (chart.rect.top(), chart.rect.bottom());
+    stops_ui(ui, context, chart.rect, edges, 0.0);
+    chart.numbers(ui, &style, "velocity at the start (mm/s)", 1e-3);
+    let right = match &level {
+        Some(Ok(level)) => hand_ui(ui, &response, context, (&chart, level, whole)),
+        _ => area.right(),
+    };
+    let entries: Vec<(Sign, &str)> = legend.iter().map(|(sign, words)| (*sign, words.as_str())).collect();
+    chart.legend(ui, &style, right, &entries);
+}
+
+/// The starts in the colours of their attractors; those that go to none that is known are left as the ground.
+fn cells(painter: &Painter, style: &Style, chart: &Chart, level: &Level, current: bool) {
+    let (across, up) = (Edges::new(&level.axes.0), Edges::new(&level.axes.1));
+    let rows = level.axes.1.len();
+    let mut mesh = Mesh::default();
+    for column in 0..level.axes.0.len() {
+        let own = |row: usize| level.answer.rows[level.shown[column * rows + row]].map(|own| own.0);
+        let all: Vec<Option<u32>> = (0..rows).map(own).collect();
+        let mut row = 0;
+        for run in all.chunk_by(|a, b| a == b) {
+            let (from, to) = (row, row + run.len());
+            row = to;
+            let Some(place) = run[0].map(|number| number as usize - 1) else { continue };
+            let colour = style.attractor(place);
+            let colour = if current { colour } else { colour.gamma_multiply(0.4) };
+            let corners = [
+                chart.screen_from_world(across.edges[column] / 1e3, up.edges[from]),
+                chart.screen_from_world(across.edges[column + 1] / 1e3, up.edges[to]),
+            ];
+            let first = mesh.vertices.len() as u32;
+            for corner in [
+                corners[0],
+                egui::pos2(corners[1].x, corners[0].y),
+                corners[1],
+                egui::pos2(corners[0].x, corners[1].y),
+            ] {
+                mesh.colored_vertex(corner, colour);
+            }
+            mesh.add_triangle(first, first + 1, first + 2);
+            mesh.add_triangle(first, first + 2, first + 3);
+        }
+    }
+    painter.add(Shape::mesh(mesh));
+}
+
+/// The states of the attractors at time 0 of the drive, in their colours.
+fn attractors(painter: &Painter, style: &Style, chart: &Chart, level: &Level) {
+    for (place, attractor) in level.answer.attractors.iter().enumerate() {
+        for (x, v) in &attractor.states {
+            let at = chart.screen_from_world(*x, *v);
+            painter.circle_filled(at, MARK + 2.0, Color32::BLACK);
+            painter.circle(at, MARK, style.attractor(place), Stroke::new(1.5, Color32::WHITE));
+        }
+    }
+}
+
+/// The attractors in words, those that most starts go to first.
+fn entries(style: &Style, attractors: &[Attractor]) -> Vec<(Sign, String)> {
+    let mut named: Vec<usize> = (0..attractors.len()).collect();
+    named.sort_by_key(|place| std::cmp::Reverse(attractors[*place].starts));
+    named.truncate(MOST_NAMED);
+    named.into_iter().map(|place| (Sign::Shade(style.attractor(place)), said(&attractors[place]))).collect()
+}
+
+/// What an attractor is, and which share of the starts goes to it.
+fn said(attractor: &Attractor) -> String {
+    format!("{}: {} %", attractor.words(), short((1e2 * attractor.share.share).round()))
+}
+
+/// What is under the pointer, in the row of the legend, and a click that begins there. Its left end.
+fn hand_ui(
+    ui: &Ui,
+    response: &egui::Response,
+    context: &mut ViewContext<'_>,
+    (chart, level, whole): (&Chart, &Level, bool),
+) -> f32 {
+    let right = chart.area.right();
+    let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return right };
+    let (x, v) = chart.world_from_screen(pointer);
+    let (across, up) = (Edges::new(&level.axes.0), Edges::new(&level.axes.1));
+    let cell = across.cell(x * 1e3).zip(up.cell(v));
+    let place = cell.and_then(|(column, row)| {
+        let row = level.shown[column * level.axes.1.len() + row];
+        level.answer.rows[row].map(|own| own.0 as usize - 1)
+    });
+    let goes = place.map_or("to none that is known".to_owned(), |place| {
+        format!("to {}", level.answer.attractors[place].words())
+    });
+    let coarse = if whole { "" } else { " (coarse)" };
+    let text = format!("{} mm, {} mm/s: {goes}{coarse}", three(x * 1e3), three(v * 1e3));
+    let painter = ui.painter().with_clip_rect(chart.area);
+    let at = (chart.area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
+    let font = (context.style.small(), context.style.ink());
+    let left = haloed(&painter, &context.style, at, &text, font).left();
+    let inside = x >= level.room.0 && x <= level.room.1;
+    if response.clicked() && inside {
+        context.session.start_at(x, v);
+    }
+    if rests(ui) {
+        response.clone().on_hover_text_at_pointer("Click: the scene begins here.");
+    }
+    left
+}

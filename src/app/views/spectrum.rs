@@ -1,0 +1,205 @@
+//! Amplitudes of the settled motion over frequency, by decades.
+
+use eframe::egui::{self, Rect, RichText, TextStyle, Ui, UiBuilder, vec2};
+use egui_plot::{GridMark, HLine, Line, Plot, PlotBounds, PlotPoints, Points, VLine};
+
+use crate::app::ui::style::Style;
+use crate::dynamics::STANDARD_GRAVITY;
+use crate::study::{Signal, Spectrum};
+
+use super::legend::{LEGEND, Sign, legend};
+use super::trace::{marks, plain};
+use super::{ViewContext, too_small_ui};
+
+/// Height in points of the row of choices.
+const TOOLS: f32 = 30.0;
+
+/// Room in points between the edge and the name of the vertical axis, and width of that axis.
+const MARGIN: f32 = 6.0;
+const AXIS_WIDTH: f32 = 58.0;
+
+/// Decades below the largest amplitude that are shown, and multiples of the forcing frequency.
+const DECADES: f64 = 6.0;
+const MULTIPLES: f64 = 15.0;
+
+/// The most points of a line; of more the largest of each stretch is drawn.
+const MOST_POINTS: usize = 2000;
+
+/// What is chosen, with its name, its unit and how many of that are 1 in SI.
+const SIGNALS: [(Signal, &str, &str, f64); 3] = [
+    (Signal::Displacement, "Displacement", "mm", 1e3),
+    (Signal::Velocity, "Velocity", "mm/s", 1e3),
+    (Signal::BaseAcceleration, "Base", "g", 1.0 / STANDARD_GRAVITY),
+];
+
+/// Draws it.
+pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let (area, style) = (ui.max_rect(), context.style);
+    if area.width() < 200.0 || area.height() < 140.0 {
+        return too_small_ui(ui, &style, area);
+    }
+    ui.painter().rect_filled(area, 0.0, style.ground());
+    let tools = Rect::from_min_size(area.min, vec2(area.width(), TOOLS));
+    ui.scope_builder(UiBuilder::new().max_rect(tools), |ui| {
+        ui.horizontal_centered(|ui| {
+            ui.add_space(8.0);
+            for (signal, name, ..) in SIGNALS {
+                ui.selectable_value(&mut context.session.explore.spectra.signal, signal, name);
+            }
+        });
+    });
+    context.session.want_spectrum();
+    let below = area.with_min_y(tools.bottom());
+    let (parts, current) = context.session.explore.spectra.found.parts();
+    match parts.last() {
+        Some(Ok(spectrum)) => {
+            let forcing = context.session.model().forcing_period().map(|period| 1.0 / period);
+            picture_ui(ui, &style, below, (spectrum, current, forcing));
+        }
+        Some(Err(problem)) => said_ui(ui, &style, below, problem),
+        None => said_ui(ui, &style, below, "Working it out."),
+    }
+}
+
+fn said_ui(ui: &mut Ui, style: &Style, area: Rect, text: &str) {
+    ui.scope_builder(UiBuilder::new().max_rect(area.shrink(10.0)), |ui| {
+        ui.label(RichText::new(text).color(style.faint()));
+    });
+}
+
+fn picture_ui(
+    ui: &mut Ui,
+    style: &Style,
+    area: Rect,
+    (spectrum, current, forcing): (&Spectrum, bool, Option<f64>),
+) {
+    let Some((_, name, unit, scale)) = SIGNALS.into_iter().find(|own| own.0 == spectrum.signal) else {
+        return;
+    };
+    let (Some(frequency), Some(amplitude)) =
+        (spectrum.table.numbers("frequency_hz"), spectrum.table.numbers("amplitude"))
+    else {
+        return;
+    };
+    let last = frequency.last().copied().unwrap_or(1.0);
+    let end = forcing.map_or(last, |forcing| last.min((MULTIPLES + 0.5) * forcing));
+    let most = amplitude.iter().fold(0.0, |most: f64, own| most.max(own * scale));
+    let top = if most > 0.0 { most.log10() + 0.3 } else { 0.0 };
+    let floor = top - DECADES;
+    let height = |own: f64| (own * scale).log10().max(floor);
+    let lines: Vec<[f64; 2]> = frequency
+        .iter()
+        .zip(amplitude)
+        .take_while(|own| *own.0 <= end)
+        .map(|(frequency, amplitude)| [*frequency, height(*amplitude)])
+        .collect();
+    let is_lines = spectrum.period.is_some();
+    let mut entries = vec![(
+        Sign::Line(style.motion_stroke()),
+        if is_lines { "lines of a motion that repeats" } else { "amplitude" },
+    )];
+    if forcing.is_some() {
+        entries.push((Sign::Line(style.base_stroke()), "forcing frequency"));
+    }
+    let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
+    let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
+    let plot = Rect::from_min_max(area.min + vec2(MARGIN, LEGEND), area.max - vec2(MARGIN, 0.0));
+    let mut child = ui.new_child(UiBuilder::new().max_rect(plot));
+    child.style_mut().text_styles.insert(TextStyle::Body, style.small());
+    child.visuals_mut().override_text_color = Some(style.faint());
+    if !current {
+        child.set_opacity(0.4);
+    }
+    let shown = Plot::new("spectrum")
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .show_background(false)
+        .show_grid(false)
+        .x_grid_spacer(|_| marks(0.0, 0.98 * end, columns))
+        .y_grid_spacer(|_| decades(floor, top, rows))
+        .x_axis_label("frequency (Hz)")
+        .y_axis_label(format!("amplitude ({unit})"))
+        .y_axis_min_width(AXIS_WIDTH)
+        .set_margin_fraction(vec2(0.0, 0.0))
+        .x_axis_formatter(|mark, _| plain(mark))
+        .y_axis_formatter(|mark, _| power(mark.value))
+        .label_formatter(|_| None)
+        .show_crosshair(false)
+        .show(&mut child, |plot| {
+            plot.set_plot_bounds(PlotBounds::from_min_max([0.0, floor], [end, top]));
+            for mark in decades(floor, top, rows) {
+                plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
+            }
+            if let Some(forcing) = forcing {
+                plot.vline(VLine::new("forcing", forcing).stroke(style.base_stroke()));
+            }
+            if is_lines {
+                let seen = || lines.iter().filter(|own| own[1] > floor);
+                for [frequency, height] in seen() {
+                    let ends = vec![[*frequency, floor], [*frequency, *height]];
+                    plot.line(Line::new("line", ends).stroke(style.motion_stroke()));
+                }
+                let tips: Vec<[f64; 2]> = seen().copied().collect();
+                plot.points(Points::new("tips", tips).radius(2.5).color(style.motion()));
+            } else {
+                let line = Line::new("amplitude", PlotPoints::from(largest(&lines)));
+                plot.line(line.stroke(style.motion_stroke()));
+            }
+        });
+    let spoken = format!("spectrum of {}", name.to_lowercase());
+    shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken.clone()));
+    legend(ui, style, area, area.right(), &entries);
+}
+
+/// A line at each power of ten, or each second or third where there are many.
+fn decades(low: f64, high: f64, most: f64) -> Vec<GridMark> {
+    let every = ((high - low) / most).ceil().max(1.0);
+    let first = (low / every).ceil() as i32;
+    let last = (high / every).floor() as i32;
+    (first..=last).map(|i| GridMark { value: f64::from(i) * every, step_size: every }).collect()
+}
+
+/// The number whose decimal logarithm this is.
+fn power(logarithm: f64) -> String {
+    match logarithm.round() as i32 {
+        power @ 0..=3 => format!("{}", 10_i32.pow(power as u32)),
+        -1 => "0.1".to_owned(),
+        -2 => "0.01".to_owned(),
+        power => format!("1e{power}"),
+    }
+}
+
+/// A line with so few points that the eye misses none: the largest of each stretch.
+fn largest(lines: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let stride = lines.len().div_ceil(MOST_POINTS).max(1);
+    lines
+        .chunks(stride)
+        .filter_map(|part| part.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1])))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decades_are_whole_and_few() {
+        let values =
+            |low, high, most| decades(low, high, most).iter().map(|own| own.value).collect::<Vec<_>>();
+        assert_eq!(values(-3.2, 0.4, 7.0), [-3.0, -2.0, -1.0, 0.0]);
+        assert_eq!(values(-5.7, 0.3, 3.0), [-4.0, -2.0, 0.0]);
+        assert_eq!([-3.0, -2.0, 0.0, 2.0].map(power), ["1e-3", "0.01", "1", "100"]);
+    }
+
+    #[test]
+    fn no_peak_is_thinned_away() {
+        let lines: Vec<[f64; 2]> =
+            (0..9999).map(|i| [f64::from(i), if i == 7777 { 1.0 } else { 0.0 }]).collect();
+        let few = largest(&lines);
+        assert!(few.len() <= MOST_POINTS && few.contains(&[7777.0, 1.0]));
+    }
+}

@@ -1,0 +1,49 @@
+//! Table of what a picture shows, a row a point, a cell or a mark.
+
+use crate::study::{Column, Table, Values};
+
+/// Rows of several kinds, told apart by their `series`.
+pub(super) struct Drawn {
+    series: Vec<&'static str>,
+    numbers: Vec<(String, Vec<f64>)>,
+    words: Vec<(&'static str, Vec<&'static str>)>,
+}
+
+impl Drawn {
+    /// No rows yet, of these columns of numbers, after which those of words come.
+    pub fn new<'a>(numbers: impl IntoIterator<Item = &'a str>, words: &[&'static str]) -> Self {
+        Self {
+            series: Vec::new(),
+            numbers: numbers.into_iter().map(|name| (name.to_owned(), Vec::new())).collect(),
+            words: words.iter().map(|name| (*name, Vec::new())).collect(),
+        }
+    }
+
+    /// Adds a row; numbers and words left out at the end are missing.
+    pub fn put(&mut self, series: &'static str, numbers: &[f64], words: &[&'static str]) {
+        self.series.push(series);
+        for (i, (_, own)) in self.numbers.iter_mut().enumerate() {
+            own.push(numbers.get(i).copied().unwrap_or(f64::NAN));
+        }
+        for (i, (_, own)) in self.words.iter_mut().enumerate() {
+            own.push(words.get(i).copied().unwrap_or(""));
+        }
+    }
+
+    /// All rows.
+    pub fn table(self) -> Table {
+        let table = Table::new().with("series", Values::Words(self.series));
+        let table =
+            self.numbers.into_iter().fold(table, |table, (name, own)| table.with(name, Values::Numbers(own)));
+        self.words.into_iter().fold(table, |table, (name, own)| table.with(name, Values::Words(own)))
+    }
+}
+
+/// The values of a column of numbers or counts; none of words.
+pub(super) fn as_numbers(column: &Column) -> Option<Vec<f64>> {
+    match &column.values {
+        Values::Numbers(values) => Some(values.clone()),
+        Values::Counts(values) => Some(values.iter().map(|n| n.map_or(f64::NAN, |n| n as f64)).collect()),
+        Values::Words(_) => None,
+    }
+}

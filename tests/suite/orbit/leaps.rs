@@ -1,0 +1,66 @@
+//! Branches that end, turn or leap: none does unsaid.
+
+use interwell::dynamics::{EventKind, Side};
+use interwell::study::{BranchEnd, BranchEvent, Orbit};
+
+use super::{at, over_amplitude};
+use crate::cli::{headless, refused, stdout};
+use crate::support::{changed, near, near_relative};
+
+/// With stops at 1.5 mm the mass is released as ever, and from some amplitude down fails to pass the barrier:
+/// its state once a period is the same, and what it does is not.
+#[test]
+fn a_mass_that_rests_leaps_where_it_just_fails_to_cross() {
+    let own = changed("paper", &[]);
+    let down = over_amplitude(&own, (1.0, 0.6), Some(1));
+    let up = over_amplitude(&own, (0.6, 1.0), Some(1));
+    assert_eq!((down.end, up.end), (BranchEnd::Leap, BranchEnd::Leap));
+    let strikes_left = |own: &Orbit| {
+        let mut impacts = own.passage.events.iter().filter(|event| event.kind == EventKind::Impact);
+        impacts.any(|event| event.side == Side::Left)
+    };
+    assert!(down.orbits.iter().all(strikes_left) && !up.orbits.iter().any(strikes_left));
+    let (above, below) = (down.values.last().unwrap(), up.values.last().unwrap());
+    assert!(above > below && above - below < 2e-6, "{above} {below}");
+}
+
+/// Between two kinks the branch turns back: it goes through all motions between, none of which is far from
+/// the one before.
+#[test]
+fn consecutive_motions_are_near_each_other() {
+    let own = changed("paper-unconstrained", &[]);
+    let found = over_amplitude(&own, (1.05, 0.9), None);
+    assert_eq!((found.end, found.values.last()), (BranchEnd::Range, Some(&1.05)));
+    let place = found.events.iter().position(|event| *event == Some(BranchEvent::Fold)).unwrap();
+    near(found.orbits[place].multipliers()[0].re, 1.0, 1e-6);
+    for pair in found.orbits.windows(2) {
+        let [(x, _), (before, _)] = [pair[1].state, pair[0].state];
+        assert!((x - before).abs() < 7.2e-5, "{x} {before}");
+    }
+}
+
+/// A mass that rests is a function of the field, whose branch turns nowhere; at 7 mm it ends where chatter no
+/// longer ends in rest, and others that touch there lead back to it.
+#[test]
+fn a_branch_does_not_go_back_along_itself() {
+    let own = changed("paper", &["stops.travel_limit_mm=7"]);
+    let up = over_amplitude(&own, (0.7, 1.4), Some(1));
+    assert_ne!(up.end, BranchEnd::Range);
+    assert!(up.values.windows(2).all(|pair| pair[1] >= pair[0]), "{:?}", up.values.last());
+    let down = over_amplitude(&own, (1.5, 0.7), Some(1));
+    assert_eq!(down.end, BranchEnd::Closed);
+    let (first, last) = (at(&down, BranchEvent::Grazing)[0], down.values.last().unwrap());
+    near_relative(*last, first, 1e-8);
+    assert!(!at(&down, BranchEvent::Flip).is_empty() && down.values.len() < 60, "{}", down.values.len());
+}
+
+#[test]
+fn a_branch_begins_at_its_own_value_of_the_field() {
+    let of =
+        |more: &str| stdout(&format!("orbit paper --branch excitation.amplitude_g=1:0.95 --quiet {more}"));
+    assert_eq!(of("--set excitation.amplitude_g=0"), of(""));
+    let still = headless("orbit paper --branch excitation.amplitude_g=0:0.5");
+    refused(still, &["excitation", "not 0"]);
+    let wrong = headless("orbit paper --set stops.travel_limit_mm=-1 --branch excitation.amplitude_g=1:0.5");
+    refused(wrong, &["stops.travel_limit_mm", "-1"]);
+}

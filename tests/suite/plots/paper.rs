@@ -1,0 +1,327 @@
+//! Pictures on paper: size, text, kinds of files, what made them, surfaces and cuts, and the numbers drawn.
+
+use std::fs;
+use std::path::Path;
+
+use super::super::cli::{headless, refused, stdout};
+use super::{SMALL_MAP, pixels, plot, says, with_plot};
+
+const PAPER: &str = "--plot-width-mm 85 --font-pt 8";
+const SHORT: &str = "--set run.settle_s=None --set run.duration_s=2";
+
+fn bytes(line: &str, folder: &Path, name: &str) -> Vec<u8> {
+    fs::read(plot(line, folder, name)).unwrap()
+}
+
+/// What made the picture, from the metadata of a PNG or an SVG.
+fn made(path: &Path) -> serde_json::Value {
+    let text = if path.extension().is_some_and(|own| own == "png") {
+        let file = std::io::BufReader::new(fs::File::open(path).unwrap());
+        let reader = png::Decoder::new(file).read_info().unwrap();
+        let chunks = &reader.info().utf8_text;
+        let own = chunks.iter().find(|own| own.keyword == "Description").unwrap();
+        own.get_text().unwrap()
+    } else {
+        let svg = fs::read_to_string(path).unwrap();
+        let own = svg.split("<metadata>").nth(1).unwrap().split("</metadata>").next().unwrap();
+        own.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
+    };
+    serde_json::from_str(&text).unwrap()
+}
+
+/// A text of an SVG as it stands: its words, and left, upper, right and lower edge of its box, about.
+fn boxes(svg: &str) -> Vec<(String, [f64; 4])> {
+    let texts = svg.split("<text ").skip(1).map(|own| own.split("</text>").next().unwrap());
+    let box_of = |own: &str| {
+        let (tag, words) = own.split_once('>').unwrap();
+        let value = |name: &str| {
+            let rest = tag.split(&format!("{name}=\"")).nth(1)?;
+            rest.split('"').next().map(str::to_owned)
+        };
+        let number = |name: &str| value(name).unwrap().parse::<f64>().unwrap();
+        let (x, y, size) = (number(" x").max(0.0), number(" y"), number("font-size"));
+        let signs = [("&lt;", "<"), ("&gt;", ">"), ("&apos;", "'"), ("&quot;", "\""), ("&amp;", "&")];
+        let words = signs.iter().fold(words.trim().to_owned(), |own, (sign, is)| own.replace(sign, is));
+        // an average letter is about half an em wide, a capital 0.73 em high
+        let long = 0.47 * size * words.chars().count() as f64;
+        let before = match value("text-anchor").unwrap().as_str() {
+            "start" => 0.0,
+            "middle" => 0.5 * long,
+            _ => long,
+        };
+        let (top, bottom) = (0.1 * size, 0.76 * size);
+        let area = if tag.contains("rotate(") {
+            [x + top, y - long + before, x + bottom, y + before]
+        } else {
+            [x - before, y + top, x - before + long, y + bottom]
+        };
+        (words, area)
+    };
+    texts.map(|own| box_of(&format!(" {own}"))).collect()
+}
+
+#[test]
+fn a_width_in_mm_and_a_size_in_points_hold_on_paper() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = plot(&format!("curve {PAPER} --no-title"), folder.path(), "a.png");
+    let (width, height, _) = pixels(&path);
+    // 85 mm at 300 pixels an inch, and 5/8 of it and a row of the legend
+    assert_eq!(width, 1004);
+    assert!((627..900).contains(&height), "{height}");
+    let file = std::io::BufReader::new(fs::File::open(&path).unwrap());
+    let dims = png::Decoder::new(file).read_info().unwrap().info().pixel_dims.unwrap();
+    assert_eq!((dims.xppu, dims.unit), (11811, png::Unit::Meter));
+    let line = format!("curve {PAPER} --plot-height-mm 100");
+    assert_eq!(pixels(&plot(&format!("{line} --dpi 254"), folder.path(), "b.png")).1, 1000);
+    let svg = fs::read_to_string(plot(&line, folder.path(), "a.svg")).unwrap();
+    assert!(svg.contains("width=\"85mm\" height=\"100mm\""), "{}", &svg[..200]);
+    let units: f64 = {
+        let view = svg.split("viewBox=\"").nth(1).unwrap().split('"').next().unwrap();
+        view.split(' ').nth(2).unwrap().parse().unwrap()
+    };
+    let tick = svg.split("<text ").find(|own| own.contains("stable equilibrium")).unwrap();
+    let size = tick.split("font-size=\"").nth(1).unwrap().split('"').next().unwrap();
+    let points = size.parse::<f64>().unwrap() / units * 85.0 / 25.4 * 72.0;
+    assert!((points - 8.0).abs() < 1e-3, "{points}");
+    let pdf = bytes(&line, folder.path(), "a.pdf");
+    let pdf = String::from_utf8_lossy(&pdf).into_owned();
+    let page = pdf.split("/MediaBox[").nth(1).unwrap().split(']').next().unwrap();
+    let sides: Vec<f64> = page.split(' ').map(|own| own.parse().unwrap()).collect();
+    assert!((sides[2] - 85.0 / 25.4 * 72.0).abs() < 1e-3 && (sides[3] - 100.0 / 25.4 * 72.0).abs() < 1e-3);
+    // text is text, in a font that is in the file, without a date
+    assert!(pdf.contains("Inter-Regular") && pdf.contains("/ToUnicode") && pdf.contains("/FontFile"));
+    assert!(!pdf.contains("/CreationDate") && !pdf.contains("xmp:CreateDate"));
+}
+
+#[test]
+fn no_text_lies_on_another_in_one_column_or_two() {
+    let folder = tempfile::tempdir().unwrap();
+    let cuts = format!("{SMALL_MAP} --cut travel_limit_mm=2 --cut amplitude_g=1");
+    let lines = [
+        "curve paper".to_owned(),
+        format!("simulate paper {SHORT}"),
+        SMALL_MAP.to_owned(),
+        format!("{SMALL_MAP} --surface"),
+        cuts.clone(),
+        format!("{cuts} --quantity regime"),
+        format!("{SMALL_MAP} --quantity regime"),
+        format!("{SMALL_MAP} --carry both"),
+        format!("sweep {SHORT} --over stops.travel_limit_mm=1,2 --over excitation.amplitude_g=0:2:0.2"),
+        "section paper --over excitation.amplitude_g=0.5:1:0.25".to_owned(),
+        "threshold paper --of release --over stops.travel_limit_mm=1:6:1".to_owned(),
+        "spectrum random-shaking --of accel --quantity psd --rate-hz 50".to_owned(),
+        "basins paper --x-mm -1:1:3 --v -0.1:0.1:3".to_owned(),
+        "orbit impact-oscillator --branch excitation.amplitude_g=0.05:0.06".to_owned(),
+    ];
+    for line in &lines {
+        for size in [PAPER, "--plot-width-mm 170 --font-pt 9"] {
+            let path = plot(&format!("{line} {size}"), folder.path(), "a.svg");
+            let svg = fs::read_to_string(path).unwrap();
+            let view = svg.split("viewBox=\"").nth(1).unwrap().split('"').next().unwrap();
+            let canvas: Vec<f64> = view.split(' ').map(|own| own.parse().unwrap()).collect();
+            let boxes = boxes(&svg);
+            assert!(boxes.len() > 8, "{line}: {boxes:?}");
+            for (i, (words, a)) in boxes.iter().enumerate() {
+                let inside = a[0] >= -1.0 && a[1] >= -1.0 && a[2] <= canvas[2] && a[3] <= canvas[3];
+                assert!(inside, "{line} {size}: `{words}` leaves the picture: {a:?} of {canvas:?}");
+                for (other, b) in &boxes[i + 1..] {
+                    let apart = a[2] <= b[0] || b[2] <= a[0] || a[3] <= b[1] || b[3] <= a[1];
+                    assert!(apart, "{line} {size}: `{words}` lies on `{other}`");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_arguments_in_a_picture_make_it_again_byte_for_byte() {
+    let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let map = format!("{SMALL_MAP} {PAPER} --jobs 1");
+    for line in ["curve --set mass_g=14 --dark", "simulate paper --tolerance 1e-6 --no-title", &map] {
+        for kind in ["png", "svg", "pdf"] {
+            let own = bytes(line, folder.path(), &format!("a.{kind}"));
+            assert!(own == bytes(line, other.path(), &format!("b.{kind}")));
+            // that of a PDF is not read here: its arguments are those of the PNG
+            let read = if kind == "pdf" { "c.png".to_owned() } else { format!("a.{kind}") };
+            let from = plot(line, folder.path(), &read);
+            let made = made(&from);
+            let arguments: Vec<&str> =
+                made["arguments"].as_array().unwrap().iter().map(|own| own.as_str().unwrap()).collect();
+            assert!(
+                !arguments.iter().any(|own| ["--jobs", "--quiet", "--out"].contains(own)),
+                "{arguments:?}"
+            );
+            let arguments = arguments.iter().map(|own| own.replace("plot.png", &format!("plot.{kind}")));
+            let mut again = assert_cmd::Command::cargo_bin("interwell").unwrap();
+            again.args(arguments).args(["--out", "/dev/null", "--quiet", "--jobs", "2"]);
+            again.current_dir(other.path()).assert().success();
+            let again = fs::read(other.path().join(format!("plot.{kind}"))).unwrap();
+            assert!(own == again, "{line} {kind}");
+        }
+    }
+}
+
+#[test]
+fn a_picture_says_what_made_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "simulate random-shaking --set mass_g=14 --set excitation.seed=5 --tolerance 1e-7";
+    for kind in ["png", "svg"] {
+        let made = made(&plot(line, folder.path(), &format!("a.{kind}")));
+        assert_eq!(made["program"], "interwell");
+        assert_eq!(made["version"], env!("CARGO_PKG_VERSION"));
+        assert_eq!(made["scene_name"], "built-in random-shaking");
+        assert_eq!((made["tolerance"].as_f64(), made["seed"].as_u64()), (Some(1e-7), Some(5)));
+        assert_eq!(made["changes"], serde_json::json!(["mass_g=14", "excitation.seed=5"]));
+        // the scene's text runs, and has every argument applied
+        let scene = folder.path().join("again.ron");
+        fs::write(&scene, made["scene_ron"].as_str().unwrap()).unwrap();
+        let own = stdout(&format!("simulate {}", scene.display()));
+        assert_eq!(own, stdout(line));
+    }
+    let pdf = bytes(line, folder.path(), "a.pdf");
+    let pdf = String::from_utf8_lossy(&pdf).into_owned();
+    let software = format!("interwell {}", env!("CARGO_PKG_VERSION"));
+    assert!(pdf.contains(&software) && pdf.contains("excitation.seed=5") && pdf.contains("dc:description"));
+    // a footer too long for a line has several
+    let long = "simulate paper --set mass_g=14 --set damping=Ratio(0.02) --set stops.travel_limit_mm=2 \
+        --set stops.restitution=0.5 --set mechanism.preload_mm=2.6 --set excitation.frequency_hz=4 \
+        --set run.duration_s=4";
+    let long = format!("{long} --set run.settle_s=None");
+    says(&long, &["mass_g=14", "stops.restitution=0.5", "excitation.frequency_hz=4", "run.settle_s=None"]);
+}
+
+/// The rows of a CSV file by the word in their first cell.
+fn series<'a>(csv: &'a str, name: &str) -> Vec<Vec<&'a str>> {
+    let rows = csv.lines().skip(1).map(|row| row.split(',').collect::<Vec<_>>());
+    rows.filter(|row| row[0] == name).collect()
+}
+
+fn drawn(line: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("drawn.csv");
+    let mut command = with_plot(line, &folder.path().join("a.svg"));
+    command.arg("--plot-data").arg(&data).args(["--out", "/dev/null", "--quiet"]).assert().success();
+    fs::read_to_string(data).unwrap()
+}
+
+#[test]
+fn the_data_of_a_picture_are_the_rows_that_it_shows() {
+    let map = drawn(SMALL_MAP);
+    let rows = stdout(&format!("{SMALL_MAP} --quiet"));
+    let cells = series(&map, "cell");
+    assert_eq!(map.lines().next().unwrap(), "series,travel_limit_mm,amplitude_g,rms_velocity_m_per_s,regime");
+    assert_eq!(cells.len(), 63);
+    for (cell, row) in cells.iter().zip(rows.lines().skip(1)) {
+        assert_eq!(cell[1..], row.split(',').take(4).collect::<Vec<_>>());
+    }
+    assert!(series(&map, "release").len() > 100 && series(&map, "first_crossing").len() >= 14);
+    // in the ranges alone
+    let part = drawn(&format!("{SMALL_MAP} --plot-x 2:4 --plot-y 0.5:1 --quantity max_abs_x_m"));
+    assert_eq!(series(&part, "cell").len(), 9);
+    assert!(part.starts_with("series,travel_limit_mm,amplitude_g,max_abs_x_m,regime\n"));
+
+    let run = drawn(&format!("simulate paper {SHORT} --plot-time 0.5:1"));
+    let times: Vec<f64> = series(&run, "run").iter().map(|row| row[1].parse().unwrap()).collect();
+    assert!(times.len() > 100 && times.is_sorted());
+    assert!(times.first() >= Some(&0.5) && times.last() <= Some(&1.0));
+    let stops: Vec<&str> = series(&run, "stop").iter().map(|row| row[2]).collect();
+    assert_eq!(stops, ["-0.0015", "0.0015"]);
+    assert!(!series(&run, "impact").is_empty() && !series(&run, "portrait").is_empty());
+
+    let curve = drawn("curve paper --plot-x 0:4");
+    let x: Vec<f64> = series(&curve, "curve").iter().map(|row| row[1].parse().unwrap()).collect();
+    assert!(x.len() > 500 && x.iter().all(|x| (0.0..=0.004).contains(x)));
+    assert_eq!(series(&curve, "unstable_equilibrium"), [["unstable_equilibrium", "0", "0", "0"]]);
+
+    let line = "threshold paper --of release --over stops.travel_limit_mm=1:6:1";
+    assert!(drawn(line).starts_with("series,travel_limit_mm,least_amplitude_g,windows\nthreshold,1,0."));
+    for (line, header) in [
+        ("spectrum paper", "series,frequency_hz,amplitude\n"),
+        ("section paper --over excitation.amplitude_g=0.5:1:0.25", "series,amplitude_g,x_m,v_m_per_s\n"),
+        ("basins paper --x-mm -1:1:3 --v -0.1:0.1:3", "series,x_mm,v_m_per_s,attractor\nstart,-1,-0.1,"),
+        (
+            "orbit impact-oscillator --branch excitation.amplitude_g=0.05:0.06",
+            "series,amplitude_g,x_m,stable,event\nbranch,0.05,",
+        ),
+    ] {
+        let own = drawn(line);
+        assert!(own.starts_with(header) && own.lines().count() > 9, "{line}: {}", &own[..200.min(own.len())]);
+    }
+    refused(headless("curve --plot-data x.csv"), &["--plot"]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    refused(with_plot("curve --plot-data /no/such/folder/x.csv", &path), &["/no/such/folder"]);
+    let twice = format!("curve --plot-data {}", path.display());
+    refused(with_plot(&twice, &path), &["--plot-data", "a place of its own"]);
+    assert!(!path.exists());
+}
+
+#[test]
+fn a_map_is_shown_as_a_surface_and_with_cuts() {
+    let surface = format!("{SMALL_MAP} --surface");
+    says(&surface, &["travel limit, mm", "amplitude, g", "RMS velocity, mm/s", "at rest"]);
+    says(&format!("{surface} --quantity impacts --dark"), &["impacts"]);
+    // a column that is not written can be shown
+    says(&format!("{surface} --quantity travel_m"), &["travel, mm"]);
+    let cuts = format!("{SMALL_MAP} --cut travel_limit_mm=2 --cut excitation.amplitude_g=1.25");
+    let words =
+        says(&cuts, &["at travel limit 2 mm", "at amplitude 1.25 g", "intrawell", "first crossing cell"]);
+    assert_eq!(words.iter().filter(|own| *own == "RMS velocity, mm/s").count(), 3, "{words:?}");
+    // the release along a cut is |F(limit)|/mass
+    let data = drawn(&cuts);
+    let release = series(&data, "cut_release");
+    let least = stdout("threshold paper --of release --set stops.travel_limit_mm=2 --quiet");
+    let least: f64 = least.lines().nth(1).unwrap().split(',').nth(1).unwrap().parse().unwrap();
+    let own: f64 = release.iter().find(|row| row[1] == "2").unwrap()[2].parse().unwrap();
+    assert!((own / least - 1.0).abs() < 1e-4, "{own} {least}");
+    assert_eq!(release.iter().filter(|row| row[2] == "1.25").count(), 2);
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    for (more, words) in [
+        ("--cut amplitude_g=0.3", &["--cut", "0.25", "0.5"][..]),
+        ("--cut mass_g=15", &["--cut", "travel_limit_mm", "amplitude_g"]),
+        ("--cut amplitude_g", &["--cut", "FIELD=VALUE"]),
+        ("--cut amplitude_g=0 --cut amplitude_g=1 --cut amplitude_g=2", &["at most 2"]),
+        ("--surface --cut amplitude_g=1", &["--cut", "--surface"]),
+        ("--surface --quantity regime", &["--surface", "regime"]),
+        ("--surface --carry up", &["--carry"]),
+    ] {
+        refused(with_plot(&format!("{SMALL_MAP} {more}"), &path), words);
+    }
+    let one = "sweep paper --over excitation.amplitude_g=0,1 --surface";
+    refused(with_plot(one, &path), &["two fields"]);
+    refused(headless(&surface), &["--plot"]);
+    assert!(!path.exists());
+}
+
+#[test]
+fn sizes_that_no_paper_has_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (more, words) in [
+        ("--plot-width-mm 0", &["--plot-width-mm 0", "40 to 2000"][..]),
+        ("--plot-width-mm 1e9", &["--plot-width-mm 1e9", "40 to 2000"]),
+        ("--plot-width-mm wide", &["--plot-width-mm wide", "such as 85"]),
+        ("--plot-width-mm 85 --font-pt 0.1", &["--font-pt 0.1", "4 to 36"]),
+        ("--plot-width-mm 85 --font-pt 11", &["--font-pt 11", "85 mm", "at most 10 points"]),
+        ("--plot-width-mm 85 --plot-height-mm -3", &["--plot-height-mm -3"]),
+        ("--plot-width-mm 85 --dpi 0", &["--dpi 0", "30 to 2400"]),
+        ("--plot-width-mm 2000", &["23622 pixels", "76 an inch"]),
+        ("--plot-width-mm 85 --plot-size 800x500", &["--plot-size"]),
+        ("--dpi 300", &["--plot-width-mm"]),
+        ("--font-pt 8", &["--plot-width-mm"]),
+        ("--plot-height-mm 50", &["--plot-width-mm"]),
+    ] {
+        let path = folder.path().join("a.png");
+        refused(with_plot(&format!("curve {more}"), &path), words);
+        assert!(!path.exists());
+    }
+    let path = folder.path().join("a.pdf");
+    refused(with_plot("curve --plot-width-mm 85 --dpi 300", &path), &["--dpi 300", "no pixels"]);
+    refused(headless("curve --plot-width-mm 85"), &["--plot"]);
+    // one that is too low is raised, and said
+    let low =
+        with_plot("curve --plot-width-mm 85 --plot-height-mm 40 --out /dev/null", &path).assert().success();
+    let said = String::from_utf8_lossy(&low.get_output().stderr).into_owned();
+    assert!(said.contains("warning: --plot-height-mm: 40 mm are too low"), "{said}");
+}
