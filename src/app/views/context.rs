@@ -13,7 +13,7 @@ use super::span::Span;
 pub enum Cover {
     /// Nothing.
     None,
-    /// What other settings than the present ones would come to.
+    /// What other settings or starts than the present ones would come to.
     Surveys,
     /// All that is not there to be seen before the motion begins; the motion stands at its start, and nothing
     /// can be moved.

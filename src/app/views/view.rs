@@ -111,6 +111,8 @@ impl From<LessonView> for View {
             LessonView::BaseAcceleration => Self::BaseAcceleration,
             LessonView::Map => Self::Map,
             LessonView::UpAndDown => Self::UpAndDown,
+            LessonView::Basins => Self::Basins,
+            LessonView::Spectrum => Self::Spectrum,
         }
     }
 }
@@ -121,9 +123,9 @@ impl View {
         matches!(self, Self::Mechanism | Self::Well | Self::ForceCurve)
     }
 
-    /// Whether it shows what other settings than the present ones come to.
+    /// Whether it shows what other settings or starts than the present ones come to.
     pub fn is_survey(self) -> bool {
-        matches!(self, Self::Map | Self::UpAndDown)
+        matches!(self, Self::Map | Self::UpAndDown | Self::Basins)
     }
 
     /// Whether the displacement runs along it.

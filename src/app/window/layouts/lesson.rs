@@ -14,7 +14,7 @@ const MUCH: f32 = 0.62;
 
 /// Whether a view has legends that need room.
 fn is_wide(view: View) -> bool {
-    matches!(view, View::Map | View::UpAndDown)
+    matches!(view, View::Map | View::UpAndDown | View::Basins | View::Spectrum)
 }
 
 impl Tiling {
