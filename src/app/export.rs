@@ -89,7 +89,7 @@ pub fn command_line(session: &Session) -> Option<(String, Runs)> {
         _ => (editor.scene().clone(), Runs::Whole),
     };
     keep_start_inside(&mut scene);
-    line += &settings(editor.saved(), &scene);
+    line += &settings(editor.named(), &scene);
     Some((line, runs))
 }
 
@@ -98,11 +98,11 @@ pub fn command_line(session: &Session) -> Option<(String, Runs)> {
 pub fn map_command_line(session: &Session) -> Option<String> {
     let (question, editor) = (&session.map.map()?.question, &session.editor);
     let mut line = format!("interwell --headless sweep {}", quoted(&editor.origin()?));
-    let mut from = editor.saved().clone();
+    let mut from = editor.named().clone();
     // what the axes say need not be set
     for axis in &question.axes {
         let known = FieldPath::new(&axis.field).set(&mut from, axis.from);
-        debug_assert!(known || editor.saved().stops != question.scene.stops);
+        debug_assert!(known || editor.named().stops != question.scene.stops);
     }
     line += &settings(&from, &question.scene);
     for axis in &question.axes {

@@ -43,7 +43,7 @@ pub struct Options {
     #[arg(long, global = true)]
     pub headless: bool,
 
-    /// Scene to open in the window
+    /// Scene or lesson to open in the window
     #[arg(value_name = "SCENE")]
     pub scene: Option<String>,
 

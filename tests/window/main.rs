@@ -10,6 +10,8 @@ mod flexures;
 mod frame;
 mod guidance;
 mod keyboard;
+mod lesson_window;
+mod lessons;
 mod map;
 mod memory;
 mod newcomer;

@@ -1,7 +1,7 @@
 //! What a person meets who sees the window for the first time: runs that end, a lesson, words, and room for
 //! them.
 
-use eframe::egui::{self, Key, Modifiers, Rect};
+use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
@@ -10,7 +10,7 @@ use interwell::app::window::Window;
 use interwell::app::words::fields::info;
 use interwell::scene::{FieldPath, PRESETS, Stops};
 
-use crate::support::{LONG, command, session, window};
+use crate::support::{LONG, command, is_painted, painted, session, sliced, window};
 
 const WIDE: [f32; 2] = [1280.0, 720.0];
 /// In points: 1280x720 and 900x600 pixels, as they are and projected.
@@ -33,38 +33,6 @@ fn stops_on(harness: &mut Harness<'static, Window>) {
     session.switch_stops(true);
     session.wait(LONG);
     harness.run_steps(3);
-}
-
-/// The texts that are painted, where, and the part of the window in which they are seen.
-fn painted(harness: &Harness<'static, Window>) -> Vec<(String, Rect, Rect)> {
-    fn texts(shape: &egui::Shape, clip: Rect, into: &mut Vec<(String, Rect, Rect)>) {
-        match shape {
-            egui::Shape::Text(text) => {
-                into.push((text.galley.text().to_owned(), text.visual_bounding_rect(), clip));
-            }
-            egui::Shape::Vec(all) => all.iter().for_each(|shape| texts(shape, clip, into)),
-            _ => {}
-        }
-    }
-    let mut all = Vec::new();
-    let screen = harness.ctx.content_rect();
-    for own in &harness.output().shapes {
-        texts(&own.shape, own.clip_rect.intersect(screen), &mut all);
-    }
-    all
-}
-
-fn is_painted(harness: &Harness<'static, Window>, words: &str) -> bool {
-    painted(harness).iter().any(|own| own.0.contains(words) && own.2.intersects(own.1))
-}
-
-/// The texts of which a part is seen and a part is not.
-fn sliced(harness: &Harness<'static, Window>) -> Vec<String> {
-    let cut = |own: &&(String, Rect, Rect)| {
-        let (text, clip) = (own.1.shrink(1.0), own.2);
-        text.is_positive() && text.intersects(clip) && !clip.expand(0.5).contains_rect(text)
-    };
-    painted(harness).iter().filter(cut).map(|own| format!("{} {:?} in {:?}", own.0, own.1, own.2)).collect()
 }
 
 /// Shakes until the run ends.

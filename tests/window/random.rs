@@ -14,6 +14,7 @@ use interwell::app::session::player::SPEEDS;
 use interwell::app::ui::settings::Setting;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Wanted};
+use interwell::scene::lesson::LESSONS;
 use interwell::scene::{Layout, PRESETS, Scene, SweepAxis};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
@@ -254,6 +255,7 @@ impl Hand {
             17 => Command::Cover,
             18 => Command::CopyCommand,
             19 => Command::CopyMapCommand,
+            20 if self.below(4) == 0 => Command::OpenLesson(self.pick(LESSONS).name),
             20 => self.pick(&[
                 Command::Notes,
                 Command::NextTab,
@@ -262,6 +264,11 @@ impl Hand {
                 Command::SaveAs(Wanted::Save),
                 Command::SaveAs(Wanted::Map),
                 Command::SaveAs(Wanted::Picture),
+                Command::LeaveLesson,
+                Command::LessonAnew,
+                Command::CopyAnswers,
+                Command::LecturerNotes,
+                Command::Glossary,
             ]),
             21 => self.pick(&[Command::About, Command::Shortcuts, Command::Quit]),
             22 if screen.window.session.player.is_playing() => Command::Step,
@@ -313,6 +320,7 @@ fn holds(screen: &Screen, seen: &mut Scene) {
 fn goes_on(screen: &mut Screen, hand: &mut Hand) {
     let up = hand.button(hand.at, PointerButton::Primary, false);
     screen.step(vec![up, hand.button(hand.at, PointerButton::Secondary, false), Event::WindowFocused(true)]);
+    screen.ask(Command::LeaveLesson);
     screen.ask(Command::BackToStart);
     let mut time = 0.0;
     for frame in 0..4 {

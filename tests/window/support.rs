@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::Role;
+use eframe::egui::{Rect, Role, Shape};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use interwell::app::session::Session;
@@ -76,4 +76,37 @@ pub fn says(harness: &Harness<'static, Window>, words: &str) {
     let read =
         harness.query_all_by_label_contains(words).filter(|node| node.accesskit_node().role() == Role::Label);
     assert_eq!(read.count(), 1, "{words}");
+}
+
+/// The texts that are painted, where, and the part of the window in which they are seen.
+pub fn painted(harness: &Harness<'static, Window>) -> Vec<(String, Rect, Rect)> {
+    fn texts(shape: &Shape, clip: Rect, into: &mut Vec<(String, Rect, Rect)>) {
+        match shape {
+            Shape::Text(text) => {
+                into.push((text.galley.text().to_owned(), text.visual_bounding_rect(), clip));
+            }
+            Shape::Vec(all) => all.iter().for_each(|shape| texts(shape, clip, into)),
+            _ => {}
+        }
+    }
+    let mut all = Vec::new();
+    let screen = harness.ctx.content_rect();
+    for own in &harness.output().shapes {
+        texts(&own.shape, own.clip_rect.intersect(screen), &mut all);
+    }
+    all
+}
+
+/// Whether words are painted where they are seen.
+pub fn is_painted(harness: &Harness<'static, Window>, words: &str) -> bool {
+    painted(harness).iter().any(|own| own.0.contains(words) && own.2.intersects(own.1))
+}
+
+/// The texts of which a part is seen and a part is not.
+pub fn sliced(harness: &Harness<'static, Window>) -> Vec<String> {
+    let cut = |own: &&(String, Rect, Rect)| {
+        let (text, clip) = (own.1.shrink(1.0), own.2);
+        text.is_positive() && text.intersects(clip) && !clip.expand(0.5).contains_rect(text)
+    };
+    painted(harness).iter().filter(cut).map(|own| format!("{} {:?} in {:?}", own.0, own.1, own.2)).collect()
 }

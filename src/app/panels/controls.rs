@@ -1,9 +1,10 @@
 //! Controls of the scene: shaking, stops and, under More, what is changed less often.
 
-use eframe::egui::{self, RichText, Ui};
+use eframe::egui::{self, Color32, Rect, RichText, Ui};
 
 use crate::app::session::Session;
 use crate::app::ui::widgets::hover_beside;
+use crate::app::words::fields::name_and_unit;
 use crate::scene::{Damping, Excitation, Stops};
 
 use super::fields::{absent_ui, field_ui, fields_ui};
@@ -11,6 +12,15 @@ use super::{advanced, geometry};
 
 /// Width in points of a row of controls that has no room for a heading.
 const NARROW: f32 = 640.0;
+
+/// How a lesson calls the switch of the stops, and the width in points that it takes.
+const SWITCH: &str = "stops";
+const SWITCH_WIDTH: f32 = 90.0;
+
+/// Widths in points of what stands beside a slider besides its name, and of the slider at least and at most.
+const BESIDE_SLIDER: f32 = 130.0;
+const LEAST_SLIDER: f32 = 60.0;
+const WIDEST_SLIDER: f32 = 280.0;
 
 /// What stands under More.
 const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass.";
@@ -59,6 +69,45 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             limit_ui(ui, session, width);
         });
     });
+}
+
+/// The controls that a lesson names, in rows, each as wide as there is room; the place of each.
+pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<(String, Rect)> {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let name_width = |ui: &Ui, path: &str| {
+        let name = name_and_unit(path).0;
+        ui.painter().layout_no_wrap(name, font.clone(), Color32::PLACEHOLDER).size().x
+    };
+    let shown: Vec<(&String, f32)> = controls
+        .iter()
+        .filter(|path| *path == SWITCH || session.number(path).is_some())
+        .map(|path| (path, if path == SWITCH { SWITCH_WIDTH } else { name_width(ui, path) + BESIDE_SLIDER }))
+        .collect();
+    let mut rows: Vec<Vec<(&String, f32)>> = Vec::new();
+    let least = |row: &[(&String, f32)]| row.iter().map(|own| own.1 + LEAST_SLIDER).sum::<f32>();
+    for own in shown {
+        match rows.last_mut() {
+            Some(row) if least(row) + own.1 + LEAST_SLIDER <= ui.available_width() => row.push(own),
+            _ => rows.push(vec![own]),
+        }
+    }
+    let mut places = Vec::new();
+    for row in rows {
+        let sliders = row.iter().filter(|own| own.0 != SWITCH).count().max(1) as f32;
+        let names: f32 = row.iter().map(|own| own.1).sum();
+        let width = ((ui.available_width() - names) / sliders).clamp(LEAST_SLIDER, WIDEST_SLIDER);
+        ui.horizontal(|ui| {
+            for (path, _) in row {
+                let control = ui.scope(|ui| match path.as_str() {
+                    SWITCH => stops_switch_ui(ui, session),
+                    path => field_ui(ui, session, path, width),
+                });
+                places.push((path.clone(), control.response.rect));
+                ui.add_space(10.0);
+            }
+        });
+    }
+    places
 }
 
 /// What is changed less often, as a column beside the views.

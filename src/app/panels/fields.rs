@@ -4,16 +4,20 @@ use eframe::egui::{Label, Ui};
 
 use crate::app::session::Session;
 use crate::app::ui::knob::{How, Knob, refuse};
-use crate::app::words::fields::{self, FieldInfo};
-use crate::app::words::numbers::{decimals, shown};
+use crate::app::words::fields::{self, Reach};
+use crate::app::words::numbers::{below, decimals, round_up, shown};
+use crate::scene::FieldPath;
 
 /// The control of a number of the scene, or of the stops that come when they are switched on; none where
-/// there is no such number.
-pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &'static str, width: f32) {
-    let (Some(field), Some(value)) = (fields::info(path), session.number(path)) else { return };
-    let FieldInfo { name, unit, typed, hover, .. } = *field;
-    let reach = field.reach(session);
-    let turn = Knob { name, unit, reach, typed, hover, width }.ui(ui, value);
+/// there is no such number. Another start begins the motion again.
+pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &str, width: f32) {
+    let Some(value) = session.number(path) else { return };
+    let (name, unit) = fields::name_and_unit(path);
+    let (reach, typed, hover) = match fields::info(path) {
+        Some(field) => (field.reach(session), field.typed, field.hover),
+        None => (around(session, path, value), (f64::MIN, f64::MAX), ""),
+    };
+    let turn = Knob { name: &name, unit, reach, typed, hover, width }.ui(ui, value);
     if let Some(value) = turn.value {
         match turn.how {
             How::Pressed => session.press(path, ui.input(|input| input.time)),
@@ -22,16 +26,29 @@ pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &'static str, w
         if let Err(why) = session.set_number(path, value) {
             let value = shown(value, decimals(reach.step));
             let space = if unit.is_empty() { "" } else { " " };
-            refuse(ui, name, format!("{value}{space}{unit} was not taken: {why}"));
+            refuse(ui, &name, format!("{value}{space}{unit} was not taken: {why}"));
         }
     }
-    if turn.ended || (turn.value.is_some() && turn.how == How::Once) {
+    let begins = path.starts_with("start.");
+    if turn.ended || turn.value.is_some() && (turn.how == How::Once || begins && turn.how == How::Pressed) {
         session.end_gesture();
+        if begins {
+            session.restart();
+            session.player.set_playing(true);
+        }
     }
 }
 
+/// The slider of a number that has no range of its own: around the value that the scene was opened with.
+fn around(session: &Session, path: &str, value: f64) -> Reach {
+    let opened = FieldPath::new(path).get(session.editor.saved()).unwrap_or(value);
+    let size = if opened == 0.0 { 1.0 } else { opened.abs() };
+    let high = round_up(2.0 * size);
+    Reach { low: if opened < 0.0 { -high } else { 0.0 }, high, step: below(high / 200.0) }
+}
+
 /// The same for several numbers below each other.
-pub(super) fn fields_ui(ui: &mut Ui, session: &mut Session, paths: &[&'static str], width: f32) {
+pub(super) fn fields_ui(ui: &mut Ui, session: &mut Session, paths: &[&str], width: f32) {
     paths.iter().for_each(|path| field_ui(ui, session, path, width));
 }
 

@@ -146,16 +146,20 @@ impl Hint {
         own == *opened
     }
 
-    /// Draws it.
-    pub fn ui(&mut self, ui: &mut Ui, session: &Session) {
+    /// Draws it, with a way to the first lesson, called `lesson`. Whether that was asked for.
+    pub fn ui(&mut self, ui: &mut Ui, session: &Session, lesson: &str) -> bool {
         let (first, then) = self.text(session);
+        let mut asked = false;
         ui.horizontal_wrapped(|ui| {
             ui.label(RichText::new(first).heading());
             ui.label(then);
             if ui.small_button("Dismiss").clicked() {
                 self.stage = Stage::Done;
             }
+            let hover = "Look, predict, try and explain, step by step. The scene waits as it is.";
+            asked = ui.small_button(lesson).on_hover_text(hover).clicked();
         });
+        asked
     }
 }
 

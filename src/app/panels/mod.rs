@@ -1,10 +1,13 @@
-//! Panels around the views: controls, status line, transport, notes and the hints of the first minute.
+//! Panels around the views: controls, status line, transport, notes, the hints of the first minute, lessons.
 
 mod advanced;
 pub mod controls;
 mod fields;
 mod geometry;
+pub(super) mod glossary;
 pub(super) mod hint;
+pub(super) mod lecturer;
+pub(super) mod lesson;
 pub(super) mod notes;
 pub(super) mod status_line;
 pub mod transport;

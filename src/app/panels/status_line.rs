@@ -123,10 +123,13 @@ fn beside_ui(ui: &mut Ui, session: &Session, style: &Style, settling: Option<Str
     });
 }
 
-/// In place of the sentence while the results are covered.
-pub fn covered_ui(ui: &mut Ui) {
+/// In place of the sentence while the results are covered, by a key or by a prediction.
+pub fn covered_ui(ui: &mut Ui, by_lesson: bool) {
     ui.horizontal_centered(|ui| {
-        let text = "Covered: what do you expect? C shows it again.";
+        let text = match by_lesson {
+            true => "Covered until you choose: what do you expect?",
+            false => "Covered: what do you expect? C shows it again.",
+        };
         ui.label(RichText::new(text).size(STATUS_COMPACT));
     });
 }

@@ -32,6 +32,9 @@ impl Session {
 
     /// What it would take to cross, in words: asked for, it is searched for.
     pub fn ways(&mut self) -> String {
+        if self.keeps_remedy {
+            return "What it would take is for you to find out.".to_owned();
+        }
         if !self.is_searched() {
             return "What it would take is searched for where a sine shakes a mass with two wells."
                 .to_owned();

@@ -158,11 +158,11 @@ impl Session {
 
     /// A key is pressed on a field at the time `now` in s: presses on one field within a second are one
     /// gesture.
-    pub fn press(&mut self, field: &'static str, now: f64) {
-        if self.presses.is_none_or(|(own, last)| own != field || now - last > PRESSES) {
+    pub fn press(&mut self, field: &str, now: f64) {
+        if self.presses.as_ref().is_none_or(|(own, last)| own != field || now - last > PRESSES) {
             self.end_gesture();
         }
-        self.presses = Some((field, now));
+        self.presses = Some((field.to_owned(), now));
     }
 
     /// Ends presses that something else follows.
@@ -175,7 +175,7 @@ impl Session {
     /// Ends presses that no other one has followed for a second. How long in s others are waited for from
     /// `now` on.
     pub fn follow_presses(&mut self, now: f64) -> Option<f64> {
-        let (_, last) = self.presses?;
+        let last = self.presses.as_ref()?.1;
         let left = last + PRESSES - now;
         if left <= 0.0 {
             self.end_gesture();

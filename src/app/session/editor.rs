@@ -23,6 +23,8 @@ pub struct Editor {
     document: Document,
     /// The scene as it was opened or last saved.
     saved: Scene,
+    /// The scene that its origin names.
+    named: Scene,
     undo: Vec<Scene>,
     redo: Vec<Scene>,
     /// The scene at the begin of the gesture under way.
@@ -32,8 +34,22 @@ pub struct Editor {
 impl Editor {
     /// An editor on a scene.
     pub fn new(document: Document) -> Self {
-        let saved = document.scene.clone();
-        Self { document, saved, undo: Vec::new(), redo: Vec::new(), gesture: None }
+        let (saved, named) = (document.scene.clone(), document.scene.clone());
+        Self { document, saved, named, undo: Vec::new(), redo: Vec::new(), gesture: None }
+    }
+
+    /// An editor on the scene of a lesson, which is changed from the one that its source names: that one
+    /// stays as it is, and a scene file is not written over.
+    pub fn in_lesson(mut document: Document) -> Self {
+        let named = match document.source {
+            Source::BuiltIn(name) => Document::load(name).ok(),
+            Source::File(_) | Source::Text => None,
+        };
+        if named.is_none() {
+            document.source = Source::Text;
+        }
+        let own = Self::new(document);
+        Self { named: named.map_or_else(|| own.saved.clone(), |named| named.scene), ..own }
     }
 
     /// Opens a scene file or a built-in scene.
@@ -81,6 +97,11 @@ impl Editor {
     /// The scene as it was opened or last saved: what stands in its file.
     pub fn saved(&self) -> &Scene {
         &self.saved
+    }
+
+    /// The scene that [`origin`](Self::origin) names.
+    pub fn named(&self) -> &Scene {
+        &self.named
     }
 
     /// The document, for what needs its files and its places.
@@ -184,6 +205,7 @@ impl Editor {
             follow(scene, &before, (&mut self.document.scene, &mut now));
         }
         self.saved = document.scene.clone();
+        self.named = document.scene.clone();
         self.document = document;
         Ok(brought)
     }

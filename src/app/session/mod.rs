@@ -9,6 +9,7 @@ mod companions;
 mod edit;
 pub mod editor;
 pub mod explore;
+pub mod lesson;
 pub mod map;
 pub mod player;
 mod sentence;
@@ -79,6 +80,7 @@ impl Session {
             continued: false,
             remembered_stops,
             presses: None,
+            keeps_remedy: false,
             wake,
         };
         session.ask_settled();

@@ -22,6 +22,7 @@ impl Session {
             return status::unshaken(&self.model, &state);
         }
         match self.told() {
+            Some(told) if self.keeps_remedy => Sentence { remedy: String::new(), ..status::driven(&told) },
             Some(told) => status::driven(&told),
             None if self.settled.is_running() => Sentence::waiting(),
             None => stopped(),

@@ -89,7 +89,9 @@ pub struct Session {
     /// The stops that come back when they are switched on.
     pub(super) remembered_stops: Stops,
     /// The field whose presses of arrow keys are one gesture, and the time in s of the last one.
-    pub(super) presses: Option<(&'static str, f64)>,
+    pub(super) presses: Option<(String, f64)>,
+    /// What it would take to cross is not to be said: it is the answer of a lesson.
+    pub keeps_remedy: bool,
     pub(super) wake: Wake,
 }
 
@@ -145,7 +147,7 @@ impl Session {
         Card {
             scene: self.scene().clone(),
             settled: self.settled.current().copied(),
-            thresholds: self.thresholds.current().copied(),
+            thresholds: self.thresholds.current().copied().filter(|_| !self.keeps_remedy),
         }
     }
 

@@ -190,6 +190,11 @@ impl Style {
         Stroke::new(self.width(2.0), self.base())
     }
 
+    /// Around what a lesson points at.
+    pub fn pointing_stroke(&self) -> Stroke {
+        Stroke::new(3.0, self.mass_ink())
+    }
+
     /// An arrow.
     pub fn arrow_stroke(&self) -> Stroke {
         Stroke::new(3.0, self.base())
@@ -320,6 +325,6 @@ pub fn install(ctx: &egui::Context) {
 }
 
 /// The family of headings and of what is to be read first.
-fn strong_family() -> FontFamily {
+pub fn strong_family() -> FontFamily {
     FontFamily::Name("strong".into())
 }

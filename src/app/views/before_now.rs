@@ -80,7 +80,9 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
         };
         row_ui(ui, &both(RMS, rms));
         row_ui(ui, &both("reach", reach));
-        row_ui(ui, &both("crosses from", crosses_from));
+        if !context.session.keeps_remedy {
+            row_ui(ui, &both("crosses from", crosses_from));
+        }
     });
     // only where there is room for it
     if before.is_none() && ui.available_height() > 28.0 {

@@ -8,6 +8,20 @@ use crate::app::ui::style::Style;
 use super::memory::Memory;
 use super::span::Span;
 
+/// What is covered, so that one predicts first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cover {
+    /// Nothing.
+    None,
+    /// What other settings or starts than the present ones would come to.
+    Surveys,
+    /// All that is not there to be seen before the motion begins; the motion stands at its start, and nothing
+    /// can be moved.
+    Future,
+    /// The motion and all results.
+    All,
+}
+
 /// What a view looks at and acts on.
 pub struct ViewContext<'a> {
     /// The open scene: document, model, motion, results.
@@ -20,8 +34,8 @@ pub struct ViewContext<'a> {
     pub memory: &'a mut Memory,
     /// No rings at impacts.
     pub reduce_motion: bool,
-    /// The motion and all results are covered: predict first.
-    pub covered: bool,
+    /// What is covered.
+    pub cover: Cover,
     /// One view fills the window, and shares its axes with none.
     pub filled: bool,
 }

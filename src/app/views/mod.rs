@@ -35,8 +35,8 @@ use eframe::egui::{Ui, UiBuilder};
 
 use crate::app::ui::style::Style;
 
-pub use context::ViewContext;
 pub(super) use context::too_small_ui;
+pub use context::{Cover, ViewContext};
 pub use map::MapQuantity;
 pub use memory::{Memory, Timeline};
 pub use span::Span;
@@ -63,8 +63,14 @@ fn covered_ui(ui: &mut Ui, style: &Style) {
 }
 
 fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
-    if context.covered {
-        return covered_ui(ui, &context.style);
+    match context.cover {
+        Cover::None => {}
+        Cover::Surveys if !view.is_survey() => {}
+        Cover::Future if view.is_static() => {
+            ui.disable();
+            ui.set_opacity(1.0);
+        }
+        Cover::Surveys | Cover::Future | Cover::All => return covered_ui(ui, &context.style),
     }
     match view {
         View::Mechanism => mechanism::mechanism_ui(ui, context),

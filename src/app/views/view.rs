@@ -1,5 +1,7 @@
 //! Table of the views: names, and what each shows.
 
+use crate::scene::lesson::LessonView;
+
 /// The views in the order of the menu: variant, name, and what it shows and a hand can do in it.
 macro_rules! views {
     ($($(#[doc = $doc:literal])+ $variant:ident $name:literal $about:literal;)*) => {
@@ -99,7 +101,37 @@ views! {
          scene in fixed steps, as a game or a small applet takes them. From the scene's start.";
 }
 
+impl From<LessonView> for View {
+    fn from(view: LessonView) -> Self {
+        match view {
+            LessonView::Mechanism => Self::Mechanism,
+            LessonView::Well => Self::Well,
+            LessonView::Displacement => Self::Displacement,
+            LessonView::BeforeNow => Self::BeforeNow,
+            LessonView::PhasePortrait => Self::PhasePortrait,
+            LessonView::ForceCurve => Self::ForceCurve,
+            LessonView::Energy => Self::Energy,
+            LessonView::Velocity => Self::Velocity,
+            LessonView::BaseAcceleration => Self::BaseAcceleration,
+            LessonView::Map => Self::Map,
+            LessonView::UpAndDown => Self::UpAndDown,
+            LessonView::Basins => Self::Basins,
+            LessonView::Spectrum => Self::Spectrum,
+        }
+    }
+}
+
 impl View {
+    /// Whether it shows, of a motion that stands at its start, nothing that comes of it.
+    pub fn is_static(self) -> bool {
+        matches!(self, Self::Mechanism | Self::Well | Self::ForceCurve)
+    }
+
+    /// Whether it shows what other settings or starts than the present ones come to.
+    pub fn is_survey(self) -> bool {
+        matches!(self, Self::Map | Self::UpAndDown | Self::Basins)
+    }
+
     /// Whether the displacement runs along it.
     pub fn is_along_x(self) -> bool {
         matches!(self, Self::Mechanism | Self::Well | Self::PhasePortrait | Self::Section | Self::ForceCurve)

@@ -47,9 +47,43 @@ pub enum Command {
     Toggle(Setting),
     Grab,
     Ways,
+    /// A built-in lesson.
+    OpenLesson(&'static str),
+    OpenLessonFile,
+    LeaveLesson,
+    LessonAnew,
+    CopyAnswers,
+    LecturerNotes,
+    Glossary,
     Notes,
     Shortcuts,
     About,
+}
+
+impl Command {
+    /// Whether it moves the motion or the scene, or hands out what the motion comes to: not while a
+    /// prediction covers that.
+    pub(super) fn tells_of_motion(&self) -> bool {
+        use Wanted::{Events, Map, Motion, Run};
+        matches!(
+            self,
+            Self::SaveAs(Motion | Run | Events | Map)
+                | Self::CopyCommand
+                | Self::CopyMapCommand
+                | Self::Undo
+                | Self::Redo
+                | Self::BackToStart
+                | Self::PlayPause
+                | Self::Step
+                | Self::PreviousEvent
+                | Self::NextEvent
+                | Self::NextRelease
+                | Self::NextCrossing
+                | Self::RunToEnd
+                | Self::Grab
+                | Self::Ways
+        )
+    }
 }
 
 /// A part of a menu.
@@ -72,6 +106,8 @@ pub(super) enum Part {
     Views,
     /// The speeds, with the keys 1 to 7.
     Speeds,
+    /// The built-in lessons, with a mark at those that are done.
+    Lessons,
 }
 
 /// How the key of a command is listed.
@@ -108,7 +144,7 @@ use Part::{Item, Line, Row};
 
 /// The menus.
 #[rustfmt::skip]
-pub(super) static MENUS: [(&str, &[Part]); 5] = [
+pub(super) static MENUS: [(&str, &[Part]); 6] = [
     ("File", &[
         Part::Presets,
         Item("Open...", control(Key::O), C::Open, As("Scene", "open, save")),
@@ -188,7 +224,22 @@ pub(super) static MENUS: [(&str, &[Part]); 5] = [
         Row("Hands", "Enter", "let go of the mass"),
         Row("Hands", "Tab, Space", "to the next control, press it"),
     ]),
+    ("Lessons", &[
+        Part::Lessons,
+        Item("Open a lesson...", None, C::OpenLessonFile, No),
+        Line,
+        Item("Begin this lesson anew", None, C::LessonAnew, No),
+        Item("Leave lesson", None, C::LeaveLesson, No),
+        Row("Lesson", "PageUp, PageDown", "in a lesson: the step before, after"),
+        Row("Lesson", "A, B, C or 1, 2, 3", "choose what you expect"),
+        Row("Lesson", "H", "the hint of a task"),
+        Line,
+        Item("Copy my answers", None, C::CopyAnswers, No),
+        Item("Lecturer's notes", control(Key::L), C::LecturerNotes,
+            As("Lesson", "notes for the lecturer, in a window of their own")),
+    ]),
     ("Help", &[
+        Item("Glossary", plain(Key::F2), C::Glossary, As("Lesson", "glossary")),
         Item("About this scene", None, C::Notes, No),
         Item("Keys", plain(Key::F1), C::Shortcuts, No),
         Item("About", None, C::About, No),

@@ -14,6 +14,7 @@ use crate::system::files;
 
 use super::Window;
 use super::leave::{self, Answer, Next};
+use super::lessons;
 use super::messages::CANNOT_OPEN;
 use super::path_dialog::{Ended, PathDialog};
 use super::wanted::{Chosen, Wanted};
@@ -24,6 +25,9 @@ const UNSEEN: u128 = 300;
 impl Window {
     /// Opens another scene; one that cannot be opened leaves the present one and says why.
     pub fn open_another(&mut self, spec: &str) {
+        if lessons::is_lesson(spec) {
+            return self.open_lesson(spec);
+        }
         self.open_editor(Editor::open(spec).map_err(CannotRun::from));
     }
 
@@ -31,6 +35,7 @@ impl Window {
         let wake = Arc::clone(&self.wake);
         match editor.and_then(|editor| Self::on(editor, self.settings, wake)) {
             Ok(window) => {
+                self.leave_lesson();
                 *self = Self {
                     dialog: std::mem::take(&mut self.dialog),
                     dialogs: self.dialogs,
@@ -41,6 +46,7 @@ impl Window {
                     written: std::mem::replace(&mut self.written, channel()),
                     run: std::mem::take(&mut self.run),
                     covered: self.covered,
+                    lessons: std::mem::take(&mut self.lessons),
                     messages: self.messages.short_only(),
                     applied: self.applied,
                     ..window
@@ -54,10 +60,21 @@ impl Window {
     /// Goes on to what is next, once the changes of the present scene are saved or given up.
     pub fn leave_for(&mut self, ctx: &egui::Context, next: Next) {
         self.session.end_gesture();
-        if self.session.editor.is_dirty() {
+        // a lesson puts the scene aside, and loses nothing of it
+        let puts_aside = matches!(&next, Next::Open(spec) if lessons::is_lesson(spec));
+        if self.is_unsaved() && !puts_aside {
+            self.leave_lesson();
             self.asked = Some(next);
         } else {
             self.go_on(ctx, next);
+        }
+    }
+
+    /// Whether there is something to save; the scene of a lesson is none.
+    fn is_unsaved(&self) -> bool {
+        match self.lessons.aside() {
+            Some(session) => session.editor.is_dirty(),
+            None => self.session.editor.is_dirty(),
         }
     }
 
@@ -114,6 +131,7 @@ impl Window {
     fn take_file(&mut self, ctx: &egui::Context, wanted: Wanted, path: PathBuf) {
         match wanted {
             Wanted::Open => self.open_another(&path.to_string_lossy()),
+            Wanted::Lesson => self.open_lesson(&path.to_string_lossy()),
             Wanted::Save => self.save_to(ctx, &path),
             Wanted::Motion => self.write_motion(&path),
             Wanted::Run => self.write_run(path),
@@ -126,10 +144,7 @@ impl Window {
 
     /// What came from outside: a closed window, dropped files, the clipboard.
     pub(super) fn take_in(&mut self, ctx: &egui::Context) {
-        if ctx.input(|input| input.viewport().close_requested())
-            && !self.leaving
-            && self.session.editor.is_dirty()
-        {
+        if ctx.input(|input| input.viewport().close_requested()) && !self.leaving && self.is_unsaved() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.leave_for(ctx, Next::Quit);
         }
@@ -138,7 +153,9 @@ impl Window {
         match dropped.as_slice() {
             [] => {}
             [one] => self.leave_for(ctx, Next::Open(one.to_string_lossy().into_owned())),
-            _ => self.messages.say("One scene at a time", "Drop a single scene file (.ron) on the window."),
+            _ => {
+                self.messages.say("One file at a time", "Drop a single scene or lesson (.ron) on the window.")
+            }
         }
         if !self.waits_for_answer() && !ctx.text_edit_focused() {
             let (mut copied, mut pasted) = (false, None);
@@ -159,8 +176,9 @@ impl Window {
             }
         }
         self.tell_written();
-        let dirty = if self.session.editor.is_dirty() { "* " } else { "" };
-        let title = format!("{dirty}{} - interwell", self.session.scene().title);
+        let dirty = if self.is_unsaved() { "* " } else { "" };
+        let name = self.lesson().map_or(&self.session.scene().title, |own| &own.lesson().title);
+        let title = format!("{dirty}{name} - interwell");
         if title != self.titled {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.titled = title;
@@ -208,7 +226,7 @@ impl Window {
             painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color.gamma_multiply(0.8));
             let font = egui::FontId::proportional(STATUS);
             let (at, ink) = (rect.center(), ui.visuals().text_color());
-            painter.text(at, egui::Align2::CENTER_CENTER, "Drop the scene to open it", font, ink);
+            painter.text(at, egui::Align2::CENTER_CENTER, "Drop the file to open it", font, ink);
         }
     }
 
@@ -234,15 +252,14 @@ impl Window {
         let folder = path.as_ref().and_then(|path| path.parent()).map(Path::to_path_buf);
         // what a path would begin with where there is no dialog
         let begin = folder.clone().unwrap_or_else(files::working_folder);
-        let begin =
-            if wanted == Wanted::Open { begin.join("") } else { begin.join(format!("{stem}.{ending}")) };
+        let begin = if wanted.is_read() { begin.join("") } else { begin.join(format!("{stem}.{ending}")) };
         self.dialog.ask(&self.wake, move |_| {
             let mut dialog = rfd::FileDialog::new().add_filter(kind, &[ending]);
             if let Some(folder) = folder.filter(|folder| files::is_folder(folder)) {
                 dialog = dialog.set_directory(folder);
             }
             let since = WallClock::start();
-            let chosen = if wanted == Wanted::Open {
+            let chosen = if wanted.is_read() {
                 dialog.pick_file()
             } else {
                 dialog.set_file_name(format!("{stem}.{ending}")).save_file()
@@ -250,7 +267,7 @@ impl Window {
             let Some(mut path) = chosen else {
                 return (since.elapsed().as_millis() < UNSEEN).then_some(Chosen::NoDialog(wanted, begin));
             };
-            if wanted != Wanted::Open && path.extension().is_none() {
+            if !wanted.is_read() && path.extension().is_none() {
                 path.set_extension(ending);
             }
             Some(Chosen::File(wanted, path))

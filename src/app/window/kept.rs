@@ -8,11 +8,12 @@ use crate::app::views::View;
 use super::Window;
 use super::size::WindowSize;
 
-/// Names under which are kept: the scene files opened last, the window's size in points at the zoom 1, and a
-/// person's own arrangement.
+/// Names under which are kept: the scene files opened last, the window's size in points at the zoom 1, a person's
+/// own arrangement, and what was done in lessons.
 const RECENT: &str = "recent";
 const SIZE: &str = "size";
 const OWN: &str = "arrangement";
+const LESSONS: &str = "lessons";
 
 impl Window {
     /// Takes over what was kept, apart from the settings.
@@ -20,12 +21,14 @@ impl Window {
         self.recent = get_value(storage, RECENT).unwrap_or_default();
         self.restore_size(get_value(storage, SIZE));
         self.own = get_value(storage, OWN);
+        self.set_records(get_value(storage, LESSONS).unwrap_or_default());
     }
 
     /// Keeps it.
     pub(super) fn keep(&self, storage: &mut dyn Storage) {
         set_value(storage, eframe::APP_KEY, &self.settings);
         set_value(storage, RECENT, &self.recent);
+        set_value(storage, LESSONS, &self.records());
         if let Some(size) = self.size() {
             set_value(storage, SIZE, &size);
         }

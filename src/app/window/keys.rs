@@ -12,7 +12,7 @@ pub(super) const SPEED_KEYS: [Key; SPEEDS.len()] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
 
 /// Headings of the list of keys, and the width in points from which on they stand in two columns.
-const GROUPS: [&str; 4] = ["Time", "Hands", "Views", "Scene"];
+const GROUPS: [&str; 5] = ["Time", "Hands", "Views", "Scene", "Lesson"];
 const SIDE_BY_SIDE: f32 = 800.0;
 
 /// What the keyboard asks for; nothing while something is typed. To be called only where no dialog is open.
@@ -98,7 +98,7 @@ pub fn list_ui(ui: &Ui, opened: f64) -> bool {
                 return GROUPS.iter().for_each(|group| group_ui(ui, group));
             }
             ui.horizontal_top(|ui| {
-                for groups in GROUPS.chunks(2) {
+                for groups in [&GROUPS[..2], &GROUPS[2..]] {
                     ui.vertical(|ui| groups.iter().for_each(|group| group_ui(ui, group)));
                     ui.add_space(24.0);
                 }

@@ -10,6 +10,8 @@ use crate::app::ui::widgets::{Icon, icon_button_ui};
 use crate::app::views::{View, ViewContext, view_ui};
 use crate::scene::Layout;
 
+mod lesson;
+
 /// Shares of the window in the layout Look: left of 1030 points 590, of 584 points of height 340 on the
 /// right.
 const LEFT_SHARE: f32 = 590.0 / 1030.0;
@@ -107,6 +109,13 @@ impl Tiling {
     /// The room that it was made for.
     pub fn room(&self) -> Room {
         self.room
+    }
+
+    /// The place of a view on the screen, where it is seen.
+    pub fn place_of(&self, view: View) -> Option<egui::Rect> {
+        let id = self.tree.tiles.find_pane(&view)?;
+        let seen = self.tree.active_tiles().contains(&id);
+        seen.then(|| self.tree.tiles.rect(id)).flatten()
     }
 
     /// Whether a view is shown somewhere.

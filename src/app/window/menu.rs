@@ -5,15 +5,20 @@ use std::sync::LazyLock;
 use eframe::egui::{self, Button, KeyboardShortcut, Modifiers, Ui};
 
 use crate::app::session::Session;
+use crate::app::session::lesson::OpenLesson;
 use crate::app::session::map::Map;
 use crate::app::session::player::SPEEDS;
 use crate::app::ui::settings::{Setting, Settings};
 use crate::app::views::View;
+use crate::app::words::lesson::numbered;
+use crate::scene::lesson::{BuiltInLesson, LESSONS, LessonDocument};
 use crate::scene::{Document, PRESETS};
+use crate::study::result_fields;
 
 use super::command::{Command, DISCARD, MENUS, Part};
 use super::keys::SPEED_KEYS;
 use super::layouts::{Room, Tiling};
+use super::lessons::Lessons;
 use super::wanted::Wanted;
 
 /// Draws the bar and says what was asked for.
@@ -23,13 +28,14 @@ pub fn menu_ui(
     tiling: &Tiling,
     settings: Settings,
     recent: &[String],
+    lessons: &Lessons,
 ) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::MenuBar::new().ui(ui, |ui| {
-        let shown = Shown { session, tiling, settings, recent };
+        let shown = Shown { session, tiling, settings, recent, lessons };
         for (name, parts) in &MENUS {
             ui.menu_button(*name, |ui| match *name {
-                "View" => scroll_ui(ui, |ui| parts_ui(ui, &mut asked, parts, &shown)),
+                "View" | "Lessons" => scroll_ui(ui, |ui| parts_ui(ui, &mut asked, parts, &shown)),
                 _ => parts_ui(ui, &mut asked, parts, &shown),
             });
         }
@@ -42,9 +48,13 @@ pub fn menu_ui(
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let dirty = if session.editor.is_dirty() { " *" } else { "" };
-                let title = egui::RichText::new(format!("{}{dirty}", session.scene().title)).strong();
+                let (text, hover) = match &lessons.open {
+                    Some(own) => (format!("Lesson: {}", own.lesson().title), "What this lesson is about"),
+                    None => (format!("{}{dirty}", session.scene().title), "What this scene is about"),
+                };
+                let title = egui::RichText::new(text).strong();
                 let title = ui.add(Button::new(title).frame_when_inactive(false).truncate());
-                if title.on_hover_text("What this scene is about").clicked() {
+                if title.on_hover_text(hover).clicked() {
                     asked.push(Command::Notes);
                 }
             });
@@ -59,6 +69,7 @@ struct Shown<'a> {
     tiling: &'a Tiling,
     settings: Settings,
     recent: &'a [String],
+    lessons: &'a Lessons,
 }
 
 fn parts_ui(ui: &mut Ui, asked: &mut Vec<Command>, parts: &[Part], shown: &Shown<'_>) {
@@ -66,7 +77,7 @@ fn parts_ui(ui: &mut Ui, asked: &mut Vec<Command>, parts: &[Part], shown: &Shown
         match part {
             Part::Item("", ..) | Part::Row(..) => {}
             Part::Item(name, key, command, _) => {
-                let enabled = is_enabled(command, shown.session, shown.tiling);
+                let enabled = is_enabled(command, shown);
                 item_ui(ui, asked, name, *key, enabled, command);
             }
             Part::Menu(name, parts) => drop(ui.menu_button(*name, |ui| parts_ui(ui, asked, parts, shown))),
@@ -76,22 +87,30 @@ fn parts_ui(ui: &mut Ui, asked: &mut Vec<Command>, parts: &[Part], shown: &Shown
             Part::Settings => settings_ui(ui, asked, shown.settings),
             Part::Views => views_ui(ui, asked, shown.tiling),
             Part::Speeds => speeds_ui(ui, asked),
+            Part::Lessons => lessons_ui(ui, asked, shown.lessons),
         }
     }
 }
 
 /// Whether a command can be chosen in a menu.
-fn is_enabled(command: &Command, session: &Session, tiling: &Tiling) -> bool {
+fn is_enabled(command: &Command, shown: &Shown<'_>) -> bool {
+    let Shown { session, tiling, lessons, .. } = shown;
     let model = session.model();
+    if lessons.open.as_ref().is_some_and(OpenLesson::is_covering) && command.tells_of_motion() {
+        return false;
+    }
     match command {
         Command::Save => session.editor.is_dirty() || session.editor.path().is_none(),
         Command::SaveAs(Wanted::Map) => session.map.map().is_some_and(Map::is_whole),
         Command::CopyMapCommand => session.map.map().is_some(),
         Command::Undo => session.editor.can_undo(),
         Command::Redo => session.editor.can_redo(),
-        Command::KeepOwn => tiling.room() != Room::Compact,
+        Command::KeepOwn => tiling.room() != Room::Compact && lessons.open.is_none(),
+        Command::Arrange(_) | Command::ArrangeOwn => lessons.open.is_none(),
+        Command::LeaveLesson | Command::LessonAnew | Command::LecturerNotes => lessons.open.is_some(),
         Command::NextRelease => model.stop_positions() != (None, None),
         Command::NextCrossing => model.mechanism().landscape.barrier.is_some(),
+        Command::Notes if lessons.open.is_some() => true,
         Command::Notes => !session.scene().notes.trim().is_empty(),
         _ => true,
     }
@@ -180,6 +199,26 @@ fn speeds_ui(ui: &mut Ui, asked: &mut Vec<Command>) {
     }
 }
 
+/// The built-in lessons in their order; a mark stands before those that are done, and at the one that is
+/// open.
+fn lessons_ui(ui: &mut Ui, asked: &mut Vec<Command>, lessons: &Lessons) {
+    let open = lessons.open.as_ref().map(OpenLesson::key);
+    for (own, about) in LESSONS.iter().zip(ABOUT_LESSONS.iter()) {
+        let is_open = open.as_deref() == Some(own.name);
+        let done = match (is_open, &lessons.open) {
+            (true, Some(lesson)) => lesson.progress().done,
+            _ => lessons.records.get(own.name).is_some_and(|own| own.done),
+        };
+        let mark = if done { "done" } else { "" };
+        let name = format!("{}  {} ({} min)", numbered(own.name), about.title, about.minutes);
+        let button = Button::selectable(is_open, name).right_text(mark);
+        if ui.add(button).on_hover_text(&about.goal).clicked() {
+            asked.push(Command::OpenLesson(own.name));
+            ui.close();
+        }
+    }
+}
+
 /// What may be longer than the window is high.
 fn scroll_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     let window = ui.ctx().content_rect();
@@ -189,6 +228,24 @@ fn scroll_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     ui.set_max_height(room);
     egui::ScrollArea::vertical().max_height(room).show(ui, contents);
 }
+
+/// What the menu says of a lesson.
+struct About {
+    title: String,
+    minutes: u32,
+    goal: String,
+}
+
+/// The same of all built-in lessons.
+static ABOUT_LESSONS: LazyLock<Vec<About>> = LazyLock::new(|| {
+    let about = |own: &BuiltInLesson| match LessonDocument::load(own.name, &result_fields()) {
+        Ok(LessonDocument { lesson, .. }) => {
+            About { title: lesson.title, minutes: lesson.minutes, goal: lesson.goal }
+        }
+        Err(error) => About { title: own.name.to_owned(), minutes: 0, goal: error.to_string() },
+    };
+    LESSONS.iter().map(about).collect()
+});
 
 /// The titles of the built-in scenes.
 static TITLES: LazyLock<Vec<String>> = LazyLock::new(|| {

@@ -4,11 +4,14 @@
 
 use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
 
+use crate::app::panels::glossary::glossary_ui;
 use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
 use crate::app::views::{self, ViewContext};
+use crate::app::words::lesson::numbered;
+use crate::scene::lesson::LESSONS;
 
 use layouts::{Arrangement, Room};
 
@@ -29,6 +32,7 @@ mod kept;
 mod keys;
 pub mod layouts;
 pub mod leave;
+mod lessons;
 mod menu;
 mod messages;
 mod path_dialog;
@@ -72,7 +76,7 @@ impl Window {
         }
         let seconds = ctx.input(|input| f64::from(input.stable_dt));
         self.session.player.tick(seconds);
-        if let Some(reached) = self.session.player.take_reached().filter(|_| !self.covered) {
+        if let Some(reached) = self.session.player.take_reached().filter(|_| !self.motion_is_covered()) {
             self.messages.tell_reached(reached, self.session.player.time());
         }
         if self.session.player.is_playing() {
@@ -97,20 +101,40 @@ impl Window {
         let (bar, line) = (frame(8, 2), frame(12, 4));
         let mut asked = Vec::new();
         Panel::top("menu").frame(bar).exact_size(32.0).show(ui, |ui| {
-            asked = menu::menu_ui(ui, &self.session, &self.tiling, self.settings, &self.recent);
+            asked =
+                menu::menu_ui(ui, &self.session, &self.tiling, self.settings, &self.recent, &self.lessons);
         });
         let height = status_line::height(ui, &self.session, compact);
         Panel::top("status").frame(line).exact_size(height).show(ui, |ui| {
-            if self.covered {
-                covered_ui(ui);
+            if self.motion_is_covered() {
+                covered_ui(ui, !self.covered);
             } else {
                 status_ui(ui, &mut self.session, &mut self.announcer, &style, compact);
             }
         });
         Panel::bottom("transport").frame(line).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
-            transport::transport_ui(ui, &mut self.session, &style, self.covered);
+            if self.lesson_covers() {
+                ui.disable();
+            }
+            let covered = self.motion_is_covered();
+            transport::transport_ui(ui, &mut self.session, &style, covered);
         });
-        if compact {
+        self.follow_lesson(&ctx);
+        if self.lessons.open.is_some() {
+            // as high as it is in this very frame, which a panel is only in the next
+            let apart = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+            let strip = frame(12, 6).show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = apart;
+                ui.set_min_width(ui.available_width());
+                self.lesson_strip_ui(ui, &style, compact);
+            });
+            ui.spacing_mut().item_spacing.y = apart;
+            let edge = ui.visuals().widgets.noninteractive.bg_stroke;
+            ui.painter().hline(strip.response.rect.x_range(), strip.response.rect.bottom(), edge);
+            if self.lesson_has_controls() {
+                Panel::top("controls of the lesson").frame(line).show(ui, |ui| self.lesson_controls_ui(ui));
+            }
+        } else if compact {
             Panel::top("controls row").frame(line).show(ui, |ui| {
                 ui.set_height(ROW);
                 controls::row_ui(ui, &mut self.session, &mut self.more);
@@ -135,16 +159,25 @@ impl Window {
                 });
             });
         }
-        let hinted = self.hint.is_shown(&self.session);
+        let in_lesson = self.lessons.open.is_some();
+        let hinted = !in_lesson && self.hint.is_shown(&self.session);
         self.hint_row |= hinted;
         let shows_ways = self.ways && !self.covered;
         let has_room = ctx.content_rect().height() > LOW;
-        if shows_ways || (self.hint_row && (has_room || hinted && !self.covered)) {
+        if in_lesson {
+            // its strip stands there
+        } else if shows_ways || (self.hint_row && (has_room || hinted && !self.covered)) {
             // its room stays when it goes: the views below do not jump
             let panel = Panel::top("hint").frame(line).min_size(HINT_ROW);
             panel.show(ui, |ui| match hinted && !self.covered {
                 _ if shows_ways => ways_ui(ui, &self.session.ways(), hinted, &style),
-                true => self.hint.ui(ui, &self.session),
+                true => {
+                    if let Some(first) = LESSONS.first()
+                        && self.hint.ui(ui, &self.session, &numbered(first.name))
+                    {
+                        asked.push(Command::OpenLesson(first.name));
+                    }
+                }
                 false => {
                     let text = "H says what it would take to cross, F1 lists all keys.";
                     ui.label(RichText::new(text).color(style.faint()));
@@ -152,6 +185,7 @@ impl Window {
             });
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
+        self.pointing_ui(&ctx, &style);
         self.memory.grab = false;
         self.session.map.end_frame();
         self.session.explore.end_frame();
@@ -160,21 +194,23 @@ impl Window {
         for command in asked {
             self.carry_out(&ctx, command);
         }
+        self.lecturer_ui(&ctx);
         self.questions_ui(ui, &ctx);
+        self.glossary = self.glossary && glossary_ui(ui);
         self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened));
         self.messages.ui(ui);
         focus_ui(&ctx, &style);
     }
 
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {
-        let span = self.memory.span(&self.session);
+        let (span, cover) = (self.memory.span(&self.session), self.cover());
         let mut context = ViewContext {
             session: &mut self.session,
             style,
             span,
             memory: &mut self.memory,
             reduce_motion: self.settings.reduce_motion,
-            covered: self.covered,
+            cover,
             filled: self.filled.is_some(),
         };
         ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
@@ -182,6 +218,7 @@ impl Window {
             self.tiling.ui(ui, &mut context, &mut self.filled);
             // what a person does to an arrangement of their own stays
             if self.arrangement == Arrangement::Own
+                && self.lessons.open.is_none()
                 && let Some(kept) = self.tiling.kept()
                 && self.own.as_ref() != Some(kept)
             {

@@ -43,7 +43,7 @@ impl PathDialog {
             (false, Some("A path is needed."))
         } else if files::is_folder(path) {
             (false, Some("This is a folder: add the name of a file."))
-        } else if self.wanted == Wanted::Open {
+        } else if self.wanted.is_read() {
             if files::is_file(path) { (true, None) } else { (false, Some("There is no such file.")) }
         } else if folder.is_some_and(|folder| !files::is_folder(folder)) {
             (false, Some("There is no such folder."))

@@ -15,6 +15,7 @@ use super::command::{Command, UNDO};
 use super::keys;
 use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::Next;
+use super::wanted::Wanted;
 
 /// How many periods of the motion an event is looked for.
 const PERIODS_AHEAD: f64 = 300.0;
@@ -38,6 +39,7 @@ impl Window {
             }
             return;
         }
+        self.lesson_keys(ctx);
         for command in keys::pressed(ctx, self.filled.is_some()) {
             self.carry_out(ctx, command);
         }
@@ -45,7 +47,12 @@ impl Window {
 
     /// Does what was asked for.
     pub fn carry_out(&mut self, ctx: &egui::Context, command: Command) {
+        if self.lesson_covers() && command.tells_of_motion() {
+            return self.messages.tell("First choose what you expect");
+        }
         match command {
+            // the views of a lesson are its own
+            Command::Arrange(_) | Command::ArrangeOwn | Command::KeepOwn if self.lesson().is_some() => {}
             Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
             Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
             Command::Open => self.leave_for(ctx, Next::Choose),
@@ -85,6 +92,9 @@ impl Window {
                 self.memory = Memory::default();
                 self.hint = hint::Hint::for_scene(&self.session);
                 self.ways = false;
+                if let Some(speed) = self.lesson().and_then(|own| own.lesson().speed) {
+                    self.session.player.speed = speed;
+                }
                 if changed {
                     let undo = ctx.format_shortcut(&UNDO);
                     self.messages.tell(format!("Your changes are discarded; {undo} brings them back"));
@@ -139,7 +149,15 @@ impl Window {
                 *own = !*own;
             }
             Command::Grab => self.memory.grab = true,
-            Command::Ways => self.ways = !self.ways,
+            // in a lesson it is the answer
+            Command::Ways => self.ways = !self.ways && self.lesson().is_none(),
+            Command::OpenLesson(name) => self.open_lesson(name),
+            Command::OpenLessonFile => self.choose(Wanted::Lesson),
+            Command::LeaveLesson => self.leave_lesson(),
+            Command::LessonAnew => self.begin_lesson_anew(),
+            Command::CopyAnswers => self.copy_answers(ctx),
+            Command::LecturerNotes => self.lessons.notes = !self.lessons.notes && self.lesson().is_some(),
+            Command::Glossary => self.glossary = true,
             Command::Notes => self.say_notes(),
             Command::Shortcuts => self.shortcuts = Some(ctx.input(|input| input.time)),
             Command::About => self.messages.say("interwell", ABOUT),
@@ -164,6 +182,10 @@ impl Window {
 
     /// Shows the notes of the scene.
     fn say_notes(&mut self) {
+        if let Some(lesson) = self.lesson().map(|own| own.lesson()) {
+            let (title, goal) = (lesson.title.clone(), lesson.goal.clone());
+            return self.messages.say(title, goal);
+        }
         let scene = self.session.scene();
         let notes = scene.notes.trim();
         let notes = if notes.is_empty() { "This scene has no notes." } else { notes };
@@ -174,13 +196,18 @@ impl Window {
     fn say_nameless(&mut self) {
         self.messages.say(
             "There is no command line yet",
-            "A pasted scene has no name that the command line could open: save it first.",
+            "This scene has no name that the command line could open: save it first.",
         );
     }
 
     /// Puts the views where the arrangement has them.
     pub(super) fn arrange(&mut self, room: Room) {
         self.filled = None;
+        if let Some(lesson) = &self.lessons.open {
+            let views: Vec<View> = lesson.lesson().views.iter().map(|view| View::from(*view)).collect();
+            self.tiling = Tiling::of_lesson(&views, room);
+            return;
+        }
         self.tiling = match (self.arrangement, &self.own) {
             (Arrangement::Own, Some(own)) => Tiling::own(own, room),
             (Arrangement::Own, None) => Tiling::new(Layout::Look, room),

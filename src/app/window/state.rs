@@ -1,6 +1,6 @@
 //! State of the window, and what can be read of it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -19,6 +19,8 @@ use crate::system::files;
 use super::deferred::DeferredInput;
 use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::Next;
+use super::lessons::CANNOT_OPEN_LESSON;
+use super::lessons::{self, Lessons};
 use super::messages::{CANNOT_OPEN, Messages, Written};
 use super::path_dialog::PathDialog;
 use super::size::WindowSize;
@@ -75,15 +77,26 @@ pub struct Window {
     pub(super) hint: hint::Hint,
     /// The line of the first minute has been there.
     pub(super) hint_row: bool,
+    /// The lessons.
+    pub(super) lessons: Lessons,
+    /// The glossary is shown.
+    pub(super) glossary: bool,
     pub(super) wake: Wake,
     /// What was applied last, to be applied again only where it changes.
     pub(super) applied: Option<Settings>,
 }
 
 impl Window {
-    /// A window on a scene file or a built-in scene; the first preset where none is given.
+    /// A window on a scene file or a built-in scene, or on the file of a lesson; the first preset where none
+    /// is given.
     pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
         let first = PRESETS.first().map_or("paper", |preset| preset.name);
+        if let Some(spec) = spec.filter(|spec| lessons::is_lesson(spec)) {
+            let lesson = lessons::read(spec)?;
+            let mut window = Self::on(Editor::open(first)?, settings, wake)?;
+            window.begin_lesson(lesson)?;
+            return Ok(window);
+        }
         Self::on(Editor::open(spec.unwrap_or(first))?, settings, wake)
     }
 
@@ -91,7 +104,9 @@ impl Window {
     pub fn start(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
         Self::open(spec, settings, Arc::clone(&wake)).or_else(|error| {
             let mut window = Self::open(None, settings, wake)?;
-            window.messages.say(CANNOT_OPEN, error.to_string());
+            let is_lesson = spec.is_some_and(lessons::is_lesson);
+            let title = if is_lesson { CANNOT_OPEN_LESSON } else { CANNOT_OPEN };
+            window.messages.say(title, error.to_string());
             Ok(window)
         })
     }
@@ -129,6 +144,8 @@ impl Window {
             typed: None,
             deferred: DeferredInput::default(),
             hint_row: false,
+            lessons: Lessons::default(),
+            glossary: false,
             wake,
             applied: None,
         })
@@ -136,7 +153,13 @@ impl Window {
 
     /// Puts the scene's file first among the recent ones.
     pub fn remember_file(&mut self) {
-        let Some(path) = self.session.editor.path() else { return };
+        if let Some(path) = self.session.editor.path().map(PathBuf::from) {
+            self.remember(&path);
+        }
+    }
+
+    /// Puts a file first among the recent ones.
+    pub(super) fn remember(&mut self, path: &Path) {
         let whole = files::canonical(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
         self.recent.retain(|own| *own != whole);
         self.recent.insert(0, whole);
@@ -160,6 +183,7 @@ impl Window {
             || self.over_comments.is_some()
             || self.typed.is_some()
             || self.shortcuts.is_some()
+            || self.glossary
     }
 
     /// What the traces share.

@@ -7,6 +7,8 @@ use std::path::PathBuf;
 pub enum Wanted {
     /// A scene to be opened.
     Open,
+    /// A lesson to be opened.
+    Lesson,
     /// The scene.
     Save,
     /// The motion that was seen, as CSV.
@@ -28,6 +30,7 @@ impl Wanted {
     pub(super) fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Open => ("Open which scene?", "scene", "ron"),
+            Self::Lesson => ("Open which lesson?", "lesson", "ron"),
             Self::Save => ("Save the scene to which file?", "scene", "ron"),
             Self::Motion => ("Save the motion that was seen to which file?", "motion", "csv"),
             Self::Run => ("Save the whole run to which file?", "run", "csv"),
@@ -40,7 +43,12 @@ impl Wanted {
 
     /// What is then done.
     pub(super) fn verb(self) -> &'static str {
-        if self == Self::Open { "Open" } else { "Save" }
+        if self.is_read() { "Open" } else { "Save" }
+    }
+
+    /// Whether a file is read and not written.
+    pub(super) fn is_read(self) -> bool {
+        matches!(self, Self::Open | Self::Lesson)
     }
 }
 

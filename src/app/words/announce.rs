@@ -54,19 +54,23 @@ impl Announcer {
         self.said.as_ref().map(|(_, text)| (self.count, text.as_str()))
     }
 
-    /// Puts what was spoken last into the tree that screen readers read: as a new node for each sentence,
-    /// since readers on Linux speak when a live node enters the tree and not when its text changes.
+    /// Puts what was spoken last into the tree that screen readers read.
     pub fn ui(&self, ui: &mut Ui) {
         let Some((count, text)) = self.said() else { return };
-        let id = Id::unique(("announcement", count));
-        let nowhere = egui::Rect::from_min_size(ui.min_rect().left_top(), egui::Vec2::ZERO);
-        ui.interact(nowhere, id, egui::Sense::hover());
-        ui.ctx().accesskit_node_builder(id, |node| {
-            node.set_role(Role::Status);
-            node.set_live(Live::Polite);
-            node.set_label(text);
-        });
+        spoken_ui(ui, Id::unique(("announcement", count)), text);
     }
+}
+
+/// Puts a text into the tree that screen readers read: as a new node for each, since readers on Linux speak
+/// when a live node enters the tree and not when its text changes.
+pub fn spoken_ui(ui: &mut Ui, id: Id, text: &str) {
+    let nowhere = egui::Rect::from_min_size(ui.min_rect().left_top(), egui::Vec2::ZERO);
+    ui.interact(nowhere, id, egui::Sense::hover());
+    ui.ctx().accesskit_node_builder(id, |node| {
+        node.set_role(Role::Status);
+        node.set_live(Live::Polite);
+        node.set_label(text);
+    });
 }
 
 #[cfg(test)]

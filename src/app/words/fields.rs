@@ -132,6 +132,10 @@ pub static FIELDS: &[FieldInfo] = &[
         "Increase: the slow part of the shaking goes."),
     field("excitation.high_hz", "highest", "Hz", ((0.1, 50.0, 0.1), Scale::Rate), HZ,
         "Increase: faster shaking comes in."),
+    field("start.x_mm", "start, displacement", "mm", ((-8.0, 8.0, 0.05), Scale::Value), (-1e6, 1e6),
+        "Increase: the mass begins further to the right. The motion begins again."),
+    field("start.v_m_per_s", "start, velocity", "m/s", ((-1.0, 1.0, 0.005), Scale::Value), (-1e4, 1e4),
+        "Increase: the mass begins faster to the right; below 0, to the left. The motion begins again."),
     field("run.duration_s", "run length", "s", ((1.0, 120.0, 1.0), Scale::Value), SECONDS,
         "Increase: what is said of the motion rests on more periods. The second half of the run counts, or \
          what comes after the settling time of the scene."),
@@ -148,8 +152,6 @@ const OTHERS: &[(&str, &str, &str)] = &[
     ("excitation.seed", "seed", ""),
     ("excitation.lines", "lines of the noise", ""),
     ("excitation.path", "record", ""),
-    ("start.x_mm", "start, displacement", "mm"),
-    ("start.v_m_per_s", "start, velocity", "m/s"),
     ("run.settle_s", "settling time", "s"),
     ("run.tolerance", "tolerance", ""),
 ];

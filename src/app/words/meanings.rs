@@ -1,7 +1,29 @@
 //! Explanations of terms, for the labels that use them.
 
+use std::ops::Range;
+
 /// Words in small letters, and what they mean.
 const MEANINGS: &[(&str, &str)] = &[
+    (
+        "barrier",
+        "The top of the potential between the two wells, where the mass could just stand. Its height is an \
+         energy: what the mass needs to get from the bottom of a well to the other side.",
+    ),
+    (
+        "restitution",
+        "The share of its speed that the mass keeps when it rebounds from a stop. At 1 an impact takes no \
+         energy, at 0 the mass stays on the stop.",
+    ),
+    (
+        "basin",
+        "All starts from which the mass ends in the same steady motion. Where basins are finely mixed, a \
+         start next to another may end elsewhere.",
+    ),
+    (
+        "period",
+        "The time that the shaking takes to repeat: at 3 Hz a third of a second. A motion of period two \
+         repeats after two of these.",
+    ),
     (
         "bulge",
         "How far the buckled flexure bows sideways between its two ends. It is largest with the mass in \
@@ -34,14 +56,19 @@ const MEANINGS: &[(&str, &str)] = &[
     (
         "release",
         "The push, for a moment, is larger than what the mechanism presses the mass on its stop with: the \
-         mass comes off.",
+         mass comes off. That is not yet a crossing.",
     ),
     ("impact", "The mass strikes a stop and rebounds; what it loses of its speed goes into the stop."),
     ("crossing", "The mass passes the top of the barrier between the two wells, in either direction."),
-    ("intrawell", "It stays on its side: the push never carries it over the barrier."),
+    (
+        "intrawell",
+        "It stays on its side: the push never carries it over the barrier. It swings within one well, \
+         or hops on the stop there.",
+    ),
     (
         "interwell",
-        "It crosses from well to well, and its crossings repeat after one or a few periods of the shaking.",
+        "It crosses from well to well, again and again. Its crossings repeat after one or a few periods \
+         of the shaking.",
     ),
     (
         "irregular",
@@ -101,6 +128,30 @@ pub fn meaning(label: &str) -> Option<&'static str> {
     MEANINGS.iter().find(|(word, _)| begins(word)).map(|own| own.1)
 }
 
+/// The words of the glossary, in the order of the alphabet; each has a meaning.
+pub const GLOSSARY: [&str; 8] =
+    ["barrier", "basin", "interwell", "intrawell", "period", "release", "restitution", "RMS velocity"];
+
+/// Where a text uses a word of the glossary, in bytes, with the word.
+pub fn terms(text: &str) -> Vec<(Range<usize>, &'static str)> {
+    // letters outside ASCII keep their length
+    let small = text.to_ascii_lowercase();
+    let is_letter = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
+    let mut found = Vec::new();
+    for word in GLOSSARY {
+        for (at, own) in small.match_indices(&word.to_ascii_lowercase()) {
+            let mut end = at + own.len();
+            end += usize::from(small[end..].starts_with('s'));
+            let before = small[..at].chars().next_back();
+            if !is_letter(before) && !is_letter(small[end..].chars().next()) {
+                found.push((at..end, word));
+            }
+        }
+    }
+    found.sort_by_key(|own| own.0.start);
+    found
+}
+
 /// A label's response that shows what its words mean.
 pub fn explained(response: eframe::egui::Response, label: &str) -> eframe::egui::Response {
     match meaning(label) {
@@ -133,6 +184,18 @@ mod tests {
             let text = meaning(label).unwrap_or_else(|| panic!("{label}"));
             assert!(text.ends_with('.') && text.matches(". ").count() <= 1, "{text}");
         }
+        for word in GLOSSARY {
+            let text = meaning(word).unwrap_or_else(|| panic!("{word}"));
+            assert!(text.ends_with('.') && text.matches(". ").count() <= 1, "{text}");
+        }
         assert_eq!((meaning("basement"), meaning("")), (None, None));
+    }
+
+    #[test]
+    fn words_of_the_glossary_are_found_in_a_text() {
+        let text = "Its RMS velocity falls: two basins, one Barrier, periodic, a release.";
+        let found: Vec<(&str, &str)> = terms(text).into_iter().map(|(at, word)| (&text[at], word)).collect();
+        let own = [("RMS velocity", "RMS velocity"), ("basins", "basin"), ("Barrier", "barrier")];
+        assert_eq!(found, [own.as_slice(), &[("release", "release")]].concat());
     }
 }

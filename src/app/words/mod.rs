@@ -3,6 +3,7 @@
 pub(super) mod announce;
 pub mod fields;
 pub mod kind;
-pub(super) mod meanings;
+pub mod lesson;
+pub mod meanings;
 pub mod numbers;
 pub mod status;

@@ -45,6 +45,14 @@ pub enum LessonError {
 }
 
 impl LessonDocument {
+    /// Whether a file is meant as a lesson and not as a scene: whether it has steps.
+    pub fn is_lesson(path: &Path) -> bool {
+        read_text(path, LARGEST_SCENE).is_ok_and(|text| {
+            let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+            Places::of(text).find("steps").is_some()
+        })
+    }
+
     /// Reads a built-in lesson, by its name, number or words, or the file of a lesson, and checks it.
     /// `results` are the fields that a summary has.
     pub fn load(spec: &str, results: &[ResultField]) -> Result<Self, LessonError> {

@@ -1,0 +1,72 @@
+//! Verdicts on a lesson's scenes, worked out in the background.
+
+use std::sync::atomic::AtomicBool;
+
+use crate::scene::Document;
+use crate::scene::lesson::{LessonDocument, Step};
+use crate::study::{Subject, Task, Unjudged};
+
+/// How far a task is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum TaskState {
+    /// A hand changes the scene, or has just changed it.
+    Moving,
+    /// It is being judged.
+    Judging,
+    /// Not done by the present scene.
+    NotYet,
+    /// Done.
+    Met,
+    /// The scene cannot be judged, and why.
+    Unjudged(String),
+}
+
+/// Which option of a prediction holds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Outcome {
+    /// It is still being worked out.
+    Unknown,
+    /// This one.
+    Holds(usize),
+    /// None or several, which is a fault of the lesson.
+    Unclear,
+    /// The scene cannot be judged, and why.
+    Unjudged(String),
+}
+
+/// What a run says, or why it says nothing.
+pub(super) type Verdict<T> = Result<T, String>;
+
+/// The one option that holds.
+pub(super) fn only(options: Option<&Verdict<Vec<bool>>>) -> Outcome {
+    let all = match options {
+        None => return Outcome::Unknown,
+        Some(Err(why)) => return Outcome::Unjudged(why.clone()),
+        Some(Ok(all)) => all,
+    };
+    let mut right = all.iter().enumerate().filter(|own| *own.1).map(|own| own.0);
+    match (right.next(), right.next()) {
+        (Some(option), None) => Outcome::Holds(option),
+        _ => Outcome::Unclear,
+    }
+}
+
+/// What `verdict` says of a scene in a step of a lesson; none where it was cancelled.
+pub(super) fn judge<T>(
+    document: &LessonDocument,
+    number: usize,
+    own: &Document,
+    cancel: &AtomicBool,
+    verdict: impl FnOnce(&Step, Subject<'_>, &Subject<'_>) -> Result<T, Unjudged>,
+) -> Option<Verdict<T>> {
+    let (lesson, begin) = (&document.lesson, document.begin(number));
+    let of = (lesson.seeds, lesson.walk.as_ref());
+    let task = Task { tick: &|| (), cancel };
+    let before = Subject::new(&begin.scene, &begin.files, of, &task);
+    let subject = Subject::new(&own.scene, &own.files, of, &task);
+    match verdict(&lesson.steps[number], subject, &before) {
+        Ok(verdict) => Some(Ok(verdict)),
+        Err(Unjudged::Cancelled) => None,
+        Err(error) => Some(Err(error.to_string())),
+    }
+}

@@ -1,0 +1,95 @@
+//! Tiles of a lesson: its views alone, two or three beside each other.
+
+use eframe::egui;
+use egui_tiles::{LinearDir, TileId, Tiles, Tree};
+
+use crate::app::views::View;
+
+use super::{LEFT_SHARE, MAP_SHARE, MECHANISM_SHARE, Room, Tiling, pair};
+
+/// Shares of the width that the first of two views has where room is short, and that a view has which needs
+/// much of it.
+const HALF: f32 = 0.5;
+const MUCH: f32 = 0.62;
+
+/// Whether a view has legends that need room.
+fn is_wide(view: View) -> bool {
+    matches!(view, View::Map | View::UpAndDown | View::Basins | View::Spectrum)
+}
+
+impl Tiling {
+    /// The tiles of a lesson with these views. What has the displacement along it stands on the left, the
+    /// mechanism over the others; a map has the left for itself. Where room is short all stand side by side,
+    /// from the fourth on, and beside a map, as tabs.
+    pub fn of_lesson(views: &[View], room: Room) -> Self {
+        let mut tiles = Tiles::default();
+        let tree = match room {
+            Room::Compact => beside(tiles, views),
+            Room::Wide | Room::Large => {
+                let is_left = |view: &&View| match views.iter().any(|own| is_wide(*own)) {
+                    true => is_wide(**view),
+                    false => view.is_along_x(),
+                };
+                let (mut left, mut right): (Vec<View>, Vec<View>) = views.iter().partition(is_left);
+                left.sort_by_key(|view| *view != View::Mechanism);
+                if left.is_empty() {
+                    std::mem::swap(&mut left, &mut right);
+                }
+                // two alone stand side by side, but the mechanism over what it shares its axis with
+                if right.is_empty() && left.len() == 2 && left[0] != View::Mechanism {
+                    right = left.split_off(1);
+                }
+                let share = if left.iter().any(|own| is_wide(*own)) { MAP_SHARE } else { LEFT_SHARE };
+                let columns: Vec<TileId> = [left, right]
+                    .into_iter()
+                    .filter(|own| !own.is_empty())
+                    .map(|own| column(&mut tiles, &own))
+                    .collect();
+                let root = match columns[..] {
+                    [left, right] => pair(&mut tiles, LinearDir::Horizontal, left, right, share),
+                    _ => tiles.insert_horizontal_tile(columns),
+                };
+                Tree::new(egui::Id::unique("lesson"), root, tiles)
+            }
+        };
+        Self { tree, room }
+    }
+}
+
+/// Views below each other; the mechanism, which is first, is lower than the other.
+fn column(tiles: &mut Tiles<View>, views: &[View]) -> TileId {
+    let panes: Vec<TileId> = views.iter().map(|view| tiles.insert_pane(*view)).collect();
+    match (views, &panes[..]) {
+        ([View::Mechanism, _], [first, second]) => {
+            pair(tiles, LinearDir::Vertical, *first, *second, MECHANISM_SHARE)
+        }
+        (_, [one]) => *one,
+        _ => tiles.insert_vertical_tile(panes),
+    }
+}
+
+/// Views side by side, from the fourth on behind the third; beside one that needs much room, all others
+/// behind each other.
+fn beside(mut tiles: Tiles<View>, views: &[View]) -> Tree<View> {
+    let (wide, others): (Vec<View>, Vec<View>) = views.iter().partition(|own| is_wide(**own));
+    if !wide.is_empty() && !others.is_empty() {
+        let mut tabs = |views: Vec<View>| {
+            let panes = views.into_iter().map(|view| tiles.insert_pane(view)).collect();
+            tiles.insert_tab_tile(panes)
+        };
+        let (left, right) = (tabs(wide), tabs(others));
+        let root = pair(&mut tiles, LinearDir::Horizontal, left, right, MUCH);
+        return Tree::new(egui::Id::unique("compact lesson"), root, tiles);
+    }
+    let panes: Vec<TileId> = views.iter().map(|view| tiles.insert_pane(*view)).collect();
+    let root = match panes[..] {
+        [one] => one,
+        [left, right] => pair(&mut tiles, LinearDir::Horizontal, left, right, HALF),
+        [left, middle, ..] if panes.len() > 3 => {
+            let tabs = tiles.insert_tab_tile(panes[2..].to_vec());
+            tiles.insert_horizontal_tile(vec![left, middle, tabs])
+        }
+        _ => tiles.insert_horizontal_tile(panes),
+    };
+    Tree::new(egui::Id::unique("compact lesson"), root, tiles)
+}

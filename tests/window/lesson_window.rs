@@ -1,0 +1,215 @@
+//! The window of a lesson: its strip, controls, views, notes, glossary and files.
+
+use eframe::egui::{self, Key, Modifiers, accesskit::Role};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use interwell::app::ui::settings::Settings;
+use interwell::app::ui::style::Style;
+use interwell::app::views::View;
+use interwell::app::window::{Command, Window};
+use interwell::scene::lesson::{LESSONS, LessonDocument, Step};
+use interwell::scene::{Document, Stops};
+use interwell::study::result_fields;
+
+use crate::lessons::{OWN, Shown, go_to, is_anywhere, number, opened, own, press, step, until, written};
+use crate::support::{PROJECTED, WIDE, command, sliced, window};
+
+#[test]
+fn a_file_with_faults_shows_them_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let faulty = OWN.replace("minutes: 5", "minutes: 0").replace("\"stops.travel", "\"stops.trawel");
+    let path = written(folder.path(), &faulty);
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.state_mut().open_another(&path);
+    harness.run_steps(3);
+    let text = harness.state().message().unwrap().to_owned();
+    for part in ["own.ron", "minutes", "stops.trawel_limit_mm", "did you mean"] {
+        assert!(text.contains(part), "{text}");
+    }
+    harness.get_by_label("This lesson cannot be opened");
+    assert!(harness.state().lesson().is_none());
+    // as the argument of the program, too
+    let window = Window::start(Some(&path), Settings::default(), std::sync::Arc::new(|| ())).unwrap();
+    assert_eq!(window.message(), Some(text.as_str()));
+    // and mended it opens, whatever is unsaved
+    let path = written(folder.path(), OWN);
+    press(&mut harness, Key::Escape);
+    harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
+    harness.state_mut().open_another(&path);
+    harness.run_steps(3);
+    assert!(harness.state().lesson().is_some() && harness.state().recent[0].ends_with("own.ron"));
+    let window = Window::open(Some(&path), Settings::default(), std::sync::Arc::new(|| ())).unwrap();
+    assert!(window.lesson().is_some() && window.session.editor.path().is_none());
+    // another scene asks about what the lesson has put aside
+    command(&mut harness, Command::OpenPreset("duffing"));
+    harness.get_by_label("Save the changes?");
+    assert!(harness.state().lesson().is_none() && harness.state().session.scene().mass_g == 16.0);
+}
+
+#[test]
+fn the_longest_texts_fit() {
+    let long = |begin: &str, count: usize| {
+        let words = begin.chars().chain("the mass hops from stop to stop ".chars().cycle());
+        format!("{}.", words.take(count - 1).collect::<String>())
+    };
+    let (text, option) = (long("Every ", 240), |begin: &str| long(begin, 80));
+    let own = OWN
+        .replace("Shaken at 1 g it rattles in one well.", &text)
+        .replace("We put stops at ±4 mm and shake as before. The mass ...", &text)
+        .replace("crosses every period\"", &format!("{}\"", option("a ")))
+        .replace("rattles between home and stop", &option("b "))
+        .replace("does not move at all", &option("c "))
+        .replace("Where does the force curve lie below 0.149 N, the push of 1 g?", &text)
+        .replace("A stop inside the home holds the mass up on the hillside.", &text);
+    assert!(LessonDocument::from_text("own", &own, None, &result_fields()).is_ok());
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path(), &own);
+    for size in [PROJECTED, WIDE] {
+        let mut harness = opened(&path, size);
+        let whole = |harness: &Shown, number: usize| {
+            assert_eq!(sliced(harness), [""; 0], "{size:?} {number}");
+            for name in ["Well", "Displacement", "pause", "play", "Next", "Finish"] {
+                let inside = harness.query_by_label(name).is_none_or(|own| own.rect().bottom() <= size[1]);
+                assert!(inside, "{name}");
+            }
+            // a view has room to show something
+            let bar = harness.get_by_label("Well").rect().bottom();
+            let foot =
+                harness.query_by_label("play").or(harness.query_by_label("pause")).unwrap().rect().top();
+            assert!(foot - bar > 100.0, "{size:?} {number}: {}", foot - bar);
+        };
+        while harness.state().lesson().is_some() {
+            let number = number(&harness);
+            whole(&harness, number);
+            match step(&harness) {
+                Step::Predict { .. } => {
+                    for letter in ["A", "B", "C"] {
+                        harness.get_by_label_contains(&format!("{letter}   "));
+                    }
+                    press(&mut harness, Key::C);
+                    until(&mut harness, "what it did", |own| {
+                        own.state().lesson().unwrap().answer().outcome.is_some()
+                    });
+                    harness.run_steps(2);
+                    whole(&harness, number);
+                }
+                Step::Do { .. } => {
+                    press(&mut harness, Key::H);
+                    assert!(is_anywhere(&harness, "Hint: "));
+                    whole(&harness, number);
+                }
+                _ => {}
+            }
+            press(&mut harness, Key::PageDown);
+        }
+    }
+}
+
+#[test]
+fn a_word_of_the_glossary_says_what_it_means() {
+    let mut harness = own(WIDE);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
+    let labels = harness.query_all_by_label_contains("Your task: ");
+    let text = labels.filter(|own| own.accesskit_node().role() == Role::Label).map(|own| own.rect()).next();
+    let text = text.unwrap();
+    let meaning = "The time that the shaking takes to repeat";
+    for (right, is_said) in [(200.0, false), (25.0, true)] {
+        harness.hover_at(egui::pos2(text.right() - right, text.center().y));
+        harness.run_steps(90);
+        assert_eq!(is_anywhere(&harness, meaning), is_said);
+    }
+}
+
+#[test]
+fn a_map_waits_for_the_first_prediction() {
+    let mut harness = own(WIDE);
+    for view in [View::Map, View::UpAndDown] {
+        command(&mut harness, Command::Show(view, true));
+    }
+    assert_eq!(harness.query_all_by_label("Covered").count(), 2);
+    assert!(!harness.state().lesson().unwrap().is_covering());
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
+    assert_eq!(harness.query_all_by_label("Covered").count(), 0);
+    assert!(harness.query_all_by_label("Range").next().is_some());
+}
+
+#[test]
+fn bold_words_point_at_what_is_on_the_screen() {
+    let color = Style { dark: false, projector: false }.pointing_stroke().color;
+    let outlines = |harness: &Shown| -> Vec<egui::Rect> {
+        let outline = |own: &egui::epaint::ClippedShape| match &own.shape {
+            egui::Shape::Rect(rect) if rect.stroke.color == color => Some(rect.rect),
+            _ => None,
+        };
+        harness.output().shapes.iter().filter_map(outline).collect()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let text = OWN.replace("Shaken at 1 g it", "With **Stops** and in the **Well** it **surely** and");
+    let mut harness = opened(&written(folder.path(), &text), WIDE);
+    let found = outlines(&harness);
+    let switch = harness.get_by_role_and_label(Role::CheckBox, "Stops").rect().center();
+    let well = harness.get_by_label("Well").rect().left_bottom() + egui::vec2(40.0, 40.0);
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!(found.iter().any(|own| own.contains(switch)) && found.iter().any(|own| own.contains(well)));
+    press(&mut harness, Key::PageDown);
+    assert_eq!(outlines(&harness), []);
+}
+
+#[test]
+fn only_what_the_lesson_names_can_be_set() {
+    let mut harness = own(WIDE);
+    assert!(harness.query_by_label("More").is_none());
+    let sliders = harness.query_all_by_role(Role::Slider);
+    let names: Vec<String> = sliders.filter_map(|own| own.accesskit_node().label()).collect();
+    assert!(!names.iter().any(|own| own == "amplitude"), "{names:?}");
+    assert!(names.iter().any(|own| own == "travel limit ±"), "{names:?}");
+    for (view, shown) in [(View::Well, true), (View::Displacement, true), (View::BeforeNow, false)] {
+        assert_eq!(harness.state().tiling().shows(view), shown);
+    }
+    command(&mut harness, Command::LeaveLesson);
+    harness.get_by_label("More");
+    assert!(harness.state().tiling().shows(View::BeforeNow));
+    assert_eq!(harness.state().session.scene().stops, Stops::None);
+}
+
+#[test]
+fn the_first_line_leads_to_the_first_lesson() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.get_by_label_contains("Make it cross");
+    let name = LESSONS[0].name.split('-').next().unwrap().trim_start_matches('0');
+    harness.get_by_label(&format!("Lesson {name}")).click();
+    harness.run_steps(3);
+    let lesson = harness.state().lesson().unwrap().lesson().title.clone();
+    let own = LessonDocument::load(LESSONS[0].name, &result_fields()).unwrap().lesson.title;
+    assert_eq!(lesson, own);
+}
+
+#[test]
+fn the_lecturer_s_notes_come_only_when_asked_for() {
+    let mut harness = own(WIDE);
+    let notes = harness.state().lesson().unwrap().lesson().lecturer.clone();
+    let begin: String = notes.chars().take(20).collect();
+    assert!(!is_anywhere(&harness, &begin));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::L);
+    harness.run_steps(3);
+    assert!(is_anywhere(&harness, &begin));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::L);
+    harness.run_steps(3);
+    assert!(!is_anywhere(&harness, &begin));
+    press(&mut harness, Key::F2);
+    assert!(is_anywhere(&harness, "Glossary") && is_anywhere(&harness, "rebounds from a stop"));
+    press(&mut harness, Key::F2);
+    assert!(!is_anywhere(&harness, "rebounds from a stop"));
+}
+
+#[test]
+fn the_command_line_of_a_lesson_says_all_that_was_changed() {
+    let mut harness = own(WIDE);
+    let line = interwell::app::export::command_line(&harness.state().session).unwrap().0;
+    let mut own = Document::load("first-look").unwrap();
+    for set in line.split(" --set ").skip(1) {
+        own.set(set.trim_matches('\'')).unwrap();
+    }
+    assert_eq!(own.scene, *harness.state().session.scene(), "{line}");
+    assert_ne!(own.scene, Document::load("first-look").unwrap().scene);
+    harness.run_steps(1);
+}
