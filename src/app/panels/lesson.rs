@@ -16,7 +16,8 @@ use crate::scene::lesson::Step;
 /// Text sizes in points: where there is room, and where there is little.
 const LARGE: f32 = 16.0;
 
-/// Room in points for the steps and the ways back and on, and height of these; size of the dot of a step, and their distance.
+/// Room in points for the steps and the ways back and on, and height of these; size of the dot of a step, and
+/// their distance.
 const WAYS: f32 = 158.0;
 const WAY: f32 = 24.0;
 const DOT: f32 = 4.5;

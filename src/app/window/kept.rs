@@ -8,8 +8,8 @@ use crate::app::views::View;
 use super::Window;
 use super::size::WindowSize;
 
-/// Names under which are kept: the scene files opened last, the window's size in points at the zoom 1, a person's
-/// own arrangement, and what was done in lessons.
+/// Names under which are kept: the scene files opened last, the window's size in points at the zoom 1, a
+/// person's own arrangement, and what was done in lessons.
 const RECENT: &str = "recent";
 const SIZE: &str = "size";
 const OWN: &str = "arrangement";

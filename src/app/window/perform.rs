@@ -8,12 +8,11 @@ use crate::app::panels::transport::EVENT_AHEAD;
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::views::{Memory, View};
 use crate::dynamics::EventKind;
-use crate::scene::Layout;
 
 use super::Window;
 use super::command::{Command, UNDO};
 use super::keys;
-use super::layouts::{Arrangement, Room, Tiling};
+use super::layouts::Arrangement;
 use super::leave::Next;
 use super::wanted::Wanted;
 
@@ -198,20 +197,5 @@ impl Window {
             "There is no command line yet",
             "This scene has no name that the command line could open: save it first.",
         );
-    }
-
-    /// Puts the views where the arrangement has them.
-    pub(super) fn arrange(&mut self, room: Room) {
-        self.filled = None;
-        if let Some(lesson) = &self.lessons.open {
-            let views: Vec<View> = lesson.lesson().views.iter().map(|view| View::from(*view)).collect();
-            self.tiling = Tiling::of_lesson(&views, room);
-            return;
-        }
-        self.tiling = match (self.arrangement, &self.own) {
-            (Arrangement::Own, Some(own)) => Tiling::own(own, room),
-            (Arrangement::Own, None) => Tiling::new(Layout::Look, room),
-            (Arrangement::Layout(layout), _) => Tiling::new(layout, room),
-        };
     }
 }

@@ -200,4 +200,19 @@ impl Window {
     pub fn tiling(&self) -> &Tiling {
         &self.tiling
     }
+
+    /// Puts the views where the arrangement has them.
+    pub(super) fn arrange(&mut self, room: Room) {
+        self.filled = None;
+        if let Some(lesson) = &self.lessons.open {
+            let views: Vec<View> = lesson.lesson().views.iter().map(|view| View::from(*view)).collect();
+            self.tiling = Tiling::of_lesson(&views, room);
+            return;
+        }
+        self.tiling = match (self.arrangement, &self.own) {
+            (Arrangement::Own, Some(own)) => Tiling::own(own, room),
+            (Arrangement::Own, None) => Tiling::new(Layout::Look, room),
+            (Arrangement::Layout(layout), _) => Tiling::new(layout, room),
+        };
+    }
 }
