@@ -17,6 +17,7 @@ mod impacts;
 mod lanes;
 mod layers;
 mod live;
+mod measured;
 mod mechanics;
 mod notes;
 mod oracles;
