@@ -12,6 +12,7 @@ mod quadrature;
 mod quick;
 mod ratio;
 pub mod real_roots;
+pub mod regression;
 mod roots;
 pub mod round;
 mod scalar;

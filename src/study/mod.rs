@@ -18,6 +18,7 @@ mod exponents;
 mod fields;
 mod flexures;
 mod grid;
+mod identify;
 mod inspect;
 mod levels;
 mod map;
@@ -57,6 +58,9 @@ pub use exponents::{
 pub use fields::{Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
+pub use identify::{
+    FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
+};
 pub use inspect::inspect;
 pub use levels::{Levels, STRIDES};
 pub use map::{first_crossing, release_line};
