@@ -3,10 +3,13 @@
 mod accuracy;
 mod basins;
 mod check;
+mod columns;
 mod curve;
 mod exponents;
 mod failure;
+mod identify;
 mod interrupt;
+mod measured;
 mod options;
 mod orbit;
 mod picture;

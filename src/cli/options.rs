@@ -119,6 +119,8 @@ commands! {
     orbit Orbit " [SCENE]";
     /// Lyapunov exponents of the settled motion, with their standard errors, sum and dimension
     exponents Exponents " [SCENE]";
+    /// Damping ratio, restitution or force curve from a measured record, each number with its interval
+    identify Identify " FILE --of damping|restitution|force";
     /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed
     /// against error beside other methods, and the hard cases with the digits that they allow and reach
     accuracy Accuracy " [SCENE]";

@@ -23,7 +23,8 @@ impl<const N: usize> Fit<N> {
 
 /// The coefficients c that minimise sum (row . c - value)^2 over `rows`, each with its value.
 ///
-/// Method: normal equations by Cholesky; with columns of one size their condition is that of the rows squared,
+/// Method: normal equations by Cholesky; with columns of one size their condition is that of the rows
+/// squared,
 /// so polynomials want a variable within \[-1, 1]. The covariance takes the errors of the values as
 /// independent and of one size, which is estimated from the residuals.
 ///

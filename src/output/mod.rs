@@ -11,16 +11,16 @@ mod plot;
 mod text;
 
 pub use csv::{header, rows};
-pub use json::{landscape, summary};
+pub use json::{identified, landscape, summary};
 pub use manifest::{Provenance, basins_manifest, manifest};
 pub use number::push_number;
 pub use plot::{
     Caption, ExponentPicture, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError,
     PlotAxis, RMS, Ranges, SectionPicture, SpectrumQuantity, SweepPicture, Theme, ThresholdPicture,
     UnknownFormat, accuracy_figure, basins_figure, branch_figure, can_show, can_show_exponents,
-    can_show_starts, can_show_thresholds, contact_figure, curve_figure, exponents_figure, quantities,
-    run_figure, section_figure, spectrum_figure, speed_unit, sweep_about, sweep_figure, threshold_figure,
-    viridis,
+    can_show_starts, can_show_thresholds, contact_figure, curve_figure, exponents_figure, measured_figure,
+    quantities, run_figure, section_figure, spectrum_figure, speed_unit, sweep_about, sweep_figure,
+    threshold_figure, viridis,
 };
 pub use text::aligned;
 

@@ -59,16 +59,16 @@ pub enum MeasuredError {
     Columns(#[from] ColumnsError),
     /// No column has a unit of what is needed.
     #[error(
-        "line {line}: no column of {quantity} ({quantity} in {units}, as in `{example}`); the header has: \
-         {found}. Name the column by {option} and its unit by {unit_option}"
+        "line {line}: no column of {name} ({name} in {units}, as in `{example}`); the header has: {found}. \
+         Name the column by {option} and its unit by {unit_option}",
+        name = .quantity.name(),
+        units = .quantity.units()
     )]
     NoColumn {
         /// Line of the header.
         line: usize,
         /// What is needed.
-        quantity: &'static str,
-        /// Its units.
-        units: String,
+        quantity: Quantity,
         /// Such a name.
         example: String,
         /// The names that the header has.
@@ -251,8 +251,7 @@ impl Ask {
         }
         Err(MeasuredError::NoColumn {
             line: sheet.line(0),
-            quantity: self.quantities[0].name(),
-            units: self.quantities[0].units(),
+            quantity: self.quantities[0],
             example: self.wanted(),
             found: clip(&sheet.names.join(", ")),
             option: self.options.0,

@@ -114,7 +114,9 @@ impl Unit {
         let ends = |word: &str| {
             let rest = |end: &str, before: &[&str]| {
                 let rest = name.strip_suffix(end).and_then(|rest| rest.strip_suffix(word));
-                rest.is_some_and(|rest| before.iter().any(|own| rest.ends_with(own)))
+                // of `stiffness_n_per_m` the m is no unit of its own
+                let whole = |rest: &&str| !rest.trim_end_matches('_').ends_with("_per");
+                rest.filter(whole).is_some_and(|rest| before.iter().any(|own| rest.ends_with(own)))
             };
             rest("", &["_", ", "]) || rest("]", &["["]) || rest(")", &["("])
         };
@@ -149,7 +151,7 @@ mod tests {
             let unit = Unit::of_name(name).unwrap_or_else(|| panic!("{name}"));
             assert_eq!((unit.quantity, unit.si(1.0)), (quantity, one), "{name}");
         }
-        for name in ["t", "phase", "Position", "x m", "F_MN", "force_kgf", ""] {
+        for name in ["t", "phase", "Position", "x m", "F_MN", "force_kgf", "stiffness_n_per_m", ""] {
             assert_eq!(Unit::of_name(name), None, "{name}");
         }
         // the double nearest to the decimal

@@ -22,6 +22,7 @@ mod identify;
 mod inspect;
 mod levels;
 mod map;
+mod measured;
 mod models;
 mod orbit;
 mod push;
@@ -64,6 +65,7 @@ pub use identify::{
 pub use inspect::inspect;
 pub use levels::{Levels, STRIDES};
 pub use map::{first_crossing, release_line};
+pub use measured::{Comparison, MeasuredMotion, NoComparison, compare};
 pub use models::Held;
 pub use orbit::{
     Branch, BranchEnd, BranchEvent, Family, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table,

@@ -1,5 +1,6 @@
 //! Measured records: reading, comparison with a run, and what is identified from them.
 
+mod comparison;
 mod damping;
 mod force;
 mod reading;

@@ -21,6 +21,9 @@ const REACH: f64 = 0.125;
 /// Swings count down to this many times the reach of the noise.
 const CLEAR: f64 = 1.5;
 
+/// Turning points on either side from which the time of one follows.
+const AROUND: usize = 8;
+
 /// The fewest samples of such a fit, and of one of degree 4.
 const FEWEST_SAMPLES: usize = 5;
 const FEWEST_OF_DEGREE_4: usize = 9;
@@ -95,7 +98,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     }
     if differ(&rows, whole.ratio.value) {
         remarks.push(
-            "the ratio changes with the amplitude by more than its intervals: the one number for all is a mean"
+            "the ratio changes with the amplitude by more than its intervals: the number for all is a mean"
                 .to_owned(),
         );
     }
@@ -125,8 +128,8 @@ fn even_period(turns: &[f64]) -> Result<f64, Unidentified> {
     }
 }
 
-/// The polynomial in (t - `centre`)/`reach` through the samples up to `reach` away; none where the record does
-/// not reach so far on both sides.
+/// The polynomial in (t - `centre`)/`reach` through the samples up to `reach` away; none where the record
+/// does not reach so far on both sides.
 fn polynomial(
     times: &[f64],
     values: &[f64],
@@ -173,29 +176,30 @@ fn turn_near(times: &[f64], values: &[f64], near: f64, reach: f64) -> Result<Opt
     Ok(Some(Peak { t: centre, value, size: 0.0 }))
 }
 
-/// Reads the values anew at times that follow from all turning points together: a parabola in their number,
-/// and what sets maxima apart from minima. The extreme of a noisy curve lies too far out, the value at a time
-/// that does not depend on its own noise does not.
+/// Reads the values anew at times that follow from the turning points around each: a straight line in their
+/// number, and what sets maxima apart from minima. The extreme of a noisy curve lies too far out; the value
+/// at a time that hardly depends on its own noise does not.
 fn at_smooth_times(
     times: &[f64],
     values: &[f64],
     peaks: &mut [Peak],
     reach: f64,
 ) -> Result<(), Unidentified> {
-    let count = peaks.len() as f64;
-    let row = |k: usize| {
-        let [one, u, square] = powers(k as f64 / count);
-        [one, u, square, if k % 2 == 0 { 1.0 } else { -1.0 }]
+    let parity = |j: usize| if j.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let smooth = |k: usize| -> Option<f64> {
+        let around = k.saturating_sub(AROUND)..(k + AROUND + 1).min(peaks.len());
+        let row = |j: usize| {
+            let (size, t) = (peaks[j].size, peaks[j].t - peaks[k].t);
+            ([size, size * (j as f64 - k as f64), size * parity(j)], size * t)
+        };
+        let fit = least_squares(&around.map(row).collect::<Vec<_>>())?;
+        Some(peaks[k].t + fit.coefficients[0] + parity(k) * fit.coefficients[2])
     };
-    let rows: Vec<([f64; 4], f64)> = peaks
-        .iter()
-        .enumerate()
-        .map(|(k, own)| (row(k).map(|part| part * own.size), own.t * own.size))
-        .collect();
-    let Some(smooth) = least_squares(&rows) else { return Ok(()) };
-    for (k, peak) in peaks.iter_mut().enumerate() {
-        let t = smooth.form(&row(k).into()).0;
-        if let Some(fit) = polynomial(times, values, t, reach)? {
+    let smooth: Vec<Option<f64>> = (0..peaks.len()).map(smooth).collect();
+    for (peak, t) in peaks.iter_mut().zip(smooth) {
+        if let Some(t) = t
+            && let Some(fit) = polynomial(times, values, t, reach)?
+        {
             peak.value = fit[0];
         }
     }

@@ -8,8 +8,10 @@ mod turns;
 pub use damping::damping;
 pub use force::{FORCE_POINTS, force};
 pub use restitution::{restitution, restitution_of_times};
+pub(super) use turns::{Turn, noise, reach, turns};
 
-use super::table::Table;
+use super::table::{Column, Table, Values};
+use crate::numeric::short;
 
 /// A number with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +27,16 @@ pub struct Identity {
 impl Identity {
     fn new(name: &'static str, value: f64, half: f64) -> Self {
         Self { name, value, interval: (value - half, value + half) }
+    }
+
+    /// The number in words.
+    pub fn describe(&self) -> String {
+        let column = Column { name: self.name.to_owned(), values: Values::Words(Vec::new()) };
+        let (unit, label) = (column.unit(), column.label());
+        let name = label.strip_suffix(unit).map_or(label.as_str(), |own| own.trim_end_matches(", "));
+        let [value, low, high] = [self.value, self.interval.0, self.interval.1].map(short);
+        let text = format!("{name} {value} {unit}");
+        format!("{} (95 % interval {low} to {high})", text.trim_end())
     }
 }
 
@@ -69,8 +81,8 @@ pub enum Unidentified {
     },
     /// Swings of unequal length.
     #[error(
-        "the swing at {at} s takes {own} s where the usual one takes {usual} s: the record has a gap there or \
-         is no free decay in one well; cut it by --from and --to"
+        "the swing at {at} s takes {own} s where the usual one takes {usual} s: the record has a gap there \
+         or is no free decay in one well; cut it by --from and --to"
     )]
     Uneven {
         /// When, in s.

@@ -182,8 +182,8 @@ pub fn restitution_of_times(times: &[f64]) -> Result<Identified, Unidentified> {
         .each("restitution_high", &rows, |own| own[1] + own[2]);
     let half = student(law.freedom) * law.covariance[(2, 2)].sqrt();
     let remarks = vec![
-        "of impact times: the ratio of successive flights, which is the restitution where the acceleration of \
-         the flights is constant"
+        "of impact times: the ratio of successive flights, which is the restitution where the acceleration \
+         of the flights is constant"
             .to_owned(),
     ];
     Ok(Identified { rows, summary: vec![Identity::new("restitution", e, half)], remarks })

@@ -11,8 +11,8 @@ const OFFSET: f64 = 3.2e-3;
 const AMPLITUDE: f64 = 1e-3;
 const HERTZ: f64 = 7.0;
 
-/// A decay of damping ratio `xi` over `duration` s, with times off by `jitter` steps and values off by `noise`
-/// m, each a standard deviation.
+/// A decay of damping ratio `xi` over `duration` s, with times off by `jitter` steps and values off by
+/// `noise` m, each a standard deviation.
 fn decay(xi: f64, rate: f64, duration: f64, (jitter, noise): (f64, f64), seed: u64) -> (Vec<f64>, Channel) {
     let mut random = Noise::new(seed);
     let natural = TAU * HERTZ;
