@@ -1,8 +1,8 @@
 //! Numbers of named columns of a CSV text.
 //!
 //! Comma separated (where it is asked for, by semicolons or tabulators too), a header row with the wanted
-//! columns in any order among others, lines that begin with `#` are comments. Nothing is repaired silently: what
-//! cannot be meant is refused with its line and value.
+//! columns in any order among others, lines that begin with `#` are comments. Nothing is repaired silently:
+//! what cannot be meant is refused with its line and value.
 
 use super::clip::clip;
 
