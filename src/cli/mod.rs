@@ -3,11 +3,14 @@
 mod accuracy;
 mod basins;
 mod check;
+mod columns;
 mod curve;
 mod exponents;
 mod failure;
+mod identify;
 mod interrupt;
 mod lesson;
+mod measured;
 mod options;
 mod orbit;
 mod picture;

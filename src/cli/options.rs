@@ -122,6 +122,8 @@ commands! {
     orbit Orbit " [SCENE]";
     /// Lyapunov exponents of the settled motion, with their standard errors, sum and dimension
     exponents Exponents " [SCENE]";
+    /// Damping ratio, restitution or force curve from a measured record, each number with its interval
+    identify Identify " FILE --of damping|restitution|force";
     /// List the lessons; print, check or begin one
     lesson Lesson " [LESSON]";
     /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use interwell::dynamics::{Model, Outcome};
 use interwell::numeric::short;
-use interwell::output::{push_number, run_figure, summary};
+use interwell::output::{measured_figure, push_number, run_figure, summary};
 use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_trace, yield_warning};
 
 use super::failure::Failure;
+use super::measured::MeasuredOptions;
 use super::options::{Common, PlotOptions, RangeOptions};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
@@ -33,7 +34,7 @@ pub struct Arguments {
 
     /// Go on, window after window, until the motion repeats, or up to this time in s. Samples and averages
     /// are then of the longer run; its window is the last one. Needs a drive that repeats
-    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true, conflicts_with = "measured")]
     pub until_settled: Option<String>,
 
     /// Write impacts, rests, releases and crossings as CSV
@@ -47,6 +48,10 @@ pub struct Arguments {
     /// Write statistics, outcome and energy ledger as JSON
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub summary: Option<PathBuf>,
+
+    /// A measured motion to compare with.
+    #[command(flatten)]
+    pub measured: MeasuredOptions,
 
     /// The picture.
     #[command(flatten)]
@@ -85,11 +90,19 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         let message = format!("--plot-time {from}:{to}: the run lasts from 0 to {most} s");
         return Err(Failure::argument(message));
     }
+    let record = options.measured.read(common.quiet)?;
+    if let Some((from, to)) = record.as_ref().and_then(|own| own.inset).filter(|(_, to)| *to > most) {
+        let message = format!("--inset {from}:{to}: the run lasts from 0 to {most} s");
+        return Err(Failure::argument(message));
+    }
+    let comparison = options.measured.comparison.as_deref().map(|path| ("--comparison", path));
     let events = options.events.as_deref().map(|path| ("--events", path));
     let summary_path = options.summary.as_deref().map(|path| ("--summary", path));
     let [plot, data] = Picture::outputs(picture);
-    let outputs = [Some(("--out", common.out())), events, summary_path, plot, data];
-    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let outputs = [Some(("--out", common.out())), events, summary_path, plot, data, comparison];
+    let mut read = inputs(&options.scene, &document);
+    read.extend(options.measured.measured.clone());
+    let mut sinks = open(&read, outputs)?;
 
     let cancel = interrupt::listen();
     let watch = Watch::start();
@@ -97,23 +110,37 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let (simulation, trace) = match picture {
         None => (simulate(&model, &keep, Some(cancel)), None),
         Some(_) => {
-            let (simulation, trace) = simulate_with_trace(&model, &keep, window, Some(cancel));
+            let close = record.as_ref().and_then(|own| own.inset).or(window);
+            let (simulation, trace) = simulate_with_trace(&model, &keep, close, Some(cancel));
             (simulation, Some(trace))
         }
     };
     if interrupt::came() {
         return Err(Failure::interrupted());
     }
-    let [samples, events, about, pictures @ ..] = &mut sinks;
+    let compared = record.as_ref().map(|own| own.compare(&document.scene, &model, cancel)).transpose()?;
+    let [samples, events, about, pictures @ .., comparison] = &mut sinks;
     write_table(samples, &simulation.samples)?;
     write_table(events, &simulation.events)?;
     write_text(about, &summary(&simulation.summary, &document.scene, &watch.origin(1)))?;
     if let Some((picture, trace)) = picture.zip(trace) {
         let (about, mechanism) = (caption(&document), &model.mechanism());
-        let figure = run_figure(&trace, &simulation.summary, mechanism, axes, &about, &picture.theme);
+        let figure = match record.as_ref().zip(compared.as_ref()) {
+            Some((own, found)) => {
+                let quantity = own.record.channels[1].quantity;
+                measured_figure(&trace, (found, quantity), own.inset, axes, &about, &picture.theme)
+            }
+            None => run_figure(&trace, &simulation.summary, mechanism, axes, &about, &picture.theme),
+        };
         picture.write(pictures, figure)?;
     }
+    if let Some(found) = &compared {
+        write_table(comparison, &found.table)?;
+    }
     finish(sinks)?;
+    if let Some((own, found)) = record.as_ref().zip(compared.as_ref()).filter(|_| !common.quiet) {
+        own.tell(found);
+    }
     if let Some(warning) = yield_warning(&model, &simulation.summary).filter(|_| !common.quiet) {
         say(&format!("warning: {}: {warning}", document.name));
     }

@@ -1,6 +1,7 @@
 //! Mathematics without mechanics: number types, roots, fits, sums, decimals.
 
 mod bisect;
+mod correlation;
 mod decimal;
 mod double_double;
 mod dual;
@@ -12,6 +13,7 @@ mod quadrature;
 mod quick;
 mod ratio;
 pub mod real_roots;
+pub mod regression;
 mod roots;
 pub mod round;
 mod scalar;
@@ -19,6 +21,7 @@ mod short;
 mod sum;
 
 pub use bisect::bisect;
+pub use correlation::{Alignment, alignment};
 pub use decimal::Decimal;
 pub use double_double::DoubleDouble;
 pub use dual::Dual;

@@ -1,13 +1,13 @@
 //! JSON of a summary and of a landscape: flat objects, numbers in SI with the unit in the key, `null` for
 //! what is missing.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::manifest::{Provenance, seed};
 use crate::dynamics::{Ledger, Outcome, Summary};
 use crate::mechanics::{Landscape, Mechanism};
-use crate::scene::Scene;
-use crate::study::{Read, SUMMARY_FIELDS, SummaryField, small_amplitude_frequency};
+use crate::scene::{Scene, Timing};
+use crate::study::{Identified, Read, SUMMARY_FIELDS, SummaryField, small_amplitude_frequency};
 
 /// The summary of a run of `scene`, as text. Compliant stops add two keys, their peak force and pressure. A
 /// run that ended early has two keys more, `ended_at_s` and, where a budget ran out, `ended_after`, the
@@ -107,6 +107,27 @@ pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
         "kinks": kinks,
         "domain_m": [left, right],
     }))
+}
+
+/// What was identified (`of` a record that was sampled like this), as text: its numbers by name, each an
+/// object of value and 95 % interval.
+pub fn identified(of: &str, found: &Identified, timing: Option<&Timing>, origin: &Provenance) -> String {
+    let mut object = Map::new();
+    object.insert("of".to_owned(), json!(of));
+    for own in &found.summary {
+        let (low, high) = own.interval;
+        object.insert(own.name.to_owned(), json!({ "value": own.value, "low": low, "high": high }));
+    }
+    if let Some(timing) = timing {
+        object.insert("samples".to_owned(), json!(timing.samples));
+        object.insert("step_s".to_owned(), json!(timing.step));
+        object.insert("jitter_s".to_owned(), json!(timing.jitter));
+        object.insert("gaps".to_owned(), json!(timing.gaps.len()));
+    }
+    object.insert("remarks".to_owned(), json!(found.remarks));
+    object.insert("version".to_owned(), json!(origin.version));
+    object.insert("arguments".to_owned(), json!(origin.arguments));
+    pretty(&Value::Object(object))
 }
 
 /// Numbers are in serde_json's shortest form; one that is not finite became `null` on its way in.

@@ -11,7 +11,7 @@ mod plot;
 mod text;
 
 pub use csv::{header, rows};
-pub use json::{landscape, summary};
+pub use json::{identified, landscape, summary};
 pub use manifest::{Provenance, basins_manifest, exponents_manifest, manifest};
 pub use number::push_number;
 pub use plot::{
@@ -19,8 +19,8 @@ pub use plot::{
     PlotAxis, RMS, Ranges, SectionPicture, Sheet, SpectrumQuantity, SweepPicture, Theme, ThresholdPicture,
     UnknownFormat, View, accuracy_figure, attractor_colour, basins_figure, branch_figure, can_show,
     can_show_exponents, can_show_starts, can_show_thresholds, contact_figure, curve_figure, exponents_figure,
-    quantities, run_figure, section_figure, spectrum_figure, speed_unit, sweep_about, sweep_figure,
-    threshold_figure, viridis,
+    measured_figure, quantities, run_figure, section_figure, spectrum_figure, speed_unit, sweep_about,
+    sweep_figure, threshold_figure, viridis,
 };
 pub use text::aligned;
 

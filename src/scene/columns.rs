@@ -1,7 +1,8 @@
-//! Numbers of two named columns of a CSV text.
+//! Numbers of named columns of a CSV text.
 //!
-//! Comma separated, a header row with the wanted columns in any order among others, lines that begin with
-//! `#` are comments. Nothing is repaired silently: what cannot be meant is refused with its line and value.
+//! Comma separated (where it is asked for, by semicolons or tabulators too), a header row with the wanted
+//! columns in any order among others, lines that begin with `#` are comments. Nothing is repaired silently:
+//! what cannot be meant is refused with its line and value.
 
 use super::clip::clip;
 
@@ -23,9 +24,17 @@ pub enum ColumnsError {
         /// Line of the header.
         line: usize,
         /// Name of the column that is needed.
-        missing: &'static str,
+        missing: String,
         /// The names that the header has.
         found: String,
+        /// The columns that are needed.
+        wanted: String,
+    },
+    /// Where the names of the columns should be, there are numbers.
+    #[error("line {line}: a row of numbers; put a row with the columns' names above it, such as {wanted}")]
+    NoHeader {
+        /// Line of the first row.
+        line: usize,
         /// The columns that are needed.
         wanted: String,
     },
@@ -35,7 +44,7 @@ pub enum ColumnsError {
         /// Line of the header.
         line: usize,
         /// Its name.
-        column: &'static str,
+        column: String,
     },
     /// A row is not readable as CSV.
     #[error("is not a CSV table: {0}")]
@@ -49,93 +58,202 @@ pub enum ColumnsError {
         line: usize,
     },
     /// A value that is no finite number.
-    #[error("line {line}: {column} is `{value}`; it must be a finite number with a decimal point")]
+    #[error(
+        "line {line}: {column} is `{value}`; it must be a finite number with a decimal point (a row without \
+         a value is to be left out)"
+    )]
     NoNumber {
         /// Line of the row.
         line: usize,
         /// Name of the column.
-        column: &'static str,
+        column: String,
         /// The value as written, empty where the row is too short.
         value: String,
+    },
+    /// More values than the header has names.
+    #[error(
+        "line {line}: has {found} values where the header has {names} names; if commas are meant as decimal \
+         points, separate the values by semicolons"
+    )]
+    TooManyValues {
+        /// Line of the row.
+        line: usize,
+        /// Values in it.
+        found: usize,
+        /// Names in the header.
+        names: usize,
     },
     /// More rows than are sensible.
     #[error("has more than {0} rows, the most that are read: thin it out, or cut it to what the run needs")]
     TooMany(usize),
 }
 
-/// Two columns of a table, and where their rows stand.
+/// Some columns of a table, and where their rows stand.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Columns {
+pub struct Columns<const N: usize> {
     /// The numbers of each row in the order of the names asked for; all finite.
-    pub rows: Vec<[f64; 2]>,
+    pub rows: Vec<[f64; N]>,
     /// The line of each row in the text, from 1.
     pub lines: Vec<usize>,
+    /// Whether numbers had a decimal comma.
+    pub decimal_commas: bool,
 }
 
 /// Reads the columns `names` of a CSV text with at most `most` rows.
 ///
 /// Accepts a byte order mark, line ends of any system, blank lines, blanks around values and further columns.
-pub fn read_columns(text: &str, names: [&'static str; 2], most: usize) -> Result<Columns, ColumnsError> {
-    let wanted = || names.join(",");
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    // Comments and blank lines go first, so that row k is known to stand on line `numbers[k]`.
-    let mut numbers = Vec::new();
-    let mut body = String::with_capacity(text.len());
-    for (i, line) in lines(text).enumerate() {
-        if !line.starts_with('#') && !line.trim().is_empty() {
-            if numbers.len() > most {
-                return Err(ColumnsError::TooMany(most));
+pub fn read_columns<const N: usize>(
+    text: &str,
+    names: [&str; N],
+    most: usize,
+) -> Result<Columns<N>, ColumnsError> {
+    let wanted = names.join(",");
+    let sheet = Sheet::open(text, &wanted, Separators::Comma, most)?;
+    let mut at = [0; N];
+    for (at, name) in at.iter_mut().zip(names) {
+        *at = sheet.column(name)?;
+    }
+    sheet.numbers(at)
+}
+
+/// What may stand between two values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Separators {
+    /// A comma.
+    Comma,
+    /// A semicolon or a tabulator where the header has one, with decimal points or commas in the numbers;
+    /// else a comma. A header of numbers is refused, and a
+    /// row of more values than it has names.
+    Any,
+}
+
+/// A CSV text whose header is read.
+pub(super) struct Sheet {
+    /// The text without comments and blank lines.
+    body: String,
+    /// The line of each row of it, from 1, that of the header first.
+    lines: Vec<usize>,
+    separator: u8,
+    may_be: Separators,
+    /// The names of the columns.
+    pub names: Vec<String>,
+    wanted: String,
+}
+
+impl Sheet {
+    /// Reads the header; `wanted` are the columns that messages ask for.
+    pub fn open(text: &str, wanted: &str, may_be: Separators, most: usize) -> Result<Self, ColumnsError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        // Comments and blank lines go first, so that row k is known to stand on line `lines[k]`.
+        let mut numbers = Vec::new();
+        let mut body = String::with_capacity(text.len());
+        for (i, line) in lines(text).enumerate() {
+            if !line.starts_with('#') && !line.trim().is_empty() {
+                if numbers.len() > most {
+                    return Err(ColumnsError::TooMany(most));
+                }
+                numbers.push(i + 1);
+                body.push_str(line);
+                body.push('\n');
             }
-            numbers.push(i + 1);
-            body.push_str(line);
-            body.push('\n');
+        }
+        let header = body.split('\n').next().unwrap_or_default();
+        let separator = match may_be {
+            Separators::Any if header.contains(';') => b';',
+            Separators::Any if header.contains('\t') => b'\t',
+            _ => b',',
+        };
+        let mut sheet =
+            Self { body, lines: numbers, separator, may_be, names: Vec::new(), wanted: wanted.to_owned() };
+        let header = sheet.reader().headers().map_err(unreadable)?.clone();
+        if sheet.lines.is_empty() || header.is_empty() {
+            return Err(ColumnsError::Empty { wanted: wanted.to_owned() });
+        }
+        sheet.closed(&header, 0)?;
+        sheet.names = header.iter().map(|name| name.trim().to_owned()).collect();
+        let numeric = |name: &String| name.replace(',', ".").parse::<f64>().is_ok();
+        if may_be == Separators::Any && sheet.names.iter().all(numeric) {
+            return Err(ColumnsError::NoHeader { line: sheet.lines[0], wanted: wanted.to_owned() });
+        }
+        Ok(sheet)
+    }
+
+    // Blanks are taken off later: here they would take the line's end with them.
+    fn reader(&self) -> csv::Reader<&[u8]> {
+        let mut builder = csv::ReaderBuilder::new();
+        builder.flexible(true).delimiter(self.separator).from_reader(self.body.as_bytes())
+    }
+
+    /// The line of a row, the header being row 0.
+    pub fn line(&self, row: usize) -> usize {
+        self.lines.get(row).copied().unwrap_or(0)
+    }
+
+    /// One line, one row: as long as no text in quotation marks holds a line's end.
+    fn closed(&self, record: &csv::StringRecord, row: usize) -> Result<(), ColumnsError> {
+        match record.iter().any(|value| value.contains('\n')) {
+            false => Ok(()),
+            true => Err(ColumnsError::OpenQuote { line: self.line(row) }),
         }
     }
-    let line_of = |record: usize| numbers.get(record).copied().unwrap_or(0);
-    // One line, one row: as long as no text in quotation marks holds a line's end.
-    let closed = |record: &csv::StringRecord, line: usize| match record.iter().any(|v| v.contains('\n')) {
-        false => Ok(()),
-        true => Err(ColumnsError::OpenQuote { line }),
-    };
-    let unreadable = |e: csv::Error| ColumnsError::Unreadable(e.to_string());
-    // Blanks are taken off below: here they would take the line's end with them.
-    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(body.as_bytes());
-    let header = reader.headers().map_err(unreadable)?.clone();
-    if numbers.is_empty() || header.is_empty() {
-        return Err(ColumnsError::Empty { wanted: wanted() });
-    }
-    closed(&header, line_of(0))?;
-    let column = |name: &'static str| {
-        let mut at = header.iter().enumerate().filter(|(_, h)| h.trim() == name).map(|(i, _)| i);
+
+    /// Where the column called `name` stands.
+    pub fn column(&self, name: &str) -> Result<usize, ColumnsError> {
+        let mut at = self.names.iter().enumerate().filter(|(_, own)| *own == name).map(|(i, _)| i);
         let first = at.next().ok_or_else(|| ColumnsError::MissingColumn {
-            line: line_of(0),
-            missing: name,
-            found: clip(&header.iter().map(str::trim).collect::<Vec<_>>().join(", ")),
-            wanted: wanted(),
+            line: self.line(0),
+            missing: clip(name),
+            found: clip(&self.names.join(", ")),
+            wanted: self.wanted.clone(),
         })?;
         match at.next() {
             None => Ok(first),
-            Some(_) => Err(ColumnsError::RepeatedColumn { line: line_of(0), column: name }),
+            Some(_) => Err(ColumnsError::RepeatedColumn { line: self.line(0), column: clip(name) }),
         }
-    };
-    let at = [column(names[0])?, column(names[1])?];
-    let mut columns = Columns { rows: Vec::with_capacity(numbers.len()), lines: Vec::new() };
-    let mut record = csv::StringRecord::new();
-    while reader.read_record(&mut record).map_err(unreadable)? {
-        let line = line_of(columns.rows.len() + 1);
-        closed(&record, line)?;
-        let number = |i: usize| {
-            let value = record.get(at[i]).unwrap_or("").trim();
-            value.parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(|| ColumnsError::NoNumber {
-                line,
-                column: names[i],
-                value: clip(value),
-            })
-        };
-        columns.rows.push([number(0)?, number(1)?]);
-        columns.lines.push(line);
     }
-    Ok(columns)
+
+    /// The numbers of the columns that stand there.
+    pub fn numbers<const N: usize>(&self, at: [usize; N]) -> Result<Columns<N>, ColumnsError> {
+        let mut rows = Vec::with_capacity(self.lines.len());
+        let (mut points, mut commas) = (false, false);
+        let mut reader = self.reader();
+        let mut record = csv::StringRecord::new();
+        while reader.read_record(&mut record).map_err(unreadable)? {
+            let place = rows.len() + 1;
+            self.closed(&record, place)?;
+            // empty values at the end of a row are none
+            let names = self.names.len();
+            let beyond = record.iter().skip(names).any(|value| !value.trim().is_empty());
+            if self.may_be == Separators::Any && beyond {
+                let (line, found) = (self.line(place), record.len());
+                return Err(ColumnsError::TooManyValues { line, found, names });
+            }
+            let mut row = [0.0; N];
+            for (own, at) in row.iter_mut().zip(at) {
+                let value = record.get(at).unwrap_or("").trim();
+                let comma = self.separator != b',' && value.contains(',');
+                (points, commas) = (points || value.contains('.'), commas || comma);
+                let number = match comma {
+                    false => value.parse::<f64>().ok(),
+                    // both in one file could be thousands and decimals
+                    true if points => None,
+                    true => value.replacen(',', ".", 1).parse().ok(),
+                };
+                let mixed = commas && points;
+                *own = number.filter(|v| v.is_finite() && !mixed).ok_or_else(|| ColumnsError::NoNumber {
+                    line: self.line(place),
+                    column: clip(&self.names[at]),
+                    value: clip(value),
+                })?;
+            }
+            rows.push(row);
+        }
+        Ok(Columns { rows, lines: self.lines.get(1..).unwrap_or_default().to_vec(), decimal_commas: commas })
+    }
+}
+
+fn unreadable(error: csv::Error) -> ColumnsError {
+    ColumnsError::Unreadable(error.to_string())
 }
 
 /// The lines of a text, whichever system ended them: by a line feed, a carriage return or both.

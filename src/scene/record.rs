@@ -9,12 +9,10 @@ use super::columns::{ColumnsError, MOST_ROWS, read_columns};
 use super::data::Excitation;
 use super::error::Fault;
 use super::files::Files;
+use super::timing::Timing;
 
 const TIME: &str = "t_s";
 const ACCELERATION: &str = "accel_m_per_s2";
-
-/// A step longer than this many times the usual one is called a gap.
-const GAP: f64 = 5.0;
 
 /// Samples of base acceleration, linear between them.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,17 +75,12 @@ impl Record {
                 "ends at {last} s, before the run does at {duration} s; the base stands still from there"
             ));
         }
-        let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let (longest, at) =
-            steps.iter().zip(&self.times).fold((0.0, 0.0), |worst: (f64, f64), (step, at)| {
-                if *step > worst.0 { (*step, *at) } else { worst }
-            });
-        let middle = steps.len() / 2;
-        let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
-        if longest > GAP * usual {
+        let timing = Timing::of(&self.times);
+        if let Some((at, longest)) = timing.longest_gap() {
             warnings.push(format!(
-                "has a gap of {longest} s after {at} s, where its usual step is {usual} s; it is bridged by \
-                 a straight line"
+                "has a gap of {longest} s after {at} s, where its usual step is {} s; it is bridged by a \
+                 straight line",
+                timing.step
             ));
         }
         warnings

@@ -19,10 +19,12 @@ mod family;
 mod fields;
 mod flexures;
 mod grid;
+mod identify;
 mod inspect;
 mod lesson;
 mod levels;
 mod map;
+mod measured;
 mod models;
 mod orbit;
 mod push;
@@ -61,12 +63,16 @@ pub use family::Family;
 pub use fields::{Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
+pub use identify::{
+    FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
+};
 pub use inspect::inspect;
 pub use lesson::{
     LessonFinding, LessonReport, Subject, Unjudged, check_lesson, goal_met, options_that_hold, result_fields,
 };
 pub use levels::{Levels, STRIDES};
 pub use map::{first_crossing, release_line};
+pub use measured::{Comparison, MeasuredMotion, NoComparison, compare};
 pub use models::Held;
 pub use orbit::{Branch, BranchEnd, BranchEvent, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table};
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};

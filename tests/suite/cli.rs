@@ -18,7 +18,7 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 14] = [
     "presets",
     "check",
     "curve",
@@ -30,6 +30,7 @@ const COMMANDS: [&str; 13] = [
     "basins",
     "orbit",
     "exponents",
+    "identify",
     "lesson",
     "accuracy",
 ];

@@ -12,6 +12,7 @@ use crate::cli::{headless, stdout};
 const README: &str = include_str!("../../README.md");
 const SCENE: &str = include_str!("../../docs/scene.md");
 const OUTPUT: &str = include_str!("../../docs/output.md");
+const MEASURED: &str = include_str!("../../docs/measured.md");
 const STUDIES: &str = include_str!("../../docs/studies.md");
 
 /// Whether `name` stands in `page` as code.
@@ -194,6 +195,35 @@ fn each_picture_of_the_studies_is_made_by_a_command_beside_it() {
     }
     for made in quick {
         assert!(fs::metadata(folder.path().join(made)).unwrap().len() > 0, "{made}");
+    }
+}
+
+#[test]
+fn the_commands_on_measured_data_work_and_what_they_write_is_documented() {
+    let folder = tempfile::tempdir().unwrap();
+    for command in commands(MEASURED) {
+        let mut words = command.split('\'');
+        let mut line = headless(words.next().unwrap());
+        if let Some(quoted) = words.next() {
+            line.arg(quoted).args(words.next().unwrap_or_default().split_whitespace());
+        }
+        line.arg("--quiet").current_dir(folder.path()).assert().success();
+    }
+    assert!(fs::metadata(folder.path().join("measured.png")).unwrap().len() > 0);
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    for name in ["difference.csv", "ratio.csv", "impacts.csv", "force.csv"] {
+        for column in read(name).lines().next().unwrap().split(',') {
+            assert!(says(OUTPUT, column), "docs/output.md does not say `{column}` of {name}");
+        }
+    }
+    for quantity in read("difference.csv").lines().skip(1).map(|line| line.split(',').next().unwrap()) {
+        assert!(says(OUTPUT, quantity), "docs/output.md does not say `{quantity}`");
+    }
+    for name in ["ratio.json", "force.json"] {
+        let json: serde_json::Value = serde_json::from_str(&read(name)).unwrap();
+        for key in json.as_object().unwrap().keys() {
+            assert!(says(OUTPUT, key), "docs/output.md does not say `{key}` of {name}");
+        }
     }
 }
 

@@ -19,6 +19,7 @@ mod layers;
 mod lesson_format;
 mod lessons;
 mod live;
+mod measured;
 mod mechanics;
 mod notes;
 mod oracles;

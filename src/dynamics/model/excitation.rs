@@ -9,8 +9,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use crate::numeric::{Ratio, greatest_common_divisor};
 use crate::scene::{Excitation, Fault, Record};
 
-/// Standard gravity in m/s^2.
-pub const STANDARD_GRAVITY: f64 = 9.80665;
+pub use crate::scene::STANDARD_GRAVITY;
 
 /// The longest common period of several tones, in periods of the fastest.
 const LONGEST_COMMON_PERIOD: u64 = 10_000;

@@ -33,14 +33,20 @@ fn what_is_wrong_with_a_table_is_said_with_its_line() {
         "{missing}"
     );
     assert!(error("x_m;force_n\n1;2\n").to_string().contains("x_m;force_n"));
-    assert_eq!(error("x_m,x_m,force_n\n"), ColumnsError::RepeatedColumn { line: 1, column: "x_m" }.into());
+    assert_eq!(
+        error("x_m,x_m,force_n\n"),
+        ColumnsError::RepeatedColumn { line: 1, column: "x_m".into() }.into()
+    );
     for bad in ["NaN", "inf", "-Infinity", "1e999", "one", "", "0x10", "1 2"] {
         let found = error(&format!("x_m,force_n\n0,0\n# c\n1,{bad}\n2,0\n3,0\n"));
-        assert_eq!(found, ColumnsError::NoNumber { line: 4, column: "force_n", value: bad.into() }.into());
+        assert_eq!(
+            found,
+            ColumnsError::NoNumber { line: 4, column: "force_n".into(), value: bad.into() }.into()
+        );
     }
     assert_eq!(
         error("x_m,force_n\n0,0\n1\n"),
-        ColumnsError::NoNumber { line: 3, column: "force_n", value: String::new() }.into()
+        ColumnsError::NoNumber { line: 3, column: "force_n".into(), value: String::new() }.into()
     );
     assert_eq!(error("x_m,force_n\n0,0\n1,1\n1,2\n2,2\n"), TableError::Repeated { line: 4, x: 1.0 });
     assert_eq!(
@@ -49,7 +55,7 @@ fn what_is_wrong_with_a_table_is_said_with_its_line() {
     );
     assert_eq!(
         error("x_m,force_n\r0,0\r1,one\r"),
-        ColumnsError::NoNumber { line: 3, column: "force_n", value: "one".into() }.into()
+        ColumnsError::NoNumber { line: 3, column: "force_n".into(), value: "one".into() }.into()
     );
     for rest in ["c\n2,2,d\n3,3,e", "\n2,2\n3,3", "\n\",2,2\n3,3", ""] {
         let found = error(&format!("x_m,force_n,note\n-2,0,\"a, b\"\n-1,0\n0,0\n# c\n1,1,\"{rest}\n"));

@@ -1,0 +1,39 @@
+//! Options that choose the columns of a measured record.
+
+use clap::Args;
+use interwell::scene::{Ask, Quantity};
+
+/// Columns of time and of what was measured.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Columns of the record")]
+pub struct ColumnOptions {
+    /// Column of the times [default: the one whose name ends with a unit of time, as t_s or `time (ms)`]
+    #[arg(long, value_name = "COLUMN")]
+    pub time: Option<String>,
+
+    /// Unit of the times: s, ms or us [default: as the column's name ends]
+    #[arg(long, value_name = "UNIT")]
+    pub time_unit: Option<String>,
+
+    /// Column of the values [default: the one whose name ends with such a unit, as x_mm, a_g, force_n]
+    #[arg(long, value_name = "COLUMN")]
+    pub column: Option<String>,
+
+    /// Unit of the values, such as mm, m/s, g or N [default: as the column's name ends]
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<String>,
+}
+
+impl ColumnOptions {
+    /// What is asked of the record for the times.
+    pub fn times(&self) -> Ask {
+        let (column, unit) = (self.time.clone(), self.time_unit.clone());
+        Ask { quantities: vec![Quantity::Time], column, unit, options: ("--time", "--time-unit") }
+    }
+
+    /// What is asked of it for values of one of these quantities, the first that it has.
+    pub fn values(&self, quantities: &[Quantity]) -> Ask {
+        let (column, unit) = (self.column.clone(), self.unit.clone());
+        Ask { quantities: quantities.to_vec(), column, unit, options: ("--column", "--unit") }
+    }
+}

@@ -1,0 +1,212 @@
+//! `identify`: damping, restitution or force curve from a measured record.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use interwell::output::identified;
+use interwell::scene::{Ask, Measured, Quantity, Timing, read_measured};
+use interwell::study::{
+    FORCE_POINTS, Identified, Unidentified, damping, force, restitution, restitution_of_times,
+};
+
+use super::columns::ColumnOptions;
+use super::failure::Failure;
+use super::options::Common;
+use super::say;
+use super::support::{Watch, finish, open, write_table, write_text};
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless identify decay.csv --of damping --out ratio.csv --summary ratio.json
+  interwell --headless identify laser.csv --of damping --from 2.1 --to 6 --column 'laser (mm)'
+  interwell --headless identify bounce.csv --of restitution --time Zeit --time-unit ms --column Weg --unit mm
+  interwell --headless identify impacts.csv --of restitution --impact-times
+  interwell --headless identify pull.csv --of force --points 201 --out force.csv
+  interwell --headless curve --set 'mechanism=Table(path: \"/data/force.csv\", tolerance: 1e-3)'";
+
+/// What it takes.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// The record: CSV with a header
+    #[arg(value_name = "FILE")]
+    pub file: Option<PathBuf>,
+
+    /// What is identified: damping (of a free decay), restitution (of bounces) or force (over position, of a
+    /// slow pull)
+    #[arg(long, value_name = "WHAT", value_parser = ["damping", "restitution", "force"])]
+    pub of: Option<String>,
+
+    /// Leave out what was recorded before this time in s
+    #[arg(long, value_name = "S", allow_hyphen_values = true)]
+    pub from: Option<f64>,
+
+    /// Leave out what was recorded after this time in s
+    #[arg(long, value_name = "S", allow_hyphen_values = true)]
+    pub to: Option<f64>,
+
+    /// Of restitution: the rows are impacts, and their times are all that is known
+    #[arg(long)]
+    pub impact_times: bool,
+
+    /// Of force: points of the curve, 4 to 100000 [default: 101]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=100_000))]
+    pub points: Option<u32>,
+
+    /// Of force: column of the positions [default: the one whose name ends with a unit of length]
+    #[arg(long, value_name = "COLUMN")]
+    pub position: Option<String>,
+
+    /// Of force: unit of the positions: m, cm, mm or um [default: as the column's name ends]
+    #[arg(long, value_name = "UNIT")]
+    pub position_unit: Option<String>,
+
+    /// Write the numbers that sum the record up, with their intervals, as JSON
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub summary: Option<PathBuf>,
+
+    /// The columns.
+    #[command(flatten)]
+    pub columns: ColumnOptions,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+impl Arguments {
+    fn file(&self) -> &Path {
+        self.file.as_deref().unwrap_or(Path::new(""))
+    }
+
+    fn of(&self) -> &str {
+        self.of.as_deref().unwrap_or_default()
+    }
+}
+
+/// Reads the record, identifies, and writes rows and summary.
+pub fn run(options: &Arguments) -> Result<(), Failure> {
+    let common = &options.common;
+    fits(options)?;
+    let summary = options.summary.as_deref().map(|path| ("--summary", path));
+    let watch = Watch::start();
+    let mut sinks = open(&[options.file().to_path_buf()], [Some(("--out", common.out())), summary])?;
+    let (timing, found) = answer(options)?;
+    let found = found.map_err(|problem| about(options.file(), problem))?;
+    let [rows, about] = &mut sinks;
+    write_table(rows, &found.rows)?;
+    write_text(about, &identified(options.of(), &found, timing.as_ref(), &watch.origin(1)))?;
+    finish(sinks)?;
+    if !common.quiet {
+        let name = options.file().display();
+        if let Some(timing) = timing {
+            say(&format!("{name}: {}", timing.describe()));
+        }
+        found.summary.iter().for_each(|own| say(&format!("{name}: {}", own.describe())));
+        found.remarks.iter().for_each(|remark| say(&format!("{name}: {remark}")));
+    }
+    Ok(())
+}
+
+/// Refuses what has no meaning for what is asked.
+fn fits(options: &Arguments) -> Result<(), Failure> {
+    if options.file.is_none() || options.of.is_none() {
+        return Err(Failure::argument(
+            "identify needs a record and what to identify: identify FILE --of damping, restitution or force",
+        ));
+    }
+    let of = options.of();
+    let given = |option: &'static str, given: bool, only: &'static str| {
+        (given && of != only).then_some((option, only))
+    };
+    let wrong = [
+        given("--impact-times", options.impact_times, "restitution"),
+        given("--points", options.points.is_some(), "force"),
+        given("--position", options.position.is_some(), "force"),
+        given("--position-unit", options.position_unit.is_some(), "force"),
+    ];
+    if let Some((option, only)) = wrong.into_iter().flatten().next() {
+        return Err(Failure::argument(format!("{option} belongs to --of {only}, not to --of {of}")));
+    }
+    let timed = [("--from", options.from.is_some()), ("--to", options.to.is_some())];
+    if let Some((option, _)) = timed.into_iter().find(|own| own.1 && of == "force") {
+        return Err(Failure::argument(format!("{option} cuts a record over time; --of force has none")));
+    }
+    if let Some(option) = options.common.given(true).filter(|option| *option != "--jobs") {
+        return Err(Failure::argument(format!("{option} changes a scene, and `identify` has none")));
+    }
+    if let (Some(from), Some(to)) = (options.from, options.to)
+        && !(from < to)
+    {
+        return Err(Failure::argument(format!("--from {from} --to {to}: give a time before and one after")));
+    }
+    Ok(())
+}
+
+type Answer = (Option<Timing>, Result<Identified, Unidentified>);
+
+/// The sampling of the record, where it is one over time, and what is identified.
+fn answer(options: &Arguments) -> Result<Answer, Failure> {
+    let times = options.columns.times();
+    match options.of() {
+        "force" => {
+            let position = Ask {
+                quantities: vec![Quantity::Displacement],
+                column: options.position.clone(),
+                unit: options.position_unit.clone(),
+                options: ("--position", "--position-unit"),
+            };
+            let record = read(options, &[position, options.columns.values(&[Quantity::Force])])?;
+            let [x, own] = &record.channels;
+            let points = options.points.map_or(FORCE_POINTS, |points| points as usize);
+            Ok((None, force(&x.values, &own.values, points)))
+        }
+        "restitution" if options.impact_times => {
+            let [times] = cut(options, read(options, &[times])?)?.channels;
+            Ok((None, restitution_of_times(&times.values)))
+        }
+        "restitution" => {
+            let values = options.columns.values(&[Quantity::Displacement]);
+            let [times, x] = cut(options, read(options, &[times, values])?)?.channels;
+            Ok((Some(Timing::of(&times.values)), restitution(&times.values, &x.values)))
+        }
+        _ => {
+            let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
+            let record = read(options, &[times, options.columns.values(&any)])?;
+            let [times, values] = cut(options, record)?.channels;
+            Ok((Some(Timing::of(&times.values)), damping(&times.values, &values)))
+        }
+    }
+}
+
+fn read<const N: usize>(options: &Arguments, asks: &[Ask; N]) -> Result<Measured<N>, Failure> {
+    let record = read_measured(options.file(), asks).map_err(|problem| about(options.file(), problem))?;
+    if !options.common.quiet {
+        let read = record.channels.iter().map(|own| format!("{} from `{}`", own.quantity.name(), own.column));
+        let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
+        say(&format!("{}: {}{commas}", options.file().display(), read.collect::<Vec<_>>().join(", ")));
+    }
+    Ok(record)
+}
+
+/// The rows from `--from` to `--to` alone; the first channel is the time.
+fn cut<const N: usize>(options: &Arguments, mut record: Measured<N>) -> Result<Measured<N>, Failure> {
+    let times = &record.channels[0].values;
+    let from = times.partition_point(|t| *t < options.from.unwrap_or(f64::NEG_INFINITY));
+    let to = times.partition_point(|t| *t <= options.to.unwrap_or(f64::INFINITY));
+    if to < from + 2 {
+        let (first, last) = (times[0], times[times.len() - 1]);
+        let message =
+            format!("less than 2 samples from --from to --to; the record goes from {first} to {last} s");
+        return Err(about(options.file(), message));
+    }
+    for channel in &mut record.channels {
+        channel.values = channel.values[from..to].to_vec();
+    }
+    Ok(record)
+}
+
+/// An error about the record.
+fn about(file: &Path, problem: impl std::fmt::Display) -> Failure {
+    Failure::argument(format!("{}: {problem}", file.display()))
+}

@@ -1,0 +1,95 @@
+//! Lag at which two evenly spaced records differ least.
+
+use realfft::RealFftPlanner;
+
+/// Where one record lies over another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alignment {
+    /// Steps by which the second record is shifted to later, to a part of a step.
+    pub lag: f64,
+    /// Whether another lag, on the other side of a worse one, fits as well.
+    pub ambiguous: bool,
+}
+
+/// A mean square this many times the least, and this part of that of the first record more, fits as well.
+const AS_WELL: (f64, f64) = (1.05, 1e-4);
+
+/// The lag by which `other` lies over `one` with the least mean square of their difference, where at least
+/// `least` values overlap; both evenly spaced by one step. Of lags that fit as well the smallest counts.
+///
+/// Method: the sum of squares is that of the parts which overlap less twice the correlation, which is had for
+/// all lags at once by the fast Fourier transform; between steps a parabola. `None` where nothing overlaps so
+/// far.
+pub fn alignment(one: &[f64], other: &[f64], least: usize) -> Option<Alignment> {
+    let size = (one.len() + other.len()).next_power_of_two();
+    let mut planner = RealFftPlanner::<f64>::new();
+    let (forward, inverse) = (planner.plan_fft_forward(size), planner.plan_fft_inverse(size));
+    let transformed = |values: &[f64]| {
+        let mut values = values.to_vec();
+        values.resize(size, 0.0);
+        let mut lines = forward.make_output_vec();
+        forward.process(&mut values, &mut lines).ok().map(|()| lines)
+    };
+    let mut product = transformed(one)?;
+    product.iter_mut().zip(transformed(other)?).for_each(|(a, b)| *a *= b.conj());
+    // rounding leaves imaginary parts at the ends, where there must be none
+    let last = product.len() - 1;
+    (product[0].im, product[last].im) = (0.0, 0.0);
+    let mut correlation = inverse.make_output_vec();
+    inverse.process(&mut product, &mut correlation).ok()?;
+    let squares = |values: &[f64]| {
+        let mut sums = Vec::with_capacity(values.len() + 1);
+        sums.push(0.0);
+        values.iter().zip(0..).for_each(|(own, k)| sums.push(sums[k] + own * own));
+        sums
+    };
+    let (own, others) = (squares(one), squares(other));
+    let mean = |lag: i64| -> Option<f64> {
+        let from = lag.max(0);
+        let to = (one.len() as i64).min(other.len() as i64 + lag);
+        let count = to - from;
+        if count < least.max(1) as i64 {
+            return None;
+        }
+        let part = |sums: &[f64], low: i64, high: i64| sums[high as usize] - sums[low as usize];
+        let crossed = correlation[lag.rem_euclid(size as i64) as usize] / size as f64;
+        let sum = part(&own, from, to) + part(&others, from - lag, to - lag) - 2.0 * crossed;
+        Some(sum.max(0.0) / count as f64)
+    };
+    let (low, high) = (1 - other.len() as i64, one.len() as i64 - 1);
+    let best = (low..=high).filter_map(mean).fold(f64::INFINITY, f64::min);
+    let good = AS_WELL.0 * best + AS_WELL.1 * own[one.len()] / one.len() as f64;
+    let minimum = |lag: &i64| {
+        let here = mean(*lag)?;
+        let lower = [lag - 1, lag + 1].into_iter().filter_map(mean).all(|near| here <= near);
+        (lower && here <= good).then_some(*lag)
+    };
+    let minima: Vec<i64> = (low..=high).filter_map(|lag| minimum(&lag)).collect();
+    let lag = minima.iter().copied().min_by_key(|lag| lag.abs())?;
+    let bent = || {
+        let (before, here, after) = (mean(lag - 1)?, mean(lag)?, mean(lag + 1)?);
+        let step = 0.5 * (before - after) / (before - 2.0 * here + after);
+        Some(step).filter(|step| step.abs() <= 1.0)
+    };
+    Some(Alignment { lag: lag as f64 + bent().unwrap_or(0.0), ambiguous: minima.len() > 1 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shifted_record_is_found() {
+        let of = |t: f64| (0.2 * t).sin() * (-((t - 150.0) / 60.0).powi(2)).exp();
+        let one: Vec<f64> = (0..400).map(|i| of(f64::from(i))).collect();
+        for lag in [-40.0, 0.0, 12.25, 60.0] {
+            let other: Vec<f64> = (0..300).map(|i| of(f64::from(i) + lag)).collect();
+            let found = alignment(&one, &other, 100).unwrap();
+            assert!((found.lag - lag).abs() < 0.02 && !found.ambiguous, "{found:?} {lag}");
+        }
+        let wave: Vec<f64> = (0..400).map(|i| (std::f64::consts::TAU * f64::from(i) / 50.0).sin()).collect();
+        let found = alignment(&wave, &wave[20..], 200).unwrap();
+        assert!((found.lag - 20.0).abs() < 1e-6 && found.ambiguous, "{found:?}");
+        assert_eq!(alignment(&wave, &wave[..10], 20), None);
+    }
+}

@@ -1,0 +1,160 @@
+//! Units in the names of measured columns, and their size in SI.
+
+/// Standard gravity in m/s^2.
+pub const STANDARD_GRAVITY: f64 = 9.80665;
+
+/// What a column was measured of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Time, s.
+    Time,
+    /// Displacement, or position of a slow pull, m.
+    Displacement,
+    /// Velocity, m/s.
+    Velocity,
+    /// Acceleration, m/s^2.
+    Acceleration,
+    /// Force, N.
+    Force,
+}
+
+impl Quantity {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Time => "time",
+            Self::Displacement => "displacement",
+            Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+            Self::Force => "force",
+        }
+    }
+
+    /// The end of a column's name that says its SI unit.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Time => "_s",
+            Self::Displacement => "_m",
+            Self::Velocity => "_m_per_s",
+            Self::Acceleration => "_m_per_s2",
+            Self::Force => "_n",
+        }
+    }
+
+    /// The units that are known of it, with commas.
+    pub fn units(self) -> String {
+        let own = UNITS.iter().filter(|unit| unit.quantity == self && unit.listed);
+        own.map(|unit| unit.word).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// A unit of measurement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// What it measures.
+    pub quantity: Quantity,
+    word: &'static str,
+    /// Its size in SI, as a product and a quotient that are exact.
+    times: f64,
+    over: f64,
+    /// Whether messages name it: the other words are spellings of the same.
+    listed: bool,
+}
+
+const fn unit(word: &'static str, quantity: Quantity, times: f64, over: f64) -> Unit {
+    Unit { quantity, word, times, over, listed: true }
+}
+
+const fn also(word: &'static str, quantity: Quantity, times: f64, over: f64) -> Unit {
+    Unit { quantity, word, times, over, listed: false }
+}
+
+/// The units, with the words for each. Upper and lower case differ only where both stand here.
+const UNITS: [Unit; 30] = [
+    unit("s", Quantity::Time, 1.0, 1.0),
+    unit("ms", Quantity::Time, 1.0, 1e3),
+    unit("us", Quantity::Time, 1.0, 1e6),
+    also("\u{b5}s", Quantity::Time, 1.0, 1e6),
+    unit("m", Quantity::Displacement, 1.0, 1.0),
+    unit("cm", Quantity::Displacement, 1.0, 1e2),
+    unit("mm", Quantity::Displacement, 1.0, 1e3),
+    unit("um", Quantity::Displacement, 1.0, 1e6),
+    also("\u{b5}m", Quantity::Displacement, 1.0, 1e6),
+    unit("m/s", Quantity::Velocity, 1.0, 1.0),
+    also("m_per_s", Quantity::Velocity, 1.0, 1.0),
+    unit("mm/s", Quantity::Velocity, 1.0, 1e3),
+    also("mm_per_s", Quantity::Velocity, 1.0, 1e3),
+    unit("m/s2", Quantity::Acceleration, 1.0, 1.0),
+    also("m/s^2", Quantity::Acceleration, 1.0, 1.0),
+    also("m/s\u{b2}", Quantity::Acceleration, 1.0, 1.0),
+    also("m_per_s2", Quantity::Acceleration, 1.0, 1.0),
+    unit("mm/s2", Quantity::Acceleration, 1.0, 1e3),
+    also("mm/s^2", Quantity::Acceleration, 1.0, 1e3),
+    also("mm/s\u{b2}", Quantity::Acceleration, 1.0, 1e3),
+    also("mm_per_s2", Quantity::Acceleration, 1.0, 1e3),
+    unit("g", Quantity::Acceleration, STANDARD_GRAVITY, 1.0),
+    unit("mg", Quantity::Acceleration, STANDARD_GRAVITY, 1e3),
+    unit("N", Quantity::Force, 1.0, 1.0),
+    also("n", Quantity::Force, 1.0, 1.0),
+    unit("mN", Quantity::Force, 1.0, 1e3),
+    also("mn", Quantity::Force, 1.0, 1e3),
+    also("\u{3bc}N", Quantity::Force, 1.0, 1e6),
+    unit("uN", Quantity::Force, 1.0, 1e6),
+    unit("kN", Quantity::Force, 1e3, 1.0),
+];
+
+impl Unit {
+    /// The unit of `quantity` that is written as `word`.
+    pub fn of_word(word: &str, quantity: Quantity) -> Option<Self> {
+        UNITS.into_iter().find(|unit| unit.word == word && unit.quantity == quantity)
+    }
+
+    /// The unit that ends the name of a column: `x_mm`, `x [mm]`, `x (mm)` or `x, mm`.
+    pub fn of_name(name: &str) -> Option<Self> {
+        let ends = |word: &str| {
+            let rest = |end: &str, before: &[&str]| {
+                let rest = name.strip_suffix(end).and_then(|rest| rest.strip_suffix(word));
+                // of `stiffness_n_per_m` the m is no unit of its own
+                let whole = |rest: &&str| !rest.trim_end_matches('_').ends_with("_per");
+                rest.filter(whole).is_some_and(|rest| before.iter().any(|own| rest.ends_with(own)))
+            };
+            rest("", &["_", ", "]) || rest("]", &["["]) || rest(")", &["("])
+        };
+        UNITS.into_iter().filter(|unit| ends(unit.word)).max_by_key(|unit| unit.word.len())
+    }
+
+    /// A value in this unit, in SI.
+    pub fn si(self, value: f64) -> f64 {
+        value * self.times / self.over
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_end_of_a_name_is_its_unit() {
+        for (name, quantity, one) in [
+            ("t_s", Quantity::Time, 1.0),
+            ("Time (ms)", Quantity::Time, 1e-3),
+            ("x_m", Quantity::Displacement, 1.0),
+            ("laser [mm]", Quantity::Displacement, 1e-3),
+            ("displacement, mm", Quantity::Displacement, 1e-3),
+            ("v_m_per_s", Quantity::Velocity, 1.0),
+            ("base_accel_m_per_s2", Quantity::Acceleration, 1.0),
+            ("a_mm_per_s2", Quantity::Acceleration, 1e-3),
+            ("a_g", Quantity::Acceleration, 9.80665),
+            ("force_n", Quantity::Force, 1.0),
+            ("F (mN)", Quantity::Force, 1e-3),
+        ] {
+            let unit = Unit::of_name(name).unwrap_or_else(|| panic!("{name}"));
+            assert_eq!((unit.quantity, unit.si(1.0)), (quantity, one), "{name}");
+        }
+        for name in ["t", "phase", "Position", "x m", "F_MN", "force_kgf", "stiffness_n_per_m", ""] {
+            assert_eq!(Unit::of_name(name), None, "{name}");
+        }
+        // the double nearest to the decimal
+        assert_eq!(Unit::of_name("x_mm").unwrap().si(0.3), 3e-4);
+    }
+}

@@ -1,0 +1,121 @@
+//! Parameters identified from measured records: damping, restitution, force curve.
+
+mod damping;
+mod force;
+mod restitution;
+mod turns;
+
+pub use damping::damping;
+pub use force::{FORCE_POINTS, force};
+pub use restitution::{restitution, restitution_of_times};
+pub(super) use turns::{Turn, noise, reach, turns};
+
+use super::table::{Column, Table, Values};
+use crate::numeric::short;
+
+/// A number with its interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Identity {
+    /// Its name, with the unit in it.
+    pub name: &'static str,
+    /// The estimate.
+    pub value: f64,
+    /// The 95 % interval; NaN where there is none.
+    pub interval: (f64, f64),
+}
+
+impl Identity {
+    fn new(name: &'static str, value: f64, half: f64) -> Self {
+        Self { name, value, interval: (value - half, value + half) }
+    }
+
+    /// The number in words.
+    pub fn describe(&self) -> String {
+        let column = Column { name: self.name.to_owned(), values: Values::Words(Vec::new()) };
+        let (unit, label) = (column.unit(), column.label());
+        let name = label.strip_suffix(unit).map_or(label.as_str(), |own| own.trim_end_matches(", "));
+        let [value, low, high] = [self.value, self.interval.0, self.interval.1].map(short);
+        let text = format!("{name} {value} {unit}");
+        format!("{} (95 % interval {low} to {high})", text.trim_end())
+    }
+}
+
+/// What was identified from a record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identified {
+    /// The rows: over amplitude, impact or position.
+    pub rows: Table,
+    /// The numbers that sum the record up.
+    pub summary: Vec<Identity>,
+    /// What to know of them, each a sentence.
+    pub remarks: Vec<String>,
+}
+
+/// Why nothing is identified.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Unidentified {
+    /// Too few swings stand out from the noise.
+    #[error(
+        "{found} turning points stand out from the noise (of standard deviation {noise}); the damping ratio \
+         needs {least} of a free decay: record longer, pluck harder, or widen --from and --to"
+    )]
+    FewSwings {
+        /// How many were found.
+        found: usize,
+        /// The least that is needed.
+        least: usize,
+        /// Noise of the values, in SI.
+        noise: String,
+    },
+    /// A swing has too few samples.
+    #[error(
+        "the swing at {at} s has {samples} samples near its turning point; {least} are needed: sample faster"
+    )]
+    Sparse {
+        /// When, in s.
+        at: String,
+        /// How many.
+        samples: usize,
+        /// The least that is needed.
+        least: usize,
+    },
+    /// Swings of unequal length.
+    #[error(
+        "the swing at {at} s takes {own} s where the usual one takes {usual} s: the record has a gap there \
+         or is no free decay in one well; cut it by --from and --to"
+    )]
+    Uneven {
+        /// When, in s.
+        at: String,
+        /// Its length in s.
+        own: String,
+        /// The median length in s.
+        usual: String,
+    },
+    /// The turning points follow no decay.
+    #[error("the turning points follow no decaying oscillation: cut the record by --from and --to")]
+    NoDecay,
+    /// No impact was found.
+    #[error(
+        "no turning point is an impact (a jump of the velocity with {least} samples on either side): sample \
+         faster, or cut the record by --from and --to"
+    )]
+    NoImpact {
+        /// Samples that are needed on either side.
+        least: usize,
+    },
+    /// Times of impacts that follow no bounces.
+    #[error("{0} impact times follow no bounces of one restitution; at least 4 are needed: {1}")]
+    NoBounces(usize, &'static str),
+    /// Positions that do not move.
+    #[error("the position does not change")]
+    Still,
+    /// Too few samples for the points of a curve.
+    #[error("{samples} samples are too few for {points} points of a curve: take fewer by --points")]
+    FewSamples {
+        /// Samples.
+        samples: usize,
+        /// Points.
+        points: usize,
+    },
+}

@@ -1,0 +1,172 @@
+//! Comparison of a measured motion with the computed one.
+
+mod numbers;
+
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
+
+use super::table::Table;
+use crate::dynamics::{Model, Outcome, Request, Sample};
+use crate::numeric::{alignment, short};
+use crate::scene::{Channel, Quantity, Scene, Timing};
+
+/// A measured motion, and how it is laid over a run.
+#[derive(Debug, Clone, Copy)]
+pub struct MeasuredMotion<'a> {
+    /// Times in s, increasing.
+    pub times: &'a [f64],
+    /// Displacement, velocity, or acceleration of the base.
+    pub channel: &'a Channel,
+    /// What its times are multiplied by.
+    pub time_scale: f64,
+    /// What is added to them then, in s; left out, it is found by least squares.
+    pub shift: Option<f64>,
+}
+
+/// A measured motion beside the computed one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// `quantity,unit,measured,computed,difference,difference_percent`.
+    pub table: Table,
+    /// Times of the measured samples within the run, scaled and shifted.
+    pub times: Vec<f64>,
+    /// The measured values there, SI.
+    pub measured: Vec<f64>,
+    /// The computed ones.
+    pub computed: Vec<f64>,
+    /// The shift in s.
+    pub shift: f64,
+    /// RMS of the difference, SI, and in percent of the RMS of what was measured.
+    pub rms: (f64, f64),
+    /// What to know of it, each a sentence.
+    pub remarks: Vec<String>,
+}
+
+/// Why there is nothing to compare.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoComparison {
+    /// It was told to stop.
+    #[error("interrupted")]
+    Cancelled,
+    /// The record and the run have no time in common.
+    #[error(
+        "{samples} samples of the record, which goes from {from} to {to} s once it is scaled and shifted, \
+         lie within the run from 0 to {end} s; at least 2 are needed: give another shift, or lengthen the run"
+    )]
+    Apart {
+        /// How many.
+        samples: usize,
+        /// Begin in s.
+        from: String,
+        /// End in s.
+        to: String,
+        /// End of the run in s.
+        end: String,
+    },
+}
+
+/// The most values that are laid over each other to find the shift.
+const MOST: f64 = (1_u64 << 18) as f64;
+
+/// Steps of Gauss and Newton by which a shift is made more accurate.
+const STEPS: usize = 8;
+
+/// Which measured samples lie within the run, their times there, and the run at them.
+type Laid = (Range<usize>, Vec<f64>, Vec<Sample>);
+
+/// Lays a measured motion over the run of `model`, which is that of `scene`.
+///
+/// A shift that is left out is the one with the least mean square difference, where at least half of the
+/// shorter of record and run overlaps: first on an even grid, then, for a displacement, by Gauss-Newton
+/// steps on the run itself, whose velocity is the derivative.
+pub fn compare(
+    scene: &Scene,
+    model: &Model,
+    own: &MeasuredMotion,
+    cancel: &AtomicBool,
+) -> Result<Comparison, NoComparison> {
+    let scaled: Vec<f64> = own.times.iter().map(|t| t * own.time_scale).collect();
+    let timing = Timing::of(&scaled);
+    let run = |times: &[f64]| {
+        let run = model.run(&Request { sample_times: times, cancel: Some(cancel), ..Request::default() });
+        match run.summary.outcome {
+            Outcome::Cancelled { .. } => Err(NoComparison::Cancelled),
+            _ => Ok(run.samples),
+        }
+    };
+    let of = |sample: &Sample| match own.channel.quantity {
+        Quantity::Velocity => sample.v,
+        Quantity::Acceleration => sample.base_accel,
+        _ => sample.x,
+    };
+    let mut remarks = vec![timing.describe()];
+    let mut shift = own.shift.unwrap_or(0.0);
+    if own.shift.is_none() {
+        let length = timing.span.1 - timing.span.0;
+        let step = timing.step.max(model.duration().max(length) / MOST);
+        let even = |length: f64| (0..=(length / step) as u32).map(move |k| f64::from(k) * step);
+        let computed: Vec<f64> = run(&even(model.duration()).collect::<Vec<_>>())?.iter().map(of).collect();
+        let measured: Vec<f64> =
+            even(length).map(|t| between(&scaled, &own.channel.values, timing.span.0 + t)).collect();
+        let least = computed.len().min(measured.len()) / 2;
+        if let Some(found) = alignment(&computed, &measured, least) {
+            shift = found.lag * step - timing.span.0;
+            if found.ambiguous {
+                remarks.push("other shifts fit as well; the one nearest to 0 was taken".to_owned());
+            }
+        }
+    }
+    let at = |shift: f64| -> Result<Laid, NoComparison> {
+        let from = scaled.partition_point(|t| t + shift < 0.0);
+        let to = scaled.partition_point(|t| t + shift <= model.duration());
+        let times: Vec<f64> = scaled[from..to.max(from)].iter().map(|t| t + shift).collect();
+        let samples = run(&times)?;
+        Ok((from..from + samples.len(), times, samples))
+    };
+    let square = |range: &Range<usize>, samples: &[Sample]| {
+        let measured = &own.channel.values[range.clone()];
+        measured.iter().zip(samples).map(|(m, c)| (m - of(c)).powi(2)).sum::<f64>() / samples.len() as f64
+    };
+    let mut laid = at(shift)?;
+    for _ in 0..STEPS {
+        if own.shift.is_some() || own.channel.quantity != Quantity::Displacement || laid.2.is_empty() {
+            break;
+        }
+        let pairs = || own.channel.values[laid.0.clone()].iter().zip(&laid.2);
+        let rise: f64 = pairs().map(|(m, c)| (m - c.x) * c.v).sum();
+        let step = rise / pairs().map(|(_, c)| c.v * c.v).sum::<f64>();
+        if !(step.abs() > 1e-15 * model.duration() && step.abs() < model.duration()) {
+            break;
+        }
+        let next = at(shift + step)?;
+        if !(square(&next.0, &next.2) < square(&laid.0, &laid.2)) {
+            break;
+        }
+        (shift, laid) = (shift + step, next);
+    }
+    let (range, mut times, samples) = laid;
+    times.truncate(samples.len());
+    if samples.len() < 2 {
+        let [from, to] = [timing.span.0, timing.span.1].map(|t| short(t + shift));
+        let end = short(model.duration());
+        return Err(NoComparison::Apart { samples: samples.len(), from, to, end });
+    }
+    let measured = own.channel.values[range.clone()].to_vec();
+    let rms = square(&range, &samples).sqrt();
+    let of_measured = (measured.iter().map(|m| m * m).sum::<f64>() / measured.len() as f64).sqrt();
+    if samples.len() < own.times.len() {
+        let outside = own.times.len() - samples.len();
+        remarks.push(format!("{outside} of {} samples lie outside the run", own.times.len()));
+    }
+    let computed: Vec<f64> = samples.iter().map(of).collect();
+    let table = numbers::table(scene, model, own.channel.quantity, (&times, &measured, &computed));
+    let rms = (rms, 100.0 * rms / of_measured);
+    Ok(Comparison { table, times, measured, computed, shift, rms, remarks })
+}
+
+/// The value of a record at a time: linear between its samples, that of the end beyond it.
+fn between(times: &[f64], values: &[f64], t: f64) -> f64 {
+    let after = times.partition_point(|own| *own <= t).clamp(1, times.len() - 1);
+    let share = ((t - times[after - 1]) / (times[after] - times[after - 1])).clamp(0.0, 1.0);
+    values[after - 1] + share * (values[after] - values[after - 1])
+}

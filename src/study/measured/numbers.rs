@@ -1,0 +1,141 @@
+//! Numbers in which a measured motion differs from the computed one.
+
+use crate::dynamics::Model;
+use crate::scene::{Excitation, Quantity, Scene};
+use crate::study::identify::{Turn, noise, reach, turns};
+use crate::study::table::{Table, Values};
+
+/// The part of the way between the stops within which a turning point is an impact.
+const AT_STOP: f64 = 0.1;
+
+/// A row: quantity, unit, measured, computed.
+type Row = (&'static str, &'static str, f64, f64);
+
+/// The table of the numbers, from `times` in s, measured and computed values.
+pub fn table(scene: &Scene, model: &Model, quantity: Quantity, data: (&[f64], &[f64], &[f64])) -> Table {
+    let (_, measured, computed) = data;
+    let unit = match quantity {
+        Quantity::Velocity => "m/s",
+        Quantity::Acceleration => "m/s2",
+        _ => "m",
+    };
+    let mean = |values: &[f64], of: &dyn Fn(f64) -> f64| {
+        values.iter().map(|own| of(*own)).sum::<f64>() / values.len() as f64
+    };
+    let both = |name, of: &dyn Fn(&[f64]) -> f64| (name, unit, of(measured), of(computed));
+    let rms = |values: &[f64]| mean(values, &|own| own * own).sqrt();
+    let fold = |values: &[f64], of: fn(f64, f64) -> f64| values.iter().copied().fold(f64::NAN, of);
+    let mut rows = vec![
+        both("rms", &rms),
+        both("mean", &|values| mean(values, &|own| own)),
+        both("minimum", &|values| fold(values, f64::min)),
+        both("maximum", &|values| fold(values, f64::max)),
+    ];
+    if quantity == Quantity::Displacement {
+        rows.extend(crossing(scene, model, data));
+        rows.extend(rebounds(model, data));
+    }
+    let apart: Vec<f64> = measured.iter().zip(computed).map(|(m, c)| c - m).collect();
+    let first = ("rms_difference", unit, f64::NAN, f64::NAN);
+    rows.insert(0, first);
+    let of_rms = rms(measured);
+    let difference = |row: &Row| if row.0 == first.0 { rms(&apart) } else { row.3 - row.2 };
+    let percent = |row: &Row| {
+        let whole = if row.0 == first.0 { of_rms } else { row.2.abs() };
+        100.0 * difference(row) / whole
+    };
+    let words = |of: fn(&Row) -> &'static str| Values::Words(rows.iter().map(of).collect());
+    Table::new()
+        .with("quantity", words(|row| row.0))
+        .with("unit", words(|row| row.1))
+        .each("measured", &rows, |row| row.2)
+        .each("computed", &rows, |row| row.3)
+        .each("difference", &rows, difference)
+        .each("difference_percent", &rows, percent)
+}
+
+/// The first crossing of the barrier: when, and of an amplitude ramp at which amplitude.
+fn crossing(scene: &Scene, model: &Model, (times, measured, computed): (&[f64], &[f64], &[f64])) -> Vec<Row> {
+    let Some(barrier) = model.mechanism().landscape.barrier else { return Vec::new() };
+    let back = 0.5 * reach(measured, noise(measured));
+    let first = |values: &[f64]| -> f64 {
+        let clear = |own: &f64| (own - barrier.x).abs() > back;
+        let Some(begin) = values.iter().position(clear) else { return f64::NAN };
+        let right = values[begin] > barrier.x;
+        let over = |own: &f64| if right { barrier.x - own > back } else { own - barrier.x > back };
+        let Some(end) = values.iter().skip(begin).position(over).map(|k| begin + k) else { return f64::NAN };
+        let across = |k: &usize| (values[*k] > barrier.x) == right;
+        let last = (begin..end).rev().find(across).unwrap_or(begin);
+        let share = (barrier.x - values[last]) / (values[last + 1] - values[last]);
+        times[last] + share * (times[last + 1] - times[last])
+    };
+    let (own, other) = (first(measured), first(computed));
+    let mut rows = vec![("first_crossing", "s", own, other)];
+    if let Excitation::AmplitudeRamp { from_g, to_g, over_s, .. } = scene.excitation {
+        let amplitude =
+            |t: f64| if t.is_nan() { t } else { from_g + (to_g - from_g) * (t / over_s).min(1.0) };
+        rows.push(("first_crossing_amplitude", "g", amplitude(own), amplitude(other)));
+    }
+    rows
+}
+
+/// A rebound: when the mass struck, and how far it went back.
+#[derive(Clone, Copy)]
+struct Rebound {
+    t: f64,
+    height: f64,
+}
+
+/// Heights of the first rebounds from each stop after a swing from the other side of the barrier, of which
+/// each measured one is compared with the computed one nearest in time.
+fn rebounds(model: &Model, (times, measured, computed): (&[f64], &[f64], &[f64])) -> Vec<Row> {
+    let Some(stops) = model.stops() else { return Vec::new() };
+    let sides = [stops.left.map(|own| own.x), stops.right.map(|own| own.x)];
+    let room = match sides {
+        [Some(left), Some(right)] => right - left,
+        [one, other] => 2.0 * one.or(other).unwrap_or(0.0).abs(),
+    };
+    let barrier = model.mechanism().landscape.barrier.map(|own| own.x);
+    let back = reach(measured, noise(measured));
+    let found = |values: &[f64], stop: f64, right: bool| -> Vec<Rebound> {
+        let all = turns(values, back);
+        let rebound = |three: &[Turn]| {
+            let [from, at, to] = [0, 1, 2].map(|k| values[three[k].at]);
+            let beside = |x: f64| barrier.is_none_or(|barrier| (x > barrier) == right);
+            let arrives = barrier.is_none() || !beside(from);
+            let strikes = three[1].maximum == right && (at - stop).abs() < AT_STOP * room;
+            let counts = arrives && strikes && beside(to);
+            counts.then(|| Rebound { t: times[three[1].at], height: (at - to).abs() })
+        };
+        all.windows(3).filter_map(rebound).collect()
+    };
+    let mut rows = Vec::new();
+    let names = [
+        ["rebounds_left", "rebound_height_left", "rebound_height_left_worst"],
+        ["rebounds_right", "rebound_height_right", "rebound_height_right_worst"],
+    ];
+    for ((stop, right), [count, height, worst]) in sides.into_iter().zip([false, true]).zip(names) {
+        let Some(stop) = stop else { continue };
+        let (own, other) = (found(measured, stop, right), found(computed, stop, right));
+        let pairs = paired(&own, &other);
+        let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / pairs.len() as f64;
+        rows.push((count, "", own.len() as f64, other.len() as f64));
+        rows.push((height, "m", mean(|pair| pair.0), mean(|pair| pair.1)));
+        let error = |pair: &&(f64, f64)| (pair.1 / pair.0 - 1.0).abs();
+        let largest = pairs.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
+        rows.push((worst, "m", largest.map_or(f64::NAN, |own| own.0), largest.map_or(f64::NAN, |own| own.1)));
+    }
+    rows
+}
+
+/// The heights of rebounds that belong together: nearest in time, and nearer than half of the shortest time
+/// between two measured ones.
+fn paired(measured: &[Rebound], computed: &[Rebound]) -> Vec<(f64, f64)> {
+    let apart = measured.windows(2).map(|pair| pair[1].t - pair[0].t).fold(f64::INFINITY, f64::min);
+    let partner = |own: &Rebound| {
+        let far = |other: &Rebound| (other.t - own.t).abs();
+        let nearest = computed.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
+        (far(nearest) < 0.5 * apart).then_some((own.height, nearest.height))
+    };
+    measured.iter().filter_map(partner).collect()
+}

@@ -1,0 +1,112 @@
+//! A measured motion over a computed one: the shift that is found, the numbers, and the command.
+
+use std::sync::atomic::AtomicBool;
+
+use interwell::dynamics::Model;
+use interwell::scene::{Channel, Document, Quantity};
+use interwell::study::{Comparison, Keep, MeasuredMotion, NoComparison, compare, simulate};
+
+use super::Noise;
+use crate::cli::{headless, refused};
+
+fn model(changes: &[&str]) -> (Document, Model) {
+    let mut document = Document::load("paper").unwrap();
+    for change in [&["run.duration_s=3", "run.settle_s=1"], changes].concat() {
+        document.set(change).unwrap();
+    }
+    let mechanism =
+        interwell::mechanics::Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+    let model = Model::build(&document.scene, mechanism.into()).unwrap();
+    (document, model)
+}
+
+/// Displacement of a run with these changes from `from` s on, every 0.5 ms, with noise in m.
+fn record(changes: &[&str], from: f64, noise: f64) -> (Vec<f64>, Channel) {
+    let times: Vec<f64> = (0..3000).map(|i| from + f64::from(i) * 5e-4).collect();
+    let keep = Keep { times: times.clone(), events: false, until_settled: None };
+    let run = simulate(&model(changes).1, &keep, None);
+    let mut random = Noise::new(5);
+    let values = run.samples.numbers("x_m").unwrap().iter().map(|x| x + noise * random.next()).collect();
+    (times, Channel { quantity: Quantity::Displacement, column: "x_m".into(), values })
+}
+
+fn over_paper(times: &[f64], channel: &Channel, scale: f64, shift: Option<f64>) -> Comparison {
+    let (document, model) = model(&[]);
+    let own = MeasuredMotion { times, channel, time_scale: scale, shift };
+    compare(&document.scene, &model, &own, &AtomicBool::new(false)).unwrap()
+}
+
+fn row(found: &Comparison, quantity: &str) -> [f64; 4] {
+    let words = match &found.table.column("quantity").unwrap().values {
+        interwell::study::Values::Words(words) => words.clone(),
+        _ => Vec::new(),
+    };
+    let at = words.iter().position(|own| *own == quantity).unwrap();
+    ["measured", "computed", "difference", "difference_percent"]
+        .map(|name| found.table.numbers(name).unwrap()[at])
+}
+
+#[test]
+fn a_record_of_the_run_itself_lies_on_it_and_its_shift_is_found() {
+    let (times, channel) = record(&[], 0.4, 0.0);
+    let same = over_paper(&times, &channel, 1.0, Some(0.0));
+    assert_eq!((same.rms.0, same.times.len()), (0.0, 3000));
+    // a clock in other units that began elsewhere
+    let clock: Vec<f64> = times.iter().map(|t| 1e3 * (t - 0.37)).collect();
+    let found = over_paper(&clock, &channel, 1e-3, None);
+    let periods = (found.shift - 0.37) * 3.0;
+    assert!((periods - periods.round()).abs() < 1e-6, "{}", found.shift);
+    assert!(found.rms.1 < 0.05, "{:?}", found.rms);
+}
+
+#[test]
+fn the_numbers_are_those_of_the_difference() {
+    let (times, mut channel) = record(&[], 0.0, 0.0);
+    channel.values.iter_mut().for_each(|x| *x += 1e-5);
+    let found = over_paper(&times, &channel, 1.0, Some(0.0));
+    assert!((found.rms.0 - 1e-5).abs() < 1e-15, "{:?}", found.rms);
+    assert!((row(&found, "mean")[2] + 1e-5).abs() < 1e-15);
+    assert!((row(&found, "maximum")[2] + 1e-5).abs() < 1e-15);
+    // a restitution of 0.42 goes back some (0.42/0.36)^2 times as far as one of 0.36
+    let (times, channel) = record(&["stops.restitution=0.42"], 0.0, 1e-6);
+    let found = over_paper(&times, &channel, 1.0, Some(0.0));
+    for side in ["left", "right"] {
+        let [measured, computed, ..] = row(&found, &format!("rebounds_{side}"));
+        assert!(measured == computed && measured >= 4.0, "{side}: {measured} {computed}");
+        let percent = row(&found, &format!("rebound_height_{side}"))[3];
+        assert!((-36.0..-22.0).contains(&percent), "{side}: {percent}");
+    }
+    let [measured, computed, ..] = row(&found, "first_crossing");
+    assert!(measured > 0.0 && (measured - computed).abs() < 1e-3, "{measured} {computed}");
+}
+
+#[test]
+fn a_record_apart_from_the_run_is_refused() {
+    let (times, channel) = record(&[], 0.0, 0.0);
+    let (document, model) = model(&[]);
+    let own = MeasuredMotion { times: &times, channel: &channel, time_scale: 1.0, shift: Some(10.0) };
+    let found = compare(&document.scene, &model, &own, &AtomicBool::new(false));
+    assert!(matches!(found, Err(NoComparison::Apart { samples: 0, .. })));
+}
+
+#[test]
+fn the_commands_say_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("r.csv");
+    std::fs::write(&file, "t_s,x_mm\n0,1.5\n0.5,nan\n1,1.5\n").unwrap();
+    let line = |line: &str| {
+        let mut command = headless(line);
+        command.arg(&file);
+        command
+    };
+    refused(line("simulate paper --out /dev/null --measured"), &["r.csv: line 3", "x_mm", "`nan`"]);
+    refused(line("identify --of damping"), &["r.csv: line 3", "x_mm", "`nan`"]);
+    refused(line("identify --of damping --points 9"), &["--points", "--of force"]);
+    refused(line("identify --of force --from 1"), &["--from"]);
+    refused(line("identify --of damping --set mass_g=1"), &["--set", "identify"]);
+    refused(headless("simulate paper --shift-s auto"), &["--measured"]);
+    refused(headless("simulate paper --time t_s"), &["--time", "--measured"]);
+    refused(line("simulate paper --shift-s soon --measured"), &["--shift-s soon", "auto"]);
+    refused(line("simulate paper --time-scale 0 --measured"), &["--time-scale 0", "above 0"]);
+    refused(headless("identify nothere.csv --of damping"), &["nothere.csv", "no such file"]);
+}
