@@ -138,7 +138,7 @@ fn up_and_down() {
     assert_eq!((up, down), (1.05, 0.7));
     told.says("in its well up to 1.0 g and crosses at 1.05 g");
     told.says("It crosses down to 0.7 g, and no longer at 0.65 g. ");
-    told.says("From 0.7 to 1.0 g both motions can last");
+    told.says("from 0.7 to 1.0 g both motions can last");
     told.says("it begins to cross at 1.05 g, on the way down it ends at 0.65 g");
     told.says("mark 0.7 g");
     let stops = "--set stops=Rigid(travel_limit_mm:1.5,restitution:0.36)";
