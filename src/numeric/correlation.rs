@@ -89,7 +89,8 @@ mod tests {
         }
         let wave: Vec<f64> = (0..400).map(|i| (std::f64::consts::TAU * f64::from(i) / 50.0).sin()).collect();
         let found = alignment(&wave, &wave[20..], 200).unwrap();
-        assert!((found.lag - 20.0).abs() < 1e-6 && found.ambiguous, "{found:?}");
+        // the parts that overlap are no whole periods, so the parabola is a little skew
+        assert!((found.lag - 20.0).abs() < 1e-3 && found.ambiguous, "{found:?}");
         assert_eq!(alignment(&wave, &wave[..10], 20), None);
     }
 }
