@@ -7,6 +7,7 @@ use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
 use crate::app::panels::glossary::glossary_ui;
 use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, notes, transport};
+use crate::app::session::lesson::Records;
 use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
 use crate::app::views::{self, ViewContext};
@@ -172,10 +173,10 @@ impl Window {
             panel.show(ui, |ui| match hinted && !self.covered {
                 _ if shows_ways => ways_ui(ui, &self.session.ways(), hinted, &style),
                 true => {
-                    if let Some(first) = LESSONS.first()
-                        && self.hint.ui(ui, &self.session, &numbered(first.name))
+                    if let Some(next) = next_lesson(&self.lessons.records)
+                        && self.hint.ui(ui, &self.session, &numbered(next))
                     {
-                        asked.push(Command::OpenLesson(first.name));
+                        asked.push(Command::OpenLesson(next));
                     }
                 }
                 false => {
@@ -240,6 +241,13 @@ impl Window {
             self.filled = None;
         }
     }
+}
+
+/// The first lesson that is not done, or the first of all.
+fn next_lesson(records: &Records) -> Option<&'static str> {
+    let is_open = |name: &str| !records.get(name).is_some_and(|own| own.done);
+    let mut names = LESSONS.iter().map(|own| own.name);
+    names.clone().find(|name| is_open(name)).or_else(|| names.next())
 }
 
 /// What it would take to cross; where it stands in place of the lesson, how that comes back.
