@@ -95,6 +95,11 @@ impl Style {
         ORANGE
     }
 
+    /// The outline of a pinned motion's mass.
+    pub fn ghost_mass_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.8), self.mass_ink())
+    }
+
     /// What is written about the proof mass.
     pub fn mass_ink(&self) -> Color32 {
         self.pick(Color32::from_rgb(140, 92, 0), ORANGE)
