@@ -170,6 +170,11 @@ impl Style {
         Stroke::new(self.width(1.6), self.motion())
     }
 
+    /// A pinned motion, over time and in the phase portrait.
+    pub fn ghost_motion_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.6), self.motion().gamma_multiply(0.6))
+    }
+
     /// What the base does, over time and as a push.
     pub fn base_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.6), self.base())

@@ -37,8 +37,8 @@ pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         ScrollArea::both().auto_shrink(false).show(ui, |ui| {
             buttons_ui(ui, context);
             if context.session.pins.all().is_empty() {
-                let text = "Nothing is pinned. A pinned motion goes on beside the present one, dashed, with the \
-                            drive in step.";
+                let text = "Nothing is pinned. A pinned motion goes on beside the present one, dashed, with \
+                            the drive in step.";
                 ui.add(egui::Label::new(RichText::new(text).color(style.faint())).wrap());
                 return;
             }

@@ -19,7 +19,8 @@ const MOST_POINTS: usize = 2000;
 /// Decades of a mm below which nothing is told apart.
 const LEAST: f64 = -14.0;
 
-/// Forcing periods, or characteristic times, that are shown at least, and where in the picture the present is.
+/// Forcing periods, or characteristic times, that are shown at least, and where in the picture the present
+/// is.
 const PERIODS: f64 = 6.0;
 const PRESENT: f64 = 0.94;
 

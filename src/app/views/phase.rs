@@ -38,9 +38,6 @@ const MOST_BETWEEN: usize = 6000;
 /// What is left of its colour at the end of the trail.
 const FAINTEST: f32 = 0.12;
 
-/// What is left of the colour of a pinned motion's trail.
-const GHOSTLY: f32 = 0.6;
-
 /// The most stroboscopic points.
 const MOST_STROBES: f64 = 300.0;
 
@@ -233,15 +230,14 @@ fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     finish(&mut line, drawn.min(FADES - 1));
 }
 
-/// The last of the paths of the pinned motions, dashed. Between two samples they are as long as the eye needs.
+/// The last of the paths of the pinned motions, dashed.
 fn ghost_trails(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let session = &context.session;
     let model = session.shown();
     let length =
         model.forcing_period().map_or(TRAIL_SWINGS * model.natural_time(), |period| TRAIL_PERIODS * period);
     let now = session.player.time();
-    let stroke = context.style.motion_stroke();
-    let stroke = Stroke::new(stroke.width, stroke.color.gamma_multiply(GHOSTLY));
+    let stroke = context.style.ghost_motion_stroke();
     for pin in session.pins.all() {
         let watch = pin.watch();
         let path = recent(watch.samples(), pin.state_at(now), length.min(now - pin.since()));

@@ -171,7 +171,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         entries.push((Sign::Dashed(style.stop_stroke()), "stops"));
     }
     for (place, _) in &ghosts {
-        entries.push((Sign::Dashes(line, *place), PINNED[*place]));
+        entries.push((Sign::Dashes(style.ghost_motion_stroke(), *place), PINNED[*place]));
     }
     let axis = format!("{} ({})", quantity.name(), quantity.unit());
     // a number at the very end of the axis would be cut off
@@ -222,7 +222,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
                 plot.line(Line::new("impact", ends).stroke(style.impact_stroke()));
             }
             for (place, path) in ghosts {
-                let own = Line::new("ghost", PlotPoints::Owned(path)).stroke(line);
+                let own = Line::new("ghost", PlotPoints::Owned(path)).stroke(style.ghost_motion_stroke());
                 let own = own.style(LineStyle::Dashed { length: dash(place) });
                 plot.line(own.allow_band(!is_displacement));
             }
