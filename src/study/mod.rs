@@ -13,6 +13,7 @@ mod contact;
 mod continued;
 mod curve;
 mod dense_output;
+mod distance;
 mod edges;
 mod exponents;
 mod family;
@@ -54,6 +55,7 @@ pub use curve::{
     stop_positions,
 };
 pub use dense_output::between;
+pub use distance::distances;
 pub use edges::{Edges, first_crossing_edge};
 pub use exponents::{
     Estimate, ExponentCells, ExponentOptions, ExponentTally, Exponents, NoExponents, average_exponents,

@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod advanced;
+mod compare;
 mod documents;
 mod explore;
 mod first_minute;

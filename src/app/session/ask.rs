@@ -78,6 +78,7 @@ impl Session {
             self.thresholds.running_for(),
             self.stops_that_cross.running_for(),
             self.accuracy.working(),
+            self.pins.working(),
         ];
         all.into_iter().flatten().max()
     }
@@ -88,6 +89,7 @@ impl Session {
         self.thresholds.stop();
         self.stops_that_cross.stop();
         self.accuracy.stop();
+        self.pins.stop_working();
     }
 
     /// Asks, for a view, what digits and steps cost in the scene; to be asked anew in every frame.

@@ -11,6 +11,7 @@ pub mod editor;
 pub mod explore;
 pub mod lesson;
 pub mod map;
+pub mod pins;
 pub mod player;
 mod sentence;
 mod sliders;
@@ -31,6 +32,7 @@ use build::{differ_in_amplitude_alone, solved, unbuilt, why};
 use editor::Editor;
 use explore::Explore;
 use map::Mapping;
+use pins::Pins;
 use player::{Player, fitting_speed};
 pub use state::{Card, OpenedScales, Session};
 use stops::first_stops;
@@ -66,6 +68,7 @@ impl Session {
             accuracy: Accuracy::default(),
             map: Mapping::default(),
             explore: Explore::default(),
+            pins: Pins::default(),
             before: None,
             mechanism_of: scene.mechanism.clone(),
             hurried: false,
@@ -95,6 +98,7 @@ impl Session {
         self.stops_that_cross.poll();
         self.map.take();
         self.explore.poll();
+        self.pins.poll();
         self.apply();
         self.follow_accuracy();
     }
@@ -102,6 +106,7 @@ impl Session {
     /// The motion from its start again.
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
+        self.pins.restart(&self.wake);
         (self.changed_at, self.continued, self.by_hand) = (0.0, false, false);
         self.carried = false;
         self.ask_settled();

@@ -12,6 +12,7 @@ use super::accuracy::Accuracy;
 use super::editor::Editor;
 use super::explore::Explore;
 use super::map::Mapping;
+use super::pins::Pins;
 use super::player::Player;
 
 /// Scales of a scene that set how far its sliders go: those of the scene as it was opened, so that no slider
@@ -64,6 +65,8 @@ pub struct Session {
     pub map: Mapping,
     /// What the views of the layout Explore show.
     pub explore: Explore,
+    /// The motions that go on beside it.
+    pub pins: Pins,
     pub(super) before: Option<Card>,
     /// The scene that the model was built from.
     pub(super) built: Scene,

@@ -95,6 +95,11 @@ impl Style {
         ORANGE
     }
 
+    /// The outline of a pinned motion's mass.
+    pub fn ghost_mass_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.8), self.mass_ink())
+    }
+
     /// What is written about the proof mass.
     pub fn mass_ink(&self) -> Color32 {
         self.pick(Color32::from_rgb(140, 92, 0), ORANGE)
@@ -163,6 +168,11 @@ impl Style {
     /// The motion over time.
     pub fn motion_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.6), self.motion())
+    }
+
+    /// A pinned motion, over time and in the phase portrait.
+    pub fn ghost_motion_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.6), self.motion().gamma_multiply(0.6))
     }
 
     /// What the base does, over time and as a push.

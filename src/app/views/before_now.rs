@@ -1,8 +1,9 @@
 //! View of the last change: the scene and its motion before it and now.
 
-use eframe::egui::{self, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
+use eframe::egui::{self, Button, Grid, RichText, ScrollArea, Sense, Ui, Vec2};
 
 use crate::app::session::Card;
+use crate::app::session::pins::PinKind;
 use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::fields::{mechanism_name, name_and_unit};
 use crate::app::words::meanings::{explained, meaning};
@@ -31,7 +32,7 @@ pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     });
 }
 
-fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
+fn card_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     let now = context.session.now_card();
     let before = context.session.before_card();
@@ -52,8 +53,11 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
     let count = (rows.len() + ALWAYS) as f32;
     let apart = ((height - count * ROW) / (count - 1.0)).clamp(APART.1, APART.0);
     let grid = Grid::new("before and now").num_columns(3).min_col_width(columns).spacing([8.0, apart]);
+    let mut pin = false;
     grid.show(ui, |ui| {
-        ui.label("");
+        let hover = "This motion goes on, dashed, beside the one that you change from here on (K).";
+        let button = ui.add_enabled(!context.session.pins.is_full(), Button::new("Pin").small());
+        pin = button.on_hover_text(hover).on_disabled_hover_text("Unpin one first.").clicked();
         ui.label(RichText::new("before").color(style.faint()));
         ui.label(RichText::new("now").heading());
         ui.end_row();
@@ -89,6 +93,9 @@ fn card_ui(ui: &mut Ui, context: &ViewContext<'_>) {
         ui.add_space(6.0);
         let text = "Change something: the state before it stays here to compare.";
         ui.label(RichText::new(text).color(style.faint()));
+    }
+    if pin {
+        context.memory.pin = Some(PinKind::Motion);
     }
 }
 
@@ -167,11 +174,11 @@ fn in_shaking(excitation: &Excitation, number: &str) -> bool {
     all.contains(&number)
 }
 
-fn rms(card: &Card) -> String {
+pub(super) fn rms(card: &Card) -> String {
     value(card, |settled| settled.rms_velocity.map(|rms| format!("{} mm/s", speed(rms))))
 }
 
-fn reach(card: &Card) -> String {
+pub(super) fn reach(card: &Card) -> String {
     let [left, right] = card.scene.stops.limits_mm();
     let stops = (left.map(|mm| -mm * 1e-3), right.map(|mm| mm * 1e-3));
     value(card, |settled| settled.max_abs_x.map(|reach| format!("{} mm", mm_beside(reach, stops))))
@@ -190,11 +197,11 @@ fn dash() -> String {
     "-".to_owned()
 }
 
-fn value(card: &Card, of: impl Fn(&Summary) -> Option<String>) -> String {
+pub(super) fn value(card: &Card, of: impl Fn(&Summary) -> Option<String>) -> String {
     card.settled.as_ref().and_then(of).unwrap_or_else(dash)
 }
 
-fn shaking(scene: &Scene) -> String {
+pub(super) fn shaking(scene: &Scene) -> String {
     // what these leave out has a row of its own where it differs
     let rounded = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
     let g = |value: f64| shown(rounded(value), 2);
@@ -215,7 +222,7 @@ fn shaking(scene: &Scene) -> String {
     }
 }
 
-fn stops(scene: &Scene) -> String {
+pub(super) fn stops(scene: &Scene) -> String {
     let (stops, mm) = (&scene.stops, |value: f64| format!("{} mm", shown(value, decimals_for(value).min(2))));
     let side =
         |own: Option<f64>, sign: &str| own.map_or("open".to_owned(), |own| format!("{sign}{}", mm(own)));
@@ -244,7 +251,7 @@ fn start(scene: &Scene) -> String {
     }
 }
 
-fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>) {
+pub(super) fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>) {
     let Some(settled) = settled else {
         ui.label("-");
         return;

@@ -9,6 +9,7 @@ use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, 
 use crate::app::ui::style::Style;
 use crate::dynamics::LiveLedger;
 
+use super::ghosts::dashed;
 use super::ranges::{axis_end, floor};
 use super::{ViewContext, too_small_ui};
 
@@ -18,6 +19,9 @@ const NUMBERS: f32 = 62.0;
 
 /// Room in points between a number and the bars beside it.
 const GAP: f32 = 10.0;
+
+/// Distance in points of the lines of two pinned motions.
+const GHOSTS: f32 = 2.5;
 
 /// Heights in points of a row: least and most.
 const ROWS: (f32, f32) = (17.0, 30.0);
@@ -85,6 +89,12 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let whole = watch.ledger_at(now);
     let period = watch.last_period(now);
     let (unit, name) = unit_of(model.mass() * model.scales().speed.powi(2));
+    let pins: Vec<(usize, [Option<LiveLedger>; 2])> = session
+        .pins
+        .all()
+        .iter()
+        .map(|pin| (pin.place(), [pin.watch().ledger_at(now).map(|own| own.1), pin.watch().last_period(now)]))
+        .collect();
     let row = (area.height() / COUNT).clamp(ROWS.0, ROWS.1);
     let shaken = model.forcing_period().is_some();
     let columns = if shaken { 2.0 } else { 1.0 };
@@ -118,10 +128,18 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
                 put_ui(ui, numbers, RichText::new("-").color(style.faint()), Align::Max, hover);
                 continue;
             };
-            let most = LEDGER.iter().map(|row| row.2(ledger).abs()).fold(0.0, f64::max);
+            // the columns stand in the other order than their headings
+            let column = heads.len() - 1 - i;
+            let ghosts = pins.iter().filter_map(|pin| Some((pin.0, pin.1[column].as_ref()?)));
+            let ghosts: Vec<(usize, &LiveLedger)> = ghosts.collect();
+            let all = ghosts.iter().map(|own| own.1).chain([ledger]);
+            let most = all.flat_map(|own| LEDGER.map(|row| row.2(own).abs())).fold(0.0, f64::max);
             let bars =
                 Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(numbers.left() - 4.0, rect.bottom()));
             bar(ui, &style, bars, value(ledger), most, color(&style));
+            for (place, ghost) in ghosts {
+                ghost_bar(ui, &style, bars, (value(ghost) / most, place));
+            }
             let number = written(value(ledger), unit, decimals(ledger, unit));
             put_ui(ui, numbers, RichText::new(number), Align::Max, hover);
         }
@@ -167,6 +185,16 @@ fn bar(ui: &Ui, style: &Style, rect: Rect, value: f64, most: f64, color: Color32
         let to = pos2(end, rect.center().y + 0.5 * thick);
         painter.rect_filled(Rect::from_two_pos(from, to), 0.0, color);
         painter.vline(middle, rect.y_range(), style.ghost_stroke());
+    }
+}
+
+/// The bar of a pinned motion as a dashed line along the lower edge of the row, `share` of the longest.
+fn ghost_bar(ui: &Ui, style: &Style, rect: Rect, (share, place): (f64, usize)) {
+    let (middle, half) = (rect.center().x, 0.5 * rect.width() - 2.0);
+    if half > 4.0 && share.is_finite() {
+        let y = rect.bottom() - 1.0 - GHOSTS * place as f32;
+        let ends = [pos2(middle, y), pos2(middle + share as f32 * half, y)];
+        ui.painter().extend(dashed(&ends, place, style.motion_stroke()));
     }
 }
 

@@ -12,6 +12,7 @@ use crate::app::words::numbers::three;
 use crate::dynamics::STANDARD_GRAVITY;
 
 use super::chart::Chart;
+use super::ghosts::ghosts;
 use super::labels::plated;
 use super::legend::Sign;
 use super::ranges::{axis_end, room_for_push};
@@ -67,6 +68,12 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         painter.extend(Shape::dashed_line(&[from, at], style.base_stroke(), 4.0, 3.0));
     }
     releases(&painter, context, &chart);
+    for ghost in ghosts(context.session) {
+        let curve = &ghost.model.mechanism().curve;
+        ghost.stops(&painter, context, chart.rect, 0.0);
+        let at = chart.screen_from_world(ghost.state.x, curve.force(ghost.state.x));
+        ghost.ball(&painter, &style, at, BALL - 2.0);
+    }
     let at = chart.screen_from_world(state.x, own.force(state.x));
     painter.circle(at, BALL - 2.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
     chart.numbers(ui, &style, "force to the right (N)", 1.0);

@@ -5,6 +5,8 @@ use eframe::egui::{Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 use crate::app::ui::style::Style;
 use crate::app::words::meanings::explained;
 
+use super::ghosts::dashed;
+
 /// Height in points of the row.
 pub const LEGEND: f32 = 22.0;
 
@@ -29,6 +31,8 @@ pub enum Sign {
     Line(Stroke),
     /// A dashed line.
     Dashed(Stroke),
+    /// A line with the dashes of a pin.
+    Dashes(Stroke, usize),
     /// A ring.
     Ring(Stroke),
     /// A shaded stretch.
@@ -43,6 +47,7 @@ impl Sign {
         match self {
             Self::Line(stroke) => vec![Shape::line_segment(ends, stroke)],
             Self::Dashed(stroke) => Shape::dashed_line(&ends, stroke, 4.0, 3.0),
+            Self::Dashes(stroke, place) => dashed(&ends, place, stroke),
             Self::Ring(stroke) => vec![Shape::circle_stroke(rect.center(), 3.0, stroke)],
             Self::Shade(color) => vec![Shape::rect_filled(rect, 0.0, color)],
             Self::Ticks(stroke) => [-4.0, 0.0, 4.0]

@@ -14,6 +14,7 @@ use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
+use super::ghosts::ghosts;
 use super::labels::{ago, plated};
 use super::memory::Ring;
 use super::schematic::{Schematic, schematic};
@@ -66,6 +67,12 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let edge = Stroke::new(1.5, style.mass_edge());
     painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     let heights = (middle - half.y - 4.0, middle + half.y + 4.0);
+    for ghost in ghosts(context.session) {
+        let walls = rect.with_min_y(heights.0).with_max_y(heights.1);
+        ghost.stops(&painter, context, walls, BALL);
+        let x = context.span.screen_from_world(ghost.state.x, rect);
+        ghost.body(&painter, &style, Rect::from_center_size(pos2(x, middle), half * 2.0));
+    }
     stops_ui(ui, context, rect, heights, BALL);
     mass_ui(ui, context, pos2(x, middle), rect);
     rings(ui, context, rect, middle);

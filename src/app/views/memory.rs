@@ -3,6 +3,7 @@
 use eframe::egui::Pos2;
 
 use crate::app::session::Session;
+use crate::app::session::pins::PinKind;
 use crate::mechanics::flexure::State;
 
 use super::map::MapQuantity;
@@ -23,6 +24,8 @@ pub struct Memory {
     pub(super) seen_to: f64,
     /// The mass is to be taken hold of by the first view that has it.
     pub grab: bool,
+    /// What is to be pinned.
+    pub pin: Option<PinKind>,
     /// The view under the pointer.
     pub hovered: Option<View>,
     /// What the traces share.

@@ -9,10 +9,13 @@ mod axes;
 mod basins;
 mod before_now;
 mod chart;
+mod compare;
 mod context;
+mod distance;
 pub mod energy;
 mod flexures;
 mod force;
+mod ghosts;
 mod labels;
 mod legend;
 mod map;
@@ -77,6 +80,8 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
         View::Well => well::well_ui(ui, context),
         View::Displacement => trace::trace_ui(ui, TraceQuantity::Displacement, context),
         View::BeforeNow => before_now::before_now_ui(ui, context),
+        View::Compare => compare::compare_ui(ui, context),
+        View::Distance => distance::distance_ui(ui, context),
         View::PhasePortrait => phase::phase_ui(ui, context),
         View::Section => phase::section_ui(ui, context),
         View::ForceCurve => force::force_ui(ui, context),

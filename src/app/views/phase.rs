@@ -16,6 +16,7 @@ use crate::numeric::bisect;
 use crate::study::between;
 
 use super::chart::Chart;
+use super::ghosts::{dashed, ghosts};
 use super::labels::rests;
 use super::legend::{LEGEND, Sign};
 use super::stops::stops_ui;
@@ -81,6 +82,7 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
     let is_periodic = context.session.shown().forcing_period().is_some();
     let points_only = is_section || context.memory.points_only && is_periodic;
     if !points_only {
+        ghost_trails(&painter, context, &chart);
         trail(&painter, context, &chart);
     }
     if is_periodic {
@@ -90,6 +92,11 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         legend.push((Sign::Dashed(style.impact_stroke()), "impact"));
     }
     strobes(&painter, context, &chart);
+    for ghost in ghosts(context.session) {
+        ghost.stops(&painter, context, chart.rect, 0.0);
+        let at = chart.screen_from_world(ghost.state.x, ghost.state.v);
+        ghost.ball(&painter, &style, at, STATE);
+    }
     let state = context.session.player.state();
     let at = chart.screen_from_world(state.x, state.v);
     if state.phase == Phase::Free {
@@ -238,6 +245,30 @@ fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
         line.push(to);
     }
     finish(&mut line, drawn.min(FADES - 1));
+}
+
+/// The last of the paths of the pinned motions, dashed.
+fn ghost_trails(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
+    let session = &context.session;
+    let model = session.shown();
+    let length =
+        model.forcing_period().map_or(TRAIL_SWINGS * model.natural_time(), |period| TRAIL_PERIODS * period);
+    let now = session.player.time();
+    let stroke = context.style.ghost_motion_stroke();
+    for pin in session.pins.all() {
+        let watch = pin.watch();
+        let path = recent(watch.samples(), pin.state_at(now), length.min(now - pin.since()));
+        let mut points: Vec<Pos2> = Vec::with_capacity(2 * path.len());
+        for pair in path.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            let count = if a.t == b.t { 1 } else { pieces(chart, watch.model_at(a.t), (&a, &b)) };
+            let between = between(watch.model_at(a.t), &a, &b, count);
+            points.push(chart.screen_from_world(a.x, a.v));
+            points.extend(between.iter().map(|(x, v)| chart.screen_from_world(*x, *v)));
+        }
+        points.extend(path.last().map(|last| chart.screen_from_world(last.x, last.v)));
+        painter.extend(dashed(&points, pin.place(), stroke));
+    }
 }
 
 /// In how many pieces the way between two samples looks round: from how far the ends of its cubic's tangents

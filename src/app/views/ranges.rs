@@ -4,6 +4,7 @@
 //! coarse step further where the motion needs it, and are chosen anew only once a change has settled.
 
 use crate::app::session::Session;
+use crate::app::session::pins::Pin;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::numeric::round::round_up;
 
@@ -96,15 +97,17 @@ impl Ranges {
             self.kept = Extremes::default();
         }
         let model = session.model();
-        let first = watch.samples().partition_point(|sample| sample.t < self.looked_to);
-        for sample in watch.samples().range(first..) {
-            self.seen = self.seen.or(Extremes {
-                speed: sample.v.abs(),
-                power: sample.work_rate(model.mass()).abs(),
-                kinetic: model.energies(sample.x, sample.v).0,
-                low: sample.x,
-                high: sample.x,
-            });
+        for watch in session.pins.all().iter().map(Pin::watch).chain([watch]) {
+            let first = watch.samples().partition_point(|sample| sample.t < self.looked_to);
+            for sample in watch.samples().range(first..) {
+                self.seen = self.seen.or(Extremes {
+                    speed: sample.v.abs(),
+                    power: sample.work_rate(model.mass()).abs(),
+                    kinetic: model.energies(sample.x, sample.v).0,
+                    low: sample.x,
+                    high: sample.x,
+                });
+            }
         }
         self.looked_to = watch.time();
         let falls = match model.mechanism().landscape.barrier {

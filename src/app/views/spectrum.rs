@@ -156,7 +156,7 @@ fn picture_ui(
 }
 
 /// A line at each power of ten, or each second or third where there are many.
-fn decades(low: f64, high: f64, most: f64) -> Vec<GridMark> {
+pub(super) fn decades(low: f64, high: f64, most: f64) -> Vec<GridMark> {
     let every = ((high - low) / most).ceil().max(1.0);
     let first = (low / every).ceil() as i32;
     let last = (high / every).floor() as i32;
@@ -164,7 +164,7 @@ fn decades(low: f64, high: f64, most: f64) -> Vec<GridMark> {
 }
 
 /// The number whose decimal logarithm this is.
-fn power(logarithm: f64) -> String {
+pub(super) fn power(logarithm: f64) -> String {
     match logarithm.round() as i32 {
         power @ 0..=3 => format!("{}", 10_i32.pow(power as u32)),
         -1 => "0.1".to_owned(),

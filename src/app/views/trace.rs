@@ -7,11 +7,14 @@
 use eframe::egui::{self, Align2, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
 
+use crate::app::session::Session;
+use crate::app::session::pins::Pin;
 use crate::app::words::numbers::decimals_for;
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
 use crate::study::Watch;
 
 use super::ViewContext;
+use super::ghosts::{PINNED, dash};
 use super::labels::haloed;
 use super::legend::{LEGEND, Sign, legend};
 use super::ranges::room_for_push;
@@ -32,6 +35,9 @@ const NO_NUMBER: f64 = 0.05;
 
 /// The most points of a line; a longer path is drawn from fewer.
 const MOST_POINTS: usize = 20_000;
+
+/// The most points of a pinned motion's line, whose dashes cost more.
+const MOST_GHOST_POINTS: usize = 4000;
 
 /// The most flights that are drawn one by one; of more no tip is seen.
 const MOST_FLIGHTS: usize = 400;
@@ -128,6 +134,11 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let is_displacement = quantity == TraceQuantity::Displacement;
     let paths =
         paths(&samples, is_displacement, |sample| PlotPoint::new(sample.t, quantity.seen(watch, sample)));
+    let has_ghosts = matches!(quantity, TraceQuantity::Displacement | TraceQuantity::Velocity);
+    let ghosts: Vec<(usize, Vec<PlotPoint>)> = match has_ghosts {
+        true => ghost_paths(context.session, (from, now), |watch, own| quantity.seen(watch, own)),
+        false => Vec::new(),
+    };
     let rests = rests(&samples);
     let impacts: Vec<f64> = watch
         .events()
@@ -158,6 +169,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     }
     if !stops.is_empty() {
         entries.push((Sign::Dashed(style.stop_stroke()), "stops"));
+    }
+    for (place, _) in &ghosts {
+        entries.push((Sign::Dashes(style.ghost_motion_stroke(), *place), PINNED[*place]));
     }
     let axis = format!("{} ({})", quantity.name(), quantity.unit());
     // a number at the very end of the axis would be cut off
@@ -207,6 +221,11 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
                 let ends = vec![[t, low], [t, low + tick]];
                 plot.line(Line::new("impact", ends).stroke(style.impact_stroke()));
             }
+            for (place, path) in ghosts {
+                let own = Line::new("ghost", PlotPoints::Owned(path)).stroke(style.ghost_motion_stroke());
+                let own = own.style(LineStyle::Dashed { length: dash(place) });
+                plot.line(own.allow_band(!is_displacement));
+            }
             for path in paths {
                 let own = Line::new(quantity.name(), PlotPoints::Owned(path)).stroke(line);
                 // a band reaches beyond the ends of a steep line
@@ -237,6 +256,24 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }
     legend(&ui, &style, area, right, &entries);
+}
+
+/// The paths of the pinned motions from when on they are motions of their own, with the places of the pins.
+fn ghost_paths(
+    session: &Session,
+    (from, to): (f64, f64),
+    value: impl Fn(&Watch, &Sample) -> f64,
+) -> Vec<(usize, Vec<PlotPoint>)> {
+    let path = |pin: &Pin| {
+        let (watch, samples) = (pin.watch(), pin.watch().samples());
+        let first = samples.partition_point(|sample| sample.t < from.max(pin.since())).saturating_sub(1);
+        let last = samples.partition_point(|sample| sample.t <= to).max(first);
+        let stride = ((last - first) / MOST_GHOST_POINTS).max(1);
+        let shown = samples.range(first..last).step_by(stride).copied().chain([pin.state_at(to)]);
+        let points = shown.map(|own| PlotPoint::new(own.t, value(watch, &own)));
+        (pin.place(), points.collect())
+    };
+    session.pins.all().iter().map(path).collect()
 }
 
 /// How many seconds are shown of a motion by a model.

@@ -48,6 +48,14 @@ views! {
     /// The state before the last gesture against the present one.
     BeforeNow "Before / now"
         "What your last change did: the state before it, and the one after it.";
+    /// The pinned motions against the present one.
+    Compare "Compare"
+        "The present motion beside those that are pinned: what each settles to, and by how much it differs. \
+         A pin goes on with the drive in step; take its scene back by a click.";
+    /// Distance of the pinned motions from the present one over time.
+    Distance "Distance"
+        "How far each pinned motion is from the present one, over time. A twin begins a micrometre beside \
+         the mass: chaos drives the two apart exponentially, a motion that is stable brings them together.";
     /// Velocity over displacement.
     PhasePortrait "Phase portrait"
         "Velocity over displacement: a moving mass runs clockwise. An impact is a jump of the velocity. \

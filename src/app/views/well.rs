@@ -10,6 +10,7 @@ use eframe::egui::{self, Align2, Pos2, Rangef, Rect, Sense, Shape, Stroke, Ui, p
 use crate::app::ui::style::BALL;
 
 use super::chart::{CURVE_STEP, x_axis};
+use super::ghosts::{dashed, ghosts};
 use super::labels::{ago, free_place, haloed};
 use super::legend::{LEGEND, Sign};
 use super::mass::mass_ui;
@@ -56,6 +57,22 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     clipped.extend(Shape::dashed_line(&line(tilt), style.ghost_stroke(), 5.0, 5.0));
     clipped.add(Shape::line(reachable, style.tray_stroke()));
 
+    for ghost in ghosts(context.session) {
+        let (state, tilted) = (ghost.state, ghost.model.mass() * ghost.state.base_accel);
+        let curve = &ghost.model.mechanism().curve;
+        let height = |x: f64| {
+            let energy = curve.potential(x.clamp(curve.domain().0, curve.domain().1)) + tilted * x;
+            let y = axis.screen_from_world(energy).clamp(rect.top() - 4000.0, rect.bottom() + 4000.0);
+            pos2(context.span.screen_from_world(x, rect), y)
+        };
+        // its own tray, where it is another one
+        let own: Vec<Pos2> = (0..=count).map(|i| height(place(i))).collect();
+        if own.iter().zip(line(tilt)).any(|(own, present)| (own.y - present.y).abs() > 2.0) {
+            clipped.extend(dashed(&own, ghost.place, style.ghost_stroke()));
+        }
+        ghost.stops(&clipped, context, rect, 0.0);
+        ghost.ball(&clipped, &style, height(state.x) - vec2(0.0, BALL), BALL);
+    }
     landmarks(&clipped, context, rect);
     let ball = height(state.x, tilt) - vec2(0.0, BALL);
     stops_ui(ui, context, rect, (rect.top() + 4.0, rect.bottom()), 0.0);

@@ -2,6 +2,7 @@
 
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
+use crate::app::session::pins::PinKind;
 use crate::app::ui::settings::Setting;
 use crate::app::views::View;
 use crate::scene::Layout;
@@ -46,6 +47,7 @@ pub enum Command {
     FullScreen,
     Toggle(Setting),
     Grab,
+    Pin(PinKind),
     Ways,
     /// A built-in lesson.
     OpenLesson(&'static str),
@@ -215,6 +217,11 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
             As("Time", "to the next release, the next crossing")),
         Item("To the next crossing", plain(Key::X), C::NextCrossing, Joined),
         Item("To the end of the run", plain(Key::End), C::RunToEnd, As("Time", "to the end of the run")),
+        Line,
+        Item("Pin this motion", plain(Key::K), C::Pin(PinKind::Motion),
+            As("Time", "pin this motion: it goes on dashed beside the present one")),
+        Item("Compare with the stops switched", None, C::Pin(PinKind::OtherStops), No),
+        Item("Compare with a twin, from the start", None, C::Pin(PinKind::Twin), No),
         Line,
         Part::Speeds,
         Row("Time", "1 to 7", "speed, from 1/1000 of real time to 100 times"),

@@ -142,6 +142,24 @@ impl Tiling {
         }
     }
 
+    /// Shows a view; one that has no place yet comes as a tab to another one, where that is shown.
+    pub fn show_beside(&mut self, view: View, other: View) {
+        let tiles = &mut self.tree.tiles;
+        let shown = tiles.find_pane(&other).filter(|id| tiles.is_visible(*id));
+        let place = shown.and_then(|id| tiles.parent_of(id));
+        if tiles.find_pane(&view).is_none()
+            && let Some(place) =
+                place.filter(|id| matches!(tiles.get_container(*id), Some(Container::Tabs(_))))
+        {
+            let id = tiles.insert_pane(view);
+            if let Some(Tile::Container(container)) = tiles.get_mut(place) {
+                container.add_child(id);
+            }
+        }
+        self.show(view, true);
+        self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(own) if *own == view));
+    }
+
     /// Brings the next of the tabs that share a place to the front: where `view` is, or the first place that
     /// has several.
     pub fn next_tab(&mut self, view: Option<View>) {

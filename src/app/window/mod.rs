@@ -80,7 +80,9 @@ impl Window {
         if let Some(reached) = self.session.player.take_reached().filter(|_| !self.motion_is_covered()) {
             self.messages.tell_reached(reached, self.session.player.time());
         }
-        if self.session.player.is_playing() {
+        self.session.follow_pins();
+        let present = self.session.player.watch().time();
+        if self.session.player.is_playing() || self.session.pins.are_behind(present) {
             ctx.request_repaint();
         }
     }
@@ -188,6 +190,7 @@ impl Window {
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.pointing_ui(&ctx, &style);
         self.memory.grab = false;
+        asked.extend(self.memory.pin.take().map(Command::Pin));
         self.session.map.end_frame();
         self.session.explore.end_frame();
         self.session.accuracy.end_frame();
@@ -204,6 +207,8 @@ impl Window {
     }
 
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {
+        // a key may have taken the motion on
+        self.session.follow_pins();
         let (span, cover) = (self.memory.span(&self.session), self.cover());
         let mut context = ViewContext {
             session: &mut self.session,

@@ -5,6 +5,7 @@ use eframe::egui;
 use crate::app::export::{self, Runs};
 use crate::app::panels::hint;
 use crate::app::panels::transport::EVENT_AHEAD;
+use crate::app::session::pins::PinKind;
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::views::{Memory, View};
 use crate::dynamics::EventKind;
@@ -148,6 +149,9 @@ impl Window {
                 *own = !*own;
             }
             Command::Grab => self.memory.grab = true,
+            // the motion beside the present one may be the answer to a lesson's question
+            Command::Pin(_) if self.lesson().is_some() => {}
+            Command::Pin(kind) => self.pin(kind),
             // in a lesson it is the answer
             Command::Ways => self.ways = !self.ways && self.lesson().is_none(),
             Command::OpenLesson(name) => self.open_lesson(name),
@@ -160,6 +164,23 @@ impl Window {
             Command::Notes => self.say_notes(),
             Command::Shortcuts => self.shortcuts = Some(ctx.input(|input| input.time)),
             Command::About => self.messages.say("interwell", ABOUT),
+        }
+    }
+
+    /// Pins a motion, and shows how it compares.
+    fn pin(&mut self, kind: PinKind) {
+        match self.session.pin(kind) {
+            Ok(letter) => {
+                let what = match kind {
+                    PinKind::Motion => "this motion",
+                    PinKind::OtherStops => "this motion from here on with its stops switched",
+                    PinKind::Twin => "a twin that begins a micrometre beside the mass",
+                };
+                self.messages.tell(format!("Pinned as {letter}, dashed: {what}"));
+                let view = if kind == PinKind::Twin { View::Distance } else { View::Compare };
+                self.tiling.show_beside(view, View::BeforeNow);
+            }
+            Err(why) => self.messages.tell(why),
         }
     }
 

@@ -1,0 +1,203 @@
+//! Table of the present motion and the pinned ones, with differences.
+
+use eframe::egui::{self, Button, Grid, RichText, ScrollArea, Ui};
+
+use crate::app::session::Card;
+use crate::app::session::pins::{Pin, PinKind};
+use crate::app::ui::style::Style;
+use crate::app::words::meanings::explained;
+use crate::app::words::status::seconds;
+use crate::dynamics::Summary;
+use crate::scene::Stops;
+
+use super::ViewContext;
+use super::before_now::{reach, regime_ui, rms, shaking, stops, value};
+
+/// A number of the table: its name, what it is of a card, in words and as a number with its decimals.
+type Row = (&'static str, fn(&Card) -> String, fn(&Summary) -> Option<f64>, fn(f64) -> usize);
+
+const NUMBERS: [Row; 3] = [
+    ("RMS velocity", rms, |own| own.rms_velocity.map(|v| v * 1e3), |most| usize::from(most < 9.95)),
+    ("reach", reach, |own| own.max_abs_x.map(|x| x * 1e3), |most| if most < 0.95 { 2 } else { 1 }),
+    ("impacts take", impacts, |own| own.impact_share.map(|share| share * 100.0), |_| 0),
+];
+
+/// What a person asked of a pin.
+enum Asked {
+    TakeBack(char),
+    Unpin(char),
+}
+
+/// Draws it.
+pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let style = context.style;
+    let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
+    ground.show(ui, |ui| {
+        ui.set_min_size(ui.available_size());
+        ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+            buttons_ui(ui, context);
+            if context.session.pins.all().is_empty() {
+                let text = "Nothing is pinned. A pinned motion goes on beside the present one, dashed, with \
+                            the drive in step.";
+                ui.add(egui::Label::new(RichText::new(text).color(style.faint())).wrap());
+                return;
+            }
+            match table_ui(ui, context) {
+                Some(Asked::TakeBack(letter)) => _ = context.session.take_back(letter),
+                Some(Asked::Unpin(letter)) => context.session.pins.unpin(letter),
+                None => {}
+            }
+        });
+    });
+}
+
+/// What can be pinned.
+fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let full = context.session.pins.is_full();
+    let stops = match context.session.scene().stops {
+        Stops::None => "With stops",
+        _ => "Without stops",
+    };
+    let all = [
+        ("Pin", "The motion as it is, to change the scene beside it (K).", PinKind::Motion),
+        (stops, "The motion from here on with its stops switched the other way.", PinKind::OtherStops),
+        (
+            "Twin",
+            "From the start again, with a second mass that begins a micrometre beside it. The view Distance \
+             shows how far the two are apart.",
+            PinKind::Twin,
+        ),
+    ];
+    ui.horizontal(|ui| {
+        for (name, hover, kind) in all {
+            let button = ui.add_enabled(!full, Button::new(name));
+            let button = button.on_hover_text(hover).on_disabled_hover_text("Unpin one first.");
+            if button.clicked() {
+                context.memory.pin = Some(kind);
+            }
+        }
+    });
+}
+
+fn table_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<Asked> {
+    let style = context.style;
+    let now = context.session.now_card();
+    let pins: Vec<(&Pin, Card)> = context.session.pins.all().iter().map(|pin| (pin, card(pin))).collect();
+    let mut asked = None;
+    let name_ui = |ui: &mut Ui, name: &str| {
+        explained(ui.label(RichText::new(name).color(style.faint())), name);
+    };
+    Grid::new("compare").num_columns(2 + pins.len()).spacing([14.0, 2.0]).show(ui, |ui| {
+        ui.label("");
+        ui.label(RichText::new("now").heading());
+        for (pin, _) in &pins {
+            asked = asked.take().or(heading_ui(ui, context, pin));
+        }
+        ui.end_row();
+        for (name, text) in [("shaking", shaking as fn(&_) -> String), ("stops", stops)] {
+            name_ui(ui, name);
+            let own = text(&now.scene);
+            ui.label(RichText::new(&own).heading());
+            for (_, card) in &pins {
+                let text = text(&card.scene);
+                let same = text == own;
+                ui.label(if same { RichText::new(text).color(style.faint()) } else { RichText::new(text) });
+            }
+            ui.end_row();
+        }
+        name_ui(ui, "motion");
+        regime_ui(ui, context, now.settled.as_ref());
+        for (pin, card) in &pins {
+            match pin.ended().and_then(|outcome| outcome.ended_at()) {
+                Some(at) => _ = ui.label(format!("ended at {}, stays there", seconds(at))),
+                None => regime_ui(ui, context, card.settled.as_ref()),
+            }
+        }
+        ui.end_row();
+        for (name, text, number, decimals) in NUMBERS {
+            name_ui(ui, name);
+            ui.label(RichText::new(text(&now)).heading());
+            for (_, card) in &pins {
+                let apart = difference(card, &now, number, decimals);
+                number_ui(ui, &style, &text(card), apart.as_deref());
+            }
+            ui.end_row();
+        }
+    });
+    asked
+}
+
+/// What a pin is called, and what can be done with it.
+fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin) -> Option<Asked> {
+    let (letter, mut asked) = (pin.letter(), None);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let kind = match (pin.kind(), pin.scene().stops) {
+            (PinKind::Motion, _) => "pinned as it was",
+            (PinKind::OtherStops, Stops::None) => "pinned without stops",
+            (PinKind::OtherStops, _) => "pinned with stops",
+            (PinKind::Twin, _) => "begun a micrometre beside the mass",
+        };
+        let hover = format!("{letter}: {kind}. In brackets: how much more or less it is than now.");
+        let name = if pin.kind() == PinKind::Twin { format!("{letter} twin") } else { letter.to_string() };
+        ui.label(RichText::new(name).heading()).on_hover_text(hover);
+        let hover = "The scene as it is in this pin: one step that can be undone. The motion goes on from \
+                     where it is.";
+        let other = pin.scene() != context.session.scene();
+        let back = ui.add_enabled(other, Button::new(RichText::new("Take back").small()).small());
+        if named(back, other, format!("Take {letter} back"))
+            .on_hover_text(hover)
+            .on_disabled_hover_text("It is the present scene.")
+            .clicked()
+        {
+            asked = Some(Asked::TakeBack(letter));
+        }
+        let gone = ui.add(Button::new(RichText::new("Unpin").small()).small());
+        if named(gone, true, format!("Unpin {letter}")).clicked() {
+            asked = Some(Asked::Unpin(letter));
+        }
+    });
+    asked
+}
+
+/// A button by a name that no other one has.
+fn named(button: egui::Response, enabled: bool, name: String) -> egui::Response {
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
+    button
+}
+
+/// A number, and by how much it differs from that of the present motion.
+fn number_ui(ui: &mut Ui, style: &Style, text: &str, apart: Option<&str>) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        ui.label(text);
+        if let Some(apart) = apart {
+            ui.label(RichText::new(format!("({apart})")).color(style.faint()));
+        }
+    });
+}
+
+/// By how much a number of a pin is more than that of the present motion; none while one is not known.
+fn difference(
+    pin: &Card,
+    now: &Card,
+    number: fn(&Summary) -> Option<f64>,
+    decimals: fn(f64) -> usize,
+) -> Option<String> {
+    let of = |card: &Card| card.settled.as_ref().and_then(number);
+    let (own, now) = (of(pin)?, of(now)?);
+    let decimals = decimals(own.abs().max(now.abs()));
+    let text = format!("{:+.decimals$}", own - now);
+    // what is written as nothing has no sign
+    let nothing = text.trim_start_matches(['+', '-', '0', '.']).is_empty();
+    Some(if nothing { "same".to_owned() } else { text })
+}
+
+/// Share of the work that impacts take.
+fn impacts(card: &Card) -> String {
+    value(card, |settled| settled.impact_share.map(|share| format!("{:.0} %", 100.0 * share)))
+}
+
+fn card(pin: &Pin) -> Card {
+    Card { scene: pin.scene().clone(), settled: pin.settled().copied(), thresholds: None }
+}

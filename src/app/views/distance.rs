@@ -1,0 +1,125 @@
+//! Distance of the pinned motions from the present one over time, by decades.
+
+use eframe::egui::{self, Align2, RichText, TextStyle, Ui, UiBuilder, vec2};
+use egui_plot::{HLine, Line, LineStyle, Plot, PlotBounds, VLine};
+
+use crate::app::session::pins::PinKind;
+use crate::study::distances;
+
+use super::ghosts::{PINNED, dash};
+use super::labels::haloed;
+use super::legend::{LEGEND, Sign, legend};
+use super::spectrum::{decades, power};
+use super::trace::{marks, plain};
+use super::{ViewContext, too_small_ui};
+
+/// The most points of a line.
+const MOST_POINTS: usize = 2000;
+
+/// Decades of a mm below which nothing is told apart.
+const LEAST: f64 = -14.0;
+
+/// Forcing periods, or characteristic times, that are shown at least, and where in the picture the present
+/// is.
+const PERIODS: f64 = 6.0;
+const PRESENT: f64 = 0.94;
+
+/// Room in points between the edge and the name of the vertical axis, and width of that axis.
+const MARGIN: f32 = 6.0;
+const AXIS_WIDTH: f32 = 58.0;
+
+/// Draws it.
+pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let (area, style) = (ui.max_rect(), context.style);
+    if area.width() < 160.0 || area.height() < 100.0 {
+        return too_small_ui(ui, &style, area);
+    }
+    ui.painter().rect_filled(area, 0.0, style.ground());
+    if context.session.pins.all().is_empty() {
+        return nothing_ui(ui, context, area);
+    }
+    let (session, now) = (&context.session, context.session.player.time());
+    let pins = session.pins.all();
+    let from = pins.iter().map(|pin| pin.since()).fold(now, f64::min);
+    let lines: Vec<(usize, Vec<(f64, f64)>)> = pins
+        .iter()
+        .map(|pin| {
+            let span = (pin.since(), now);
+            (pin.place(), distances(session.player.watch(), pin.watch(), span, MOST_POINTS))
+        })
+        .collect();
+    let seen = || lines.iter().flat_map(|own| &own.1).map(|own| (own.1 * 1e3).log10());
+    let finite = || seen().filter(|own| own.is_finite());
+    let least = finite().fold(0.0, f64::min).floor().max(LEAST);
+    let most = finite().fold(least + 1.0, f64::max).ceil().max(1.0);
+    let height = |metres: f64| (metres * 1e3).log10().max(least);
+    let model = session.shown();
+    let own = PERIODS * model.forcing_period().unwrap_or(model.characteristic_time());
+    let to = from + ((now - from) / PRESENT).max(own);
+    let stroke = style.motion_stroke();
+    let entries: Vec<_> =
+        lines.iter().map(|own| (Sign::Dashes(stroke, own.0), PINNED[own.0 % PINNED.len()])).collect();
+    let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
+    let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
+    let plot = egui::Rect::from_min_max(area.min + vec2(MARGIN, LEGEND), area.max - vec2(MARGIN, 0.0));
+    let mut child = ui.new_child(UiBuilder::new().max_rect(plot));
+    child.style_mut().text_styles.insert(TextStyle::Body, style.small());
+    child.visuals_mut().override_text_color = Some(style.faint());
+    let shown = Plot::new("distance")
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .show_background(false)
+        .show_grid(false)
+        .x_grid_spacer(|_| marks(from, to - 0.05 * (to - from), columns))
+        .y_grid_spacer(|_| decades(least, most, rows))
+        .x_axis_label("time (s)")
+        .y_axis_label("distance (mm)")
+        .y_axis_min_width(AXIS_WIDTH)
+        .set_margin_fraction(vec2(0.0, 0.0))
+        .x_axis_formatter(|mark, _| plain(mark))
+        .y_axis_formatter(|mark, _| power(mark.value))
+        .label_formatter(|_| None)
+        .show_crosshair(false)
+        .show(&mut child, |plot| {
+            plot.set_plot_bounds(PlotBounds::from_min_max([from, least], [to, most]));
+            for mark in decades(least, most, rows) {
+                plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
+            }
+            plot.vline(VLine::new("now", now).stroke(style.ghost_stroke()));
+            for (place, path) in &lines {
+                let points: Vec<[f64; 2]> = path.iter().map(|(t, own)| [*t, height(*own)]).collect();
+                let line = Line::new("distance", points).stroke(stroke).allow_band(false);
+                plot.line(line.style(LineStyle::Dashed { length: dash(*place) }));
+            }
+        });
+    let spoken = "distance of the pinned motions";
+    shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken));
+    let said: Vec<String> = lines
+        .iter()
+        .filter_map(|(place, path)| Some((PINNED[place % PINNED.len()], path.last()?.1)))
+        .map(|(letter, metres)| match metres {
+            0.0 => format!("{letter}: equal to the last digit"),
+            metres => format!("{letter}: {:.1e} mm", metres * 1e3),
+        })
+        .collect();
+    let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
+    let painter = ui.painter().with_clip_rect(area);
+    let right = haloed(&painter, &style, at, &said.join("   "), (style.small(), style.ink())).left();
+    legend(ui, &style, area, right, &entries);
+}
+
+/// What stands there while nothing is pinned.
+fn nothing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: egui::Rect) {
+    let faint = context.style.faint();
+    ui.scope_builder(UiBuilder::new().max_rect(area.shrink(10.0)), |ui| {
+        let text = "Nothing is pinned. A twin begins a micrometre beside the mass, from the start.";
+        ui.label(RichText::new(text).color(faint));
+        if ui.button("Twin start").clicked() {
+            context.memory.pin = Some(PinKind::Twin);
+        }
+    });
+}

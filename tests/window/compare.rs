@@ -1,0 +1,242 @@
+//! Pinned motions beside the present one.
+
+use eframe::egui::Key;
+use egui_kittest::{Harness, kittest::Queryable as _};
+use interwell::app::session::Session;
+use interwell::app::session::pins::{Pin, PinKind};
+use interwell::app::ui::settings::Settings;
+use interwell::app::views::View;
+use interwell::app::window::{Command, Window};
+use interwell::dynamics::EventKind;
+use interwell::scene::{Layout, Stops};
+use interwell::study::distances;
+
+use crate::support::{LONG, PROJECTED, WIDE, command, session, wait_until, window};
+
+/// Has the motion go on for some seconds, with its pins.
+fn play(session: &mut Session, seconds: f64) {
+    session.player.speed = 10.0;
+    let until = session.player.watch().time() + seconds;
+    while session.player.watch().time() < until {
+        session.player.tick(0.05);
+        session.follow_pins();
+        assert!(session.player.ended().is_none());
+    }
+    // a pin has a share of each frame alone
+    while session.pins.are_behind(session.player.watch().time()) {
+        session.follow_pins();
+    }
+}
+
+fn pinned(session: &Session, letter: char) -> &Pin {
+    session.pins.get(letter).unwrap()
+}
+
+fn frames_until(harness: &mut Harness<'static, Window>, what: &str, is_so: impl Fn(&Session) -> bool) {
+    wait_until(what, || {
+        harness.run_steps(1);
+        is_so(&harness.state().session)
+    });
+}
+
+#[test]
+fn a_pin_of_the_scene_lies_on_the_motion_to_the_bit() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.state_mut().session.switch_stops(true);
+    harness.state_mut().session.player.speed = 1.0;
+    frames_until(&mut harness, "an impact", |session| session.player.watch().events().len() > 3);
+    harness.key_press(Key::K);
+    harness.run_steps(30);
+    // in steps of any length
+    command(&mut harness, Command::NextEvent);
+    command(&mut harness, Command::Step);
+    command(&mut harness, Command::Speed(6));
+    command(&mut harness, Command::PlayPause);
+    let since = pinned(&harness.state().session, 'A').since();
+    frames_until(&mut harness, "ten periods", |session| session.player.time() > since + 3.4);
+    command(&mut harness, Command::PlayPause);
+    frames_until(&mut harness, "the pin", |session| !session.pins.are_behind(session.player.time()));
+    let session = &harness.state().session;
+    let (own, pin) = (session.player.watch(), pinned(session, 'A').watch());
+    assert_eq!(own.now(), pin.now());
+    // sums that were taken in other pieces
+    let (own_j, pin_j) = (own.ledger().work_j, pin.ledger().work_j);
+    assert!(own_j > 0.01 && (own_j / pin_j - 1.0).abs() < 1e-13, "{own_j} {pin_j}");
+    assert_eq!(own.events(), pin.events());
+    assert!(own.events().iter().any(|event| event.kind == EventKind::Impact && event.t > since));
+    let apart = distances(own, pin, (0.0, own.time()), 500);
+    assert!(apart.len() > 250 && apart.iter().all(|own| own.1 == 0.0));
+    // in the past it is at the same instant
+    let then = 0.5 * (since + own.time());
+    harness.state_mut().session.player.seek(then);
+    harness.run_steps(2);
+    let session = &harness.state().session;
+    assert!(session.player.is_past() && session.player.time() == then);
+    assert_eq!(pinned(session, 'A').state_at(then), session.player.state());
+}
+
+#[test]
+fn a_pin_keeps_its_scene_and_comes_back_in_one_step() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    command(&mut harness, Command::Pin(PinKind::Motion));
+    let before = harness.state().session.scene().clone();
+    let session = &mut harness.state_mut().session;
+    assert!(session.set_number("excitation.amplitude_g", 1.4).unwrap());
+    session.end_gesture();
+    session.switch_stops(true);
+    let changed = session.scene().clone();
+    session.player.speed = 1.0;
+    harness.run_steps(60);
+    let session = &harness.state().session;
+    let pin = pinned(session, 'A');
+    assert_eq!((pin.scene(), pin.watch().time()), (&before, session.player.watch().time()));
+    assert!((pin.watch().now().x - session.player.watch().now().x).abs() > 1e-4);
+    assert_eq!(pin.watch().model_at(pin.watch().time()).stop_positions(), (None, None));
+    frames_until(&mut harness, "what both settle to", |session| {
+        session.now_card().settled.is_some() && pinned(session, 'A').settled().is_some()
+    });
+    harness.run_steps(2);
+    harness.get_by_label_contains("±1.50 mm");
+    harness.get_by_label("Take A back").click();
+    harness.run_steps(3);
+    let session = &mut harness.state_mut().session;
+    assert_eq!(*session.scene(), before);
+    assert!(session.undo() && *session.scene() == changed);
+}
+
+#[test]
+fn without_stops_it_is_another_motion_from_here_on() {
+    let mut session = session("paper", &[]);
+    play(&mut session, 1.0);
+    assert_eq!(session.pin(PinKind::OtherStops), Ok('A'));
+    let fork = session.player.watch().now();
+    let now = pinned(&session, 'A').watch().now();
+    assert_eq!((now.t, now.x, now.v), (fork.t, fork.x, fork.v));
+    play(&mut session, 3.0);
+    let (own, pin) = (session.player.watch(), pinned(&session, 'A'));
+    assert_eq!((pin.scene().stops, pin.since()), (Stops::None, fork.t));
+    assert_ne!(session.scene().stops, Stops::None);
+    let reach = |samples: &std::collections::VecDeque<interwell::dynamics::Sample>| {
+        samples.iter().map(|own| own.x.abs()).fold(0.0, f64::max)
+    };
+    assert!(reach(own.samples()) <= 1.5e-3 && reach(pin.watch().samples()) > 3e-3);
+    // the same drive at the same time, and the same way before
+    assert_eq!((own.time(), own.now().base_accel), (pin.watch().time(), pin.watch().now().base_accel));
+    assert!(distances(own, pin.watch(), (0.0, fork.t), 100).iter().all(|own| own.1 == 0.0));
+    // and back: with the stops that were there
+    session.take_back('A');
+    session.poll();
+    assert_eq!(session.scene().stops, Stops::None);
+    assert_eq!(session.pin(PinKind::OtherStops), Ok('B'));
+    assert_eq!(pinned(&session, 'B').scene().stops.travel_limit_mm(), Some(1.5));
+}
+
+#[test]
+fn there_is_room_for_three() {
+    let mut harness = window("paper", WIDE, Settings::default());
+    for _ in 0..3 {
+        harness.key_press(Key::K);
+        harness.run_steps(2);
+    }
+    let letters = |harness: &Harness<'static, Window>| -> String {
+        harness.state().session.pins.all().iter().map(Pin::letter).collect()
+    };
+    assert_eq!(letters(&harness), "ABC");
+    harness.key_press(Key::K);
+    harness.run_steps(2);
+    assert_eq!(letters(&harness), "ABC");
+    assert!(harness.state().told().is_some_and(|told| told.contains("unpin one first")));
+    harness.get_by_label("Unpin A").click();
+    harness.run_steps(2);
+    assert_eq!(letters(&harness), "BC");
+    harness.get_by_label("Pin").click();
+    harness.run_steps(2);
+    assert_eq!(letters(&harness), "BCA");
+    // another scene has none
+    harness.state_mut().open_another("duffing");
+    assert_eq!(letters(&harness), "");
+}
+
+#[test]
+fn pins_begin_again_with_the_motion() {
+    let mut session = session("paper", &[]);
+    play(&mut session, 1.0);
+    session.pin(PinKind::OtherStops).unwrap();
+    play(&mut session, 1.0);
+    session.restart();
+    let pin = pinned(&session, 'A');
+    assert_eq!((pin.watch().time(), pin.since()), (0.0, 0.0));
+    assert!(pin.settled().is_none());
+    play(&mut session, 0.5);
+    assert_eq!(pinned(&session, 'A').watch().time(), session.player.watch().time());
+}
+
+/// Distance in m of a twin from the mass after some seconds, and at the start.
+fn twins(changes: &[&str], seconds: f64) -> (f64, f64) {
+    let mut session = session("first-look", changes);
+    play(&mut session, 0.5);
+    assert_eq!(session.pin(PinKind::Twin), Ok('A'));
+    assert_eq!(session.player.watch().time(), 0.0);
+    let first = session.player.watch().now().x - pinned(&session, 'A').watch().now().x;
+    play(&mut session, seconds);
+    let last = session.player.watch().now().x - pinned(&session, 'A').watch().now().x;
+    (first.abs(), last.abs())
+}
+
+#[test]
+fn chaos_drives_twins_apart_and_stops_bring_them_together() {
+    let (first, last) = twins(&["excitation.amplitude_g=1.5"], 40.0);
+    assert!((first - 1e-6).abs() < 1e-15, "{first:e}");
+    assert!(last > 1e-4, "{last:e}");
+    let stops = "stops=Rigid(travel_limit_mm: 1.5, restitution: 0.36)";
+    let (first, last) = twins(&["excitation.amplitude_g=1.5", stops], 40.0);
+    assert!((first - 1e-6).abs() < 1e-15, "{first:e}");
+    assert!(last < 1e-12, "{last:e}");
+}
+
+#[test]
+fn a_pin_that_ends_early_stays_there() {
+    let mut session = session("paper-table", &["excitation.amplitude_g=5"]);
+    session.pin(PinKind::OtherStops).unwrap();
+    play(&mut session, 2.0);
+    let pin = pinned(&session, 'A');
+    let at = pin.ended().and_then(|outcome| outcome.ended_at()).unwrap();
+    assert!(at < 2.0 && pin.watch().time() == at);
+    assert_eq!(pin.state_at(session.player.time()), pin.watch().now());
+}
+
+#[test]
+fn every_view_draws_pins() {
+    for size in [WIDE, PROJECTED] {
+        let mut harness = window("first-look", size, Settings::default());
+        command(&mut harness, Command::Arrange(Layout::Study));
+        harness.state_mut().session.player.speed = 1.0;
+        for kind in [PinKind::Twin, PinKind::OtherStops, PinKind::Motion] {
+            command(&mut harness, Command::Pin(kind));
+            harness.run_steps(20);
+        }
+        for view in View::ALL {
+            command(&mut harness, Command::Show(view, true));
+            harness.run_steps(2);
+        }
+        for view in [View::Distance, View::Compare] {
+            command(&mut harness, Command::Fill);
+            command(&mut harness, Command::Show(view, true));
+            harness.run_steps(2);
+        }
+        assert_eq!(harness.state().session.pins.all().len(), 3);
+        harness.state_mut().session.wait_settled(LONG);
+        command(&mut harness, Command::PreviousEvent);
+    }
+}
+
+#[test]
+fn the_distance_is_shown_beside_the_card() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    command(&mut harness, Command::Pin(PinKind::Twin));
+    harness.get_by_label("distance of the pinned motions");
+    harness.get_by_label("Before / now").click();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("distance of the pinned motions").is_none());
+    assert!(harness.state().tiling().shows(View::BeforeNow));
+}
