@@ -1,14 +1,14 @@
 //! Distance of the pinned motions from the present one over time, by decades.
 
 use eframe::egui::{self, Align2, RichText, TextStyle, Ui, UiBuilder, vec2};
-use egui_plot::{HLine, Line, LineStyle, Plot, PlotBounds, VLine};
+use egui_plot::{HLine, Line, Plot, PlotBounds, PlotPoint, Text, VLine};
 
 use crate::app::session::pins::PinKind;
 use crate::study::distances;
 
-use super::ghosts::{PINNED, dash};
+use super::ghosts::PINNED;
 use super::labels::haloed;
-use super::legend::{LEGEND, Sign, legend};
+use super::legend::LEGEND;
 use super::spectrum::{decades, power};
 use super::trace::{marks, plain};
 use super::{ViewContext, too_small_ui};
@@ -57,8 +57,6 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let own = PERIODS * model.forcing_period().unwrap_or(model.characteristic_time());
     let to = from + ((now - from) / PRESENT).max(own);
     let stroke = style.motion_stroke();
-    let entries: Vec<_> =
-        lines.iter().map(|own| (Sign::Dashes(stroke, own.0), PINNED[own.0 % PINNED.len()])).collect();
     let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
     let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
     let plot = egui::Rect::from_min_max(area.min + vec2(MARGIN, LEGEND), area.max - vec2(MARGIN, 0.0));
@@ -92,8 +90,15 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             plot.vline(VLine::new("now", now).stroke(style.ghost_stroke()));
             for (place, path) in &lines {
                 let points: Vec<[f64; 2]> = path.iter().map(|(t, own)| [*t, height(*own)]).collect();
-                let line = Line::new("distance", points).stroke(stroke).allow_band(false);
-                plot.line(line.style(LineStyle::Dashed { length: dash(*place) }));
+                let end = points.last().map(|own| PlotPoint::new(own[0], own[1]));
+                // without dashes, of which so steep a line has thousands; its letter stands at its end
+                plot.line(Line::new("distance", points).stroke(stroke).allow_band(false));
+                if let Some(end) = end {
+                    let letter = RichText::new(PINNED[place % PINNED.len()]).font(style.body());
+                    plot.text(
+                        Text::new("letter", end, letter).color(style.ink()).anchor(Align2::LEFT_CENTER),
+                    );
+                }
             }
         });
     let spoken = "distance of the pinned motions";
@@ -108,8 +113,7 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         .collect();
     let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
     let painter = ui.painter().with_clip_rect(area);
-    let right = haloed(&painter, &style, at, &said.join("   "), (style.small(), style.ink())).left();
-    legend(ui, &style, area, right, &entries);
+    haloed(&painter, &style, at, &said.join("   "), (style.small(), style.ink()));
 }
 
 /// What stands there while nothing is pinned.
