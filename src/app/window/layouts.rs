@@ -1,32 +1,17 @@
 //! Layouts: the tiles of each arrangement of the views.
 
 use eframe::egui::{self, Ui, Vec2, WidgetText};
-use egui_tiles::{
-    Container, Linear, LinearDir, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse,
-};
+use egui_tiles::{Container, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
 
 use crate::app::ui::style::{BODY, COMPACT_BELOW, LARGE_FROM};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
 use crate::app::views::{View, ViewContext, view_ui};
 use crate::scene::Layout;
 
+use trees::{compact_tree, tabs_tree, views_of, wide_tree};
+
 mod lesson;
-
-/// Shares of the window in the layout Look: left of 1030 points 590, of 584 points of height 340 on the
-/// right.
-const LEFT_SHARE: f32 = 590.0 / 1030.0;
-const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
-
-/// Share of the width that the map has in the layout Map.
-const MAP_SHARE: f32 = 640.0 / 1030.0;
-
-/// Share of the height that the mechanism has over the well.
-const MECHANISM_SHARE: f32 = 0.4;
-
-/// Share of the width that the first column of the layout Study has, and that one of two views has where room
-/// is short.
-const STUDY_COLUMN: f32 = 0.34;
-const COMPACT_SHARE: f32 = 0.5;
+mod trees;
 
 /// Room in points beside a title, for the button beside the titles, and the least size of a title.
 const TITLE_MARGIN: f32 = 6.0;
@@ -218,127 +203,6 @@ impl Tiling {
         let mut behavior = Behavior { context, fill, title };
         self.tree.ui(&mut behavior, ui);
     }
-}
-
-/// The views of a layout.
-fn views_of(layout: Layout) -> Vec<View> {
-    let look = [View::Well, View::Mechanism, View::Displacement, View::BeforeNow];
-    let study = [View::PhasePortrait, View::ForceCurve, View::Energy];
-    match layout {
-        Layout::Look => look.to_vec(),
-        Layout::Map => vec![View::Map, View::Well, View::BeforeNow],
-        Layout::Explore => {
-            vec![
-                View::UpAndDown,
-                View::Basins,
-                View::Spectrum,
-                View::Well,
-                View::PhasePortrait,
-                View::Displacement,
-            ]
-        }
-        Layout::Study => look.into_iter().chain(study).collect(),
-    }
-}
-
-fn wide_tree(layout: Layout, large: bool) -> Tree<View> {
-    match layout {
-        Layout::Look => look_tree(large),
-        Layout::Map => map_tree(),
-        Layout::Explore => explore_tree(),
-        Layout::Study => study_tree(large),
-    }
-}
-
-fn look_tree(large: bool) -> Tree<View> {
-    let mut tiles = Tiles::default();
-    let mut pane = |view| tiles.insert_pane(view);
-    let (mechanism, well) = (pane(View::Mechanism), pane(View::Well));
-    let (displacement, card) = (pane(View::Displacement), pane(View::BeforeNow));
-    let phase = large.then(|| pane(View::PhasePortrait));
-    let left = pair(&mut tiles, LinearDir::Vertical, mechanism, well, MECHANISM_SHARE);
-    let right = match phase {
-        Some(phase) => tiles.insert_vertical_tile(vec![displacement, phase, card]),
-        None => pair(&mut tiles, LinearDir::Vertical, displacement, card, DISPLACEMENT_SHARE),
-    };
-    let root = pair(&mut tiles, LinearDir::Horizontal, left, right, LEFT_SHARE);
-    Tree::new(egui::Id::unique("wide"), root, tiles)
-}
-
-/// What has the displacement along it in two columns, what has not in the third.
-fn study_tree(large: bool) -> Tree<View> {
-    let mut tiles = Tiles::default();
-    let mut pane = |view| tiles.insert_pane(view);
-    let (mechanism, well) = (pane(View::Mechanism), pane(View::Well));
-    let (phase, force) = (pane(View::PhasePortrait), pane(View::ForceCurve));
-    let (displacement, energy, card) = (pane(View::Displacement), pane(View::Energy), pane(View::BeforeNow));
-    let left = pair(&mut tiles, LinearDir::Vertical, mechanism, well, MECHANISM_SHARE);
-    let middle = tiles.insert_vertical_tile(vec![phase, force]);
-    let right = if large {
-        tiles.insert_vertical_tile(vec![displacement, energy, card])
-    } else {
-        let tabs = tiles.insert_tab_tile(vec![energy, card]);
-        tiles.insert_vertical_tile(vec![displacement, tabs])
-    };
-    let others = pair(&mut tiles, LinearDir::Horizontal, middle, right, 0.5);
-    let root = pair(&mut tiles, LinearDir::Horizontal, left, others, STUDY_COLUMN);
-    Tree::new(egui::Id::unique("wide"), root, tiles)
-}
-
-/// Two groups of tabs: the well and what else has the displacement along it, and the mechanism before what
-/// has not.
-fn compact_tree(views: &[View]) -> Tree<View> {
-    let mut tiles = Tiles::default();
-    let is_first = |view: &&View| view.is_along_x() && **view != View::Mechanism;
-    let (along, others): (Vec<View>, Vec<View>) = views.iter().partition(is_first);
-    let mut groups: Vec<TileId> = Vec::new();
-    for group in [along, others] {
-        let panes: Vec<TileId> = group.into_iter().map(|view| tiles.insert_pane(view)).collect();
-        if !panes.is_empty() {
-            groups.push(tiles.insert_tab_tile(panes));
-        }
-    }
-    let root = match groups[..] {
-        [left, right] => pair(&mut tiles, LinearDir::Horizontal, left, right, COMPACT_SHARE),
-        _ => tiles.insert_horizontal_tile(groups),
-    };
-    Tree::new(egui::Id::unique("compact"), root, tiles)
-}
-
-/// One view at a time over the whole width.
-fn tabs_tree(views: &[View]) -> Tree<View> {
-    let mut tiles = Tiles::default();
-    let panes = views.iter().map(|view| tiles.insert_pane(*view)).collect();
-    let root = tiles.insert_tab_tile(panes);
-    Tree::new(egui::Id::unique("compact map"), root, tiles)
-}
-
-/// The map, with the well and the card beside it.
-fn map_tree() -> Tree<View> {
-    let mut tiles = Tiles::default();
-    let mut pane = |view| tiles.insert_pane(view);
-    let (map, well, card) = (pane(View::Map), pane(View::Well), pane(View::BeforeNow));
-    let right = pair(&mut tiles, LinearDir::Vertical, well, card, DISPLACEMENT_SHARE);
-    let root = pair(&mut tiles, LinearDir::Horizontal, map, right, MAP_SHARE);
-    Tree::new(egui::Id::unique("map"), root, tiles)
-}
-
-/// What the studies say, with the motion beside it.
-fn explore_tree() -> Tree<View> {
-    let mut tiles = Tiles::default();
-    let mut pane = |view| tiles.insert_pane(view);
-    let studies = [View::UpAndDown, View::Basins, View::Spectrum].map(&mut pane);
-    let (well, phase, displacement) = (pane(View::Well), pane(View::PhasePortrait), pane(View::Displacement));
-    let studies = tiles.insert_tab_tile(studies.to_vec());
-    let tabs = tiles.insert_tab_tile(vec![phase, displacement]);
-    let right = pair(&mut tiles, LinearDir::Vertical, well, tabs, 0.45);
-    let root = pair(&mut tiles, LinearDir::Horizontal, studies, right, MAP_SHARE);
-    Tree::new(egui::Id::unique("explore"), root, tiles)
-}
-
-fn pair(tiles: &mut Tiles<View>, direction: LinearDir, first: TileId, second: TileId, share: f32) -> TileId {
-    let linear = Linear::new_binary(direction, [first, second], share);
-    tiles.insert_container(Container::Linear(linear))
 }
 
 struct Behavior<'a, 'b> {

@@ -5,7 +5,8 @@ use egui_tiles::{LinearDir, TileId, Tiles, Tree};
 
 use crate::app::views::View;
 
-use super::{LEFT_SHARE, MAP_SHARE, MECHANISM_SHARE, Room, Tiling, pair};
+use super::trees::{LEFT_SHARE, MAP_SHARE, MECHANISM_SHARE, pair};
+use super::{Room, Tiling};
 
 /// Shares of the width that the first of two views has where room is short, and that a view has which needs
 /// much of it.
