@@ -66,9 +66,12 @@ fn another_scene_is_walked_anew_and_a_closed_view_asks_for_nothing() {
     let mut harness = open(WIDE);
     fill(&mut harness);
     harness.state_mut().session.edit_once(|scene| scene.mass_g *= 1.1);
-    harness.run_steps(2);
-    let walks = &harness.state().session.explore.walks;
-    assert!(walks.found.is_running() && !walks.found.is_whole());
+    let mass = harness.state().session.scene().mass_g;
+    wait_until("the question of the heavier mass", || {
+        harness.run_steps(1);
+        let question = harness.state().session.explore.walks.found.question();
+        question.is_some_and(|own| own.scene.mass_g == mass)
+    });
     command(&mut harness, Command::Arrange(Layout::Look));
     assert!(!harness.state().session.explore.walks.found.is_running());
     command(&mut harness, Command::Arrange(Layout::Explore));
@@ -128,6 +131,9 @@ fn a_spectrum_has_lines_where_the_motion_repeats() {
     let spectrum = parts[0].as_ref().unwrap();
     assert_eq!(spectrum.period, Some(1));
     harness.state_mut().session.explore.spectra.signal = Signal::BaseAcceleration;
-    harness.run_steps(2);
-    assert!(harness.state().session.explore.spectra.found.is_running());
+    wait_until("the spectrum of the base", || {
+        harness.run_steps(1);
+        let (parts, current) = harness.state().session.explore.spectra.found.parts();
+        current && parts.iter().flatten().any(|own| own.signal == Signal::BaseAcceleration)
+    });
 }
