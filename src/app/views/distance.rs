@@ -1,7 +1,7 @@
 //! Distance of the pinned motions from the present one over time, by decades.
 
-use eframe::egui::{self, Align2, RichText, TextStyle, Ui, UiBuilder, vec2};
-use egui_plot::{HLine, Line, Plot, PlotBounds, PlotPoint, Text, VLine};
+use eframe::egui::{self, Align2, RichText, Ui, UiBuilder, vec2};
+use egui_plot::{HLine, Line, PlotBounds, PlotPoint, Text, VLine};
 
 use crate::app::session::pins::PinKind;
 use crate::study::distances;
@@ -9,8 +9,7 @@ use crate::study::distances;
 use super::ghosts::PINNED;
 use super::labels::haloed;
 use super::legend::LEGEND;
-use super::spectrum::{decades, power};
-use super::trace::{marks, plain};
+use super::plot::{MARGIN, decades, marks, plot_place, power, still_plot};
 use super::{ViewContext, too_small_ui};
 
 /// The most points of a line.
@@ -23,10 +22,6 @@ const LEAST: f64 = -14.0;
 /// is.
 const PERIODS: f64 = 6.0;
 const PRESENT: f64 = 0.94;
-
-/// Room in points between the edge and the name of the vertical axis, and width of that axis.
-const MARGIN: f32 = 6.0;
-const AXIS_WIDTH: f32 = 58.0;
 
 /// Draws it.
 pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -60,28 +55,13 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
     let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
     let plot = egui::Rect::from_min_max(area.min + vec2(MARGIN, LEGEND), area.max - vec2(MARGIN, 0.0));
-    let mut child = ui.new_child(UiBuilder::new().max_rect(plot));
-    child.style_mut().text_styles.insert(TextStyle::Body, style.small());
-    child.visuals_mut().override_text_color = Some(style.faint());
-    let shown = Plot::new("distance")
-        .allow_drag(false)
-        .allow_scroll(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_double_click_reset(false)
-        .show_background(false)
-        .show_grid(false)
+    let mut child = plot_place(ui, &style, plot);
+    let shown = still_plot("distance")
         .x_grid_spacer(|_| marks(from, to - 0.05 * (to - from), columns))
         .y_grid_spacer(|_| decades(least, most, rows))
         .x_axis_label("time (s)")
         .y_axis_label("distance (mm)")
-        .y_axis_min_width(AXIS_WIDTH)
-        .set_margin_fraction(vec2(0.0, 0.0))
-        .x_axis_formatter(|mark, _| plain(mark))
         .y_axis_formatter(|mark, _| power(mark.value))
-        .label_formatter(|_| None)
-        .show_crosshair(false)
         .show(&mut child, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([from, least], [to, most]));
             for mark in decades(least, most, rows) {

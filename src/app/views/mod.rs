@@ -23,6 +23,7 @@ mod mass;
 mod mechanism;
 mod memory;
 mod phase;
+mod plot;
 mod ranges;
 mod schematic;
 mod span;

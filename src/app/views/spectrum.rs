@@ -1,22 +1,18 @@
 //! Amplitudes of the settled motion over frequency, by decades.
 
-use eframe::egui::{self, Rect, RichText, TextStyle, Ui, UiBuilder, vec2};
-use egui_plot::{GridMark, HLine, Line, Plot, PlotBounds, PlotPoints, Points, VLine};
+use eframe::egui::{self, Rect, RichText, Ui, UiBuilder, vec2};
+use egui_plot::{HLine, Line, PlotBounds, PlotPoints, Points, VLine};
 
 use crate::app::ui::style::Style;
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::study::{Signal, Spectrum};
 
 use super::legend::{LEGEND, Sign, legend};
-use super::trace::{marks, plain};
+use super::plot::{MARGIN, decades, marks, plot_place, power, still_plot};
 use super::{ViewContext, too_small_ui};
 
 /// Height in points of the row of choices.
 const TOOLS: f32 = 30.0;
-
-/// Room in points between the edge and the name of the vertical axis, and width of that axis.
-const MARGIN: f32 = 6.0;
-const AXIS_WIDTH: f32 = 58.0;
 
 /// Decades below the largest amplitude that are shown, and multiples of the forcing frequency.
 const DECADES: f64 = 6.0;
@@ -104,31 +100,16 @@ fn picture_ui(
     let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
     let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
     let plot = Rect::from_min_max(area.min + vec2(MARGIN, LEGEND), area.max - vec2(MARGIN, 0.0));
-    let mut child = ui.new_child(UiBuilder::new().max_rect(plot));
-    child.style_mut().text_styles.insert(TextStyle::Body, style.small());
-    child.visuals_mut().override_text_color = Some(style.faint());
+    let mut child = plot_place(ui, style, plot);
     if !current {
         child.set_opacity(0.4);
     }
-    let shown = Plot::new("spectrum")
-        .allow_drag(false)
-        .allow_scroll(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_double_click_reset(false)
-        .show_background(false)
-        .show_grid(false)
+    let shown = still_plot("spectrum")
         .x_grid_spacer(|_| marks(0.0, 0.98 * end, columns))
         .y_grid_spacer(|_| decades(floor, top, rows))
         .x_axis_label("frequency (Hz)")
         .y_axis_label(format!("amplitude ({unit})"))
-        .y_axis_min_width(AXIS_WIDTH)
-        .set_margin_fraction(vec2(0.0, 0.0))
-        .x_axis_formatter(|mark, _| plain(mark))
         .y_axis_formatter(|mark, _| power(mark.value))
-        .label_formatter(|_| None)
-        .show_crosshair(false)
         .show(&mut child, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([0.0, floor], [end, top]));
             for mark in decades(floor, top, rows) {
@@ -155,24 +136,6 @@ fn picture_ui(
     legend(ui, style, area, area.right(), &entries);
 }
 
-/// A line at each power of ten, or each second or third where there are many.
-pub(super) fn decades(low: f64, high: f64, most: f64) -> Vec<GridMark> {
-    let every = ((high - low) / most).ceil().max(1.0);
-    let first = (low / every).ceil() as i32;
-    let last = (high / every).floor() as i32;
-    (first..=last).map(|i| GridMark { value: f64::from(i) * every, step_size: every }).collect()
-}
-
-/// The number whose decimal logarithm this is.
-pub(super) fn power(logarithm: f64) -> String {
-    match logarithm.round() as i32 {
-        power @ 0..=3 => format!("{}", 10_i32.pow(power as u32)),
-        -1 => "0.1".to_owned(),
-        -2 => "0.01".to_owned(),
-        power => format!("1e{power}"),
-    }
-}
-
 /// A line with so few points that the eye misses none: the largest of each stretch.
 fn largest(lines: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let stride = lines.len().div_ceil(MOST_POINTS).max(1);
@@ -185,15 +148,6 @@ fn largest(lines: &[[f64; 2]]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn decades_are_whole_and_few() {
-        let values =
-            |low, high, most| decades(low, high, most).iter().map(|own| own.value).collect::<Vec<_>>();
-        assert_eq!(values(-3.2, 0.4, 7.0), [-3.0, -2.0, -1.0, 0.0]);
-        assert_eq!(values(-5.7, 0.3, 3.0), [-4.0, -2.0, 0.0]);
-        assert_eq!([-3.0, -2.0, 0.0, 2.0].map(power), ["1e-3", "0.01", "1", "100"]);
-    }
 
     #[test]
     fn no_peak_is_thinned_away() {

@@ -4,8 +4,8 @@
 //! same stretch of time and the same cursor, so that they can be read below each other. Their vertical ranges
 //! come from the scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
 
-use eframe::egui::{self, Align2, TextStyle, Ui, UiBuilder, vec2};
-use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
+use eframe::egui::{self, Align2, Ui, vec2};
+use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
 
 use crate::app::session::Session;
 use crate::app::session::pins::Pin;
@@ -17,8 +17,8 @@ use super::ViewContext;
 use super::ghosts::{PINNED, dash};
 use super::labels::haloed;
 use super::legend::{LEGEND, Sign, legend};
+use super::plot::{MARGIN, marks, plot_place, still_plot};
 use super::ranges::room_for_push;
-use super::span::ticks;
 use super::timeline::{zoom, zoom_up};
 
 /// Forcing periods that are shown; without a period multiples of the motion's characteristic time. No more
@@ -41,12 +41,6 @@ const MOST_GHOST_POINTS: usize = 4000;
 
 /// The most flights that are drawn one by one; of more no tip is seen.
 const MOST_FLIGHTS: usize = 400;
-
-/// Width in points that every vertical axis takes, so that traces below each other line up.
-const AXIS_WIDTH: f32 = 58.0;
-
-/// Room in points between the edge and the name of the vertical axis.
-const MARGIN: f32 = 6.0;
 
 /// Height in points below which the names of the axes are left out.
 const LOW: f32 = 150.0;
@@ -179,29 +173,12 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let is_low = ui.available_height() < LOW;
     let (time_label, axis) = if is_low { ("", quantity.unit().to_owned()) } else { ("time (s)", axis) };
     let plot = area.with_min_x(area.left() + MARGIN).with_min_y(area.top() + LEGEND);
-    let mut ui = ui.new_child(UiBuilder::new().max_rect(plot));
-    // axes are written as those of the other views
-    ui.style_mut().text_styles.insert(TextStyle::Body, style.small());
-    ui.visuals_mut().override_text_color = Some(style.faint());
-    let response = Plot::new(quantity.name())
-        .allow_drag(false)
-        .allow_scroll(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_double_click_reset(false)
-        .show_background(false)
-        .show_grid(false)
+    let mut ui = plot_place(ui, &style, plot);
+    let response = still_plot(quantity.name())
         .x_grid_spacer(|_| marks(from.max(0.0), to - NO_NUMBER * window, columns))
         .y_grid_spacer(|_| marks(low + edge, high - edge, rows))
         .x_axis_label(time_label)
         .y_axis_label(axis)
-        .y_axis_min_width(AXIS_WIDTH)
-        .set_margin_fraction(vec2(0.0, 0.0))
-        .x_axis_formatter(|mark, _| plain(mark))
-        .y_axis_formatter(|mark, _| plain(mark))
-        .label_formatter(|_| None)
-        .show_crosshair(false)
         .show(&mut ui, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
             for mark in marks(low, high, rows) {
@@ -291,23 +268,6 @@ fn paths(samples: &[Sample], flights: bool, point: impl Fn(&Sample) -> PlotPoint
     }
     let parts = samples.chunk_by(|a, b| a.t != b.t);
     parts.map(|part| part.iter().map(&point).collect()).collect()
-}
-
-/// Round numbers for an axis, some `count` of them.
-pub(super) fn marks(low: f64, high: f64, count: f64) -> Vec<GridMark> {
-    let (mut values, _) = ticks(low, high, count);
-    // two at least, or the axis has no scale
-    if values.len() < 2 {
-        (values, _) = ticks(low, high, 2.0 * count);
-    }
-    let step_size = values.windows(2).next().map_or(1.0, |pair| (pair[1] - pair[0]) * 1e3);
-    values.iter().map(|value| GridMark { value: value * 1e3, step_size }).collect()
-}
-
-/// A tick's number, with the decimals that tell it from the next one.
-pub(super) fn plain(mark: GridMark) -> String {
-    let decimals = (-(mark.step_size * 1.001).log10().floor()).clamp(0.0, 9.0) as usize;
-    format!("{:.decimals$}", mark.value + 0.0)
 }
 
 /// Each stop from when to when it was where, in s and mm; a stop that stayed is one line.

@@ -1,9 +1,9 @@
 //! One field walked up and down: stroboscopic displacements or RMS velocity, and the hysteresis between.
 
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
-use eframe::egui::{self, Align2, PopupCloseBehavior, Rect, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Align2, PopupCloseBehavior, Rect, RichText, Sense, Ui, UiBuilder, vec2};
 use egui_plot::{
-    HLine, Line, LineStyle, MarkerShape, Plot, PlotBounds, PlotPoint, PlotPoints, Points, Polygon, VLine,
+    HLine, Line, LineStyle, MarkerShape, PlotBounds, PlotPoint, PlotPoints, Points, Polygon, VLine,
 };
 
 use crate::app::session::Session;
@@ -18,15 +18,11 @@ use crate::study::{Direction, Visit};
 use super::axes::{field_name, field_ui, range_row_ui};
 use super::labels::haloed;
 use super::legend::{LEGEND, Sign, legend};
-use super::trace::{marks, plain};
+use super::plot::{MARGIN, marks, plot_place, still_plot};
 use super::{ViewContext, too_small_ui};
 
 /// Height in points of the row of choices.
 const TOOLS: f32 = 30.0;
-
-/// Room in points between the edge and the name of the vertical axis, and width of that axis.
-const MARGIN: f32 = 6.0;
-const AXIS_WIDTH: f32 = 58.0;
 
 /// Two values that differ by less than this share of the picture are one.
 const SAME: f64 = 0.01;
@@ -158,32 +154,16 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let state = session.player.state();
     let live = (quantity == WalkQuantity::Strobes).then_some(state.x * 1e3);
     let plot = Rect::from_min_max(area.min + vec2(MARGIN, LEGEND), area.max - vec2(MARGIN, 0.0));
-    let mut child = ui.new_child(UiBuilder::new().max_rect(plot));
-    child.style_mut().text_styles.insert(TextStyle::Body, style.small());
-    child.visuals_mut().override_text_color = Some(style.faint());
+    let mut child = plot_place(ui, &style, plot);
     if !current {
         child.set_opacity(0.4);
     }
-    let shown = Plot::new("up and down")
-        .allow_drag(false)
-        .allow_scroll(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_double_click_reset(false)
-        .show_background(false)
-        .show_grid(false)
+    let shown = still_plot("up and down")
         .sense(Sense::click_and_drag())
         .x_grid_spacer(|_| marks(from, to, columns))
         .y_grid_spacer(|_| marks(low + edge, high - edge, rows))
         .x_axis_label(across)
         .y_axis_label(vertical)
-        .y_axis_min_width(AXIS_WIDTH)
-        .set_margin_fraction(vec2(0.0, 0.0))
-        .x_axis_formatter(|mark, _| plain(mark))
-        .y_axis_formatter(|mark, _| plain(mark))
-        .label_formatter(|_| None)
-        .show_crosshair(false)
         .show(&mut child, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
             for mark in marks(low, high, rows) {

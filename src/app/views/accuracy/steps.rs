@@ -10,7 +10,7 @@ use crate::study::accuracy::scene::{StepSize, step_name};
 
 use super::super::ViewContext;
 use super::super::legend::{LEGEND, Sign, legend};
-use super::super::trace::{marks, plain};
+use super::super::plot::{marks, plain};
 use super::waiting::waiting_ui;
 
 /// Ends of the slider in s, and steps with a name.
