@@ -7,7 +7,7 @@ use interwell::dynamics::{Model, Request, Summary};
 use interwell::scene::Document;
 use interwell::scene::lesson::{LessonDocument, LessonError};
 use interwell::study::{
-    LessonReport, Subject, SummaryField, Task, Values, check_lesson, goal_met, result_fields,
+    LessonReport, Subject, SummaryField, Task, Values, check_lesson, goal_lack, result_fields,
 };
 use predicates::str::contains;
 
@@ -34,7 +34,7 @@ fn met(text: &str) -> bool {
     let scene = own.begin(0);
     let subject =
         Subject::new(&scene.scene, &scene.files, (own.lesson.seeds, own.lesson.walk.as_ref()), &task);
-    goal_met(&own.lesson.steps[0], &subject, &subject).unwrap()
+    goal_lack(&own.lesson.steps[0], &subject, &subject).unwrap().is_none()
 }
 
 fn holds(condition: &str, more: &str) -> bool {

@@ -187,6 +187,29 @@ fn every_lesson_is_gone_through_from_its_first_step_to_its_last() {
 }
 
 #[test]
+fn the_last_step_leads_to_the_next_lesson_too() {
+    let mut harness = opened(LESSONS[0].name, WIDE);
+    while !harness.state().lesson().unwrap().is_last() {
+        press(&mut harness, Key::PageDown);
+    }
+    harness.get_by_label("Lesson 2").click();
+    harness.run_steps(3);
+    let key = |harness: &Shown| harness.state().lesson().map(|own| own.key());
+    assert_eq!(key(&harness).as_deref(), Some(LESSONS[1].name));
+    // the last one leads to none
+    let last = LESSONS.len() - 1;
+    harness.state_mut().open_lesson(LESSONS[last].name);
+    harness.run_steps(3);
+    while !harness.state().lesson().unwrap().is_last() {
+        press(&mut harness, Key::PageDown);
+    }
+    assert!(harness.query_by_label("Lesson 11").is_none());
+    harness.get_by_label("Finish").click();
+    harness.run_steps(3);
+    assert!(harness.state().lesson().is_none());
+}
+
+#[test]
 fn no_text_of_a_lesson_is_cut_and_a_lecturer_goes_through_by_two_keys() {
     for own in LESSONS {
         let mut harness = opened(own.name, PROJECTED);
@@ -271,7 +294,7 @@ fn sweeping_past_the_goal_does_not_meet_it() {
     harness.get_by_label_contains("Will be judged once you let go.");
     limit(&mut harness, 3.5);
     harness.state_mut().session.end_gesture();
-    until(&mut harness, "a verdict", |harness| harness.query_by_label_contains("Not yet.").is_some());
+    until(&mut harness, "a verdict", |harness| harness.query_by_label_contains("Not yet").is_some());
     // and one that was there for a moment
     limit(&mut harness, 1.5);
     harness.state_mut().session.end_gesture();
@@ -279,7 +302,7 @@ fn sweeping_past_the_goal_does_not_meet_it() {
     harness.state_mut().lesson_mut().unwrap().wait(LONG);
     limit(&mut harness, 3.5);
     harness.state_mut().session.end_gesture();
-    until(&mut harness, "a verdict", |harness| harness.query_by_label_contains("Not yet.").is_some());
+    until(&mut harness, "a verdict", |harness| harness.query_by_label_contains("Not yet").is_some());
     assert!(!met(&harness));
     // what it would take is the answer
     assert_eq!(harness.state().session.sentence().remedy, "");

@@ -2,30 +2,35 @@
 
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{
-    self, Align, Button, Color32, FontId, Id, Label, Layout, RichText, Sense, Stroke, TextEdit, Ui, vec2,
+    self, Align, Button, Color32, FontId, Id, Label, Layout, Popup, Pos2, RichText, Sense, SetOpenCommand,
+    Stroke, TextEdit, Ui, UiBuilder, vec2,
 };
 
 use crate::app::session::Session;
 use crate::app::session::lesson::{OpenLesson, Outcome, TaskState};
 use crate::app::ui::style::{BODY, Style, strong_family};
 use crate::app::words::announce::spoken_ui;
-use crate::app::words::lesson::{expected, judged_by, pieces, plain};
+use crate::app::words::lesson::{expected, judged_by, not_yet, numbered, pieces, plain};
 use crate::app::words::meanings::{meaning, terms};
 use crate::scene::lesson::Step;
 
 /// Text sizes in points: where there is room, and where there is little.
 const LARGE: f32 = 16.0;
 
-/// Room in points for the steps and the ways back and on, and height of these; size of the dot of a step, and
-/// their distance.
+/// Room in points for the steps and the ways back and on, and height of these, with the way to
+/// another lesson in the last step; size of the dot of a step, and their distance.
 const WAYS: f32 = 158.0;
 const WAY: f32 = 24.0;
+const LAST_WAYS: f32 = 190.0;
 const DOT: f32 = 4.5;
 const APART: f32 = 15.0;
 
 /// Most characters and width in points of the word that a student gives as a reason.
 const MOST_LETTERS: usize = 60;
 const REASON: f32 = 150.0;
+
+/// Most width in points of what a word means.
+const MEANING: f32 = 320.0;
 
 /// The most options that stand side by side.
 const SIDE_BY_SIDE: usize = 3;
@@ -41,6 +46,8 @@ pub enum LessonAct {
     Next,
     /// Show or hide the hint.
     Hint,
+    /// The lesson that comes after this one.
+    NextLesson(&'static str),
 }
 
 /// The letter of an option.
@@ -62,16 +69,17 @@ pub fn lesson_ui(
     let text = spoken(lesson, session);
     spoken_ui(ui, Id::unique(("step of a lesson", lesson.number(), &text)), &text);
     ui.horizontal_top(|ui| {
-        let width = (ui.available_width() - WAYS - 16.0).max(120.0);
+        let ways = if lesson.is_last() { LAST_WAYS } else { WAYS };
+        let width = (ui.available_width() - ways - 16.0).max(120.0);
         ui.allocate_ui_with_layout(vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
             ui.set_width(width);
             let step = lesson.step();
             text_ui(ui, style, heading(step), step.text(), size);
             asked = below_ui(ui, lesson, session, style, size);
         });
-        ui.allocate_ui_with_layout(vec2(WAYS, 0.0), Layout::top_down(Align::Max), |ui| {
+        ui.allocate_ui_with_layout(vec2(ways, 0.0), Layout::top_down(Align::Max), |ui| {
             dots_ui(ui, lesson, style);
-            asked = asked.or(ways_ui(ui, lesson));
+            asked = asked.or(ways_ui(ui, lesson, ways));
         });
     });
     if lesson.is_covering() {
@@ -140,15 +148,29 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str, size: f32) {
         job.append(&piece.text[from..], 0.0, format(font, style.ink(), Stroke::NONE));
     }
     let whole = job.text.clone();
-    let (at, galley, response) = Label::new(job).wrap().selectable(false).layout_in_ui(ui);
+    let (at, galley, response) =
+        Label::new(job).wrap().selectable(false).sense(Sense::CLICK).layout_in_ui(ui);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, whole.as_str()));
     ui.painter().galley(at, galley.clone(), style.ink());
-    let Some(pointer) = response.hover_pos() else { return };
-    let letter = galley.cursor_from_pos(pointer - at).index.0;
-    let byte = whole.char_indices().nth(letter).map_or(whole.len(), |own| own.0);
-    if let Some((_, word)) = terms(&whole).into_iter().find(|own| own.0.contains(&byte)) {
-        let text = meaning(word).unwrap_or_default();
-        response.on_hover_text_at_pointer(format!("{word}: {text}"));
+    let word_at = |pointer: Pos2| {
+        let letter = galley.cursor_from_pos(pointer - at).index.0;
+        let byte = whole.char_indices().nth(letter).map_or(whole.len(), |own| own.0);
+        let word = terms(&whole).into_iter().find(|own| own.0.contains(&byte)).map(|own| own.1)?;
+        Some(format!("{word}: {}", meaning(word).unwrap_or_default()))
+    };
+    // a click shows it at once and leaves it there
+    let clicked = response.interact_pointer_pos().filter(|_| response.clicked()).map(word_at);
+    if let Some(Some(text)) = &clicked {
+        ui.data_mut(|data| data.insert_temp(response.id, text.clone()));
+    }
+    let open = clicked.map(|word| SetOpenCommand::Bool(word.is_some()));
+    let popup = Popup::from_response(&response).open_memory(open).at_pointer_fixed();
+    popup.show(|ui| {
+        ui.set_max_width(MEANING);
+        ui.label(ui.data(|data| data.get_temp::<String>(response.id)).unwrap_or_default())
+    });
+    if let Some(text) = response.hover_pos().and_then(word_at) {
+        response.on_hover_text_at_pointer(text);
     }
 }
 
@@ -174,13 +196,13 @@ fn below_ui(
         }
         Step::Do { .. } => {
             let (state, color) = match lesson.task(session) {
-                TaskState::Met => ("Done.".to_owned(), style.kind(crate::app::words::kind::Kind::Interwell)),
+                TaskState::Met => ("Done.".to_owned(), style.base()),
                 TaskState::Unjudged(why) => (format!("It cannot be judged: {why}"), style.ink()),
                 state => {
                     let word = match state {
-                        TaskState::Moving => "Will be judged once you let go.",
-                        TaskState::Judging => "Being judged ...",
-                        _ => "Not yet.",
+                        TaskState::Moving => "Will be judged once you let go.".to_owned(),
+                        TaskState::NotYet(lack) => not_yet(&lack),
+                        _ => "Being judged ...".to_owned(),
                     };
                     let how = judged_by(lesson.lesson(), session.scene().start);
                     (format!("{word} {how}"), style.faint())
@@ -195,8 +217,12 @@ fn below_ui(
                     }
                 }
             });
-            if let Some(hint) = lesson.hint() {
-                text_ui(ui, style, "Hint: ", hint, size);
+            // where there is room, its place is kept free: nothing moves when it comes by itself
+            let kept = lesson.offered_hint().filter(|_| size > BODY);
+            if let Some(hint) = lesson.hint().or(kept) {
+                let shown = UiBuilder::new();
+                let shown = if lesson.hint().is_some() { shown } else { shown.invisible() };
+                ui.scope_builder(shown, |ui| text_ui(ui, style, "Hint: ", hint, size));
             }
         }
     }
@@ -238,9 +264,15 @@ fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
 }
 
 /// The ways back and on.
-fn ways_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAct> {
+fn ways_ui(ui: &mut Ui, lesson: &OpenLesson, width: f32) -> Option<LessonAct> {
     let mut asked = None;
-    ui.allocate_ui_with_layout(vec2(WAYS, WAY), Layout::right_to_left(Align::Center), |ui| {
+    ui.allocate_ui_with_layout(vec2(width, WAY), Layout::right_to_left(Align::Center), |ui| {
+        let following = lesson.following().filter(|_| lesson.is_last() && lesson.may_go_on());
+        if let Some(name) = following
+            && ui.button(numbered(name)).on_hover_text("The lesson that comes after this one").clicked()
+        {
+            asked = Some(LessonAct::NextLesson(name));
+        }
         let name = if lesson.is_last() { "Finish" } else { "Next" };
         let open = match lesson.step() {
             Step::Predict { .. } => "First choose what you expect. A lecturer goes on with PageDown.",

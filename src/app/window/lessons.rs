@@ -211,6 +211,7 @@ impl Window {
             LessonAct::Choose(option) => lesson.choose(option),
             LessonAct::Back => lesson.go_back(),
             LessonAct::Next => lesson.go_on(),
+            LessonAct::NextLesson(name) => return self.open_lesson(name),
             LessonAct::Hint => {
                 lesson.turn_hint();
                 Turn::Stay

@@ -1,7 +1,10 @@
 //! Sentences of a lesson: what was expected, how a task is judged, what a bold word points at.
 
+use super::fields::name_and_unit;
+use super::numbers::three;
 use crate::scene::Start;
-use crate::scene::lesson::Lesson;
+use crate::scene::lesson::{Condition, Lesson};
+use crate::study::{Column, Lack, Value, Values};
 
 /// The title of the row of a lesson: its number, where it has one.
 pub fn numbered(name: &str) -> String {
@@ -31,6 +34,55 @@ pub fn judged_by(lesson: &Lesson, start: Start) -> String {
         (None, Some(seeds)) => format!("Judged on {seeds} full runs {from}, each with noise of its own."),
         (None, None) => format!("Judged on a full run {from}, not on the motion shown."),
     }
+}
+
+/// That a task is not done, and the first thing that it lacks where a few words say it.
+pub fn not_yet(lack: &Lack) -> String {
+    let why = lack.asked.field().and_then(named).and_then(|(name, unit)| {
+        let (found, asked) = match (&lack.found, &lack.asked) {
+            (Value::Word(own), Condition::Is(_, asked)) => (own.clone(), format!("not {asked}")),
+            (Value::Number(own), asked) => {
+                let (scaled, unit) = match unit {
+                    "m" | "m/s" => (1e3 * own, format!("m{unit}")),
+                    _ => (*own, unit.to_owned()),
+                };
+                let wrong = match asked {
+                    Condition::AtLeast(..) | Condition::Above(..) => "too small".to_owned(),
+                    Condition::AtMost(..) | Condition::Below(..) => "too large".to_owned(),
+                    Condition::Between(_, low, _) if own < low => "too small".to_owned(),
+                    Condition::Between(..) => "too large".to_owned(),
+                    Condition::Is(_, asked) => format!("not {asked}"),
+                    _ => return None,
+                };
+                let text = if scaled.fract() == 0.0 { scaled.to_string() } else { three(scaled) };
+                (format!("{text} {unit}").trim_end().to_owned(), wrong)
+            }
+            (Value::Missing, Condition::Present(_)) => return Some(format!("Not yet ({name}: none).")),
+            _ => return None,
+        };
+        Some(format!("Not yet ({name}: {found}, {asked})."))
+    });
+    why.unwrap_or_else(|| "Not yet.".to_owned())
+}
+
+/// What a field of a condition is called, and its unit.
+fn named(field: &str) -> Option<(String, &'static str)> {
+    let (of, name) = field.split_once('.')?;
+    let (before, after) = match of {
+        "scene" => {
+            let (name, unit) = name_and_unit(name);
+            return Some((name.to_lowercase(), unit));
+        }
+        "result" => ("", ""),
+        "up" => ("", " on the way up"),
+        "down" => ("", " on the way down"),
+        "mean" => ("mean of ", ""),
+        _ => return None,
+    };
+    let column = Column { name: name.to_owned(), values: Values::Counts(Vec::new()) };
+    let label = column.label();
+    let words = label.split(", ").next().unwrap_or_default().replace("rms", "RMS");
+    Some((format!("{before}{words}{after}"), column.unit()))
 }
 
 /// A part of a text, and whether it is bold.
@@ -81,5 +133,24 @@ mod tests {
         assert_eq!(expected(Some("a"), Some("a")), "You expected: “a”. So it did.");
         assert_eq!(expected(Some("a"), Some("b")), "You expected: “a”. It did: “b”.");
         assert_eq!(expected(None, Some("b")), "It did: “b”.");
+    }
+
+    #[test]
+    fn a_task_that_is_not_done_says_what_it_lacks() {
+        let field = |name: &str| name.to_owned();
+        let say = |asked: Condition, found: Value| not_yet(&Lack { asked, found });
+        let word = Value::Word("rest".to_owned());
+        let regime = Condition::Is(field("result.regime"), "interwell".to_owned());
+        assert_eq!(say(regime, word), "Not yet (regime: rest, not interwell).");
+        let shaking = Condition::AtMost(field("scene.excitation.amplitude_g"), 1.25);
+        assert_eq!(say(shaking, Value::Number(1.3)), "Not yet (amplitude: 1.30 g, too large).");
+        let speed = Condition::AtLeast(field("result.rms_velocity_m_per_s"), 0.05);
+        assert_eq!(say(speed, Value::Number(0.0421)), "Not yet (RMS velocity: 42.1 mm/s, too small).");
+        let count = Condition::Is(field("result.crossings"), "3".to_owned());
+        assert_eq!(say(count, Value::Number(1.0)), "Not yet (crossings: 1, not 3).");
+        assert_eq!(say(Condition::Present(field("scene.stops")), Value::Missing), "Not yet (stops: none).");
+        let gap = Condition::Above(field("walk.gap"), 0.1);
+        assert_eq!(say(gap, Value::Missing), "Not yet.");
+        assert_eq!(say(Condition::Any(Vec::new()), Value::Missing), "Not yet.");
     }
 }

@@ -1,6 +1,6 @@
 //! A lesson run from its first step to its last.
 
-use super::judge::{Unjudged, goal_met, holds, options_that_hold};
+use super::judge::{Unjudged, goal_lack, holds, options_that_hold};
 use super::subject::Subject;
 use crate::numeric::short;
 use crate::scene::lesson::{Condition, LessonDocument, Step};
@@ -74,10 +74,10 @@ pub fn check_lesson(document: &LessonDocument, task: &Task) -> Result<LessonRepo
             }
             Step::Do { goal, .. } => {
                 report.tasks += 1;
-                if goal_met(step, &begin, &begin)? {
+                if goal_lack(step, &begin, &begin)?.is_none() {
                     report.wrong.push(finding("goal", "is met before anything is done".to_owned()));
                 }
-                if !goal_met(step, &end, &begin)? {
+                if goal_lack(step, &end, &begin)?.is_some() {
                     report.wrong.push(finding("solution", "does not meet the goal".to_owned()));
                 }
                 near("goal", goal, &begin)?;

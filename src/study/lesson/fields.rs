@@ -6,9 +6,12 @@ use crate::study::fields::{Read, SUMMARY_FIELDS, SummaryField};
 
 /// What a field has come to.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Value {
+pub enum Value {
+    /// A number.
     Number(f64),
+    /// A word.
     Word(String),
+    /// Nothing.
     Missing,
 }
 

@@ -28,12 +28,21 @@ impl Unjudged {
     }
 }
 
-/// Whether the goal of a step is met by `subject`; `before` is the scene with which the step began. A step
-/// without a goal has nothing to be met.
-pub fn goal_met(step: &Step, subject: &Subject, before: &Subject) -> Result<bool, Unjudged> {
+/// A condition that does not hold, and what the field that it names has come to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lack {
+    /// The condition; none of its parts where all of these have to hold.
+    pub asked: Condition,
+    /// The value of its field; missing where it names none.
+    pub found: Value,
+}
+
+/// The first condition in the goal of a step that `subject` does not meet, none where the goal is met;
+/// `before` is the scene with which the step began. A step without a goal lacks nothing.
+pub fn goal_lack(step: &Step, subject: &Subject, before: &Subject) -> Result<Option<Lack>, Unjudged> {
     match step {
-        Step::Do { goal, .. } => holds(goal, subject, before),
-        _ => Ok(true),
+        Step::Do { goal, .. } => Judge { subject, before, from: None }.lack(goal),
+        _ => Ok(None),
     }
 }
 
@@ -105,6 +114,19 @@ impl Judge<'_> {
                 }))
             }
         }
+    }
+
+    /// The first part of a condition that does not hold.
+    fn lack(&self, condition: &Condition) -> Result<Option<Lack>, Unjudged> {
+        if self.holds(condition)? {
+            return Ok(None);
+        }
+        if let Condition::All(parts) = condition {
+            let lacks = parts.iter().map(|part| self.lack(part)).collect::<Result<Vec<_>, _>>()?;
+            return Ok(lacks.into_iter().flatten().next());
+        }
+        let found = condition.field().map_or(Ok(Value::Missing), |field| self.value(field))?;
+        Ok(Some(Lack { asked: condition.clone(), found }))
     }
 
     /// How many of these hold; all are asked, so that what one of them needs is run whatever the others say.

@@ -7,6 +7,7 @@ mod judge;
 mod subject;
 
 pub use check::{LessonFinding, LessonReport, check_lesson};
+pub use fields::Value;
 pub use fields::result_fields;
-pub use judge::{Unjudged, goal_met, options_that_hold};
+pub use judge::{Lack, Unjudged, goal_lack, options_that_hold};
 pub use subject::Subject;

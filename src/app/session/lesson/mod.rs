@@ -11,9 +11,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::task::{Latest, Wake};
-use crate::scene::lesson::{Choice, Lesson, LessonDocument, Step};
+use crate::scene::lesson::{Choice, LESSONS, Lesson, LessonDocument, Step};
 use crate::scene::{Document, Scene, Source, arguments};
-use crate::study::{Subject, goal_met, options_that_hold};
+use crate::study::{Lack, Subject, goal_lack, options_that_hold};
 
 use super::Session;
 
@@ -48,7 +48,7 @@ pub struct OpenLesson {
     begun: Option<f64>,
     hinted: bool,
     options: Latest<Verdict<Vec<bool>>>,
-    goal: Latest<Verdict<bool>>,
+    goal: Latest<Verdict<Option<Lack>>>,
     /// The scene that is judged, and since when in s it stands still.
     judged: Option<(Scene, f64)>,
     wake: Wake,
@@ -165,6 +165,13 @@ impl OpenLesson {
     /// Whether this is the last step.
     pub fn is_last(&self) -> bool {
         self.progress.step + 1 == self.lesson().steps.len()
+    }
+
+    /// The name of the built-in lesson that comes after this one.
+    pub fn following(&self) -> Option<&'static str> {
+        let Source::BuiltIn(own) = self.document.source else { return None };
+        let number = LESSONS.iter().position(|lesson| lesson.name == own)?;
+        LESSONS.get(number + 1).map(|lesson| lesson.name)
     }
 
     /// Chooses an option of a prediction that is covered.
@@ -300,15 +307,15 @@ impl OpenLesson {
             let built = session.mechanism_of == own.scene.mechanism;
             self.goal.ask(&self.wake, move |cancel| {
                 let verdict = |step: &Step, subject: Subject<'_>, before: &Subject<'_>| match built {
-                    true => goal_met(step, &subject.with_mechanism(mechanism), before),
-                    false => goal_met(step, &subject, before),
+                    true => goal_lack(step, &subject.with_mechanism(mechanism), before),
+                    false => goal_lack(step, &subject, before),
                 };
                 judge(&document, number, &own, cancel, verdict)
             });
             return Some(STILL);
         };
         let stands = now - since;
-        if self.goal.current() != Some(&Ok(true)) {
+        if self.goal.current() != Some(&Ok(None)) {
             return None;
         }
         if stands < STILL {
@@ -330,8 +337,8 @@ impl OpenLesson {
         }
         match (&self.judged, self.goal.current()) {
             (None, _) => TaskState::Moving,
-            (_, None) | (_, Some(Ok(true))) => TaskState::Judging,
-            (_, Some(Ok(false))) => TaskState::NotYet,
+            (_, None) | (_, Some(Ok(None))) => TaskState::Judging,
+            (_, Some(Ok(Some(lack)))) => TaskState::NotYet(lack.clone()),
             (_, Some(Err(why))) => TaskState::Unjudged(why.clone()),
         }
     }

@@ -4,17 +4,17 @@ use std::sync::atomic::AtomicBool;
 
 use crate::scene::Document;
 use crate::scene::lesson::{LessonDocument, Step};
-use crate::study::{Subject, Task, Unjudged};
+use crate::study::{Lack, Subject, Task, Unjudged};
 
 /// How far a task is.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum TaskState {
     /// A hand changes the scene, or has just changed it.
     Moving,
     /// It is being judged.
     Judging,
-    /// Not done by the present scene.
-    NotYet,
+    /// Not done by the present scene, and the first thing that it lacks.
+    NotYet(Lack),
     /// Done.
     Met,
     /// The scene cannot be judged, and why.
