@@ -16,7 +16,7 @@ pub use manifest::{Provenance, basins_manifest, exponents_manifest, manifest};
 pub use number::push_number;
 pub use plot::{
     Argument, Caption, Cut, ExponentPicture, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay,
-    PaintError, PlotAxis, RMS, Ranges, SectionPicture, Sheet, SheetError, SheetText, SpectrumQuantity,
+    PaintError, Panel, PlotAxis, RMS, Ranges, SectionPicture, Sheet, SheetError, SheetText, SpectrumQuantity,
     SweepPicture, Theme, ThresholdPicture, UnknownFormat, View, accuracy_figure, attractor_colour,
     basins_figure, branch_figure, can_show, can_show_exponents, can_show_starts, can_show_thresholds,
     contact_figure, curve_figure, exponents_figure, measured_figure, picture_arguments, quantities,

@@ -90,8 +90,9 @@ fn of_a_run_and_of_the_force_curve_the_copied_command_makes_the_same_bytes() {
         assert!(line.contains("headless curve first-look") && line.contains("--set mass_g=16"), "{line}");
     }
     harness.state_mut().figures().titled = false;
-    for view in [View::Displacement, View::PhasePortrait] {
+    for (view, panel) in [(View::Displacement, "displacement"), (View::PhasePortrait, "portrait")] {
         let line = same_bytes(&mut harness, view, "svg");
+        assert!(line.contains(&format!("--panels {panel}")), "{line}");
         assert!(line.contains("simulate first-look") && line.contains("--no-title"), "{line}");
         assert!(line.contains("--set run.duration_s=3"), "{line}");
     }
@@ -111,6 +112,18 @@ fn a_run_is_drawn_over_the_times_that_are_typed_and_is_as_long_as_they_ask() {
     let line = copy(&mut harness);
     let times = format!("--plot-x 0.5:{}", long + 1.0);
     assert!(line.contains(&times) && line.contains(&format!("run.duration_s={}", long + 1.0)), "{line}");
+    assert!(line.contains("--panels velocity ") && line.matches("--panels").count() == 1, "{line}");
+    // several views in one file; all of them have no need to be named
+    harness.state_mut().figures().panels[0] = true;
+    harness.run_steps(1);
+    assert!(copy(&mut harness).contains("--panels displacement --panels velocity "));
+    harness.state_mut().figures().panels = [true; 4];
+    harness.run_steps(1);
+    assert!(!copy(&mut harness).contains("--panels"));
+    harness.state_mut().figures().panels = [false; 4];
+    harness.run_steps(1);
+    harness.get_by_label_contains("at least one is needed");
+    harness.state_mut().figures().panels = [true; 4];
     harness.state_mut().figures().times = ["2".to_owned(), "1".to_owned()];
     harness.run_steps(1);
     harness.get_by_label_contains("give two in s, the first one below the second");
@@ -143,7 +156,7 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
 
 #[test]
 fn of_the_basins_the_copied_command_makes_the_same_bytes() {
-    let mut harness = window("elastic-box", WIDE, Settings::default());
+    let mut harness = window("uneven-stops", WIDE, Settings::default());
     let folder = tempfile::tempdir().unwrap();
     open(&mut harness, View::Basins, &folder.path().join("a.svg"));
     harness.get_by_label_contains("Show this view first");
@@ -218,6 +231,25 @@ fn what_cannot_be_saved_is_said_and_loses_nothing() {
     harness.run_steps(1);
     save(&mut harness);
     assert!(folder.path().join("a.pdf").exists());
+}
+
+#[test]
+fn the_numbers_of_a_figure_do_not_replace_a_table_of_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window("paper-table", WIDE, Settings::default());
+    let ctx = harness.ctx.clone();
+    harness.state_mut().save_to(&ctx, &folder.path().join("own.ron"));
+    harness.run_steps(2);
+    let files = || fs::read_dir(folder.path()).unwrap().map(|own| own.unwrap().path());
+    let table = files().find(|own| own.extension().is_some_and(|own| own == "csv")).unwrap();
+    open(&mut harness, View::ForceCurve, &table.with_extension("svg"));
+    assert!(harness.query_by_label_contains("is read by this scene").is_none());
+    harness.state_mut().figures().data = true;
+    harness.run_steps(2);
+    harness.get_by_label_contains("is read by this scene");
+    harness.get_by_role_and_label(Role::Button, "Save").click();
+    harness.run_steps(3);
+    assert_eq!(files().count(), 2);
 }
 
 #[test]

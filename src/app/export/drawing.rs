@@ -9,7 +9,7 @@ use crate::app::task::pool;
 use crate::dynamics::Model;
 use crate::mechanics::Mechanism;
 use crate::output::{
-    Caption, Figure, Overlay, Ranges, SectionPicture, SpectrumQuantity, SweepPicture, Theme, View,
+    Caption, Figure, Overlay, Panel, Ranges, SectionPicture, SpectrumQuantity, SweepPicture, Theme, View,
     basins_figure, can_show, curve_figure, run_figure, section_figure, spectrum_figure, sweep_figure,
 };
 use crate::scene::{Document, FieldPath, arguments};
@@ -45,7 +45,7 @@ fn drawn(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure, String> {
         document,
     };
     match &order.subject {
-        Subject::Run(times) => own.run(*times),
+        Subject::Run(times, panels) => own.run(*times, panels),
         Subject::Curve => own.curve(),
         Subject::Sweep(_, quantity) => own.sweep(&order.subject, quantity),
         Subject::Diagram(_) => own.diagram(&order.subject),
@@ -106,7 +106,7 @@ impl Drawing<'_> {
         self.document.error_from(cell.faults).to_string()
     }
 
-    fn run(&self, times: Option<(f64, f64)>) -> Result<Figure, String> {
+    fn run(&self, times: Option<(f64, f64)>, panels: &[Panel]) -> Result<Figure, String> {
         let (document, model) = (&self.document, self.model()?);
         let sampled = sample_times(&document.scene, &model, &Sampling::Default, None);
         let times_of_rows = sampled.map_err(|error| error.to_string())?;
@@ -114,7 +114,8 @@ impl Drawing<'_> {
         let (simulation, trace) = simulate_with_trace(&model, &keep, times, Some(self.task.cancel));
         let ranges = Ranges { x: times, y: None };
         let mechanism = &model.mechanism();
-        Ok(run_figure(&trace, &simulation.summary, mechanism, ranges, &self.caption, &self.theme))
+        let run = (&trace, &simulation.summary);
+        Ok(run_figure(run, mechanism, panels, ranges, &self.caption, &self.theme))
     }
 
     fn curve(&self) -> Result<Figure, String> {

@@ -8,9 +8,10 @@ use crate::app::session::editor::keep_start_inside;
 use crate::app::session::explore::{STARTS, WalkQuantity, longest_wait};
 use crate::app::session::map::{ground, over};
 use crate::numeric::short;
-use crate::output::{Argument, Figure, Format, RMS, Sheet, Sink, header, picture_arguments, rows};
+use crate::output::{Argument, Figure, Format, Panel, RMS, Sheet, Sink, header, picture_arguments, rows};
 use crate::scene::{FieldPath, Scene, Start, SweepAxis, arguments};
 use crate::study::Signal;
+use crate::system::files::canonical;
 
 use super::drawing::draw;
 use super::quoted;
@@ -18,8 +19,8 @@ use super::quoted;
 /// What a figure shows, with everything that its command is told of it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Subject {
-    /// A run over time and its phase portrait, over these times in s or all of them.
-    Run(Option<(f64, f64)>),
+    /// Panels of a run, over these times in s or all of them.
+    Run(Option<(f64, f64)>, Vec<Panel>),
     /// Force and potential of the mechanism.
     Curve,
     /// A quantity over two fields, or over one that is walked up and down.
@@ -123,7 +124,10 @@ impl Subject {
         }
         let mut ranges = Vec::new();
         let name = match self {
-            Self::Run(times) => {
+            Self::Run(times, panels) => {
+                if panels.len() < Panel::ALL.len() {
+                    own.extend(panels.iter().map(|panel| Argument::of("panels", panel.name())));
+                }
                 ranges.extend(times.map(|(from, to)| Argument::of("plot-x", format!("{from}:{to}"))));
                 "simulate"
             }
@@ -154,7 +158,7 @@ impl Subject {
         let (mut from, mut scene) = (editor.named().clone(), editor.scene().clone());
         keep_start_inside(&mut scene);
         match self {
-            Self::Run(Some((_, to))) => scene.run.duration_s = scene.run.duration_s.max(*to),
+            Self::Run(Some((_, to)), _) => scene.run.duration_s = scene.run.duration_s.max(*to),
             // every start is one of the figure's
             Self::Basins(..) => (scene.start, from.start) = (Start::Rest, Start::Rest),
             _ if !self.axes().is_empty() => {
@@ -180,6 +184,13 @@ impl FigureOrder {
         let origin = session.editor.origin().ok_or_else(nameless)?;
         if let Some(fault) = session.fault() {
             return Err(fault.to_owned());
+        }
+        let read = session.editor.document().named_files();
+        let is_read = |own: &Path| {
+            canonical(own).is_some_and(|own| read.iter().any(|read| canonical(read).as_ref() == Some(&own)))
+        };
+        if let Some(own) = place.data.iter().chain([&place.path]).find(|own| is_read(own)) {
+            return Err(format!("{} is read by this scene: give the figure another name.", own.display()));
         }
         let (from, scene) = subject.scenes(session);
         let Place { path, format, sheet, data } = place;

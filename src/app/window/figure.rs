@@ -1,18 +1,18 @@
-//! Dialog that saves a figure of a view, or copies the command that makes it.
+//! Figure of a view that is asked for: what it shows, how it is laid out, where it goes.
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{self, Button, ComboBox, Grid, Key, RichText, TextEdit, Ui};
+use eframe::egui::Ui;
 
 use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
 use crate::app::task::Latest;
-use crate::app::ui::widgets::{dialog, dialog_width};
 use crate::app::views::{MapQuantity, Memory, View, stretch};
-use crate::output::{Format, RMS, Sheet, SheetText};
+use crate::output::{Format, Panel, RMS, Sheet, SheetText};
 use crate::system::files;
 
 use super::Window;
+use super::figure_dialog::Asked;
 use super::messages::Written;
 use super::wanted::Wanted;
 
@@ -36,11 +36,13 @@ pub struct Figures {
     pub data: bool,
     /// The times in s of a run; empty for all of it.
     pub times: [String; 2],
+    /// The panels of a run, in the order of [`Panel::ALL`].
+    pub panels: [bool; 4],
     /// Why it was not saved.
-    problem: Option<String>,
+    pub(super) problem: Option<String>,
     /// The path has had the keyboard.
-    begun: bool,
-    job: Latest<Written>,
+    pub(super) begun: bool,
+    pub(super) job: Latest<Written>,
 }
 
 impl Default for Figures {
@@ -54,19 +56,12 @@ impl Default for Figures {
             titled: true,
             data: false,
             times: [text(), text()],
+            panels: [false; 4],
             problem: None,
             begun: false,
             job: Latest::default(),
         }
     }
-}
-
-/// What a hand asks of the dialog.
-enum Asked {
-    Save,
-    Copy,
-    Browse,
-    Close,
 }
 
 impl Figures {
@@ -93,7 +88,7 @@ impl Figures {
     }
 
     /// Asks for a figure of `view`, with a name that would do.
-    fn open(&mut self, view: View, session: &Session, memory: &Memory) {
+    pub(super) fn open(&mut self, view: View, session: &Session, memory: &Memory) {
         let ending = Path::new(&self.path).extension().filter(|_| Format::of(Path::new(&self.path)).is_ok());
         let ending = ending.map_or("pdf".to_owned(), |own| own.to_string_lossy().into_owned());
         let origin = session.editor.origin().unwrap_or_else(|| "scene".to_owned());
@@ -104,11 +99,17 @@ impl Figures {
         self.choose(&folder.join(format!("{stem}-{name}.{ending}")));
         self.times = times(session, memory)
             .map_or([String::new(), String::new()], |(from, to)| [from, to].map(|t| t.to_string()));
+        self.panels = Panel::ALL.map(|own| panel(view) == Some(own));
         (self.view, self.problem, self.begun) = (Some(view), None, false);
     }
 
     /// The figure as it is asked for, or what is wrong with that.
-    fn order(&self, view: View, session: &Session, memory: &Memory) -> Result<FigureOrder, String> {
+    pub(super) fn order(
+        &self,
+        view: View,
+        session: &Session,
+        memory: &Memory,
+    ) -> Result<FigureOrder, String> {
         let path = PathBuf::from(self.path.trim());
         let subject = self.subject(view, session, memory)?;
         let format = Format::of(&path).map_err(|_| {
@@ -127,7 +128,16 @@ impl Figures {
     /// What a figure of a view shows, or why there is none.
     fn subject(&self, view: View, session: &Session, memory: &Memory) -> Result<Subject, String> {
         match view {
-            _ if shows_run(view) => self.typed_times().map(Subject::Run),
+            _ if panel(view).is_some() => {
+                let shown = Panel::ALL.into_iter().zip(self.panels).filter(|own| own.1).map(|own| own.0);
+                let shown: Vec<Panel> = shown.collect();
+                let none = "Panels: at least one is needed.";
+                if shown.is_empty() {
+                    Err(none.to_owned())
+                } else {
+                    Ok(Subject::Run(self.typed_times()?, shown))
+                }
+            }
             View::Section => Ok(Subject::Section),
             View::Well | View::ForceCurve => Ok(Subject::Curve),
             View::Map => Subject::map(session, column(memory.map_quantity)),
@@ -158,7 +168,12 @@ impl Figures {
     }
 
     /// What is said under the fields, and whether the figure can be saved as it is asked for.
-    fn remark(&self, order: Result<&FigureOrder, &String>, view: View, session: &Session) -> (bool, String) {
+    pub(super) fn remark(
+        &self,
+        order: Result<&FigureOrder, &String>,
+        view: View,
+        session: &Session,
+    ) -> (bool, String) {
         let path = Path::new(self.path.trim());
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         if let Err(problem) = order {
@@ -171,14 +186,11 @@ impl Figures {
             return (false, "There is no such folder.".to_owned());
         }
         let mut words = match view {
-            _ if shows_run(view) && session.is_continued() => {
+            _ if panel(view).is_some() && session.is_continued() => {
                 "The run of the scene as it now stands, from its start: what was changed on the way of this \
                  motion has no command."
             }
-            _ if shows_run(view) => {
-                "The run of the scene from its start: displacement, velocity, base acceleration and phase \
-                 portrait."
-            }
+            _ if panel(view).is_some() => "The run of the scene from its start.",
             View::Section => "The states of the scene's own run, from its start.",
             View::Well | View::ForceCurve => "Force and potential over displacement.",
             View::Map | View::UpAndDown | View::Basins => "Every run is made anew, which may take a while.",
@@ -190,118 +202,6 @@ impl Figures {
             words += " A file of that name exists and will be replaced.";
         }
         (true, words.trim_start().to_owned())
-    }
-
-    /// Draws the question.
-    fn ui(&mut self, ui: &Ui, view: View, session: &Session, memory: &Memory) -> Option<Asked> {
-        let answer = dialog(ui.ctx(), "figure").show(ui.ctx(), |ui| {
-            ui.set_width(dialog_width(ui, 560.0));
-            ui.heading("Save a figure");
-            ui.add_space(4.0);
-            self.fields_ui(ui, view, session, memory)
-        });
-        let closed = answer.should_close().then_some(Asked::Close);
-        answer.inner.or(closed)
-    }
-
-    fn fields_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) -> Option<Asked> {
-        let mut asked = None;
-        let field = |ui: &mut Ui, name: &str, text: &mut String, width: f32, unit: &str| {
-            let name = ui.label(name);
-            let field = ui.add(TextEdit::singleline(text).desired_width(width)).labelled_by(name.id);
-            ui.label(unit);
-            field
-        };
-        let entered = Grid::new("figure").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
-            let name = ui.label("Of");
-            let mut chosen = view;
-            let combo = ComboBox::from_id_salt("figure of").width(180.0).selected_text(view.name());
-            let combo = combo.show_ui(ui, |ui| {
-                for own in View::ALL {
-                    ui.selectable_value(&mut chosen, own, own.name());
-                }
-            });
-            combo.response.labelled_by(name.id);
-            if chosen != view {
-                self.open(chosen, session, memory);
-            }
-            ui.end_row();
-            let name = ui.label("File");
-            let own = ui.horizontal(|ui| {
-                let path = TextEdit::singleline(&mut self.path);
-                let room = ui.available_width() - 84.0;
-                let path = ui.add(path.desired_width(room)).labelled_by(name.id);
-                if ui.button("Browse...").clicked() {
-                    asked = Some(Asked::Browse);
-                }
-                path
-            });
-            ui.end_row();
-            ui.label("On paper");
-            let (width, font) = ui
-                .horizontal(|ui| {
-                    let width = field(ui, "width", &mut self.width, 44.0, "mm,");
-                    (width, field(ui, "text", &mut self.font, 36.0, "points"))
-                })
-                .inner;
-            ui.end_row();
-            let mut fields = vec![own.inner, width, font];
-            if shows_run(view) {
-                ui.label("Times");
-                ui.horizontal(|ui| {
-                    let [from, to] = &mut self.times;
-                    fields.push(field(ui, "from", from, 64.0, ""));
-                    fields.push(field(ui, "to", to, 64.0, "s; empty for the whole run"));
-                });
-                ui.end_row();
-            }
-            ui.label("");
-            ui.checkbox(&mut self.titled, "With title and footer");
-            ui.end_row();
-            ui.label("");
-            ui.checkbox(&mut self.data, "Also the numbers that are drawn, as CSV beside it");
-            ui.end_row();
-            if !std::mem::replace(&mut self.begun, true) {
-                fields[0].request_focus();
-            }
-            if fields.iter().any(|field| field.changed()) {
-                self.problem = None;
-            }
-            fields.iter().any(|field| field.lost_focus()) && ui.input(|input| input.key_pressed(Key::Enter))
-        });
-        let order = self.order(view, session, memory);
-        let (can_save, remark) = self.remark(order.as_ref(), view, session);
-        let remark = self.problem.clone().unwrap_or(remark);
-        let running = self.job.is_running();
-        let words = if running { "Working it out." } else { remark.as_str() };
-        ui.add_space(4.0);
-        let room = egui::Vec2::new(ui.available_width(), 2.0 * ui.text_style_height(&egui::TextStyle::Body));
-        ui.allocate_ui(room, |ui| {
-            ui.set_min_height(room.y);
-            let label = ui.add(egui::Label::new(RichText::new(words)).wrap());
-            ui.ctx().accesskit_node_builder(label.id, |node| node.set_live(egui::accesskit::Live::Polite));
-        });
-        ui.add_space(4.0);
-        ui.horizontal(|ui| {
-            if running {
-                if ui.button("Stop").clicked() {
-                    self.job.clear();
-                }
-                return;
-            }
-            if ui.add_enabled(can_save, Button::new("Save")).clicked() || entered.inner && can_save {
-                asked = Some(Asked::Save);
-            }
-            let hover = "The command that makes the same file without a window.";
-            let copy = ui.add_enabled(order.is_ok(), Button::new("Copy as command")).on_hover_text(hover);
-            if copy.clicked() {
-                asked = Some(Asked::Copy);
-            }
-            if ui.button("Cancel").clicked() {
-                asked = Some(Asked::Close);
-            }
-        });
-        asked
     }
 }
 
@@ -355,9 +255,15 @@ impl Window {
     }
 }
 
-/// Whether the figure of a view is that of a run.
-fn shows_run(view: View) -> bool {
-    matches!(view, View::Displacement | View::Velocity | View::BaseAcceleration | View::PhasePortrait)
+/// The panel of a run that a view is.
+pub(super) fn panel(view: View) -> Option<Panel> {
+    match view {
+        View::Displacement => Some(Panel::Displacement),
+        View::Velocity => Some(Panel::Velocity),
+        View::BaseAcceleration => Some(Panel::Acceleration),
+        View::PhasePortrait => Some(Panel::Portrait),
+        _ => None,
+    }
 }
 
 /// The times in s that the traces show, where they are a part of the run from its start.

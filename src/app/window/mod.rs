@@ -29,6 +29,7 @@ const HINT_ROW: f32 = 32.0;
 mod command;
 mod deferred;
 mod figure;
+mod figure_dialog;
 mod files;
 mod kept;
 mod keys;
