@@ -11,8 +11,8 @@ use interwell::mechanics::flexure::State;
 use interwell::output::{contact_figure, curve_figure, landscape};
 use interwell::scene::Document;
 use interwell::study::{
-    CURVE_POINTS, StatesError, Table, Task, contact, curve, default_positions, even_positions, flexures_at,
-    full_curve, metres, shapes, states, stop_positions, stress_warning,
+    CURVE_PICTURE_POINTS, CURVE_POINTS, StatesError, Table, Task, contact, curve, default_positions,
+    even_positions, flexures_at, full_curve, metres, shapes, states, stop_positions, stress_warning,
 };
 
 use super::failure::Failure;
@@ -88,9 +88,6 @@ pub struct Arguments {
 /// Positions at which the flexures are drawn: each is some hundred rows.
 const SHAPES: u32 = 21;
 
-/// Points of the picture: more than it has columns.
-const PICTURE_POINTS: usize = 3001;
-
 /// Writes the curve as CSV and, where asked for, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
@@ -98,6 +95,9 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let axes = ranges(&options.ranges, "--plot-x")?;
     let contact_picture =
         Picture::of("--contact-plot", options.contact_plot.as_deref(), &options.plot, common)?;
+    // of two pictures the numbers are those of --plot
+    let contact_picture =
+        contact_picture.map(|own| if picture.is_none() { own.with_data(&options.plot) } else { own });
     let rigid = restitution(&options.rigid)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let range = options.range_mm.as_deref().map(range).transpose()?;
@@ -125,11 +125,10 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let landscape_path = options.landscape.as_deref().map(|path| ("--landscape", path));
     let shapes_path = options.shapes.as_deref().map(|path| ("--shapes", path));
     let [plot, data] = Picture::outputs(picture);
-    let [contact_plot, _] = Picture::outputs(contact_picture);
-    let mut sinks = open(
-        &inputs(&options.scene, &document),
-        [Some(("--out", common.out())), landscape_path, shapes_path, contact_path, plot, data, contact_plot],
-    )?;
+    let [contact_plot, contact_data] = Picture::outputs(contact_picture);
+    let out = Some(("--out", common.out()));
+    let outputs = [out, landscape_path, shapes_path, contact_path, plot, data, contact_plot, contact_data];
+    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let table = if options.full {
         let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
         let warning = mechanism.flexures.as_ref().and_then(|own| stress_warning(own, &rows));
@@ -144,7 +143,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     write_text(&mut sinks[1], &landscape(&mechanism, document.scene.mass_g / 1e3))?;
     if let Some(picture) = picture {
         // The picture shows the curve however few positions were asked for.
-        let table = curve(&mechanism, even(PICTURE_POINTS))?;
+        let table = curve(&mechanism, even(CURVE_PICTURE_POINTS))?;
         let stops = stop_positions(&document.scene);
         let figure = curve_figure(&table, &mechanism, stops, axes, &caption(&document), &picture.theme);
         picture.write(&mut sinks[4..6], figure)?;

@@ -263,8 +263,8 @@ pub struct PlotOptions {
     #[arg(long, value_name = "DPI", allow_hyphen_values = true, requires = "plot_width_mm")]
     pub dpi: Option<String>,
 
-    /// With --plot: write the numbers that are drawn as CSV
-    #[arg(long, value_name = "FILE", allow_hyphen_values = true, requires = "plot")]
+    /// With a picture: write the numbers that are drawn as CSV
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, requires = "picture")]
     pub plot_data: Option<PathBuf>,
 
     /// With a picture: without title, subtitle and footer, for a page that has a caption

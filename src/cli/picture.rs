@@ -4,7 +4,9 @@ use std::path::Path;
 
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, CommandFactory};
-use interwell::output::{Caption, Figure, Format, Ranges, Sheet, Sink, Theme};
+use interwell::output::{
+    Argument, Caption, Figure, Format, Ranges, Sheet, SheetText, Sink, Theme, picture_arguments,
+};
 use interwell::scene::Document;
 
 use super::failure::Failure;
@@ -31,7 +33,12 @@ impl<'a> Picture<'a> {
     /// The picture that `options` ask for; an error where its name does not end like one.
     pub fn asked(options: &'a PlotOptions, common: &Common) -> Result<Option<Self>, Failure> {
         let picture = Self::of("--plot", options.plot.as_deref(), options, common)?;
-        Ok(picture.map(|own| Self { data: options.plot_data.as_deref(), ..own }))
+        Ok(picture.map(|own| own.with_data(options)))
+    }
+
+    /// The same, with the place of the numbers that are drawn.
+    pub fn with_data(self, options: &'a PlotOptions) -> Self {
+        Self { data: options.plot_data.as_deref(), ..self }
     }
 
     /// The picture at `path`, which `option` gave; laid out as `options` say.
@@ -86,28 +93,12 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// The arguments that this call of the program makes its pictures of, in the order of `--help`: those that
-/// change nothing on a picture, such as the number of threads and the places of files, are left out, so that
-/// the same picture is the same bytes.
+/// The arguments that this call of the program makes its pictures of, in the order of `--help`.
 fn arguments() -> Vec<String> {
-    const IDLE: [&str; 12] = [
-        "headless",
-        "out",
-        "jobs",
-        "quiet",
-        "plot_data",
-        "events",
-        "summary",
-        "landscape",
-        "shapes",
-        "contact",
-        "attractors",
-        "strict",
-    ];
     let program = Options::command();
     let Ok(matches) = program.clone().try_get_matches_from(std::env::args_os()) else { return Vec::new() };
     let Some((word, own)) = matches.subcommand() else { return Vec::new() };
-    let mut words = vec!["--headless".to_owned(), word.to_owned()];
+    let mut all = Vec::new();
     for argument in program.find_subcommand(word).iter().flat_map(|command| command.get_arguments()) {
         let id = argument.get_id().as_str();
         // common options may also stand before the command
@@ -119,62 +110,29 @@ fn arguments() -> Vec<String> {
             let values = matches.get_raw(id).into_iter().flatten();
             values.map(|value| value.to_string_lossy().into_owned()).collect()
         };
-        if IDLE.contains(&id) {
+        if id == "headless" {
             continue;
         }
-        for value in given(&matches).into_iter().chain(given(own)) {
-            let option = argument.get_long().map(|long| format!("--{long}"));
-            let is_flag = matches!(argument.get_action(), ArgAction::SetTrue);
-            // the place of a picture is no part of it, its kind is
-            let ending = Path::new(&value).extension().map(|own| own.to_string_lossy().to_ascii_lowercase());
-            let value = match (id, ending) {
-                ("plot" | "contact_plot", Some(ending)) => format!("{id}.{ending}"),
-                _ => value,
-            };
-            words.extend(option);
-            words.extend(Some(value).filter(|_| !is_flag));
-        }
+        let is_flag = matches!(argument.get_action(), ArgAction::SetTrue);
+        let option = argument.get_long().map(str::to_owned);
+        let values =
+            given(&matches).into_iter().chain(given(own)).map(|value| Some(value).filter(|_| !is_flag));
+        all.extend(values.map(|value| Argument { option: option.clone(), value }));
     }
-    words
+    picture_arguments(word, all)
 }
 
 /// The sheet of paper that `options` ask for.
 fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure> {
-    let Some(width) = &options.plot_width_mm else { return Ok(None) };
-    let within = |option: &str, text: &str, (least, most): (f64, f64), what: &str, such: &str| {
-        let number = text.trim().parse().ok().filter(|own: &f64| (least..=most).contains(own));
-        let message = format!("{option} {text}: give {what}, {least} to {most}, such as {such}");
-        number.ok_or_else(|| Failure::argument(message))
+    let Some(width_mm) = &options.plot_width_mm else { return Ok(None) };
+    let text = SheetText {
+        width_mm,
+        height_mm: options.plot_height_mm.as_deref(),
+        font_pt: &options.font_pt,
+        dpi: options.dpi.as_deref(),
+        titled: !options.no_title,
     };
-    let width_mm = within("--plot-width-mm", width, Sheet::MM, "a width in mm", "85")?;
-    let height_mm = options.plot_height_mm.as_deref();
-    let height_mm = height_mm
-        .map(|text| within("--plot-height-mm", text, Sheet::MM, "a height in mm", "60"))
-        .transpose()?;
-    let font_pt = within("--font-pt", &options.font_pt, Sheet::FONT_PT, "a size in points", "8")?;
-    let dpi = options.dpi.as_deref();
-    let dpi = dpi.map_or(Ok(300.0), |text| {
-        within("--dpi", text, Sheet::DPI, "a resolution in pixels an inch", "300")
-    })?;
-    let most = Sheet::largest_font_pt(width_mm);
-    if font_pt > most {
-        return Err(Failure::argument(format!(
-            "--font-pt {}: a picture {width_mm} mm wide has room for text of at most {} points",
-            options.font_pt,
-            (10.0 * most).floor() / 10.0
-        )));
-    }
-    let sheet = Sheet { width_mm, height_mm, font_pt, dpi, titled: !options.no_title };
-    let longest = width_mm.max(height_mm.unwrap_or(0.0));
-    if format == Format::Png && f64::from(sheet.pixels(longest)) > Sheet::MOST_PIXELS {
-        return Err(Failure::argument(format!(
-            "--dpi {dpi}: {longest} mm would be {} pixels; at most {} are drawn, which is {} an inch",
-            (longest / 25.4 * dpi).round(),
-            Sheet::MOST_PIXELS,
-            (Sheet::MOST_PIXELS * 25.4 / longest).floor()
-        )));
-    }
-    Ok(Some(sheet))
+    Sheet::read(&text, format == Format::Png).map(Some).map_err(|error| Failure::argument(error.to_string()))
 }
 
 /// What stands over and under a picture of this scene.

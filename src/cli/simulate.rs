@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use interwell::dynamics::{Model, Outcome};
 use interwell::numeric::short;
-use interwell::output::{measured_figure, push_number, run_figure, summary};
+use interwell::output::{Panel, measured_figure, push_number, run_figure, summary};
 use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_trace, yield_warning};
 
 use super::failure::Failure;
@@ -48,6 +48,12 @@ pub struct Arguments {
     /// Write statistics, outcome and energy ledger as JSON
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub summary: Option<PathBuf>,
+
+    /// With --plot: these panels alone, one under the other: displacement, velocity, acceleration (of the
+    /// base), portrait (velocity over displacement) [default: all, with numbers beside them]
+    #[arg(long, value_name = "A,B,..", requires = "plot", conflicts_with = "measured", value_delimiter = ',',
+          value_parser = Panel::ALL.map(Panel::name))]
+    pub panels: Vec<String>,
 
     /// A measured motion to compare with.
     #[command(flatten)]
@@ -130,7 +136,12 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
                 let quantity = own.record.channels[1].quantity;
                 measured_figure(&trace, (found, quantity), own.inset, axes, &about, &picture.theme)
             }
-            None => run_figure(&trace, &simulation.summary, mechanism, axes, &about, &picture.theme),
+            None => {
+                let named = options.panels.iter().filter_map(|name| Panel::named(name)).collect::<Vec<_>>();
+                let panels = if named.is_empty() { Panel::ALL.to_vec() } else { named };
+                let run = (&trace, &simulation.summary);
+                run_figure(run, mechanism, &panels, axes, &about, &picture.theme)
+            }
         };
         picture.write(pictures, figure)?;
     }

@@ -13,7 +13,7 @@ use interwell::output::{
 use interwell::scene::Document;
 use interwell::study::{
     Carry, DIRECTION, Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, SummaryField, Sweep, SweepEnd, SweepOptions,
-    Table, Task, first_crossing, release_line,
+    Table, Task,
 };
 
 use interwell::system::threads::{Pool, processors};
@@ -141,10 +141,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         // They are about runs from rest.
         let overlay = match carry {
             Some(_) => Overlay::default(),
-            None => Overlay {
-                release: mechanism.and_then(|own| release_line(&document.scene, &own, grid)),
-                first_crossing: first_crossing(grid, &rows),
-            },
+            None => Overlay::of(&document.scene, mechanism.as_deref(), grid, &rows),
         };
         let (rows, scene, quantity) = (&rows, &document.scene, &*options.quantity);
         let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges: axes };

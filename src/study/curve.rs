@@ -9,6 +9,9 @@ use crate::scene::Scene;
 /// Positions of a force curve where nobody says how many.
 pub const CURVE_POINTS: u32 = 401;
 
+/// Positions of a picture of it: more than it has columns.
+pub const CURVE_PICTURE_POINTS: usize = 3001;
+
 /// A position at which the curve is not known.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(

@@ -51,8 +51,8 @@ pub use cells::Direction;
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
 pub use continued::continued_scene;
 pub use curve::{
-    CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres, small_amplitude_frequency,
-    stop_positions,
+    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres,
+    small_amplitude_frequency, stop_positions,
 };
 pub use dense_output::between;
 pub use distance::distances;

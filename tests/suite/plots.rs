@@ -1,6 +1,7 @@
 //! Pictures: what they show, what is refused, and their bytes.
 
 mod asked;
+mod documented;
 mod lines;
 mod manifests;
 mod paper;

@@ -6,6 +6,7 @@ mod advanced;
 mod compare;
 mod documents;
 mod explore;
+mod figures;
 mod first_minute;
 mod flexures;
 mod frame;

@@ -10,7 +10,7 @@ use interwell::scene::Layout;
 use crate::documents::{harness_text, opened, title};
 use crate::support::{LONG, WIDE, command, window};
 
-fn copied(harness: &Harness<'static, Window>) -> Option<String> {
+pub fn copied(harness: &Harness<'static, Window>) -> Option<String> {
     harness.output().platform_output.commands.iter().find_map(|command| match command {
         OutputCommand::CopyText(text) => Some(text.clone()),
         _ => None,
@@ -49,7 +49,7 @@ fn the_command_line_says_what_is_shown() {
 }
 
 /// The words of a copied command as its arguments.
-fn arguments(line: &str) -> Vec<String> {
+pub fn arguments(line: &str) -> Vec<String> {
     let words = line.strip_prefix("interwell ").unwrap().split(' ');
     words.map(|word| word.trim_matches('\'').to_owned()).collect()
 }

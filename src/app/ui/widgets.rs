@@ -80,6 +80,8 @@ pub enum Icon {
     Fill,
     /// Four squares: all views again.
     Restore,
+    /// Two axes and a line: a figure of a view.
+    Figure,
 }
 
 /// A button with an icon; `name` is what a screen reader and the tests call it.
@@ -133,6 +135,14 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
                 Shape::rect_stroke(part, 0.0, Stroke::new(1.5, color), egui::StrokeKind::Inside)
             })
             .to_vec(),
+        Icon::Figure => {
+            let place = |(x, y): (f32, f32)| rect.lerp_inside(vec2(x, y));
+            let line = |points: &[(f32, f32)]| {
+                Shape::line(points.iter().map(|own| place(*own)).collect(), Stroke::new(1.5, color))
+            };
+            let axes = line(&[(0.0, 0.0), (0.0, 1.0), (1.0, 1.0)]);
+            vec![axes, line(&[(0.2, 0.75), (0.45, 0.3), (0.65, 0.6), (1.0, 0.1)])]
+        }
         Icon::Fill => {
             vec![Shape::rect_stroke(rect, 0.0, Stroke::new(1.5, color), egui::StrokeKind::Inside)]
         }

@@ -26,6 +26,8 @@ pub struct Memory {
     pub grab: bool,
     /// What is to be pinned.
     pub pin: Option<PinKind>,
+    /// The view of which a figure is to be saved.
+    pub figure: Option<View>,
     /// The view under the pointer.
     pub hovered: Option<View>,
     /// What the traces share.

@@ -45,6 +45,7 @@ pub use map::MapQuantity;
 pub use memory::{Memory, Timeline};
 pub use span::Span;
 pub use trace::TraceQuantity;
+pub(super) use trace::stretch;
 pub use view::View;
 
 /// Draws one view.

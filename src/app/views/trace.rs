@@ -254,7 +254,7 @@ fn ghost_paths(
 }
 
 /// How many seconds are shown of a motion by a model.
-fn stretch(model: &Model) -> f64 {
+pub(in crate::app) fn stretch(model: &Model) -> f64 {
     let most = MOST_SWINGS * model.natural_time();
     model.forcing_period().map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(most))
 }

@@ -18,6 +18,8 @@ pub enum Command {
     Open,
     Save,
     SaveAs(Wanted),
+    /// A figure of a view; none for the one under the pointer.
+    Figure(Option<View>),
     CopyScene,
     PasteScene,
     CopyCommand,
@@ -70,6 +72,7 @@ impl Command {
         matches!(
             self,
             Self::SaveAs(Motion | Run | Events | Map)
+                | Self::Figure(_)
                 | Self::CopyCommand
                 | Self::CopyMapCommand
                 | Self::Undo
@@ -155,6 +158,8 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("Save", control(Key::S), C::Save, Joined),
         Item("Save as...", control_shift(Key::S), C::SaveAs(Wanted::Save), No),
         Line,
+        Item("Save a figure of a view...", control(Key::E), C::Figure(None),
+            As("Scene", "save a figure of the view under the pointer")),
         Item("Save the motion seen as CSV...", None, C::SaveAs(Wanted::Motion), No),
         Item("Save the whole run as CSV...", None, C::SaveAs(Wanted::Run), No),
         Item("Save the events as CSV...", None, C::SaveAs(Wanted::Events), No),

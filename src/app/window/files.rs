@@ -45,6 +45,7 @@ impl Window {
                     place: std::mem::take(&mut self.place),
                     written: std::mem::replace(&mut self.written, channel()),
                     run: std::mem::take(&mut self.run),
+                    figures: std::mem::take(&mut self.figures),
                     covered: self.covered,
                     lessons: std::mem::take(&mut self.lessons),
                     messages: self.messages.short_only(),
@@ -120,6 +121,7 @@ impl Window {
         if let Some(chosen) = self.dialog.take() {
             match chosen {
                 Chosen::File(wanted, path) => self.take_file(ctx, wanted, path),
+                Chosen::NoDialog(Wanted::Figure, _) => self.figures.has_no_dialog(),
                 Chosen::NoDialog(wanted, path) => self.typed = Some(PathDialog::new(wanted, &path)),
             }
         } else if !self.dialog.is_running() && self.over_comments.is_none() && self.typed.is_none() {
@@ -139,6 +141,7 @@ impl Window {
             Wanted::Curve => self.write_curve(&path),
             Wanted::Map => self.write_map(&path),
             Wanted::Picture => self.write_picture(ctx, path),
+            Wanted::Figure => self.figures.choose(&path),
         }
     }
 
@@ -219,6 +222,7 @@ impl Window {
                 self.take_file(ctx, wanted, path);
             }
         }
+        self.figure_ui(ui);
         if ui.input(|input| !input.raw.hovered_files.is_empty()) {
             let painter =
                 ctx.layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));

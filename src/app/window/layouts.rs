@@ -190,7 +190,9 @@ impl Tiling {
         let fitting = |(id, tile): (&TileId, &Tile<View>)| {
             let Tile::Container(Container::Tabs(tabs)) = tile else { return None };
             let widths: Vec<f32> = tabs.children.iter().filter_map(width).collect();
-            let room = self.tree.tiles.rect(*id)?.width() - BUTTON - 2.0 * TITLE_MARGIN * widths.len() as f32;
+            let buttons = if self.room == Room::Compact { BUTTON } else { 1.7 * BUTTON };
+            let room =
+                self.tree.tiles.rect(*id)?.width() - buttons - 2.0 * TITLE_MARGIN * widths.len() as f32;
             Some(BODY * room / widths.iter().sum::<f32>().max(1.0))
         };
         let least = self.tree.tiles.iter().filter_map(fitting).fold(BODY, f32::min);
@@ -200,7 +202,7 @@ impl Tiling {
     /// Draws the views; `fill` is set where a view asks for the whole window.
     pub fn ui(&mut self, ui: &mut Ui, context: &mut ViewContext<'_>, fill: &mut Option<View>) {
         let title = self.title_size(ui);
-        let mut behavior = Behavior { context, fill, title };
+        let mut behavior = Behavior { context, fill, title, room: self.room };
         self.tree.ui(&mut behavior, ui);
     }
 }
@@ -210,6 +212,7 @@ struct Behavior<'a, 'b> {
     fill: &'a mut Option<View>,
     /// Size of the titles.
     title: f32,
+    room: Room,
 }
 
 impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
@@ -255,6 +258,11 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
         let hover = "This view over the whole window (Z)";
         if icon_button_ui(ui, Icon::Fill, 22.0, &name, hover).clicked() {
             *self.fill = Some(*view);
+        }
+        let name = format!("figure of {}", view.name());
+        let hover = "Save a figure of this view (Ctrl+E)";
+        if self.room != Room::Compact && icon_button_ui(ui, Icon::Figure, 22.0, &name, hover).clicked() {
+            self.context.memory.figure = Some(*view);
         }
     }
 

@@ -28,6 +28,8 @@ const HINT_ROW: f32 = 32.0;
 
 mod command;
 mod deferred;
+mod figure;
+mod figure_dialog;
 mod files;
 mod kept;
 mod keys;
@@ -44,6 +46,7 @@ mod wanted;
 mod writing;
 
 pub use command::Command;
+pub use figure::Figures;
 pub use state::Window;
 pub use wanted::Wanted;
 
@@ -191,6 +194,7 @@ impl Window {
         self.pointing_ui(&ctx, &style);
         self.memory.grab = false;
         asked.extend(self.memory.pin.take().map(Command::Pin));
+        asked.extend(self.memory.figure.take().map(|view| Command::Figure(Some(view))));
         self.session.map.end_frame();
         self.session.explore.end_frame();
         self.session.accuracy.end_frame();

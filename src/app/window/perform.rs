@@ -58,6 +58,7 @@ impl Window {
             Command::Open => self.leave_for(ctx, Next::Choose),
             Command::Save => self.save(ctx),
             Command::SaveAs(wanted) => self.choose(wanted),
+            Command::Figure(view) => self.ask_figure(view),
             Command::CopyScene => self.copy_scene(ctx),
             Command::PasteScene => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Command::CopyCommand => match export::command_line(&self.session) {

@@ -17,6 +17,7 @@ use crate::scene::{Layout, PRESETS};
 use crate::system::files;
 
 use super::deferred::DeferredInput;
+use super::figure::Figures;
 use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::Next;
 use super::lessons::CANNOT_OPEN_LESSON;
@@ -72,6 +73,8 @@ pub struct Window {
     pub(super) dialogs: bool,
     /// A path that is typed where there is no dialog.
     pub(super) typed: Option<PathDialog>,
+    /// The figure that is asked for, and how figures are laid out.
+    pub(super) figures: Figures,
     /// Input that waits for the next frame.
     pub(super) deferred: DeferredInput,
     pub(super) hint: hint::Hint,
@@ -142,6 +145,7 @@ impl Window {
             dialog: Latest::default(),
             dialogs: true,
             typed: None,
+            figures: Figures::default(),
             deferred: DeferredInput::default(),
             hint_row: false,
             lessons: Lessons::default(),
@@ -182,6 +186,7 @@ impl Window {
             || self.asked.is_some()
             || self.over_comments.is_some()
             || self.typed.is_some()
+            || self.figures.is_open()
             || self.shortcuts.is_some()
             || self.glossary
     }

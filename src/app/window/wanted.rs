@@ -23,6 +23,8 @@ pub enum Wanted {
     Map,
     /// The window, as PNG.
     Picture,
+    /// A figure of a view.
+    Figure,
 }
 
 impl Wanted {
@@ -38,6 +40,7 @@ impl Wanted {
             Self::Curve => ("Save the force curve to which file?", "curve", "csv"),
             Self::Map => ("Save the map to which file?", "map", "csv"),
             Self::Picture => ("Save the picture to which file?", "picture", "png"),
+            Self::Figure => ("Save the figure to which file?", "figure", "pdf"),
         }
     }
 

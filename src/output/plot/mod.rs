@@ -4,6 +4,7 @@
 //! and their places are the same, and the same data give the same bytes.
 
 mod accuracy;
+mod arguments;
 mod axis;
 mod basins;
 mod branch;
@@ -19,6 +20,7 @@ mod map;
 mod mark;
 mod measured;
 mod paint;
+mod panels;
 mod pdf;
 mod quantity;
 mod run;
@@ -35,6 +37,7 @@ mod walk;
 use std::path::Path;
 
 pub use accuracy::accuracy_figure;
+pub use arguments::{Argument, picture_arguments};
 pub use axis::{PlotAxis, Ranges};
 pub use basins::{attractor_colour, basins_figure, can_show_starts};
 pub use branch::branch_figure;
@@ -45,10 +48,11 @@ pub use figure::Figure;
 pub use mark::Caption;
 pub use measured::measured_figure;
 pub use paint::PaintError;
+pub use panels::Panel;
 pub use quantity::{RMS, quantities};
 pub use run::{run_figure, speed_unit};
 pub use section::{SectionPicture, section_figure};
-pub use sheet::Sheet;
+pub use sheet::{Sheet, SheetError, SheetText};
 pub use spectrum::{SpectrumQuantity, spectrum_figure};
 pub use style::{Ink, Theme, viridis};
 pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_figure};

@@ -6,68 +6,26 @@ use super::axis::{PlotAxis, Ranges};
 use super::drawn::Drawn;
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
-use super::frame::{Frame, stretched};
+use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker, regime};
+use super::panels::{GUTTER, LEFT, Panel, Places};
 use super::style::{self, Ink, Theme};
 use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
 use crate::study::{Table, Trace, Values};
 
-const LEFT: f64 = 150.0;
-const GUTTER: f64 = 102.0;
-/// Upper and lower edges of the panels over time on the canvas for a screen.
-const PANELS: [(f64, f64); 3] = [(175.0, 425.0), (447.0, 657.0), (679.0, 869.0)];
-
-/// Where the parts stand.
-struct Places {
-    panels: [Area; 3],
-    portrait: Area,
-    /// Beginning of the first line of the account.
-    account: Point,
-}
-
-impl Places {
-    /// What a run needs between its captions: narrow, the portrait is under the panels.
-    fn least(theme: &Theme) -> f64 {
-        if theme.is_narrow() { 1290.0 } else { 800.0 }
-    }
-
-    /// On the canvas of `figure`, `more` below their usual height.
-    fn new(figure: &Figure, more: f64) -> Self {
-        let (width, bottom, top) = (figure.canvas.right, figure.bottom() + 1.0, PANELS[0].0 + more);
-        let panels = |left: f64, right: f64, bottom: f64| {
-            stretched(PANELS, top, bottom).map(|(top, bottom)| Area::new(left, top, right, bottom))
-        };
-        if figure.is_narrow() {
-            let (left, right) = (GUTTER + style::AXIS, figure.right());
-            let height = 0.3 * (bottom - top);
-            let beside = right.min(width - ACCOUNT);
-            let portrait = Area::new(left, bottom - height, beside, bottom);
-            let account = (beside + 20.0, portrait.top + 26.0);
-            return Self { panels: panels(left, right, portrait.top - 146.0), portrait, account };
-        }
-        let high = 425.0 * (bottom - top) / (PANELS[2].1 - PANELS[0].0);
-        let portrait = Area::new(width - 450.0, top, width - 35.0, top + high);
-        let account = (portrait.left, portrait.bottom + 138.0);
-        Self { panels: panels(LEFT, width - 615.0, bottom), portrait, account }
-    }
-}
-
-/// Room for the account beside the portrait.
-const ACCOUNT: f64 = 370.0;
-
-/// The picture of a run from its trace and its summary. The trace says which times it shows; `ranges` may
-/// give the axis of the displacement, in mm.
+/// The picture of a run from its trace and its summary, with these panels. The trace says which times it
+/// shows; `ranges` may give the axis of the displacement, in mm.
 pub fn run_figure(
-    trace: &Trace,
-    summary: &Summary,
+    (trace, summary): (&Trace, &Summary),
     mechanism: &Mechanism,
+    panels: &[Panel],
     ranges: Ranges,
     caption: &Caption,
     theme: &Theme,
 ) -> Figure {
-    let mut figure = Figure::new(theme, caption, Places::least(theme));
+    let mut figure = Figure::new(theme, caption, Places::least(theme, panels));
     let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
     let stable = mechanism.landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
     let seen = Seen {
@@ -80,30 +38,36 @@ pub fn run_figure(
         wells: stable.map(|equilibrium| equilibrium.x).collect(),
         speed: speed_unit(column("v_m_per_s").iter().copied()),
         displacements: ranges.y,
+        panels,
     };
     let reach = seen.displacement(&seen.x[seen.rows(trace.shown_from)]);
     let mut entries = Vec::new();
-    if trace.impacts.rows() > 0 {
+    if trace.impacts.rows() > 0 && seen.has(Panel::Displacement) {
         entries.push((Sample::Ticks(theme.ink), "impact"));
     }
-    if trace.rests.rows() > 0 {
+    if trace.rests.rows() > 0 && seen.is_over_time() {
         // On a compliant stop it never rests: it trembles.
         let words = if summary.peak_contact_force.is_some() { "on a stop" } else { "at rest on a stop" };
         entries.push((Sample::Patch(theme.rest, None), words));
     }
-    if trace.stops.0.is_finite() || trace.stops.1.is_finite() {
+    let has_places = seen.has(Panel::Displacement) || seen.has(Panel::Portrait);
+    if has_places && (trace.stops.0.is_finite() || trace.stops.1.is_finite()) {
         entries.push((Sample::Patch(theme.wall_fill(), None), "stop"));
     }
-    if seen.wells.iter().any(|well| (reach.low..=reach.high).contains(&(well * 1e3))) {
+    if has_places && seen.wells.iter().any(|well| (reach.low..=reach.high).contains(&(well * 1e3))) {
         entries.push((Sample::Line(theme.stable, style::LINE, Some(style::DASH)), "well"));
     }
     let ends = (LEFT, figure.canvas.right - 615.0);
     let more = (legend(&mut figure, theme, &entries, ends, 142.0) - 161.0).max(0.0);
-    let places = Places::new(&figure, more);
-    seen.panels(&mut figure, &places);
-    seen.portrait(&mut figure, places.portrait);
+    let places = Places::new(&figure, more, panels);
+    seen.over_time(&mut figure, &places);
+    if let Some(area) = places.portrait {
+        seen.portrait(&mut figure, area);
+    }
     figure.data = seen.drawn();
-    account(&mut figure, places.account, (summary, trace), seen.speed, theme);
+    if let Some(at) = places.account {
+        account(&mut figure, at, (summary, trace), seen.speed, theme);
+    }
     caption.draw(&mut figure, theme, &subtitle(summary), LEFT);
     figure
 }
@@ -121,9 +85,18 @@ struct Seen<'a> {
     speed: (f64, &'static str),
     /// The axis of the displacement in mm, where it was asked for.
     displacements: Option<(f64, f64)>,
+    panels: &'a [Panel],
 }
 
 impl Seen<'_> {
+    fn has(&self, panel: Panel) -> bool {
+        self.panels.contains(&panel)
+    }
+
+    fn is_over_time(&self) -> bool {
+        self.panels.iter().any(|own| *own != Panel::Portrait)
+    }
+
     /// The rows from a time on up to where the picture ends.
     fn rows(&self, from: f64) -> Range<usize> {
         let end = self.t.partition_point(|t| *t <= self.trace.shown_to);
@@ -150,31 +123,38 @@ impl Seen<'_> {
     fn drawn(&self) -> Table {
         let Self { trace, t, x, v, accel, .. } = *self;
         let mut drawn = Drawn::new(["t_s", "x_m", "v_m_per_s", "base_accel_m_per_s2"], &["side"]);
-        for i in self.rows(trace.shown_from) {
-            drawn.put("run", &[t[i], x[i], v[i], accel[i]], &[]);
+        let shown = [Panel::Displacement, Panel::Velocity, Panel::Acceleration].map(|own| self.has(own));
+        for i in self.rows(trace.shown_from).filter(|_| self.is_over_time()) {
+            let value = |place: usize, of: &[f64]| if shown[place] { of[i] } else { f64::NAN };
+            drawn.put("run", &[t[i], value(0, x), value(1, v), value(2, accel)], &[]);
         }
-        for i in self.rows(trace.portrait_from) {
+        for i in self.rows(trace.portrait_from).filter(|_| self.has(Panel::Portrait)) {
             drawn.put("portrait", &[t[i], x[i], v[i]], &[]);
         }
+        let has_places = self.has(Panel::Displacement) || self.has(Panel::Portrait);
         let shown = trace.shown_from..=trace.shown_to;
+        let impacts = Some(&trace.impacts).filter(|_| self.has(Panel::Displacement));
         let column = |table: &Table, name: &str| table.numbers(name).unwrap_or_default().to_vec();
-        let sides = words(trace.impacts.column("side").map(|column| &column.values));
-        for (at, side) in column(&trace.impacts, "t_s").iter().zip(sides).filter(|own| shown.contains(own.0))
-        {
-            let stop = if *side == "left" { trace.stops.0 } else { trace.stops.1 };
-            drawn.put("impact", &[*at, stop], &[side]);
+        if let Some(impacts) = impacts {
+            let sides = words(impacts.column("side").map(|column| &column.values));
+            let times = column(impacts, "t_s");
+            for (at, side) in times.iter().zip(sides).filter(|own| shown.contains(own.0)) {
+                let stop = if *side == "left" { trace.stops.0 } else { trace.stops.1 };
+                drawn.put("impact", &[*at, stop], &[side]);
+            }
         }
         let rests = column(&trace.rests, "from_s").into_iter().zip(column(&trace.rests, "to_s"));
-        for (from, to) in rests.filter(|(from, to)| *to >= trace.shown_from && *from <= trace.shown_to) {
+        let seen = |(from, to): &(f64, f64)| *to >= trace.shown_from && *from <= trace.shown_to;
+        for (from, to) in rests.filter(seen).filter(|_| self.is_over_time()) {
             drawn.put("rest_from", &[from.max(trace.shown_from)], &[]);
             drawn.put("rest_to", &[to.min(trace.shown_to)], &[]);
         }
         for (at, side) in [(trace.stops.0, "left"), (trace.stops.1, "right")] {
-            if at.is_finite() {
+            if at.is_finite() && has_places {
                 drawn.put("stop", &[f64::NAN, at], &[side]);
             }
         }
-        self.wells.iter().for_each(|at| drawn.put("well", &[f64::NAN, *at], &[]));
+        self.wells.iter().filter(|_| has_places).for_each(|at| drawn.put("well", &[f64::NAN, *at], &[]));
         drawn.table()
     }
 
@@ -184,44 +164,45 @@ impl Seen<'_> {
     }
 
     /// Displacement, velocity and base acceleration over time.
-    fn panels(&self, figure: &mut Figure, places: &Places) {
+    fn over_time(&self, figure: &mut Figure, places: &Places) {
         let Self { trace, theme, .. } = *self;
         let time = PlotAxis::between(trace.shown_from, trace.shown_to, 6, "time, s");
         let shown = self.rows(trace.shown_from);
         let in_g = self.accel[shown.clone()].iter().map(|a| a / STANDARD_GRAVITY);
         let g_axis = PlotAxis::around(in_g.chain([0.0]), 0.1, 4, "base accel., g");
-        let framed = |area, x, y| Frame { gutter: Some(GUTTER), ..Frame::new(area, x, y) };
-        let [first, second, third] = places.panels;
-        let frames = [
-            framed(first, time.clone().silent(), self.displacement(&self.x[shown.clone()])),
-            framed(second, time.clone().silent(), self.velocity(&self.v[shown.clone()], 5)),
-            framed(third, time, g_axis),
-        ];
-        for (frame, strength) in frames.iter().zip([1.0, 0.5, 0.5]) {
-            rests(figure, frame, trace, theme.rest.over(theme.paper, strength));
-            frame.grid(figure, theme);
-        }
-        frames[1].horizontal(figure, 0.0, style::THIN, theme.soft, None);
-        frames[2].horizontal(figure, 0.0, style::THIN, theme.soft, None);
-        for (stop, below) in [(trace.stops.0, true), (trace.stops.1, false)] {
-            if stop.is_finite() {
-                frames[0].wall_down(figure, stop * 1e3, below, theme);
-            }
-        }
-        for well in &self.wells {
-            frames[0].horizontal(figure, well * 1e3, style::LINE, theme.stable, Some(style::DASH));
-        }
+        let axes =
+            [self.displacement(&self.x[shown.clone()]), self.velocity(&self.v[shown.clone()], 5), g_axis];
         let lines = [
             (self.x, 1e3, theme.ink),
             (self.v, self.speed.0, theme.second),
             (self.accel, 1.0 / STANDARD_GRAVITY, theme.shaking),
         ];
-        for (frame, (values, scale, ink)) in frames.iter().zip(lines) {
-            let pairs = shown.clone().map(|i| (&self.t[i], &values[i])).map(|(t, value)| (*t, value * scale));
+        for (i, (up, (values, scale, ink))) in axes.into_iter().zip(lines).enumerate() {
+            let Some(area) = places.panels[i] else { continue };
+            let across = if places.last() == Some(i) { time.clone() } else { time.clone().silent() };
+            let frame = Frame { gutter: Some(GUTTER), ..Frame::new(area, across, up) };
+            let strength = if i == 0 { 1.0 } else { 0.5 };
+            rests(figure, &frame, trace, theme.rest.over(theme.paper, strength));
+            frame.grid(figure, theme);
+            if i == 0 {
+                for (stop, below) in [(trace.stops.0, true), (trace.stops.1, false)] {
+                    if stop.is_finite() {
+                        frame.wall_down(figure, stop * 1e3, below, theme);
+                    }
+                }
+                for well in &self.wells {
+                    frame.horizontal(figure, well * 1e3, style::LINE, theme.stable, Some(style::DASH));
+                }
+            } else {
+                frame.horizontal(figure, 0.0, style::THIN, theme.soft, None);
+            }
+            let pairs = shown.clone().map(|i| (self.t[i], values[i] * scale));
             frame.dense_line(figure, pairs.filter(|pair| pair.1.is_finite()), style::FINE_LINE, ink);
+            if i == 0 {
+                impacts(figure, &frame, trace, theme);
+            }
+            frame.axes(figure, theme);
         }
-        impacts(figure, &frames[0], trace, theme);
-        frames.iter().for_each(|frame| frame.axes(figure, theme));
     }
 
     /// Velocity over displacement.

@@ -20,7 +20,71 @@ pub struct Sheet {
     pub titled: bool,
 }
 
+/// A sheet of paper as text, part by part.
+#[derive(Debug, Clone, Copy)]
+pub struct SheetText<'a> {
+    /// Width in mm.
+    pub width_mm: &'a str,
+    /// Height in mm, where one is asked for.
+    pub height_mm: Option<&'a str>,
+    /// Size of the text in points.
+    pub font_pt: &'a str,
+    /// Pixels in an inch; left out, 300.
+    pub dpi: Option<&'a str>,
+    /// Whether title, subtitle and footer are shown.
+    pub titled: bool,
+}
+
+/// A part of a sheet that cannot be.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("--{option} {value}: {problem}")]
+pub struct SheetError {
+    /// The option that gives it, without its dashes.
+    pub option: &'static str,
+    /// What it was given.
+    pub value: String,
+    /// What is wrong with that.
+    pub problem: String,
+}
+
 impl Sheet {
+    /// The sheet that a text asks for, for a file that has pixels or none.
+    pub fn read(text: &SheetText<'_>, has_pixels: bool) -> Result<Self, SheetError> {
+        let error = |option, value: &str, problem| SheetError { option, value: value.to_owned(), problem };
+        let within = |option, text: &str, (least, most): (f64, f64), what: &str, such: &str| {
+            let number = text.trim().parse().ok().filter(|own: &f64| (least..=most).contains(own));
+            let problem = format!("give {what}, {least} to {most}, such as {such}");
+            number.ok_or_else(|| error(option, text, problem))
+        };
+        let width_mm = within("plot-width-mm", text.width_mm, Self::MM, "a width in mm", "85")?;
+        let height_mm = text.height_mm;
+        let height_mm = height_mm
+            .map(|text| within("plot-height-mm", text, Self::MM, "a height in mm", "60"))
+            .transpose()?;
+        let font_pt = within("font-pt", text.font_pt, Self::FONT_PT, "a size in points", "8")?;
+        let dpi = text.dpi.map_or(Ok(300.0), |text| {
+            within("dpi", text, Self::DPI, "a resolution in pixels an inch", "300")
+        })?;
+        let most = Self::largest_font_pt(width_mm);
+        if font_pt > most {
+            let most = (10.0 * most).floor() / 10.0;
+            let problem = format!("a picture {width_mm} mm wide has room for text of at most {most} points");
+            return Err(error("font-pt", text.font_pt, problem));
+        }
+        let sheet = Self { width_mm, height_mm, font_pt, dpi, titled: text.titled };
+        let longest = width_mm.max(height_mm.unwrap_or(0.0));
+        if has_pixels && f64::from(sheet.pixels(longest)) > Self::MOST_PIXELS {
+            let problem = format!(
+                "{longest} mm would be {} pixels; at most {} are drawn, which is {} an inch",
+                (longest / 25.4 * dpi).round(),
+                Self::MOST_PIXELS,
+                (Self::MOST_PIXELS * 25.4 / longest).floor()
+            );
+            return Err(error("dpi", &dpi.to_string(), problem));
+        }
+        Ok(sheet)
+    }
+
     /// The font sizes in points that a sheet may have.
     pub const FONT_PT: (f64, f64) = (4.0, 36.0);
 

@@ -3,8 +3,9 @@
 use super::axis::Ranges;
 use super::drawn::{Drawn, as_numbers};
 use super::figure::Point;
+use crate::mechanics::Mechanism;
 use crate::scene::Scene;
-use crate::study::{Column, DIRECTION, Grid, Table, Values};
+use crate::study::{Column, DIRECTION, Grid, Table, Values, first_crossing, release_line};
 
 pub(super) const LEFT: f64 = 160.0;
 pub(super) const TOP: f64 = 185.0;
@@ -18,6 +19,17 @@ pub struct Overlay {
     pub release: Option<Table>,
     /// The first crossing cell along the amplitude.
     pub first_crossing: Option<Table>,
+}
+
+impl Overlay {
+    /// The lines over the rows of a sweep of this scene, where runs begin at rest and the cells have one
+    /// mechanism.
+    pub fn of(scene: &Scene, mechanism: Option<&Mechanism>, grid: &Grid, rows: &Table) -> Self {
+        Self {
+            release: mechanism.and_then(|own| release_line(scene, own, grid)),
+            first_crossing: first_crossing(grid, rows),
+        }
+    }
 }
 
 /// How a sweep over two fields is shown.

@@ -100,6 +100,9 @@ fn no_text_lies_on_another_in_one_column_or_two() {
     let lines = [
         "curve paper".to_owned(),
         format!("simulate paper {SHORT}"),
+        format!("simulate paper {SHORT} --panels displacement"),
+        format!("simulate paper {SHORT} --panels portrait"),
+        format!("simulate paper {SHORT} --panels velocity,portrait"),
         SMALL_MAP.to_owned(),
         format!("{SMALL_MAP} --surface"),
         cuts.clone(),

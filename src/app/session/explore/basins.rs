@@ -12,7 +12,7 @@ use crate::study::{Answer, Basins, EvenRange, NoBasins, Starts, Task};
 use super::Explored;
 
 /// Starts across and up.
-const STARTS: u64 = 81;
+pub const STARTS: u64 = 81;
 
 /// A scene without its own start, and the starts in mm and m/s.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,9 +6,9 @@ mod explored;
 mod spectra;
 mod walks;
 
-pub use basins::{BasinsFound, Level};
+pub use basins::{BasinsFound, BasinsQuestion, Level, STARTS};
 pub use explored::Explored;
-pub use spectra::Spectra;
+pub use spectra::{Spectra, longest_wait};
 pub use walks::{WalkQuantity, WalkQuestion, Walks};
 
 /// What the views of the layout Explore ask.

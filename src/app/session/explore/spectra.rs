@@ -43,7 +43,7 @@ impl Session {
             SpectrumQuestion { model: Arc::clone(&self.model), signal: self.explore.spectra.signal };
         let wake = Arc::clone(&self.wake);
         self.explore.spectra.found.want(&question, still, &wake, |question, cancel, each| {
-            let until_settled = longest(&question.model);
+            let until_settled = longest_wait(&question.model);
             let options =
                 SpectrumOptions { signal: question.signal, taper: None, rate_hz: None, until_settled };
             let found = spectrum(&question.model, &options, &Task { tick: &|| (), cancel });
@@ -53,6 +53,6 @@ impl Session {
 }
 
 /// For how long in s the motion is waited for to repeat, where it may.
-fn longest(model: &Model) -> Option<f64> {
+pub fn longest_wait(model: &Model) -> Option<f64> {
     model.forcing_period().filter(|_| model.can_settle()).map(|period| model.duration() + 200.0 * period)
 }

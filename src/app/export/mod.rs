@@ -1,4 +1,7 @@
-//! Results of the window as CSV, PNG and command lines.
+//! Results of the window as CSV, PNG, figures and command lines.
+
+mod drawing;
+pub mod figure;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -1,0 +1,217 @@
+//! Pictures of figures: the scene as the command line reads it, the study, and the plot of its table.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::app::session::explore::STARTS;
+use crate::app::session::map::over;
+use crate::app::task::pool;
+use crate::dynamics::Model;
+use crate::mechanics::Mechanism;
+use crate::output::{
+    Caption, Figure, Overlay, Panel, Ranges, SectionPicture, SpectrumQuantity, SweepPicture, Theme, View,
+    basins_figure, can_show, curve_figure, run_figure, section_figure, spectrum_figure, sweep_figure,
+};
+use crate::scene::{Document, FieldPath, arguments};
+use crate::study::{
+    Basins, CURVE_PICTURE_POINTS, Carry, CellFaults, EvenRange, Grid, Keep, NoBasins, STANDARD_COLUMNS,
+    Sampling, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, SummaryField, Sweep,
+    SweepEnd, SweepOptions, Table, Task, curve, default_positions, sample_times, section,
+    simulate_with_trace, spectrum, stop_positions,
+};
+use crate::system::threads::Pool;
+
+use super::figure::{FigureOrder, Subject};
+
+/// What is said where the system has no threads to give.
+const NO_THREADS: &str = "The system has no threads to give: close something, and save again.";
+
+/// What is said where the file of the scene is not what it was.
+const CHANGED: &str = "The file of this scene is no longer what was opened, and the figure's command begins \
+                       with it: save the scene first (Ctrl+S), or open it anew.";
+
+/// Draws the figure; none where it was cancelled.
+pub(super) fn draw(order: &FigureOrder, cancel: &AtomicBool) -> Option<Result<Figure, String>> {
+    let drawn = drawn(order, cancel);
+    (!cancel.load(Ordering::Relaxed)).then_some(drawn)
+}
+
+fn drawn(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure, String> {
+    let document = document(order)?;
+    let own = Drawing {
+        caption: Caption::new(&document, env!("CARGO_PKG_VERSION")),
+        theme: Theme::of(false, Some(order.sheet)),
+        task: Task { tick: &|| (), cancel },
+        document,
+    };
+    match &order.subject {
+        Subject::Run(times, panels) => own.run(*times, panels),
+        Subject::Curve => own.curve(),
+        Subject::Sweep(_, quantity) => own.sweep(&order.subject, quantity),
+        Subject::Diagram(_) => own.diagram(&order.subject),
+        Subject::Section => own.section(),
+        Subject::Basins(x_mm, v) => own.basins(*x_mm, *v),
+        Subject::Spectrum(signal, until) => own.spectrum(*signal, *until),
+    }
+}
+
+/// The document as the command line reads it; an error where it is not the scene of the window.
+fn document(order: &FigureOrder) -> Result<Document, String> {
+    let mut document = Document::of_argument(&order.origin).map_err(|error| error.to_string())?;
+    for setting in &order.settings {
+        document.set(setting).map_err(|error| error.to_string())?;
+    }
+    document.settle_within();
+    let mut first = document.clone();
+    for axis in order.subject.axes() {
+        if !FieldPath::new(&axis.field).set(&mut first.scene, axis.from) {
+            return Err(CHANGED.to_owned());
+        }
+    }
+    first.check().map_err(|error| error.to_string())?;
+    if matches!(order.subject, Subject::Basins(..)) {
+        first.scene.start = order.scene.start;
+    }
+    if arguments(&first.scene, &order.scene).is_empty() { Ok(document) } else { Err(CHANGED.to_owned()) }
+}
+
+/// What every picture is drawn from.
+struct Drawing<'a> {
+    document: Document,
+    caption: Caption,
+    theme: Theme,
+    task: Task<'a>,
+}
+
+impl Drawing<'_> {
+    fn mechanism(&self) -> Result<Arc<Mechanism>, String> {
+        let built = Mechanism::build(&self.document.scene.mechanism, &self.document.files);
+        built.map(Arc::new).map_err(|error| error.to_string())
+    }
+
+    fn model(&self) -> Result<Model, String> {
+        let model = Model::build(&self.document.scene, self.mechanism()?);
+        model.map_err(|faults| self.document.error_from(faults).to_string())
+    }
+
+    /// The grid of a subject, and threads for it.
+    fn grid(&self, subject: &Subject) -> Result<(Grid, Pool), String> {
+        let over: Vec<String> = subject.axes().iter().map(over).collect();
+        let axes = self.document.axes(&over).map_err(|error| error.to_string())?;
+        let grid = Grid::new(axes).map_err(|error| error.to_string())?;
+        Ok((grid, pool().ok_or_else(|| NO_THREADS.to_owned())?))
+    }
+
+    fn wrong_cell(&self, cell: CellFaults) -> String {
+        self.document.error_from(cell.faults).to_string()
+    }
+
+    fn run(&self, times: Option<(f64, f64)>, panels: &[Panel]) -> Result<Figure, String> {
+        let (document, model) = (&self.document, self.model()?);
+        let sampled = sample_times(&document.scene, &model, &Sampling::Default, None);
+        let times_of_rows = sampled.map_err(|error| error.to_string())?;
+        let keep = Keep { times: times_of_rows, events: false, until_settled: None };
+        let (simulation, trace) = simulate_with_trace(&model, &keep, times, Some(self.task.cancel));
+        let ranges = Ranges { x: times, y: None };
+        let mechanism = &model.mechanism();
+        let run = (&trace, &simulation.summary);
+        Ok(run_figure(run, mechanism, panels, ranges, &self.caption, &self.theme))
+    }
+
+    fn curve(&self) -> Result<Figure, String> {
+        let (scene, mechanism) = (&self.document.scene, self.mechanism()?);
+        let positions = default_positions(scene, &mechanism, CURVE_PICTURE_POINTS);
+        let table = curve(&mechanism, positions).map_err(|error| error.to_string())?;
+        let stops = stop_positions(scene);
+        Ok(curve_figure(&table, &mechanism, stops, Ranges::default(), &self.caption, &self.theme))
+    }
+
+    fn sweep(&self, subject: &Subject, quantity: &str) -> Result<Figure, String> {
+        let (grid, pool) = self.grid(subject)?;
+        let scene = &self.document.scene;
+        let carry = subject.is_walked().then_some(Carry::Both);
+        let names = STANDARD_COLUMNS.into_iter().filter(|name| *name != quantity).chain([quantity]);
+        let columns = names.filter_map(SummaryField::find).collect();
+        let options = SweepOptions { columns, until_settled: None, carry };
+        let sweep = Sweep::new(scene, &self.document.files, grid).with(options);
+        let view = View::Top;
+        can_show(sweep.grid(), (quantity, &view), &sweep.empty_table()).map_err(|error| error.to_string())?;
+        sweep.validate(&pool, &self.task).map_err(|cell| self.wrong_cell(cell))?;
+        let mut rows = Table::new();
+        let kept = sweep.run(&pool, &self.task, |table| keep(&mut rows, table));
+        kept.map_err(|end| words(&end))?;
+        let grid = sweep.grid();
+        let overlay = match carry {
+            Some(_) => Overlay::default(),
+            None => Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows),
+        };
+        let (rows, ranges) = (&rows, Ranges::default());
+        let shown = SweepPicture { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges };
+        sweep_figure(&shown, &self.caption, &self.theme).map_err(|error| error.to_string())
+    }
+
+    fn diagram(&self, subject: &Subject) -> Result<Figure, String> {
+        let (grid, pool) = self.grid(subject)?;
+        let asked = strobes(Some(Carry::Both));
+        let sections = Sections::new(&self.document.scene, &self.document.files, grid, asked);
+        sections.validate(&pool, &self.task).map_err(|cell| self.wrong_cell(cell))?;
+        let mut rows = Table::new();
+        let kept = sections.run(&pool, &self.task, |table| keep(&mut rows, table));
+        kept.map_err(|end| words(&end))?;
+        let over = sections.grid().columns().first().map(String::as_str);
+        Ok(self.of_section(&rows, over, (None, None)))
+    }
+
+    fn section(&self) -> Result<Figure, String> {
+        let (model, asked) = (self.model()?, strobes(None));
+        let found = section(&model, &self.document.scene, &asked, self.task.cancel);
+        let (rows, _) = found.map_err(|fault| self.document.error_from(vec![fault]).to_string())?;
+        Ok(self.of_section(&rows, None, model.stop_positions()))
+    }
+
+    fn of_section(&self, rows: &Table, over: Option<&str>, stops: (Option<f64>, Option<f64>)) -> Figure {
+        let shown = SectionPicture { rows, over, phase_deg: Some(0.0), stops, ranges: Ranges::default() };
+        section_figure(&shown, &self.caption, &self.theme)
+    }
+
+    fn basins(&self, x_mm: (f64, f64), v: (f64, f64)) -> Result<Figure, String> {
+        let even = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
+        let starts = Starts::grid(&even(x_mm), &even(v)).map_err(|error| error.to_string())?;
+        let basins = Basins::new(&self.document.scene, self.mechanism()?, starts);
+        let mut basins = basins.map_err(|problem| match problem {
+            NoBasins::Faults(faults) => self.document.error_from(faults).to_string(),
+            other => other.to_string(),
+        })?;
+        let pool = pool().ok_or_else(|| NO_THREADS.to_owned())?;
+        while !basins.is_whole() && basins.run_level(&pool, &self.task) {}
+        // none where it was cancelled
+        let answer = basins.answer(&self.task).ok_or_else(String::new)?;
+        Ok(basins_figure(&basins, &answer, &self.caption, &self.theme))
+    }
+
+    fn spectrum(&self, signal: Signal, until_settled: Option<f64>) -> Result<Figure, String> {
+        let asked = SpectrumOptions { signal, taper: None, rate_hz: None, until_settled };
+        let found = spectrum(&self.model()?, &asked, &self.task).map_err(|problem| problem.to_string())?;
+        let (quantity, ranges) = (SpectrumQuantity::Amplitude, Ranges::default());
+        Ok(spectrum_figure(&found, quantity, ranges, &self.caption, &self.theme))
+    }
+}
+
+/// States once a forcing period.
+fn strobes(carry: Option<Carry>) -> SectionOptions {
+    SectionOptions { at: SectionAt::Phase(0.0), periods: None, until_settled: None, carry }
+}
+
+/// Keeps rows as they come.
+fn keep(rows: &mut Table, more: &Table) -> Result<bool, String> {
+    rows.append(more);
+    Ok(true)
+}
+
+/// Why not all rows came.
+fn words(end: &SweepEnd<String>) -> String {
+    match end {
+        SweepEnd::Cancelled => String::new(),
+        SweepEnd::Write(problem) => problem.clone(),
+    }
+}

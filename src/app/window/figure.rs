@@ -1,0 +1,286 @@
+//! Figure of a view that is asked for: what it shows, how it is laid out, where it goes.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::Ui;
+
+use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
+use crate::app::session::Session;
+use crate::app::task::Latest;
+use crate::app::views::{MapQuantity, Memory, View, stretch};
+use crate::output::{Format, Panel, RMS, Sheet, SheetText};
+use crate::system::files;
+
+use super::Window;
+use super::figure_dialog::Asked;
+use super::messages::Written;
+use super::wanted::Wanted;
+
+/// Share of the stretch of time that traces show below which all of the run is offered.
+const LITTLE: f64 = 0.05;
+
+/// The figure that is asked for; how it is laid out is kept for the next one.
+#[derive(Debug)]
+pub struct Figures {
+    /// The view; none while no figure is asked for.
+    view: Option<View>,
+    /// The file.
+    pub path: String,
+    /// Width on paper in mm.
+    pub width: String,
+    /// Size of the text in points.
+    pub font: String,
+    /// With title, subtitle and footer.
+    pub titled: bool,
+    /// The numbers that are drawn go beside the figure.
+    pub data: bool,
+    /// The times in s of a run; empty for all of it.
+    pub times: [String; 2],
+    /// The panels of a run, in the order of [`Panel::ALL`].
+    pub panels: [bool; 4],
+    /// Why it was not saved.
+    pub(super) problem: Option<String>,
+    /// The path has had the keyboard.
+    pub(super) begun: bool,
+    pub(super) job: Latest<Written>,
+}
+
+impl Default for Figures {
+    fn default() -> Self {
+        let text = String::new;
+        Self {
+            view: None,
+            path: text(),
+            width: "85".to_owned(),
+            font: "8".to_owned(),
+            titled: true,
+            data: false,
+            times: [text(), text()],
+            panels: [false; 4],
+            problem: None,
+            begun: false,
+            job: Latest::default(),
+        }
+    }
+}
+
+impl Figures {
+    /// Whether a figure is asked for.
+    pub(super) fn is_open(&self) -> bool {
+        self.view.is_some()
+    }
+
+    /// Takes the file that was chosen.
+    pub(super) fn choose(&mut self, path: &Path) {
+        self.path = path.to_string_lossy().into_owned();
+    }
+
+    /// No file can be chosen but by its path.
+    pub(super) fn has_no_dialog(&mut self) {
+        let text = "This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one): \
+                    type the path.";
+        self.problem = Some(text.to_owned());
+    }
+
+    /// Why the last one was not saved.
+    pub fn problem(&self) -> Option<&str> {
+        self.problem.as_deref()
+    }
+
+    /// Asks for a figure of `view`, with a name that would do.
+    pub(super) fn open(&mut self, view: View, session: &Session, memory: &Memory) {
+        let ending = Path::new(&self.path).extension().filter(|_| Format::of(Path::new(&self.path)).is_ok());
+        let ending = ending.map_or("pdf".to_owned(), |own| own.to_string_lossy().into_owned());
+        let origin = session.editor.origin().unwrap_or_else(|| "scene".to_owned());
+        let stem = Path::new(&origin).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let folder = session.editor.path().and_then(Path::parent).map(Path::to_path_buf);
+        let folder = folder.filter(|own| !own.as_os_str().is_empty()).unwrap_or_else(files::working_folder);
+        let name = view.name().to_lowercase().replace(" / ", "-").replace(' ', "-");
+        self.choose(&folder.join(format!("{stem}-{name}.{ending}")));
+        self.times = times(session, memory)
+            .map_or([String::new(), String::new()], |(from, to)| [from, to].map(|t| t.to_string()));
+        self.panels = Panel::ALL.map(|own| panel(view) == Some(own));
+        (self.view, self.problem, self.begun) = (Some(view), None, false);
+    }
+
+    /// The figure as it is asked for, or what is wrong with that.
+    pub(super) fn order(
+        &self,
+        view: View,
+        session: &Session,
+        memory: &Memory,
+    ) -> Result<FigureOrder, String> {
+        let path = PathBuf::from(self.path.trim());
+        let subject = self.subject(view, session, memory)?;
+        let format = Format::of(&path).map_err(|_| {
+            "The name ends in .pdf, .svg or .png, which says what kind of file it is.".to_owned()
+        })?;
+        let Self { width, font, titled, .. } = self;
+        let text = SheetText { width_mm: width, height_mm: None, font_pt: font, dpi: None, titled: *titled };
+        let sheet = Sheet::read(&text, format == Format::Png).map_err(|error| {
+            let name = if error.option == "font-pt" { "Text" } else { "Width" };
+            format!("{name} {}: {}", error.value, error.problem)
+        })?;
+        let data = self.data.then(|| path.with_extension("csv"));
+        FigureOrder::new(session, subject, Place { path, format, sheet, data })
+    }
+
+    /// What a figure of a view shows, or why there is none.
+    fn subject(&self, view: View, session: &Session, memory: &Memory) -> Result<Subject, String> {
+        match view {
+            _ if panel(view).is_some() => {
+                let shown = Panel::ALL.into_iter().zip(self.panels).filter(|own| own.1).map(|own| own.0);
+                let shown: Vec<Panel> = shown.collect();
+                let none = "Panels: at least one is needed.";
+                if shown.is_empty() {
+                    Err(none.to_owned())
+                } else {
+                    Ok(Subject::Run(self.typed_times()?, shown))
+                }
+            }
+            View::Section => Ok(Subject::Section),
+            View::Well | View::ForceCurve => Ok(Subject::Curve),
+            View::Map => Subject::map(session, column(memory.map_quantity)),
+            View::UpAndDown => Subject::walks(session),
+            View::Basins => Subject::basins(session),
+            View::Spectrum => Ok(Subject::spectrum(session)),
+            View::Compare | View::Distance | View::BeforeNow => {
+                Err("There is no figure of this view: it shows several scenes, and a figure one.".to_owned())
+            }
+            _ => Err(format!(
+                "There is no figure of {}: File, Save a picture of the window has it as it stands.",
+                view.name()
+            )),
+        }
+    }
+
+    /// The times of a run as they are typed.
+    fn typed_times(&self) -> Result<Option<(f64, f64)>, String> {
+        let [from, to] = self.times.each_ref().map(|text| text.trim());
+        if from.is_empty() && to.is_empty() {
+            return Ok(None);
+        }
+        let number = |text: &str| text.parse::<f64>().ok().filter(|own| own.is_finite());
+        let times = number(from).zip(number(to)).filter(|(from, to)| 0.0 <= *from && from < to);
+        times.map(Some).ok_or_else(|| {
+            "Times: give two in s, the first one below the second, or none for the whole run.".to_owned()
+        })
+    }
+
+    /// What is said under the fields, and whether the figure can be saved as it is asked for.
+    pub(super) fn remark(
+        &self,
+        order: Result<&FigureOrder, &String>,
+        view: View,
+        session: &Session,
+    ) -> (bool, String) {
+        let path = Path::new(self.path.trim());
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if let Err(problem) = order {
+            return (false, problem.clone());
+        }
+        if files::is_folder(path) {
+            return (false, "This is a folder: add the name of a file.".to_owned());
+        }
+        if folder.is_some_and(|folder| !files::is_folder(folder)) {
+            return (false, "There is no such folder.".to_owned());
+        }
+        let mut words = match view {
+            _ if panel(view).is_some() && session.is_continued() => {
+                "The run of the scene as it now stands, from its start: what was changed on the way of this \
+                 motion has no command."
+            }
+            _ if panel(view).is_some() => "The run of the scene from its start.",
+            View::Section => "The states of the scene's own run, from its start.",
+            View::Well | View::ForceCurve => "Force and potential over displacement.",
+            View::Map | View::UpAndDown | View::Basins => "Every run is made anew, which may take a while.",
+            _ => "",
+        }
+        .to_owned();
+        let data = path.with_extension("csv");
+        if files::exists(path) || self.data && files::exists(&data) {
+            words += " A file of that name exists and will be replaced.";
+        }
+        (true, words.trim_start().to_owned())
+    }
+}
+
+impl Window {
+    /// Asks for a figure of a view, or of the one under the pointer.
+    pub(super) fn ask_figure(&mut self, view: Option<View>) {
+        let view = view.or(self.filled).or(self.memory.hovered).unwrap_or(View::Displacement);
+        self.figures.open(view, &self.session, &self.memory);
+    }
+
+    /// The figure that is asked for.
+    pub fn figures(&mut self) -> &mut Figures {
+        &mut self.figures
+    }
+
+    pub(super) fn figure_ui(&mut self, ui: &Ui) {
+        let Some(view) = self.figures.view else { return };
+        let Some(asked) = self.figures.ui(ui, view, &self.session, &self.memory) else { return };
+        match asked {
+            Asked::Browse => return self.choose(Wanted::Figure),
+            Asked::Close => {
+                self.figures.job.clear();
+                self.figures.view = None;
+                return;
+            }
+            Asked::Save | Asked::Copy => {}
+        }
+        let Some(view) = self.figures.view else { return };
+        let order = match self.figures.order(view, &self.session, &self.memory) {
+            Ok(order) => order,
+            Err(problem) => return self.figures.problem = Some(problem),
+        };
+        if matches!(asked, Asked::Copy) {
+            ui.ctx().copy_text(order.command_line());
+            return self.messages.tell("Copied: the command line of this figure");
+        }
+        self.figures.problem = None;
+        self.figures.job.ask(&self.wake, move |cancel| order.save(cancel));
+    }
+
+    /// Takes in a figure that was saved, or why it was not: the question then stands as it was.
+    pub(super) fn take_figure(&mut self) {
+        match self.figures.job.take() {
+            Some(Ok(text)) => {
+                self.figures.view = None;
+                self.messages.tell(text);
+            }
+            Some(Err(problem)) => self.figures.problem = Some(problem),
+            None => {}
+        }
+    }
+}
+
+/// The panel of a run that a view is.
+pub(super) fn panel(view: View) -> Option<Panel> {
+    match view {
+        View::Displacement => Some(Panel::Displacement),
+        View::Velocity => Some(Panel::Velocity),
+        View::BaseAcceleration => Some(Panel::Acceleration),
+        View::PhasePortrait => Some(Panel::Portrait),
+        _ => None,
+    }
+}
+
+/// The times in s that the traces show, where they are a part of the run from its start.
+fn times(session: &Session, memory: &Memory) -> Option<(f64, f64)> {
+    let now = session.player.time();
+    let window = memory.timeline.window.unwrap_or_else(|| stretch(session.model()));
+    let from = (now - window).max(0.0);
+    (!session.is_continued() && now - from > LITTLE * window).then(|| round_times((from, now))).flatten()
+}
+
+/// The column of a table that has what a map shows.
+fn column(quantity: MapQuantity) -> &'static str {
+    match quantity {
+        MapQuantity::Speed => RMS,
+        MapQuantity::Regime => "regime",
+        MapQuantity::Reach => "max_abs_x_m",
+        MapQuantity::Impacts => "impacts",
+        MapQuantity::Period => "period",
+    }
+}
