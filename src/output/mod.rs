@@ -19,8 +19,8 @@ pub use plot::{
     PlotAxis, RMS, Ranges, SectionPicture, Sheet, SpectrumQuantity, SweepPicture, Theme, ThresholdPicture,
     UnknownFormat, View, accuracy_figure, attractor_colour, basins_figure, branch_figure, can_show,
     can_show_exponents, can_show_starts, can_show_thresholds, contact_figure, curve_figure, exponents_figure,
-    measured_figure, quantities, run_figure, section_figure, spectrum_figure, speed_unit, sweep_about,
-    sweep_figure, threshold_figure, viridis,
+    identified_figure, measured_figure, measured_force_figure, quantities, run_figure, section_figure,
+    spectrum_figure, speed_unit, sweep_about, sweep_figure, threshold_figure, viridis,
 };
 pub use text::aligned;
 

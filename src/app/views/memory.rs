@@ -26,6 +26,8 @@ pub struct Memory {
     pub grab: bool,
     /// What is to be pinned.
     pub pin: Option<PinKind>,
+    /// Measured data are to be opened.
+    pub open_measured: bool,
     /// The view under the pointer.
     pub hovered: Option<View>,
     /// What the traces share.

@@ -34,6 +34,8 @@ mod keys;
 pub mod layouts;
 pub mod leave;
 mod lessons;
+mod measured;
+mod measured_dialog;
 mod menu;
 mod messages;
 mod path_dialog;
@@ -44,6 +46,7 @@ mod wanted;
 mod writing;
 
 pub use command::Command;
+pub use measured_dialog::MeasuredDialog;
 pub use state::Window;
 pub use wanted::Wanted;
 
@@ -191,7 +194,9 @@ impl Window {
         self.pointing_ui(&ctx, &style);
         self.memory.grab = false;
         asked.extend(self.memory.pin.take().map(Command::Pin));
+        asked.extend(std::mem::take(&mut self.memory.open_measured).then_some(Command::OpenMeasured));
         self.session.map.end_frame();
+        self.session.measured.found.end_frame();
         self.session.explore.end_frame();
         self.session.accuracy.end_frame();
         self.session.player.end_frame();

@@ -1,6 +1,9 @@
-//! Comparison of a measured motion with the computed one.
+//! Comparison of a measured motion with the computed one, and of a measured force with the force curve.
 
+mod force;
 mod numbers;
+
+pub use force::{ForceComparison, OffTheCurve, compare_force};
 
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
