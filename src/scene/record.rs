@@ -64,7 +64,15 @@ impl Record {
     /// of time and one of acceleration by the units at the ends of their names, as a measured record has it.
     pub fn parse(text: &str) -> Result<Self, RecordError> {
         let columns = match read_columns(text, [TIME, ACCELERATION], MOST_ROWS) {
-            Err(ColumnsError::MissingColumn { .. }) => return Self::by_units(text),
+            Err(problem @ ColumnsError::MissingColumn { .. }) => {
+                return match Self::by_units(text) {
+                    // no unit tells anything
+                    Err(RecordError::Measured(MeasuredError::NoColumn {
+                        quantity: Quantity::Time, ..
+                    })) => Err(problem.into()),
+                    read => read,
+                };
+            }
             columns => columns?,
         };
         if columns.rows.len() < 2 {

@@ -182,7 +182,7 @@ impl Style {
 
     /// Many measured samples, below what is computed.
     pub fn measured_stroke(&self) -> Stroke {
-        Stroke::new(self.width(4.5), self.measured().gamma_multiply(0.8))
+        Stroke::new(self.width(4.5), self.measured().lerp_to_gamma(self.ground(), 0.25))
     }
 
     /// What the base does, over time and as a push.

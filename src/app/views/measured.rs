@@ -21,8 +21,11 @@ const PERIODS: f64 = 2.0;
 /// The most by which a record is moved in s, and by which it is stretched.
 const FARTHEST: f64 = 1e12;
 
+/// Of a number that is next to nothing no percent tell anything.
+const MOST_PERCENT: f64 = 1000.0;
+
 /// Width in points of the slider, where there is room.
-const SLIDER: f32 = 150.0;
+const SLIDER: f32 = 100.0;
 
 /// Draws it.
 pub fn measured_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -94,11 +97,11 @@ fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
         hover: "What is added to the times of the record. Type a number to go farther than the slider.",
         width: SLIDER,
     };
-    let turn = ui.horizontal(|ui| knob.ui(ui, over.shift)).inner;
-    if let Some(shift) = turn.value {
-        session.measured.shift_to(shift, turn.how == How::Once);
-    }
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
+        let turn = ui.horizontal(|ui| knob.ui(ui, over.shift)).inner;
+        if let Some(shift) = turn.value {
+            session.measured.shift_to(shift, turn.how == How::Once);
+        }
         let hover = "What the times of the record are multiplied by, before they are shifted: 0.999 for a \
                      clock that is fast by a thousandth.";
         let knob = Knob {
@@ -198,7 +201,7 @@ fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
             ui.label(RichText::new(own(measured)).color(ink));
             ui.label(RichText::new(own(computed)).color(ink));
             let mut apart = if *name == "largest_difference_at" { String::new() } else { text(difference) };
-            if percent.is_finite() && !apart.is_empty() {
+            if percent.abs() < MOST_PERCENT && !apart.is_empty() {
                 apart += &format!(" ({} %)", three(percent));
             }
             ui.label(RichText::new(apart).color(ink));

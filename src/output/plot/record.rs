@@ -99,7 +99,7 @@ pub fn identified_figure(
             record,
             rises: false,
             over: vec![line("identified curve", "identified", pairs(&found.rows, scale), Kind::Line)],
-            lower: Lower::Rest("less the curve", "residual", fitted("x_m", "residual_n", 1e3)),
+            lower: Lower::Rest("residual", "residual", fitted("x_m", "residual_n", 1e3)),
         },
         "damping" => {
             let (from, to) = (column(&found.rows, "from_s"), column(&found.rows, "to_s"));
@@ -139,8 +139,7 @@ pub fn identified_figure(
             RecordPicture { across: "time, s", up, columns, scales, record, rises: true, over, lower }
         }
     };
-    let told: Vec<String> = found.summary.iter().take(2).map(Identity::describe).collect();
-    picture.draw(&told.join("; "), ranges, caption, theme)
+    picture.draw(&told(&found.summary), ranges, caption, theme)
 }
 
 /// The picture of a measured force over the computed curve, of which `curve` is the table.
@@ -155,7 +154,7 @@ pub fn measured_force_figure(
     let mm = |values: &[f64]| -> Vec<Point> {
         found.positions.iter().zip(values).map(|(x, own)| (x * 1e3, own * scale)).collect()
     };
-    let apart: Vec<f64> = found.measured.iter().zip(&found.computed).map(|(m, c)| m - c).collect();
+    let apart: Vec<f64> = found.measured.iter().zip(&found.computed).map(|(m, c)| c - m).collect();
     let low = found.positions.iter().copied().fold(f64::INFINITY, f64::min);
     let high = found.positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let near = pairs(curve, scale).into_iter().filter(|own| (low * 1e3..=high * 1e3).contains(&own.0));
@@ -169,7 +168,7 @@ pub fn measured_force_figure(
         record: mm(&found.measured),
         rises: false,
         over: vec![computed],
-        lower: Lower::Rest("less computed", "difference", mm(&apart)),
+        lower: Lower::Rest("difference", "difference", mm(&apart)),
     };
     let ((rms, percent), (at, largest)) = (found.rms, found.largest);
     let unit = picture.up.rsplit(", ").next().unwrap_or_default();
@@ -180,6 +179,27 @@ pub fn measured_force_figure(
     let (most, at) = (short((largest * scale).abs()), short(at * 1e3).replace('-', "\u{2212}"));
     words += &format!("; at most {most} {unit}, at {at} mm");
     picture.draw(&words, ranges, caption, theme)
+}
+
+/// The first number with its interval and the second one; of a force curve the wells, the barrier and the
+/// hysteresis.
+fn told(summary: &[Identity]) -> String {
+    let of = |name: &str| summary.iter().find(|own| own.name == name).map(|own| own.value);
+    let known = |name: &str, unit: f64| of(name).map(|own| short(own * unit));
+    let mut parts = Vec::new();
+    if let (Some(left), Some(right)) = (known("left_well_m", 1e3), known("right_well_m", 1e3)) {
+        parts.push(format!("wells at {left} and {right} mm"));
+    }
+    let barrier = (known("barrier_from_left_j", 1e3), known("barrier_from_right_j", 1e3));
+    if let (Some(left), Some(right)) = barrier {
+        parts.push(format!("barrier of {left} mJ from the left, {right} mJ from the right"));
+    }
+    parts.extend(known("hysteresis_n", 1.0).map(|own| format!("hysteresis {own} N")));
+    if parts.is_empty() {
+        parts.extend(summary.first().map(Identity::describe));
+        parts.extend(of("frequency_hz").map(|own| format!("{} Hz", short(own))));
+    }
+    parts.join(", ").replace('-', "\u{2212}")
 }
 
 /// The column of a quantity in the table of what is drawn.
@@ -258,7 +278,7 @@ impl RecordPicture {
         let drawn = self.over.iter().flat_map(|own| &own.points).filter(inside);
         let heights = shown().chain(drawn).map(|own| own.1);
         let up = PlotAxis::around(heights, 0.08, 6, &self.up).or_given(ranges.y, 6, &self.up);
-        let below = PlotAxis::around(lower, 0.12, 3, &label);
+        let below = PlotAxis::around(lower, 0.12, 4, &label);
         let [first, second] = stretched(FRAMES, 175.0 + more, figure.bottom() - 8.0);
         let height = |own: (f64, f64)| own.1 - own.0;
         let left = Frame::left(&figure, &up, LEFT, height(first));
