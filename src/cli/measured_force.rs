@@ -10,6 +10,7 @@ use interwell::study::{ForceComparison, compare_force};
 
 use super::columns::PositionOptions;
 use super::failure::Failure;
+use super::measured::offset;
 use super::say;
 
 /// What it takes.
@@ -24,6 +25,10 @@ pub struct MeasuredForceOptions {
     /// With --measured: write the numbers in which the two differ as CSV [default: on standard error]
     #[arg(long, value_name = "FILE", allow_hyphen_values = true, requires = "measured")]
     pub comparison: Option<PathBuf>,
+
+    /// With --measured: mm added to the positions, where the sensor has another zero [default: 0]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, requires = "measured")]
+    pub offset_mm: Option<String>,
 
     /// The positions.
     #[command(flatten)]
@@ -51,6 +56,7 @@ impl MeasuredForceOptions {
                 }
             };
         };
+        let offset = offset(self.offset_mm.as_deref())?;
         let name = path.display();
         let (column, unit) = (self.column.clone(), self.unit.clone());
         let force = Ask { quantities: vec![Quantity::Force], column, unit, options: ("--column", "--unit") };
@@ -59,7 +65,8 @@ impl MeasuredForceOptions {
             read_measured(path, &[self.positions.positions(), force]).map_err(|problem| about(&problem))?;
         let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
         let [x, force] = &record.channels;
-        let found = compare_force(mechanism, &x.values, &force.values).map_err(|problem| about(&problem))?;
+        let positions: Vec<f64> = x.values.iter().map(|x| x + offset).collect();
+        let found = compare_force(mechanism, &positions, &force.values).map_err(|problem| about(&problem))?;
         if !quiet {
             say(&format!("{name}: position from `{}`, force from `{}`{commas}", x.column, force.column));
             found.remarks.iter().for_each(|remark| say(&format!("{name}: {remark}")));

@@ -84,6 +84,8 @@ impl MeasuredRecord {
 pub struct Overlay {
     /// The record.
     pub record: Arc<MeasuredRecord>,
+    /// What is added to displacements or positions, in m.
+    pub offset: f64,
     /// What the times are multiplied by.
     pub time_scale: f64,
     /// What is added to them then, in s.
@@ -97,6 +99,11 @@ impl Overlay {
     pub fn time(&self, t: f64) -> f64 {
         t * self.time_scale + self.shift
     }
+
+    /// What is added to the values, SI.
+    pub fn added(&self) -> f64 {
+        if self.record.values.quantity == Quantity::Displacement { self.offset } else { 0.0 }
+    }
 }
 
 /// What a record is compared with.
@@ -109,9 +116,10 @@ pub struct MeasuredQuestion {
 
 impl PartialEq for MeasuredQuestion {
     fn eq(&self, other: &Self) -> bool {
+        let laid = |own: &Overlay| (own.shift, own.time_scale, own.offset);
         Arc::ptr_eq(&self.model, &other.model)
             && Arc::ptr_eq(&self.over.record, &other.over.record)
-            && (self.over.shift, self.over.time_scale) == (other.over.shift, other.over.time_scale)
+            && laid(&self.over) == laid(&other.over)
     }
 }
 
@@ -140,7 +148,8 @@ pub struct MeasuredData {
 impl MeasuredData {
     /// Lays a record over the computed; the one before goes.
     pub fn lay(&mut self, record: MeasuredRecord) {
-        let over = Overlay { record: Arc::new(record), time_scale: 1.0, shift: 0.0, centre: 0.0 };
+        let record = Arc::new(record);
+        let over = Overlay { record, offset: 0.0, time_scale: 1.0, shift: 0.0, centre: 0.0 };
         *self = Self { over: Some(over), ..Self::default() };
     }
 
@@ -238,13 +247,15 @@ fn differences(
     let MeasuredQuestion { model, scene, over } = question;
     let (across, channel) = (&over.record.across.values, &over.record.values);
     if channel.quantity == Quantity::Force {
-        let found = compare_force(model.mechanism(), across, &channel.values);
+        let positions: Vec<f64> = across.iter().map(|x| x + over.offset).collect();
+        let found = compare_force(model.mechanism(), &positions, &channel.values);
         return Some(match found {
             Ok(found) => Ok(Differences::Force(Box::new(found))),
             Err(problem) => Err(sentence(&problem.to_string())),
         });
     }
-    let own = MeasuredMotion { times: across, channel, time_scale: over.time_scale, shift };
+    let (offset, time_scale) = (over.added(), over.time_scale);
+    let own = MeasuredMotion { times: across, channel, offset, time_scale, shift };
     match compare(scene, model, &own, cancel) {
         Ok(found) => Some(Ok(Differences::Motion(Box::new(found)))),
         Err(NoComparison::Cancelled) => None,

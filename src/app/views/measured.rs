@@ -7,11 +7,11 @@ use crate::app::session::measured::{Differences, MeasuredData, Overlay, sentence
 use crate::app::ui::knob::{How, Knob};
 use crate::app::ui::style::Style;
 use crate::app::words::fields::Reach;
-use crate::app::words::numbers::{below, three};
+use crate::app::words::numbers::{below, decimals_for, three};
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::short;
-use crate::scene::Start;
-use crate::study::{Table, Values};
+use crate::scene::{Quantity, Start};
+use crate::study::{Table, Values, metres};
 
 use super::ViewContext;
 
@@ -43,8 +43,14 @@ pub fn measured_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             };
             context.session.want_differences();
             head_ui(ui, context, &over);
-            if over.record.timing.is_some() {
-                time_ui(ui, context.session, &over);
+            ui.horizontal_wrapped(|ui| {
+                if over.record.timing.is_some() {
+                    time_ui(ui, context.session, &over);
+                }
+                zero_ui(ui, context.session, &over);
+            });
+            if let Some(why) = &context.session.measured.no_fit {
+                ui.label(format!("No shift was found. {why}"));
             }
             found_ui(ui, context, &over);
         });
@@ -97,30 +103,49 @@ fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
         hover: "What is added to the times of the record. Type a number to go farther than the slider.",
         width: SLIDER,
     };
-    ui.horizontal_wrapped(|ui| {
-        let turn = ui.horizontal(|ui| knob.ui(ui, over.shift)).inner;
-        if let Some(shift) = turn.value {
-            session.measured.shift_to(shift, turn.how == How::Once);
-        }
-        let hover = "What the times of the record are multiplied by, before they are shifted: 0.999 for a \
-                     clock that is fast by a thousandth.";
-        let knob = Knob {
-            name: "time scale",
-            unit: "",
-            reach: Reach { low: 0.9, high: 1.1, step: 1e-4 },
-            typed: (1.0 / FARTHEST, FARTHEST),
-            hover,
-            width: SLIDER,
-        };
-        ui.label(knob.name).on_hover_text(hover);
-        if let Some(scale) = knob.alone_ui(ui, over.time_scale)
-            && let Some(over) = &mut session.measured.over
-        {
-            over.time_scale = scale;
-        }
-    });
-    if let Some(why) = &session.measured.no_fit {
-        ui.label(format!("No shift was found. {why}"));
+    let turn = ui.horizontal(|ui| knob.ui(ui, over.shift)).inner;
+    if let Some(shift) = turn.value {
+        session.measured.shift_to(shift, turn.how == How::Once);
+    }
+    let hover = "What the times of the record are multiplied by, before they are shifted: 0.999 for a \
+                 clock that is fast by a thousandth.";
+    let knob = Knob {
+        name: "time scale",
+        unit: "",
+        reach: Reach { low: 0.9, high: 1.1, step: 1e-4 },
+        typed: (1.0 / FARTHEST, FARTHEST),
+        hover,
+        width: SLIDER,
+    };
+    ui.label(knob.name).on_hover_text(hover);
+    if let Some(scale) = knob.alone_ui(ui, over.time_scale)
+        && let Some(over) = &mut session.measured.over
+    {
+        over.time_scale = scale;
+    }
+}
+
+/// What is added to a displacement or a position.
+fn zero_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
+    let record = &over.record;
+    if ![record.across.quantity, record.values.quantity].contains(&Quantity::Displacement) {
+        return;
+    }
+    let hover = "What is added to the displacement where the sensor has its zero elsewhere: the difference of \
+                 the means, once the shift is right.";
+    let knob = Knob {
+        name: "add",
+        unit: "mm",
+        reach: Reach { low: -10.0, high: 10.0, step: 0.01 },
+        typed: (-FARTHEST, FARTHEST),
+        hover,
+        width: SLIDER,
+    };
+    ui.label(knob.name).on_hover_text(hover);
+    if let Some(mm) = knob.alone_ui(ui, over.offset * 1e3)
+        && let Some(over) = &mut session.measured.over
+    {
+        over.offset = metres(mm);
     }
 }
 
@@ -140,7 +165,7 @@ fn found_ui(ui: &mut Ui, context: &ViewContext<'_>, over: &Overlay) {
             table_ui(ui, &style, table, current);
             // how it was sampled was said before
             let sampled = over.record.timing.as_ref().map(|own| own.describe());
-            for remark in remarks.iter().filter(|own| !sampled.as_ref().is_some_and(|all| all == *own)) {
+            for remark in remarks.iter().filter(|own| sampled.as_ref() != Some(*own)) {
                 ui.add(faint(sentence(remark)));
             }
         }
@@ -169,7 +194,7 @@ fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
     let numbers = |name: &str| table.numbers(name).unwrap_or_default();
     let ink = if current { style.ink() } else { style.faint() };
     let columns = ["measured", "computed", "difference", "difference_percent"].map(numbers);
-    Grid::new("differences").num_columns(4).spacing([12.0, 2.0]).show(ui, |ui| {
+    Grid::new("differences").num_columns(4).spacing([10.0, 2.0]).show(ui, |ui| {
         for name in ["", "measured", "computed", "difference"] {
             ui.label(RichText::new(name).color(style.faint()));
         }
@@ -181,31 +206,47 @@ fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
                 continue;
             }
             let (scale, unit) = match unit {
-                "m" => (1e3, " mm"),
-                "m/s" => (1e3, " mm/s"),
-                "m/s2" => (1.0 / STANDARD_GRAVITY, " g"),
-                "N" => (1.0, " N"),
-                "s" => (1.0, " s"),
-                "g" => (1.0, " g"),
+                "m" => (1e3, ", mm"),
+                "m/s" => (1e3, ", mm/s"),
+                "m/s2" => (1.0 / STANDARD_GRAVITY, ", g"),
+                "N" => (1.0, ", N"),
+                "s" => (1.0, ", s"),
+                "g" => (1.0, ", g"),
                 _ => (1.0, ""),
             };
-            let text = |value: f64| match value.is_finite() {
-                true if unit.is_empty() => format!("{value:.0}"),
-                true => format!("{}{unit}", three(value * scale)),
+            // both with the decimals of the larger
+            let most = measured.abs().max(computed.abs()) * scale;
+            let decimals = if unit.is_empty() { 0 } else { decimals_for(most) };
+            let both = |value: f64| match value.is_finite() {
+                true => format!("{:.decimals$}", value * scale),
+                false if difference.is_finite() => String::new(),
                 false => "-".to_owned(),
             };
-            ui.label(RichText::new(name.replace('_', " ").replace("rms", "RMS")).color(style.faint()));
-            let own = |value: f64| {
-                if difference.is_finite() && measured.is_nan() { String::new() } else { text(value) }
+            let mut apart = match difference.is_finite() && *name != "largest_difference_at" {
+                true if unit.is_empty() => format!("{difference:.0}"),
+                true => three(difference * scale),
+                false => String::new(),
             };
-            ui.label(RichText::new(own(measured)).color(ink));
-            ui.label(RichText::new(own(computed)).color(ink));
-            let mut apart = if *name == "largest_difference_at" { String::new() } else { text(difference) };
             if percent.abs() < MOST_PERCENT && !apart.is_empty() {
-                apart += &format!(" ({} %)", three(percent));
+                let digits = usize::from(percent.abs() < 99.95);
+                apart += &format!(" ({percent:.digits$} %)");
             }
-            ui.label(RichText::new(apart).color(ink));
+            ui.label(RichText::new(format!("{}{unit}", called(name))).color(style.faint()));
+            for text in [both(measured), both(computed), apart] {
+                ui.label(RichText::new(text).color(ink));
+            }
             ui.end_row();
         }
     });
+}
+
+/// What a row of the table is called.
+fn called(name: &str) -> String {
+    match name {
+        "first_crossing_amplitude" => "shaking then".to_owned(),
+        "rebound_height_left" | "rebound_height_right" => "their height".to_owned(),
+        "rebound_height_left_worst" | "rebound_height_right_worst" => "farthest apart".to_owned(),
+        "largest_difference_at" => "is at".to_owned(),
+        name => name.replace('_', " ").replace("rms", "RMS"),
+    }
 }

@@ -22,9 +22,6 @@ const DOT: f32 = 2.6;
 /// Of more samples the least and the greatest of each stretch are drawn, of which there are so many.
 const STRETCHES: usize = 1500;
 
-/// A step longer than this many usual ones is a gap, over which no line is drawn.
-const GAP: f64 = 5.0;
-
 /// Room above and below the measured values, as a share of their range.
 const ROOM: f64 = 0.05;
 
@@ -49,7 +46,8 @@ pub(super) fn with_room(session: &Session, quantity: TraceQuantity, (low, high):
     };
     let (least, greatest) = over.record.range;
     let more = ROOM * (greatest - least);
-    (low.min((least - more) / unit), high.max((greatest + more) / unit))
+    let added = over.added();
+    (low.min((least + added - more) / unit), high.max((greatest + added + more) / unit))
 }
 
 /// What was measured in a stretch of time.
@@ -66,19 +64,20 @@ impl MeasuredTrace {
         let (times, values) = (&over.record.across.values, &over.record.values.values);
         let first = times.partition_point(|t| over.time(*t) < from).saturating_sub(1);
         let last = (times.partition_point(|t| over.time(*t) <= to) + 1).min(times.len());
-        let point = |i: usize| PlotPoint::new(over.time(times[i]), values[i] / unit);
+        let point = |i: usize| PlotPoint::new(over.time(times[i]), (values[i] + over.added()) / unit);
         if last.saturating_sub(first) < DOTS {
             return Some(Self { parts: vec![(first..last).map(point).collect()], dots: true });
         }
-        let step = over.record.timing.as_ref().map_or(f64::INFINITY, |own| own.step);
+        let timing = over.record.timing.as_ref();
+        let parted = |i: usize| timing.is_some_and(|own| own.is_gap(times[i] - times[i - 1]));
         let stretch = ((last - first) / STRETCHES).max(1);
         let mut parts = vec![Vec::new()];
         let mut begin = first;
         while begin < last {
             let most = (begin + stretch).min(last);
-            let gap = (begin + 1..most).find(|i| times[*i] - times[i - 1] > GAP * step);
+            let gap = (begin + 1..most).find(|i| parted(*i));
             let end = gap.unwrap_or(most);
-            if begin > first && times[begin] - times[begin - 1] > GAP * step {
+            if begin > first && parted(begin) {
                 parts.push(Vec::new());
             }
             let by = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
@@ -129,7 +128,8 @@ pub(super) fn measured_force(
     }
     let style = context.style;
     let samples = record.across.values.iter().zip(&record.values.values);
-    let mut points: Vec<_> = samples.map(|(x, force)| chart.screen_from_world(*x, *force)).collect();
+    let mut points: Vec<_> =
+        samples.map(|(x, force)| chart.screen_from_world(*x + over.offset, *force)).collect();
     let dots = points.len() < DOTS;
     if dots {
         painter.extend(points.into_iter().map(|at| Shape::circle_filled(at, DOT, style.measured())));

@@ -43,8 +43,9 @@ impl Window {
         };
         self.session.measured.lay(record);
         self.filled = None;
-        self.tiling.show(view, true);
         self.tiling.show_beside(View::Measured, View::BeforeNow);
+        // where there is little room, in front of the card
+        self.tiling.show(view, true);
     }
 
     /// Draws the question for the columns, and does what was answered.

@@ -11,7 +11,7 @@ use super::style::{self, Ink, Theme};
 use super::swept::LEFT;
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::short;
-use crate::scene::Quantity;
+use crate::scene::{Quantity, Timing};
 use crate::study::{ForceComparison, Identified, Identity, Table};
 
 /// The least height of the canvas, and the two frames in a canvas of the usual height.
@@ -289,7 +289,6 @@ impl RecordPicture {
 
         upper.grid(&mut figure, theme);
         lower.grid(&mut figure, theme);
-        let record = self.record.iter().copied();
         match (dots, self.rises) {
             (true, _) => {
                 let at = self.record.iter().map(|own| upper.place(*own));
@@ -297,8 +296,13 @@ impl RecordPicture {
                     dot(&mut figure, Marker::Disc, at, 4.0, of_record);
                 });
             }
-            (_, true) => upper.dense_line(&mut figure, record, style::LINE, of_record),
-            (_, false) => upper.path(&mut figure, record, style::LINE, of_record),
+            (_, true) => {
+                let timing = Timing::of(&self.record.iter().map(|own| own.0).collect::<Vec<_>>());
+                for part in self.record.chunk_by(|a, b| !timing.is_gap(b.0 - a.0)) {
+                    upper.dense_line(&mut figure, part.iter().copied(), style::LINE, of_record);
+                }
+            }
+            (_, false) => upper.path(&mut figure, self.record.iter().copied(), style::LINE, of_record),
         }
         for own in &self.over {
             match own.kind {
