@@ -60,7 +60,8 @@ pub enum MeasuredError {
     /// No column has a unit of what is needed.
     #[error(
         "line {line}: no column of {name} ({name} in {units}, as in `{example}`); the header has: {found}. \
-         {remedy}",
+         {remedy}. The header is the first line that does not begin with #: put that before what stands \
+         above it",
         name = .quantity.name(),
         units = .quantity.units()
     )]
