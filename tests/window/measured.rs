@@ -194,6 +194,8 @@ fn a_measured_acceleration_can_shake_the_base() {
     let found = session.model().base_acceleration(0.08);
     assert!((found - 0.980665).abs() < 1e-12, "{found}");
     assert_eq!(session.player.watch().begin(), 0.0);
+    assert!(harness.state().message().unwrap().starts_with("The record ends at 3.98 s, before the run"));
+    harness.key_press(Key::Enter);
     command(&mut harness, Command::Undo);
     assert_eq!(*harness.state().session.scene(), before);
     // a scene could not find these columns again

@@ -208,9 +208,9 @@ impl Session {
         });
     }
 
-    /// Has the acceleration in the file at `path` shake the base; one step of undo. An error is a sentence,
-    /// and changes nothing.
-    pub fn shake_with(&mut self, path: &Path, laid: &MeasuredRecord) -> Result<(), String> {
+    /// Has the acceleration in the file at `path` shake the base; one step of undo. Returns what to know of
+    /// the record, each a clause that continues its name. An error is a sentence, and changes nothing.
+    pub fn shake_with(&mut self, path: &Path, laid: &MeasuredRecord) -> Result<Vec<String>, String> {
         let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let named = whole.to_str().ok_or("The name of the file is not valid UTF-8: rename it.")?;
         let record = read_record(&whole).map_err(|problem| {
@@ -226,11 +226,12 @@ impl Session {
         if (&record.times, &record.accelerations) != (&laid.across.values, &laid.values.values) {
             return Err(other.to_owned());
         }
+        let warnings = record.warnings(self.scene().run.duration_s);
         let excitation = recorded(named, record);
         self.edit_once(|scene| scene.excitation = excitation);
         self.apply();
         self.restart();
-        Ok(())
+        Ok(warnings)
     }
 }
 

@@ -54,8 +54,12 @@ impl Window {
         match ended {
             Ended::Laid(record) => self.lay(*record),
             Ended::Shaken(path, record) => match self.session.shake_with(&path, &record) {
-                Ok(()) => {
-                    self.messages.tell(format!("The base is shaken with {}, from its start", record.name));
+                Ok(warnings) => {
+                    let done = format!("The base is shaken with {}, from its start", record.name);
+                    match warnings.is_empty() {
+                        true => self.messages.tell(done),
+                        false => self.messages.say(done, format!("The record {}.", warnings.join("; it "))),
+                    }
                     self.tiling.show(View::BaseAcceleration, true);
                 }
                 Err(why) => {
