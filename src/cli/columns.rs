@@ -24,6 +24,30 @@ pub struct ColumnOptions {
     pub unit: Option<String>,
 }
 
+/// The column of positions, of a force over them.
+#[derive(Debug, Args)]
+pub struct PositionOptions {
+    /// Of force: column of the positions [default: the one whose name ends with a unit of length]
+    #[arg(long, value_name = "COLUMN")]
+    pub position: Option<String>,
+
+    /// Of force: unit of the positions: m, cm, mm or um [default: as the column's name ends]
+    #[arg(long, value_name = "UNIT")]
+    pub position_unit: Option<String>,
+}
+
+impl PositionOptions {
+    /// What is asked of the record for the positions.
+    pub fn positions(&self) -> Ask {
+        Ask {
+            quantities: vec![Quantity::Displacement],
+            column: self.position.clone(),
+            unit: self.position_unit.clone(),
+            options: ("--position", "--position-unit"),
+        }
+    }
+}
+
 impl ColumnOptions {
     /// What is asked of the record for the times.
     pub fn times(&self) -> Ask {

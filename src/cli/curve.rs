@@ -8,7 +8,7 @@ use clap::Args;
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::mechanics::flexure::State;
-use interwell::output::{contact_figure, curve_figure, landscape};
+use interwell::output::{contact_figure, curve_figure, landscape, measured_force_figure};
 use interwell::scene::Document;
 use interwell::study::{
     CURVE_PICTURE_POINTS, CURVE_POINTS, StatesError, Table, Task, contact, curve, default_positions,
@@ -16,6 +16,7 @@ use interwell::study::{
 };
 
 use super::failure::Failure;
+use super::measured_force::MeasuredForceOptions;
 use super::options::{Common, PlotOptions, RangeOptions, whole};
 use super::picture::{Picture, caption, ranges};
 use super::support::{finish, inputs, load_with_mechanism, numbers, open, write_table, write_text};
@@ -72,6 +73,10 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub landscape: Option<PathBuf>,
 
+    /// A measured force to compare with.
+    #[command(flatten)]
+    pub measured: MeasuredForceOptions,
+
     /// The picture.
     #[command(flatten)]
     pub plot: PlotOptions,
@@ -126,9 +131,17 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let shapes_path = options.shapes.as_deref().map(|path| ("--shapes", path));
     let [plot, data] = Picture::outputs(picture);
     let [contact_plot, contact_data] = Picture::outputs(contact_picture);
+    let comparison = options.measured.comparison.as_deref().map(|path| ("--comparison", path));
+    let mut read = inputs(&options.scene, &document);
+    read.extend(options.measured.measured.clone());
     let out = Some(("--out", common.out()));
-    let outputs = [out, landscape_path, shapes_path, contact_path, plot, data, contact_plot, contact_data];
-    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let paths =
+        [out, landscape_path, shapes_path, contact_path, plot, data, contact_plot, contact_data, comparison];
+    let mut sinks = open(&read, paths)?;
+    let measured = options.measured.compare(&mechanism, common.quiet)?;
+    if let Some(found) = &measured {
+        write_table(&mut sinks[8], &found.table)?;
+    }
     let table = if options.full {
         let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
         let warning = mechanism.flexures.as_ref().and_then(|own| stress_warning(own, &rows));
@@ -143,9 +156,19 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     write_text(&mut sinks[1], &landscape(&mechanism, document.scene.mass_g / 1e3))?;
     if let Some(picture) = picture {
         // The picture shows the curve however few positions were asked for.
-        let table = curve(&mechanism, even(CURVE_PICTURE_POINTS))?;
-        let stops = stop_positions(&document.scene);
-        let figure = curve_figure(&table, &mechanism, stops, axes, &caption(&document), &picture.theme);
+        let about = caption(&document);
+        let figure = match &measured {
+            Some(found) => {
+                let ends = |fold: fn(f64, f64) -> f64| found.positions.iter().copied().fold(f64::NAN, fold);
+                let over = even_positions((ends(f64::min), ends(f64::max)), CURVE_PICTURE_POINTS);
+                measured_force_figure(found, &curve(&mechanism, over)?, axes, &about, &picture.theme)
+            }
+            None => {
+                let table = curve(&mechanism, even(CURVE_PICTURE_POINTS))?;
+                let stops = stop_positions(&document.scene);
+                curve_figure(&table, &mechanism, stops, axes, &about, &picture.theme)
+            }
+        };
         picture.write(&mut sinks[4..6], figure)?;
     }
     if shapes_path.is_some() {
@@ -156,7 +179,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         write_table(&mut sinks[3], table)?;
         if let Some((picture, stop)) = contact_picture.zip(model.compliant()) {
             let figure = contact_figure(table, &stop, model.mass(), &caption(&document), &picture.theme);
-            picture.write(&mut sinks[6..], figure)?;
+            picture.write(&mut sinks[6..8], figure)?;
         }
     }
     finish(sinks)

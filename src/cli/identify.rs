@@ -3,21 +3,23 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use interwell::output::identified;
-use interwell::scene::{Ask, Measured, Quantity, Timing, read_measured};
+use interwell::output::{Caption, identified, identified_figure};
+use interwell::scene::{Ask, Channel, Measured, Quantity, Timing, read_measured};
 use interwell::study::{
     FORCE_POINTS, Identified, Unidentified, damping, force, restitution, restitution_of_times,
 };
 
-use super::columns::ColumnOptions;
+use super::columns::{ColumnOptions, PositionOptions};
 use super::failure::Failure;
-use super::options::Common;
+use super::options::{Common, PlotOptions, RangeOptions};
+use super::picture::{Picture, ranges};
 use super::say;
 use super::support::{Watch, finish, open, write_table, write_text};
 
 const EXAMPLES: &str = "\
 Examples:
   interwell --headless identify decay.csv --of damping --out ratio.csv --summary ratio.json
+  interwell --headless identify decay.csv --of damping --out ratio.csv --plot decay.png
   interwell --headless identify laser.csv --of damping --from 2.1 --to 6 --column 'laser (mm)'
   interwell --headless identify bounce.csv --of restitution --time Zeit --time-unit ms --column Weg --unit mm
   interwell --headless identify impacts.csv --of restitution --impact-times
@@ -53,13 +55,9 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=100_000))]
     pub points: Option<u32>,
 
-    /// Of force: column of the positions [default: the one whose name ends with a unit of length]
-    #[arg(long, value_name = "COLUMN")]
-    pub position: Option<String>,
-
-    /// Of force: unit of the positions: m, cm, mm or um [default: as the column's name ends]
-    #[arg(long, value_name = "UNIT")]
-    pub position_unit: Option<String>,
+    /// The positions.
+    #[command(flatten)]
+    pub positions: PositionOptions,
 
     /// Write the numbers that sum the record up, with their intervals, as JSON
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
@@ -68,6 +66,14 @@ pub struct Arguments {
     /// The columns.
     #[command(flatten)]
     pub columns: ColumnOptions,
+
+    /// The picture.
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
+    /// Its axes.
+    #[command(flatten)]
+    pub ranges: RangeOptions,
 
     /// What every command takes.
     #[command(flatten)]
@@ -90,12 +96,23 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     fits(options)?;
     let summary = options.summary.as_deref().map(|path| ("--summary", path));
     let watch = Watch::start();
-    let mut sinks = open(&[options.file().to_path_buf()], [Some(("--out", common.out())), summary])?;
-    let (timing, found) = answer(options)?;
+    let picture = Picture::asked(&options.plot, common)?;
+    let axes = ranges(&options.ranges, "--plot-x")?;
+    let [plot, data] = Picture::outputs(picture);
+    let outputs = [Some(("--out", common.out())), summary, plot, data];
+    let mut sinks = open(&[options.file().to_path_buf()], outputs)?;
+    let Answer { timing, found, across, values } = answer(options)?;
     let found = found.map_err(|problem| about(options.file(), problem))?;
-    let [rows, about] = &mut sinks;
+    let [rows, about, pictures @ ..] = &mut sinks;
     write_table(rows, &found.rows)?;
     write_text(about, &identified(options.of(), &found, timing.as_ref(), &watch.origin(1)))?;
+    if let Some(picture) = picture {
+        let name = options.file().file_name().unwrap_or_default().to_string_lossy();
+        let caption = Caption::of_record(&name, options.of(), env!("CARGO_PKG_VERSION"));
+        let (what, record) = ((options.of(), &found), (&across[..], &values.values[..]));
+        let figure = identified_figure(what, record, values.quantity, axes, &caption, &picture.theme);
+        picture.write(pictures, figure)?;
+    }
     finish(sinks)?;
     if !common.quiet {
         let name = options.file().display();
@@ -122,8 +139,8 @@ fn fits(options: &Arguments) -> Result<(), Failure> {
     let wrong = [
         given("--impact-times", options.impact_times, "restitution"),
         given("--points", options.points.is_some(), "force"),
-        given("--position", options.position.is_some(), "force"),
-        given("--position-unit", options.position_unit.is_some(), "force"),
+        given("--position", options.positions.position.is_some(), "force"),
+        given("--position-unit", options.positions.position_unit.is_some(), "force"),
     ];
     if let Some((option, only)) = wrong.into_iter().flatten().next() {
         return Err(Failure::argument(format!("{option} belongs to --of {only}, not to --of {of}")));
@@ -143,38 +160,46 @@ fn fits(options: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-type Answer = (Option<Timing>, Result<Identified, Unidentified>);
+/// What is identified, and the record that it is identified from.
+struct Answer {
+    /// The sampling of the record, where it is one over time.
+    timing: Option<Timing>,
+    found: Result<Identified, Unidentified>,
+    /// Times or positions.
+    across: Vec<f64>,
+    /// What was measured; of impact times nothing.
+    values: Channel,
+}
 
-/// The sampling of the record, where it is one over time, and what is identified.
+/// Reads the record and identifies.
 fn answer(options: &Arguments) -> Result<Answer, Failure> {
     let times = options.columns.times();
     match options.of() {
         "force" => {
-            let position = Ask {
-                quantities: vec![Quantity::Displacement],
-                column: options.position.clone(),
-                unit: options.position_unit.clone(),
-                options: ("--position", "--position-unit"),
-            };
-            let record = read(options, &[position, options.columns.values(&[Quantity::Force])])?;
-            let [x, own] = &record.channels;
+            let asks = [options.positions.positions(), options.columns.values(&[Quantity::Force])];
+            let [x, own] = read(options, &asks)?.channels;
             let points = options.points.map_or(FORCE_POINTS, |points| points as usize);
-            Ok((None, force(&x.values, &own.values, points)))
+            let found = force(&x.values, &own.values, points);
+            Ok(Answer { timing: None, found, across: x.values, values: own })
         }
         "restitution" if options.impact_times => {
             let [times] = cut(options, read(options, &[times])?)?.channels;
-            Ok((None, restitution_of_times(&times.values)))
+            let found = restitution_of_times(&times.values);
+            let values = Channel { quantity: Quantity::Displacement, values: Vec::new(), ..times };
+            Ok(Answer { timing: None, found, across: Vec::new(), values })
         }
         "restitution" => {
             let values = options.columns.values(&[Quantity::Displacement]);
-            let [times, x] = cut(options, read(options, &[times, values])?)?.channels;
-            Ok((Some(Timing::of(&times.values)), restitution(&times.values, &x.values)))
+            let [times, values] = cut(options, read(options, &[times, values])?)?.channels;
+            let (timing, times) = (Some(Timing::of(&times.values)), times.values);
+            Ok(Answer { timing, found: restitution(&times, &values.values), across: times, values })
         }
         _ => {
             let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
             let record = read(options, &[times, options.columns.values(&any)])?;
             let [times, values] = cut(options, record)?.channels;
-            Ok((Some(Timing::of(&times.values)), damping(&times.values, &values)))
+            let (timing, times) = (Some(Timing::of(&times.values)), times.values);
+            Ok(Answer { timing, found: damping(&times, &values), across: times, values })
         }
     }
 }

@@ -8,7 +8,7 @@ use interwell::dynamics::Model;
 use interwell::numeric::short;
 use interwell::output::aligned;
 use interwell::scene::{Measured, Quantity, Scene, read_measured};
-use interwell::study::{Comparison, MeasuredMotion, NoComparison, compare};
+use interwell::study::{Comparison, MeasuredMotion, NoComparison, compare, metres};
 
 use super::columns::ColumnOptions;
 use super::failure::Failure;
@@ -33,6 +33,10 @@ pub struct MeasuredOptions {
     #[arg(long, value_name = "S|auto", allow_hyphen_values = true, requires = "measured")]
     pub shift_s: Option<String>,
 
+    /// With --measured: mm added to a displacement, where the sensor has another zero [default: 0]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, requires = "measured")]
+    pub offset_mm: Option<String>,
+
     /// With --measured: what the times of the record are multiplied by, before they are shifted [default: 1]
     #[arg(long, value_name = "K", allow_hyphen_values = true, requires = "measured")]
     pub time_scale: Option<String>,
@@ -46,6 +50,17 @@ pub struct MeasuredOptions {
     pub columns: ColumnOptions,
 }
 
+/// The offset in m that `--offset-mm` gives.
+pub fn offset(text: Option<&str>) -> Result<f64, Failure> {
+    let Some(text) = text else { return Ok(0.0) };
+    finite("--offset-mm", text, "give mm, such as -35.2").map(metres)
+}
+
+fn finite(option: &str, text: &str, right: &str) -> Result<f64, Failure> {
+    let number = text.trim().parse().ok().filter(|own: &f64| own.is_finite());
+    number.ok_or_else(|| Failure::argument(format!("{option} {text}: {right}")))
+}
+
 /// A record that was read, and how it is laid over the run.
 pub struct Laid {
     /// Times and values.
@@ -53,6 +68,7 @@ pub struct Laid {
     /// Times in s that a second panel shows closer.
     pub inset: Option<(f64, f64)>,
     name: String,
+    offset: f64,
     time_scale: f64,
     shift: Option<f64>,
 }
@@ -70,10 +86,7 @@ impl MeasuredOptions {
                 }
             };
         };
-        let finite = |option: &str, text: &str, right: &str| {
-            let number = text.trim().parse().ok().filter(|own: &f64| own.is_finite());
-            number.ok_or_else(|| Failure::argument(format!("{option} {text}: {right}")))
-        };
+        let offset = offset(self.offset_mm.as_deref())?;
         let shift = match self.shift_s.as_deref() {
             Some("auto") => None,
             None => Some(0.0),
@@ -102,13 +115,17 @@ impl MeasuredOptions {
         let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
         let record = read_measured(path, &[self.columns.times(), self.columns.values(&any)])
             .map_err(|problem| Failure::argument(format!("{name}: {problem}")))?;
+        if self.offset_mm.is_some() && record.channels[1].quantity != Quantity::Displacement {
+            let what = record.channels[1].quantity.name();
+            return Err(Failure::argument(format!("--offset-mm: {name} has a {what}, no displacement")));
+        }
         if !quiet {
             let [times, values] = &record.channels;
             let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
             let what = values.quantity.name();
             say(&format!("{name}: time from `{}`, {what} from `{}`{commas}", times.column, values.column));
         }
-        Ok(Some(Laid { record, inset, name, time_scale, shift }))
+        Ok(Some(Laid { record, inset, name, offset, time_scale, shift }))
     }
 }
 
@@ -116,8 +133,8 @@ impl Laid {
     /// Compares it with the run of a model.
     pub fn compare(&self, scene: &Scene, model: &Model, cancel: &AtomicBool) -> Result<Comparison, Failure> {
         let [times, channel] = &self.record.channels;
-        let own =
-            MeasuredMotion { times: &times.values, channel, time_scale: self.time_scale, shift: self.shift };
+        let Self { offset, time_scale, shift, .. } = *self;
+        let own = MeasuredMotion { times: &times.values, channel, offset, time_scale, shift };
         compare(scene, model, &own, cancel).map_err(|problem| match problem {
             NoComparison::Cancelled => Failure::interrupted(),
             problem => Failure::argument(format!("{}: {problem}", self.name)),

@@ -11,6 +11,7 @@ mod identify;
 mod interrupt;
 mod lesson;
 mod measured;
+mod measured_force;
 mod options;
 mod orbit;
 mod picture;

@@ -19,9 +19,9 @@ pub use plot::{
     PaintError, Panel, PlotAxis, RMS, Ranges, SectionPicture, Sheet, SheetError, SheetText, SpectrumQuantity,
     SweepPicture, Theme, ThresholdPicture, UnknownFormat, View, accuracy_figure, attractor_colour,
     basins_figure, branch_figure, can_show, can_show_exponents, can_show_starts, can_show_thresholds,
-    contact_figure, curve_figure, exponents_figure, measured_figure, picture_arguments, quantities,
-    run_figure, section_figure, spectrum_figure, speed_unit, sweep_about, sweep_figure, threshold_figure,
-    viridis,
+    contact_figure, curve_figure, exponents_figure, identified_figure, measured_figure,
+    measured_force_figure, picture_arguments, quantities, run_figure, section_figure, spectrum_figure,
+    speed_unit, sweep_about, sweep_figure, threshold_figure, viridis,
 };
 pub use text::aligned;
 

@@ -131,8 +131,9 @@ pub enum Excitation {
         #[serde(default = "default_lines")]
         lines: u64,
     },
-    /// A recorded acceleration: CSV with columns `t_s,accel_m_per_s2`, linear between samples, zero after
-    /// its end; at most a million rows and 64 MB.
+    /// A recorded acceleration: CSV with columns `t_s,accel_m_per_s2`, or others whose names end with a unit
+    /// of time and one of acceleration; linear between samples, zero after its end; at most a million rows
+    /// and 64 MB.
     Recorded {
         /// Path relative to the scene file, or the name of an embedded record.
         path: String,

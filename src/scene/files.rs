@@ -130,6 +130,6 @@ pub(super) fn read_from(from: impl Read, largest: usize) -> Result<String, Strin
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = 1 + error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count();
-        format!("is not text: byte {} (line {line}) is not valid UTF-8", valid + 1)
+        format!("is not text: byte {} (line {line}) is not valid UTF-8; save it as UTF-8", valid + 1)
     })
 }

@@ -24,7 +24,7 @@ pub struct Ask {
     pub column: Option<String>,
     /// Its unit; left out, the one that its name ends with.
     pub unit: Option<String>,
-    /// What gives the name and what gives the unit, for messages.
+    /// What gives the name and what gives the unit, for messages; empty where the header alone does.
     pub options: (&'static str, &'static str),
 }
 
@@ -60,7 +60,8 @@ pub enum MeasuredError {
     /// No column has a unit of what is needed.
     #[error(
         "line {line}: no column of {name} ({name} in {units}, as in `{example}`); the header has: {found}. \
-         Name the column by {option} and its unit by {unit_option}",
+         {remedy}. The header is the first line that does not begin with #: put that before what stands \
+         above it",
         name = .quantity.name(),
         units = .quantity.units()
     )]
@@ -73,13 +74,11 @@ pub enum MeasuredError {
         example: String,
         /// The names that the header has.
         found: String,
-        /// What gives the name.
-        option: &'static str,
-        /// What gives the unit.
-        unit_option: &'static str,
+        /// What to do, a sentence.
+        remedy: String,
     },
     /// Several columns have such a unit.
-    #[error("line {line}: {found} are all columns of {quantity}: name one by {option}")]
+    #[error("line {line}: {found} are all columns of {quantity}: {remedy}")]
     SeveralColumns {
         /// Line of the header.
         line: usize,
@@ -87,8 +86,8 @@ pub enum MeasuredError {
         quantity: &'static str,
         /// The names of the columns.
         found: String,
-        /// What gives the name.
-        option: &'static str,
+        /// What to do, a clause.
+        remedy: String,
     },
     /// The unit of a column is not known.
     #[error("{option}: `{unit}` is no unit of {quantity}; known are {units}")]
@@ -136,13 +135,60 @@ pub enum MeasuredError {
 
 /// Reads the record in the file at `path`.
 pub fn read_measured<const N: usize>(path: &Path, asks: &[Ask; N]) -> Result<Measured<N>, MeasuredError> {
-    let text = read_text(path, LARGEST_MEASURED).map_err(|error| {
+    Measured::parse(&text_of(path)?, asks)
+}
+
+fn text_of(path: &Path) -> Result<String, MeasuredError> {
+    read_text(path, LARGEST_MEASURED).map_err(|error| {
         MeasuredError::Unreadable(match error {
             ReadError::Missing => "no such file".to_owned(),
             ReadError::Unusable(problem) => problem,
         })
-    })?;
-    Measured::parse(&text, asks)
+    })
+}
+
+/// The text of a record whose header is read, so that its columns can be chosen.
+#[derive(Debug)]
+pub struct MeasuredText {
+    text: String,
+    /// The names of its columns.
+    pub names: Vec<String>,
+}
+
+/// A column by its place, and its unit where that is known.
+pub type ChosenColumn = (usize, Option<Unit>);
+
+impl MeasuredText {
+    /// Reads the file at `path`.
+    pub fn read(path: &Path) -> Result<Self, MeasuredError> {
+        let text = text_of(path)?;
+        let names = Sheet::open(&text, "t_s,x_m", Separators::Any, MOST_MEASURED)?.names;
+        Ok(Self { text, names })
+    }
+
+    /// The columns that are meant, as far as the units at the ends of their names tell: force over position,
+    /// or else displacement, velocity or acceleration over time. What no unit tells is the first column
+    /// across, and the first other one for the values.
+    pub fn guess(&self) -> [ChosenColumn; 2] {
+        let of = |quantity: Quantity| {
+            let unit = |name: &String| Unit::of_name(name).filter(|unit| unit.quantity == quantity);
+            self.names.iter().enumerate().find_map(|(at, name)| Some((at, Some(unit(name)?))))
+        };
+        let position = of(Quantity::Displacement);
+        if let (Some(position), Some(force)) = (position, of(Quantity::Force)) {
+            return [position, force];
+        }
+        let across = of(Quantity::Time).unwrap_or((0, None));
+        let values = position.or_else(|| of(Quantity::Velocity)).or_else(|| of(Quantity::Acceleration));
+        let other = usize::from(across.0 == 0 && self.names.len() > 1);
+        [across, values.unwrap_or((other, None))]
+    }
+
+    /// The values of two columns, each with its unit; messages say where a column or a unit is given.
+    pub fn channels(&self, chosen: [(usize, Unit); 2]) -> Result<Measured<2>, MeasuredError> {
+        let sheet = Sheet::open(&self.text, "t_s,x_m", Separators::Any, MOST_MEASURED)?;
+        Measured::of(&sheet, chosen)
+    }
 }
 
 impl<const N: usize> Measured<N> {
@@ -151,33 +197,34 @@ impl<const N: usize> Measured<N> {
     pub fn parse(text: &str, asks: &[Ask; N]) -> Result<Self, MeasuredError> {
         let wanted: Vec<String> = asks.iter().map(Ask::wanted).collect();
         let sheet = Sheet::open(text, &wanted.join(","), Separators::Any, MOST_MEASURED)?;
-        let mut at = [0; N];
-        let mut units = Vec::with_capacity(N);
-        for (ask, at) in asks.iter().zip(&mut at) {
-            let (place, unit) = ask.choose(&sheet)?;
-            *at = place;
-            units.push(unit);
+        let mut chosen = Vec::with_capacity(N);
+        for ask in asks {
+            chosen.push(ask.choose(&sheet)?);
         }
-        let columns = sheet.numbers(at)?;
+        Self::of(&sheet, std::array::from_fn(|k| chosen[k]))
+    }
+
+    /// The columns that stand there, in these units.
+    fn of(sheet: &Sheet, chosen: [(usize, Unit); N]) -> Result<Self, MeasuredError> {
+        let columns = sheet.numbers(chosen.map(|own| own.0))?;
         if columns.rows.len() < 2 {
             return Err(MeasuredError::TooFew(columns.rows.len()));
         }
-        for k in (0..N).filter(|k| units[*k].quantity == Quantity::Time) {
-            let turn =
-                columns.rows.windows(2).position(|pair| units[k].si(pair[1][k]) <= units[k].si(pair[0][k]));
+        for (k, (at, unit)) in chosen.iter().enumerate().filter(|own| own.1.1.quantity == Quantity::Time) {
+            let turn = columns.rows.windows(2).position(|pair| unit.si(pair[1][k]) <= unit.si(pair[0][k]));
             if let Some(row) = turn {
                 return Err(MeasuredError::NotAfter {
                     line: columns.lines[row + 1],
-                    column: clip(&sheet.names[at[k]]),
+                    column: clip(&sheet.names[*at]),
                     time: columns.rows[row + 1][k],
                     before: columns.rows[row][k],
                 });
             }
         }
         let channels = std::array::from_fn(|k| Channel {
-            quantity: units[k].quantity,
-            column: sheet.names[at[k]].clone(),
-            values: columns.rows.iter().map(|row| units[k].si(row[k])).collect(),
+            quantity: chosen[k].1.quantity,
+            column: sheet.names[chosen[k].0].clone(),
+            values: columns.rows.iter().map(|row| chosen[k].1.si(row[k])).collect(),
         });
         Ok(Self { channels, decimal_commas: columns.decimal_commas })
     }
@@ -244,7 +291,10 @@ impl Ask {
                         line: sheet.line(0),
                         quantity: quantity.name(),
                         found: clip(&names.join(", ")),
-                        option: self.options.0,
+                        remedy: match self.options.0 {
+                            "" => "leave the unit to one of them".to_owned(),
+                            option => format!("name one by {option}"),
+                        },
                     });
                 }
             }
@@ -254,8 +304,10 @@ impl Ask {
             quantity: self.quantities[0],
             example: self.wanted(),
             found: clip(&sheet.names.join(", ")),
-            option: self.options.0,
-            unit_option: self.options.1,
+            remedy: match self.options {
+                ("", _) => "Put the unit at the end of the column's name".to_owned(),
+                (option, unit) => format!("Name the column by {option} and its unit by {unit}"),
+            },
         })
     }
 }

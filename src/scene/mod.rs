@@ -53,11 +53,14 @@ pub use fields::{FieldPath, all_fields, numeric_fields};
 pub use files::{FileError, Files, LARGEST_TABLE};
 pub use locate::{Place, Places, has_comments};
 pub use manifest::{PROGRAM, is_manifest};
-pub use measured::{Ask, Channel, LARGEST_MEASURED, MOST_MEASURED, Measured, MeasuredError, read_measured};
+pub use measured::{
+    Ask, Channel, ChosenColumn, LARGEST_MEASURED, MOST_MEASURED, Measured, MeasuredError, MeasuredText,
+    read_measured,
+};
 pub use mechanism::{FlexureGroup, Mechanism};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
 pub use ranges::MAX_COEFFICIENTS;
-pub use record::{Record, RecordError};
+pub use record::{Record, RecordError, read_record};
 pub use stops::Stops;
 pub use text::{LARGEST_SCENE, write};
 pub use timing::Timing;

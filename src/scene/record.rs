@@ -3,13 +3,16 @@
 //! A record is read once, when a document is read or changed, and then travels with its scene, so that the
 //! cells of a sweep share it.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use super::columns::{ColumnsError, MOST_ROWS, read_columns};
 use super::data::Excitation;
 use super::error::Fault;
 use super::files::Files;
+use super::measured::{Ask, Measured, MeasuredError};
 use super::timing::Timing;
+use super::unit::Quantity;
 
 const TIME: &str = "t_s";
 const ACCELERATION: &str = "accel_m_per_s2";
@@ -29,6 +32,9 @@ pub enum RecordError {
     /// The columns cannot be read.
     #[error(transparent)]
     Columns(#[from] ColumnsError),
+    /// The columns are chosen by their units, and cannot be read.
+    #[error(transparent)]
+    Measured(#[from] MeasuredError),
     /// Fewer than two samples.
     #[error("has {0} rows of numbers; a record needs at least 2")]
     TooFew(usize),
@@ -46,10 +52,29 @@ pub enum RecordError {
     },
 }
 
+/// Reads the record in the file at `path`, as a scene that names it does; the error is a clause.
+pub fn read_record(path: &Path) -> Result<Record, String> {
+    let files = Files::default();
+    let text = files.read(&path.to_string_lossy()).map_err(|error| error.to_string())?;
+    Record::parse(&text).map_err(|error| error.to_string())
+}
+
 impl Record {
-    /// Reads the text of a record: CSV with the columns `t_s,accel_m_per_s2` among others.
+    /// Reads the text of a record: CSV with the columns `t_s,accel_m_per_s2` among others, or with one column
+    /// of time and one of acceleration by the units at the ends of their names, as a measured record has it.
     pub fn parse(text: &str) -> Result<Self, RecordError> {
-        let columns = read_columns(text, [TIME, ACCELERATION], MOST_ROWS)?;
+        let columns = match read_columns(text, [TIME, ACCELERATION], MOST_ROWS) {
+            Err(problem @ ColumnsError::MissingColumn { .. }) => {
+                return match Self::by_units(text) {
+                    // no unit tells anything
+                    Err(RecordError::Measured(MeasuredError::NoColumn {
+                        quantity: Quantity::Time, ..
+                    })) => Err(problem.into()),
+                    read => read,
+                };
+            }
+            columns => columns?,
+        };
         if columns.rows.len() < 2 {
             return Err(RecordError::TooFew(columns.rows.len()));
         }
@@ -60,6 +85,16 @@ impl Record {
             }
         }
         let (times, accelerations) = columns.rows.iter().map(|row| (row[0], row[1])).unzip();
+        Ok(Self { times, accelerations })
+    }
+
+    fn by_units(text: &str) -> Result<Self, RecordError> {
+        let ask = |quantity| Ask { quantities: vec![quantity], column: None, unit: None, options: ("", "") };
+        let asks = [ask(Quantity::Time), ask(Quantity::Acceleration)];
+        let [times, accelerations] = Measured::parse(text, &asks)?.channels.map(|own| own.values);
+        if times.len() > MOST_ROWS {
+            return Err(ColumnsError::TooMany(MOST_ROWS).into());
+        }
         Ok(Self { times, accelerations })
     }
 

@@ -40,6 +40,11 @@ impl Timing {
         Self { samples: times.len(), span, step, jitter, gaps }
     }
 
+    /// Whether a step of this length in s is a gap.
+    pub fn is_gap(&self, length: f64) -> bool {
+        length > GAP * self.step
+    }
+
     /// The first of the longest gaps: the last time before it, and its length.
     pub fn longest_gap(&self) -> Option<(f64, f64)> {
         let longer = |best: Option<(f64, f64)>, own: &(f64, f64)| match best {

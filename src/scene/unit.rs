@@ -104,6 +104,16 @@ const UNITS: [Unit; 30] = [
 ];
 
 impl Unit {
+    /// The units that are offered of a quantity, each in one spelling.
+    pub fn all(quantity: Quantity) -> impl Iterator<Item = Self> {
+        UNITS.into_iter().filter(move |unit| unit.quantity == quantity && unit.listed)
+    }
+
+    /// How it is written.
+    pub fn word(self) -> &'static str {
+        self.word
+    }
+
     /// The unit of `quantity` that is written as `word`.
     pub fn of_word(word: &str, quantity: Quantity) -> Option<Self> {
         UNITS.into_iter().find(|unit| unit.word == word && unit.quantity == quantity)

@@ -75,7 +75,9 @@ pub use lesson::{
 };
 pub use levels::{Levels, STRIDES};
 pub use map::{first_crossing, release_line};
-pub use measured::{Comparison, MeasuredMotion, NoComparison, compare};
+pub use measured::{
+    Comparison, ForceComparison, MeasuredMotion, NoComparison, OffTheCurve, compare, compare_force,
+};
 pub use models::Held;
 pub use orbit::{Branch, BranchEnd, BranchEvent, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table};
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};

@@ -1,8 +1,11 @@
 //! Measured records: reading, comparison with a run, and what is identified from them.
 
 mod comparison;
+mod curve;
 mod damping;
+mod drive;
 mod force;
+mod pictures;
 mod reading;
 mod restitution;
 

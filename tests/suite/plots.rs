@@ -45,7 +45,7 @@ fn texts_and_shapes(path: &Path) -> String {
 }
 
 /// The texts of an SVG whose tags must be closed in order and whose signs must be escaped.
-fn texts(path: &Path) -> Vec<String> {
+pub fn texts(path: &Path) -> Vec<String> {
     let svg = texts_and_shapes(path);
     assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
     let (mut open, mut texts) = (Vec::new(), Vec::new());

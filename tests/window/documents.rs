@@ -5,8 +5,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
 use interwell::app::window::Command;
-use interwell::app::window::Window;
 use interwell::app::window::leave::Next;
+use interwell::app::window::{Wanted, Window};
 
 use crate::support::{WIDE, command, window};
 
@@ -150,7 +150,7 @@ fn no_key_acts_behind_a_dialog_or_in_a_field() {
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     // a path that cannot be, entered, and typed on
-    harness.state_mut().type_path();
+    harness.state_mut().type_path(Wanted::Open);
     harness.run_steps(3);
     harness.event(Event::Text("/nowhere/at/all".into()));
     harness.key_press(Key::Enter);

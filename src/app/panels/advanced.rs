@@ -71,7 +71,11 @@ fn kind_ui(ui: &mut Ui, session: &mut Session) {
             ui.selectable_value(&mut wanted, own, own);
         }
         for (own, why) in [
-            ("recorded", "A record is named in the scene file: excitation: Recorded(path: ..)."),
+            (
+                "recorded",
+                "Open measured data with an acceleration (File menu), or name a record in the scene file: \
+                 excitation: Recorded(path: ..).",
+            ),
             ("sum", "A sum of several is written in the scene file: excitation: Sum([..])."),
         ] {
             ui.add_enabled(false, egui::Button::selectable(own == present, own)).on_disabled_hover_text(why);

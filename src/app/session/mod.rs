@@ -11,6 +11,7 @@ pub mod editor;
 pub mod explore;
 pub mod lesson;
 pub mod map;
+pub mod measured;
 pub mod pins;
 pub mod player;
 mod sentence;
@@ -32,6 +33,7 @@ use build::{differ_in_amplitude_alone, solved, unbuilt, why};
 use editor::Editor;
 use explore::Explore;
 use map::Mapping;
+use measured::MeasuredData;
 use pins::Pins;
 use player::{Player, fitting_speed};
 pub use state::{Card, OpenedScales, Session};
@@ -69,6 +71,7 @@ impl Session {
             map: Mapping::default(),
             explore: Explore::default(),
             pins: Pins::default(),
+            measured: MeasuredData::default(),
             before: None,
             mechanism_of: scene.mechanism.clone(),
             hurried: false,
@@ -99,6 +102,7 @@ impl Session {
         self.map.take();
         self.explore.poll();
         self.pins.poll();
+        self.measured.poll();
         self.apply();
         self.follow_accuracy();
     }

@@ -12,6 +12,7 @@ use super::accuracy::Accuracy;
 use super::editor::Editor;
 use super::explore::Explore;
 use super::map::Mapping;
+use super::measured::MeasuredData;
 use super::pins::Pins;
 use super::player::Player;
 
@@ -67,6 +68,8 @@ pub struct Session {
     pub explore: Explore,
     /// The motions that go on beside it.
     pub pins: Pins,
+    /// The measured data that lie over it.
+    pub measured: MeasuredData,
     pub(super) before: Option<Card>,
     /// The scene that the model was built from.
     pub(super) built: Scene,

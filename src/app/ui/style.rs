@@ -175,6 +175,16 @@ impl Style {
         Stroke::new(self.width(1.6), self.motion().gamma_multiply(0.6))
     }
 
+    /// What was measured.
+    pub fn measured(&self) -> Color32 {
+        self.kind(Kind::Irregular)
+    }
+
+    /// Many measured samples, below what is computed.
+    pub fn measured_stroke(&self) -> Stroke {
+        Stroke::new(self.width(4.5), self.measured().lerp_to_gamma(self.ground(), 0.25))
+    }
+
     /// What the base does, over time and as a push.
     pub fn base_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.6), self.base())

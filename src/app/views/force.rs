@@ -15,6 +15,7 @@ use super::chart::Chart;
 use super::ghosts::ghosts;
 use super::labels::plated;
 use super::legend::Sign;
+use super::overlay::measured_force;
 use super::ranges::{axis_end, room_for_push};
 use super::stops::stops_ui;
 use super::{ViewContext, too_small_ui};
@@ -44,6 +45,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let chart = Chart::new(area, context.span, -end, end);
     chart.axes(ui, context, 1.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
+    let measured = measured_force(&painter, context, &chart);
     curve(&painter, context, &chart);
     let edges = (chart.rect.top(), chart.rect.bottom());
     stops_ui(ui, context, chart.rect, edges, 0.0);
@@ -67,6 +69,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let from = chart.screen_from_world(state.x, own.force(state.x));
         painter.extend(Shape::dashed_line(&[from, at], style.base_stroke(), 4.0, 3.0));
     }
+    legend.extend(measured);
     releases(&painter, context, &chart);
     for ghost in ghosts(context.session) {
         let curve = &ghost.model.mechanism().curve;

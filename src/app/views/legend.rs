@@ -37,6 +37,8 @@ pub enum Sign {
     Ring(Stroke),
     /// A shaded stretch.
     Shade(Color32),
+    /// Dots.
+    Dots(Color32),
     /// Ticks at the edge.
     Ticks(Stroke),
 }
@@ -49,6 +51,9 @@ impl Sign {
             Self::Dashed(stroke) => Shape::dashed_line(&ends, stroke, 4.0, 3.0),
             Self::Dashes(stroke, place) => dashed(&ends, place, stroke),
             Self::Ring(stroke) => vec![Shape::circle_stroke(rect.center(), 3.0, stroke)],
+            Self::Dots(color) => [-6.0, 0.0, 6.0]
+                .map(|x| Shape::circle_filled(rect.center() + vec2(x, 0.0), 2.2, color))
+                .to_vec(),
             Self::Shade(color) => vec![Shape::rect_filled(rect, 0.0, color)],
             Self::Ticks(stroke) => [-4.0, 0.0, 4.0]
                 .map(|x| {

@@ -28,6 +28,8 @@ pub struct Memory {
     pub pin: Option<PinKind>,
     /// The view of which a figure is to be saved.
     pub figure: Option<View>,
+    /// Measured data are to be opened.
+    pub open_measured: bool,
     /// The view under the pointer.
     pub hovered: Option<View>,
     /// What the traces share.

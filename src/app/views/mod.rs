@@ -20,8 +20,10 @@ mod labels;
 mod legend;
 mod map;
 mod mass;
+mod measured;
 mod mechanism;
 mod memory;
+mod overlay;
 mod phase;
 mod plot;
 mod ranges;
@@ -83,6 +85,7 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
         View::Displacement => trace::trace_ui(ui, TraceQuantity::Displacement, context),
         View::BeforeNow => before_now::before_now_ui(ui, context),
         View::Compare => compare::compare_ui(ui, context),
+        View::Measured => measured::measured_ui(ui, context),
         View::Distance => distance::distance_ui(ui, context),
         View::PhasePortrait => phase::phase_ui(ui, context),
         View::Section => phase::section_ui(ui, context),

@@ -17,6 +17,7 @@ use super::ViewContext;
 use super::ghosts::{PINNED, dash};
 use super::labels::haloed;
 use super::legend::{LEGEND, Sign, legend};
+use super::overlay::{MeasuredTrace, with_room};
 use super::plot::{MARGIN, marks, plot_place, still_plot};
 use super::ranges::room_for_push;
 use super::timeline::{zoom, zoom_up};
@@ -111,6 +112,7 @@ impl TraceQuantity {
 pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ends = quantity.ends(context);
+    let ends = with_room(context.session, quantity, ends);
     let (low, high) = context.memory.timeline.vertical[quantity as usize].unwrap_or(ends);
     let (now, model) = (context.session.player.time(), context.session.shown());
     let own = stretch(model);
@@ -133,6 +135,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         true => ghost_paths(context.session, (from, now), |watch, own| quantity.seen(watch, own)),
         false => Vec::new(),
     };
+    let measured = MeasuredTrace::of(context.session, quantity, (from, to));
     let rests = rests(&samples);
     let impacts: Vec<f64> = watch
         .events()
@@ -167,6 +170,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     for (place, _) in &ghosts {
         entries.push((Sign::Dashes(style.ghost_motion_stroke(), *place), PINNED[*place]));
     }
+    entries.extend(measured.as_ref().map(|own| own.entry(&style)));
     let axis = format!("{} ({})", quantity.name(), quantity.unit());
     // a number at the very end of the axis would be cut off
     let edge = 0.02 * (high - low);
@@ -197,6 +201,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
             for t in thinned(&impacts, window) {
                 let ends = vec![[t, low], [t, low + tick]];
                 plot.line(Line::new("impact", ends).stroke(style.impact_stroke()));
+            }
+            if let Some(own) = measured {
+                own.draw(plot, &style);
             }
             for (place, path) in ghosts {
                 let own = Line::new("ghost", PlotPoints::Owned(path)).stroke(style.ghost_motion_stroke());

@@ -52,6 +52,10 @@ views! {
     Compare "Compare"
         "The present motion beside those that are pinned: what each settles to, and by how much it differs. \
          A pin goes on with the drive in step; take its scene back by a click.";
+    /// The measured data against the computed.
+    Measured "Measured"
+        "Measured data that lie over the computed: shift and stretch them in time, and read by how much the \
+         two differ.";
     /// Distance of the pinned motions from the present one over time.
     Distance "Distance"
         "How far each pinned motion is from the present one, over time. A twin begins a micrometre beside \

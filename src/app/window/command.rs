@@ -16,6 +16,8 @@ pub enum Command {
     OpenPreset(&'static str),
     OpenRecent(String),
     Open,
+    OpenMeasured,
+    RemoveMeasured,
     Save,
     SaveAs(Wanted),
     /// A figure of a view; none for the one under the pointer.
@@ -154,6 +156,9 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Part::Presets,
         Item("Open...", control(Key::O), C::Open, As("Scene", "open, save")),
         Part::Recent,
+        Item("Open measured data...", control(Key::M), C::OpenMeasured,
+            As("Scene", "open measured data, to lie over the computed")),
+        Item("Remove the measured data", None, C::RemoveMeasured, No),
         Line,
         Item("Save", control(Key::S), C::Save, Joined),
         Item("Save as...", control_shift(Key::S), C::SaveAs(Wanted::Save), No),

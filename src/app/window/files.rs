@@ -15,6 +15,7 @@ use crate::system::files;
 use super::Window;
 use super::leave::{self, Answer, Next};
 use super::lessons;
+use super::measured_dialog::ENDINGS;
 use super::messages::CANNOT_OPEN;
 use super::path_dialog::{Ended, PathDialog};
 use super::wanted::{Chosen, Wanted};
@@ -36,6 +37,7 @@ impl Window {
         match editor.and_then(|editor| Self::on(editor, self.settings, wake)) {
             Ok(window) => {
                 self.leave_lesson();
+                let measured = std::mem::take(&mut self.session.measured);
                 *self = Self {
                     dialog: std::mem::take(&mut self.dialog),
                     dialogs: self.dialogs,
@@ -52,6 +54,7 @@ impl Window {
                     applied: self.applied,
                     ..window
                 };
+                self.session.measured = measured;
                 self.remember_file();
             }
             Err(error) => self.messages.say(CANNOT_OPEN, error.to_string()),
@@ -134,6 +137,7 @@ impl Window {
         match wanted {
             Wanted::Open => self.open_another(&path.to_string_lossy()),
             Wanted::Lesson => self.open_lesson(&path.to_string_lossy()),
+            Wanted::Measured => self.open_measured(&path),
             Wanted::Save => self.save_to(ctx, &path),
             Wanted::Motion => self.write_motion(&path),
             Wanted::Run => self.write_run(path),
@@ -155,10 +159,11 @@ impl Window {
             ctx.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
         match dropped.as_slice() {
             [] => {}
-            [one] => self.leave_for(ctx, Next::Open(one.to_string_lossy().into_owned())),
-            _ => {
-                self.messages.say("One file at a time", "Drop a single scene or lesson (.ron) on the window.")
-            }
+            [one] => self.take_dropped(ctx, one),
+            _ => self.messages.say(
+                "One file at a time",
+                "Drop a single scene or lesson (.ron), or a file of measured data (.csv), on the window.",
+            ),
         }
         if !self.waits_for_answer() && !ctx.text_edit_focused() {
             let (mut copied, mut pasted) = (false, None);
@@ -213,6 +218,7 @@ impl Window {
                 Answer::Cancel => self.after_save = None,
             }
         }
+        self.measured_ui(ui);
         if let Some(typed) = &mut self.typed
             && let Some(ended) = typed.ui(ui)
         {
@@ -239,9 +245,9 @@ impl Window {
         self.dialogs = false;
     }
 
-    /// Asks for the path of a scene to open, as where the desktop has no dialog.
-    pub fn type_path(&mut self) {
-        self.typed = Some(PathDialog::new(Wanted::Open, Path::new("")));
+    /// Asks for the path of a file to open, as where the desktop has no dialog.
+    pub fn type_path(&mut self, wanted: Wanted) {
+        self.typed = Some(PathDialog::new(wanted, Path::new("")));
     }
 
     /// Asks for a file, without the window waiting for the answer.
@@ -258,7 +264,8 @@ impl Window {
         let begin = folder.clone().unwrap_or_else(files::working_folder);
         let begin = if wanted.is_read() { begin.join("") } else { begin.join(format!("{stem}.{ending}")) };
         self.dialog.ask(&self.wake, move |_| {
-            let mut dialog = rfd::FileDialog::new().add_filter(kind, &[ending]);
+            let endings = if wanted == Wanted::Measured { &ENDINGS[..] } else { &[ending][..] };
+            let mut dialog = rfd::FileDialog::new().add_filter(kind, endings);
             if let Some(folder) = folder.filter(|folder| files::is_folder(folder)) {
                 dialog = dialog.set_directory(folder);
             }

@@ -101,6 +101,8 @@ fn is_enabled(command: &Command, shown: &Shown<'_>) -> bool {
     }
     match command {
         Command::Save => session.editor.is_dirty() || session.editor.path().is_none(),
+        Command::OpenMeasured => lessons.open.is_none(),
+        Command::RemoveMeasured => session.measured.over.is_some(),
         Command::SaveAs(Wanted::Map) => session.map.map().is_some_and(Map::is_whole),
         Command::CopyMapCommand => session.map.map().is_some(),
         Command::Undo => session.editor.can_undo(),

@@ -36,6 +36,8 @@ mod keys;
 pub mod layouts;
 pub mod leave;
 mod lessons;
+mod measured;
+mod measured_dialog;
 mod menu;
 mod messages;
 mod path_dialog;
@@ -47,6 +49,7 @@ mod writing;
 
 pub use command::Command;
 pub use figure::Figures;
+pub use measured_dialog::MeasuredDialog;
 pub use state::Window;
 pub use wanted::Wanted;
 
@@ -195,7 +198,9 @@ impl Window {
         self.memory.grab = false;
         asked.extend(self.memory.pin.take().map(Command::Pin));
         asked.extend(self.memory.figure.take().map(|view| Command::Figure(Some(view))));
+        asked.extend(std::mem::take(&mut self.memory.open_measured).then_some(Command::OpenMeasured));
         self.session.map.end_frame();
+        self.session.measured.found.end_frame();
         self.session.explore.end_frame();
         self.session.accuracy.end_frame();
         self.session.player.end_frame();

@@ -5,6 +5,7 @@ use eframe::egui;
 use crate::app::export::{self, Runs};
 use crate::app::panels::hint;
 use crate::app::panels::transport::EVENT_AHEAD;
+use crate::app::session::measured::MeasuredData;
 use crate::app::session::pins::PinKind;
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::views::{Memory, View};
@@ -56,6 +57,9 @@ impl Window {
             Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
             Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
             Command::Open => self.leave_for(ctx, Next::Choose),
+            Command::OpenMeasured if self.lesson().is_none() => self.choose(Wanted::Measured),
+            Command::RemoveMeasured => self.session.measured = MeasuredData::default(),
+            Command::OpenMeasured => self.messages.tell("Leave the lesson first"),
             Command::Save => self.save(ctx),
             Command::SaveAs(wanted) => self.choose(wanted),
             Command::Figure(view) => self.ask_figure(view),

@@ -22,6 +22,7 @@ use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::Next;
 use super::lessons::CANNOT_OPEN_LESSON;
 use super::lessons::{self, Lessons};
+use super::measured_dialog::{MeasuredDialog, is_measured};
 use super::messages::{CANNOT_OPEN, Messages, Written};
 use super::path_dialog::PathDialog;
 use super::size::WindowSize;
@@ -75,6 +76,8 @@ pub struct Window {
     pub(super) typed: Option<PathDialog>,
     /// The figure that is asked for, and how figures are laid out.
     pub(super) figures: Figures,
+    /// Measured data whose columns are being chosen.
+    pub(super) columns: Option<MeasuredDialog>,
     /// Input that waits for the next frame.
     pub(super) deferred: DeferredInput,
     pub(super) hint: hint::Hint,
@@ -90,14 +93,19 @@ pub struct Window {
 }
 
 impl Window {
-    /// A window on a scene file or a built-in scene, or on the file of a lesson; the first preset where none
-    /// is given.
+    /// A window on a scene file or a built-in scene, on the file of a lesson, or with measured data over the
+    /// first preset; on that where nothing is given.
     pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
         let first = PRESETS.first().map_or("paper", |preset| preset.name);
         if let Some(spec) = spec.filter(|spec| lessons::is_lesson(spec)) {
             let lesson = lessons::read(spec)?;
             let mut window = Self::on(Editor::open(first)?, settings, wake)?;
             window.begin_lesson(lesson)?;
+            return Ok(window);
+        }
+        if let Some(path) = spec.map(Path::new).filter(|path| is_measured(path)) {
+            let mut window = Self::on(Editor::open(first)?, settings, wake)?;
+            window.open_measured(path);
             return Ok(window);
         }
         Self::on(Editor::open(spec.unwrap_or(first))?, settings, wake)
@@ -146,6 +154,7 @@ impl Window {
             dialogs: true,
             typed: None,
             figures: Figures::default(),
+            columns: None,
             deferred: DeferredInput::default(),
             hint_row: false,
             lessons: Lessons::default(),
@@ -187,6 +196,7 @@ impl Window {
             || self.over_comments.is_some()
             || self.typed.is_some()
             || self.figures.is_open()
+            || self.columns.is_some()
             || self.shortcuts.is_some()
             || self.glossary
     }

@@ -9,6 +9,8 @@ pub enum Wanted {
     Open,
     /// A lesson to be opened.
     Lesson,
+    /// Measured data to be laid over the computed.
+    Measured,
     /// The scene.
     Save,
     /// The motion that was seen, as CSV.
@@ -33,6 +35,7 @@ impl Wanted {
         match self {
             Self::Open => ("Open which scene?", "scene", "ron"),
             Self::Lesson => ("Open which lesson?", "lesson", "ron"),
+            Self::Measured => ("Open which measured data?", "measured data", "csv"),
             Self::Save => ("Save the scene to which file?", "scene", "ron"),
             Self::Motion => ("Save the motion that was seen to which file?", "motion", "csv"),
             Self::Run => ("Save the whole run to which file?", "run", "csv"),
@@ -51,7 +54,7 @@ impl Wanted {
 
     /// Whether a file is read and not written.
     pub(super) fn is_read(self) -> bool {
-        matches!(self, Self::Open | Self::Lesson)
+        matches!(self, Self::Open | Self::Lesson | Self::Measured)
     }
 }
 

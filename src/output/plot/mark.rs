@@ -1,12 +1,12 @@
 //! Markers, legends, and the lines above and below a picture.
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use super::figure::{Align, Area, Figure, Point, Text, fitted};
 use super::font;
 use super::style::{self, Ink, Theme};
 use crate::output::manifest::origin;
-use crate::scene::Document;
+use crate::scene::{Document, PROGRAM};
 
 /// A shape that stands for something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -212,6 +212,15 @@ impl Caption {
             footer += change;
         }
         Self { title: scene.title.clone(), footer, origin: origin(document, version) }
+    }
+
+    /// The caption of a picture of what was identified from the record in a file called `name`, made by this
+    /// `version`.
+    pub fn of_record(name: &str, of: &str, version: &str) -> Self {
+        let footer = format!("interwell {version}{PART}identify {name} --of {of}");
+        let origin = json!({ "program": PROGRAM, "version": version, "record": name, "of": of });
+        let origin = origin.as_object().cloned().unwrap_or_default();
+        Self { title: name.to_owned(), footer, origin }
     }
 
     /// The footer in lines that fit on a canvas of this `width`; what does not fit into the last one is cut.

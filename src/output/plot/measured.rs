@@ -9,7 +9,7 @@ use super::run::speed_unit;
 use super::style::{self, Theme};
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::short;
-use crate::scene::Quantity;
+use crate::scene::{Quantity, Timing};
 use crate::study::{Comparison, Trace};
 
 const LEFT: f64 = 150.0;
@@ -50,7 +50,7 @@ pub fn measured_figure(
     };
     let computed = scaled(column("t_s"), column(name));
     let measured = scaled(&found.times, &found.measured);
-    let of_measured = theme.regimes[3];
+    let (of_measured, timing) = (theme.regimes[3], Timing::of(&found.times));
     let panel =
         |(top, bottom): (f64, f64), (from, to): (f64, f64), given: Option<(f64, f64)>, count: usize| {
             let inside = |data: &[Point]| -> Vec<f64> {
@@ -100,7 +100,9 @@ pub fn measured_figure(
         let inside = |own: &&Point| (frame.x.low..=frame.x.high).contains(&own.0);
         let few = measured.iter().filter(inside).count() < DOTS;
         if !few {
-            frame.dense_line(&mut figure, measured.iter().copied(), style::LINE + 2.0, of_measured);
+            for part in measured.chunk_by(|a, b| !timing.is_gap(b.0 - a.0)) {
+                frame.dense_line(&mut figure, part.iter().copied(), style::LINE + 2.0, of_measured);
+            }
         }
         frame.dense_line(&mut figure, computed.iter().copied(), style::FINE_LINE, theme.ink);
         if few {

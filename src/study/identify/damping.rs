@@ -12,6 +12,9 @@ use crate::study::table::{Table, Values};
 /// The fewest turning points of a decay: three numbers are fitted to them.
 const FEWEST: usize = 6;
 
+/// Pieces of the line that is drawn as an envelope.
+const ENVELOPE: u32 = 400;
+
 /// Turning points in a row of the table.
 const GROUP: usize = 8;
 
@@ -111,7 +114,12 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
         interval: (scaled(low), scaled(high)),
     };
     let table = table(&rows, &format!("amplitude{}", channel.quantity.ending()));
-    Ok(Identified { rows: table, summary: vec![whole.ratio, whole.frequency, natural], remarks })
+    Ok(Identified {
+        rows: table,
+        fitted: whole.envelope(),
+        summary: vec![whole.ratio, whole.frequency, natural],
+        remarks,
+    })
 }
 
 /// The period of turning points, which are half of one apart.
@@ -214,6 +222,9 @@ struct Decay {
     amplitude: f64,
     ratio: Identity,
     frequency: Identity,
+    /// The turning points are c + a q^k, at the times t + k times a step.
+    law: [f64; 3],
+    line: [f64; 2],
 }
 
 impl Decay {
@@ -249,7 +260,21 @@ impl Decay {
                 value: 0.5 / step,
                 interval: (0.5 / (step + late), 0.5 / (step - late)),
             },
+            law: law.coefficients.into(),
+            line: line.coefficients.into(),
         })
+    }
+
+    /// The lines on which the maxima and the minima lie.
+    fn envelope(&self) -> Table {
+        let ([centre, size, q], [begin, step]) = (self.law, self.line);
+        let last = self.turns.saturating_sub(1) as f64;
+        let places: Vec<f64> = (0..=ENVELOPE).map(|i| last * f64::from(i) / f64::from(ENVELOPE)).collect();
+        let away = |k: &f64| (size * (-q).powf(*k)).abs();
+        Table::new()
+            .each("t_s", &places, |k| begin + step * k)
+            .each("upper", &places, |k| centre + away(k))
+            .each("lower", &places, |k| centre - away(k))
     }
 }
 

@@ -147,7 +147,23 @@ pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unid
         if rests.len() > 1 { " between the wells" } else { "" },
         short(share.clamp(1e-4, 0.1))
     ));
-    Ok(Identified { rows, summary, remarks })
+    let curve: Vec<f64> = mean.iter().map(|own| own.0.value).collect();
+    let inside = x.iter().zip(force).filter(|own| (low..=high).contains(own.0));
+    let left: Vec<(f64, f64)> =
+        inside.map(|(x, own)| (*x, own - through_four((x - low) / step, &curve))).collect();
+    let fitted = Table::new().each("x_m", &left, |own| own.0).each("residual_n", &left, |own| own.1);
+    Ok(Identified { rows, fitted, summary, remarks })
+}
+
+/// The cubic through the four of `values` nearest to the place `u`, of which 0 is the first and 1 the next.
+fn through_four(u: f64, values: &[f64]) -> f64 {
+    let first = ((u.floor() - 1.0).max(0.0) as usize).min(values.len() - 4);
+    let nodes = [0, 1, 2, 3].map(|k| (first + k) as f64);
+    let weight = |k: usize| -> f64 {
+        let others = (0..4).filter(|j| *j != k);
+        others.map(|j| (u - nodes[j]) / (nodes[k] - nodes[j])).product()
+    };
+    (0..4).map(|k| weight(k) * values[first + k]).sum()
 }
 
 /// The samples of rising and of falling position, each sorted by position.

@@ -21,6 +21,9 @@ const LEFT_OUT: usize = 1;
 /// An impact, fitted. SI.
 struct Impact {
     t: f64,
+    x: f64,
+    /// The sample where the motion turns next.
+    after: usize,
     right: bool,
     v_in: f64,
     v_out: f64,
@@ -78,7 +81,12 @@ pub fn restitution(times: &[f64], x: &[f64]) -> Result<Identified, Unidentified>
                 .to_owned(),
         );
     }
-    Ok(Identified { rows, summary, remarks })
+    let fitted = Table::new()
+        .each("t_s", &impacts, |own| own.t)
+        .each("x_m", &impacts, |own| own.x)
+        .each("rebound_t_s", &impacts, |own| times[own.after])
+        .each("rebound_x_m", &impacts, |own| x[own.after]);
+    Ok(Identified { rows, fitted, summary, remarks })
 }
 
 /// The impact at a turning point between two others; none where it is smooth, or has too few samples.
@@ -130,6 +138,8 @@ fn impact(times: &[f64], x: &[f64], turn: Turn, (before, after): (usize, usize))
     let freedom = (a + b).powi(2) / (a * a / one.freedom as f64 + b * b / other.freedom as f64);
     Some(Impact {
         t: centre,
+        x: one.coefficients[0],
+        after,
         right: turn.maximum,
         v_in: v_in / scale,
         v_out: v_out / scale,
@@ -186,5 +196,6 @@ pub fn restitution_of_times(times: &[f64]) -> Result<Identified, Unidentified> {
          of the flights is constant"
             .to_owned(),
     ];
-    Ok(Identified { rows, summary: vec![Identity::new("restitution", e, half)], remarks })
+    let summary = vec![Identity::new("restitution", e, half)];
+    Ok(Identified { rows, fitted: Table::new(), summary, remarks })
 }

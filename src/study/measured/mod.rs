@@ -1,6 +1,9 @@
-//! Comparison of a measured motion with the computed one.
+//! Comparison of a measured motion with the computed one, and of a measured force with the force curve.
 
+mod force;
 mod numbers;
+
+pub use force::{ForceComparison, OffTheCurve, compare_force};
 
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
@@ -17,6 +20,8 @@ pub struct MeasuredMotion<'a> {
     pub times: &'a [f64],
     /// Displacement, velocity, or acceleration of the base.
     pub channel: &'a Channel,
+    /// What is added to its values, SI: where the sensor has another zero.
+    pub offset: f64,
     /// What its times are multiplied by.
     pub time_scale: f64,
     /// What is added to them then, in s; left out, it is found by least squares.
@@ -86,6 +91,7 @@ pub fn compare(
     cancel: &AtomicBool,
 ) -> Result<Comparison, NoComparison> {
     let scaled: Vec<f64> = own.times.iter().map(|t| t * own.time_scale).collect();
+    let values: Vec<f64> = own.channel.values.iter().map(|value| value + own.offset).collect();
     let timing = Timing::of(&scaled);
     let run = |times: &[f64]| {
         let run = model.run(&Request { sample_times: times, cancel: Some(cancel), ..Request::default() });
@@ -106,8 +112,7 @@ pub fn compare(
         let step = timing.step.max(model.duration().max(length) / MOST);
         let even = |length: f64| (0..=(length / step) as u32).map(move |k| f64::from(k) * step);
         let computed: Vec<f64> = run(&even(model.duration()).collect::<Vec<_>>())?.iter().map(of).collect();
-        let measured: Vec<f64> =
-            even(length).map(|t| between(&scaled, &own.channel.values, timing.span.0 + t)).collect();
+        let measured: Vec<f64> = even(length).map(|t| between(&scaled, &values, timing.span.0 + t)).collect();
         let least = computed.len().min(measured.len()) / 2;
         if let Some(found) = alignment(&computed, &measured, least) {
             shift = found.lag * step - timing.span.0;
@@ -124,7 +129,7 @@ pub fn compare(
         Ok((from..from + samples.len(), times, samples))
     };
     let square = |range: &Range<usize>, samples: &[Sample]| {
-        let measured = &own.channel.values[range.clone()];
+        let measured = &values[range.clone()];
         measured.iter().zip(samples).map(|(m, c)| (m - of(c)).powi(2)).sum::<f64>() / samples.len() as f64
     };
     let mut laid = at(shift)?;
@@ -132,7 +137,7 @@ pub fn compare(
         if own.shift.is_some() || own.channel.quantity != Quantity::Displacement || laid.2.is_empty() {
             break;
         }
-        let pairs = || own.channel.values[laid.0.clone()].iter().zip(&laid.2);
+        let pairs = || values[laid.0.clone()].iter().zip(&laid.2);
         let rise: f64 = pairs().map(|(m, c)| (m - c.x) * c.v).sum();
         let step = rise / pairs().map(|(_, c)| c.v * c.v).sum::<f64>();
         if !(step.abs() > 1e-15 * model.duration() && step.abs() < model.duration()) {
@@ -151,7 +156,7 @@ pub fn compare(
         let end = short(model.duration());
         return Err(NoComparison::Apart { samples: samples.len(), from, to, end });
     }
-    let measured = own.channel.values[range.clone()].to_vec();
+    let measured = values[range.clone()].to_vec();
     let rms = square(&range, &samples).sqrt();
     let of_measured = (measured.iter().map(|m| m * m).sum::<f64>() / measured.len() as f64).sqrt();
     if samples.len() < own.times.len() {

@@ -9,7 +9,7 @@ use crate::study::table::{Table, Values};
 const AT_STOP: f64 = 0.1;
 
 /// A row: quantity, unit, measured, computed.
-type Row = (&'static str, &'static str, f64, f64);
+pub(super) type Row = (&'static str, &'static str, f64, f64);
 
 /// The table of the numbers, from `times` in s, measured and computed values.
 pub fn table(scene: &Scene, model: &Model, quantity: Quantity, data: (&[f64], &[f64], &[f64])) -> Table {
@@ -23,7 +23,6 @@ pub fn table(scene: &Scene, model: &Model, quantity: Quantity, data: (&[f64], &[
         values.iter().map(|own| of(*own)).sum::<f64>() / values.len() as f64
     };
     let both = |name, of: &dyn Fn(&[f64]) -> f64| (name, unit, of(measured), of(computed));
-    let rms = |values: &[f64]| mean(values, &|own| own * own).sqrt();
     let fold = |values: &[f64], of: fn(f64, f64) -> f64| values.iter().copied().fold(f64::NAN, of);
     let mut rows = vec![
         both("rms", &rms),
@@ -36,22 +35,31 @@ pub fn table(scene: &Scene, model: &Model, quantity: Quantity, data: (&[f64], &[
         rows.extend(rebounds(model, data));
     }
     let apart: Vec<f64> = measured.iter().zip(computed).map(|(m, c)| c - m).collect();
-    let first = ("rms_difference", unit, f64::NAN, f64::NAN);
-    rows.insert(0, first);
-    let of_rms = rms(measured);
-    let difference = |row: &Row| if row.0 == first.0 { rms(&apart) } else { row.3 - row.2 };
+    rows.insert(0, ("rms_difference", unit, f64::NAN, f64::NAN));
+    assembled(&rows, rms(&apart), rms(measured))
+}
+
+/// Root mean square.
+pub(super) fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|own| own * own).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// The table of these rows, of which `rms_difference` is given; it and the largest difference are in percent
+/// of the RMS measured.
+pub(super) fn assembled(rows: &[Row], rms_difference: f64, of_measured: f64) -> Table {
+    let difference = |row: &Row| if row.0 == "rms_difference" { rms_difference } else { row.3 - row.2 };
     let percent = |row: &Row| {
-        let whole = if row.0 == first.0 { of_rms } else { row.2.abs() };
-        100.0 * difference(row) / whole
+        let of_rms = matches!(row.0, "rms_difference" | "largest_difference");
+        100.0 * difference(row) / if of_rms { of_measured } else { row.2.abs() }
     };
     let words = |of: fn(&Row) -> &'static str| Values::Words(rows.iter().map(of).collect());
     Table::new()
         .with("quantity", words(|row| row.0))
         .with("unit", words(|row| row.1))
-        .each("measured", &rows, |row| row.2)
-        .each("computed", &rows, |row| row.3)
-        .each("difference", &rows, difference)
-        .each("difference_percent", &rows, percent)
+        .each("measured", rows, |row| row.2)
+        .each("computed", rows, |row| row.3)
+        .each("difference", rows, difference)
+        .each("difference_percent", rows, percent)
 }
 
 /// The first crossing of the barrier: when, and of an amplitude ramp at which amplitude.

@@ -32,7 +32,7 @@ fn record(changes: &[&str], from: f64, noise: f64) -> (Vec<f64>, Channel) {
 
 fn over_paper(times: &[f64], channel: &Channel, scale: f64, shift: Option<f64>) -> Comparison {
     let (document, model) = model(&[]);
-    let own = MeasuredMotion { times, channel, time_scale: scale, shift };
+    let own = MeasuredMotion { times, channel, offset: 0.0, time_scale: scale, shift };
     compare(&document.scene, &model, &own, &AtomicBool::new(false)).unwrap()
 }
 
@@ -81,10 +81,23 @@ fn the_numbers_are_those_of_the_difference() {
 }
 
 #[test]
+fn the_zero_of_the_sensor_can_be_another() {
+    let (times, mut channel) = record(&[], 0.4, 0.0);
+    channel.values.iter_mut().for_each(|x| *x += 0.0352);
+    let (document, model) = model(&[]);
+    let own =
+        MeasuredMotion { times: &times, channel: &channel, offset: -0.0352, time_scale: 1.0, shift: None };
+    let found = compare(&document.scene, &model, &own, &AtomicBool::new(false)).unwrap();
+    // the digits of 0.0352 m, and the shift that is found with them
+    assert!(found.rms.0 < 1e-12 && found.shift.abs() < 1e-9, "{:?} {}", found.rms, found.shift);
+}
+
+#[test]
 fn a_record_apart_from_the_run_is_refused() {
     let (times, channel) = record(&[], 0.0, 0.0);
     let (document, model) = model(&[]);
-    let own = MeasuredMotion { times: &times, channel: &channel, time_scale: 1.0, shift: Some(10.0) };
+    let own =
+        MeasuredMotion { times: &times, channel: &channel, offset: 0.0, time_scale: 1.0, shift: Some(10.0) };
     let found = compare(&document.scene, &model, &own, &AtomicBool::new(false));
     assert!(matches!(found, Err(NoComparison::Apart { samples: 0, .. })));
 }
@@ -106,6 +119,7 @@ fn the_commands_say_what_is_wrong() {
     refused(line("identify --of damping --set mass_g=1"), &["--set", "identify"]);
     refused(headless("simulate paper --shift-s auto"), &["--measured"]);
     refused(headless("simulate paper --time t_s"), &["--time", "--measured"]);
+    refused(line("simulate paper --offset-mm much --measured"), &["--offset-mm much"]);
     refused(line("simulate paper --shift-s soon --measured"), &["--shift-s soon", "auto"]);
     refused(line("simulate paper --time-scale 0 --measured"), &["--time-scale 0", "above 0"]);
     refused(headless("identify nothere.csv --of damping"), &["nothere.csv", "no such file"]);

@@ -59,6 +59,7 @@ fn what_cannot_be_meant_is_refused_with_its_line_and_a_remedy() {
         ("t_s;x_m\n0,1;1.5\n", &["line 2", "x_m", "`1.5`", "decimal point"]),
         ("0,1\n1,2\n", &["line 1", "names", "t_s,x_m"]),
         ("time,x_m\n0,1\n1,2\n", &["line 1", "no column of time", "time, x_m", "--column", "--unit"]),
+        ("Sensor 5;\nt_s;x_m\n0;1\n1;2\n", &["line 1", "Sensor 5", "begin with #"]),
         ("t_s,x_m,y_mm\n0,1,2\n1,2,3\n", &["x_m, y_mm", "displacement", "--column"]),
         ("t_s,x_m\n0,\"1\n1,2\n", &["line 2", "quotation"]),
     ] {

@@ -1,0 +1,252 @@
+//! Card of the measured data: shift and stretch in time, and the numbers in which it differs.
+
+use eframe::egui::{self, Button, Grid, RichText, ScrollArea, Ui};
+
+use crate::app::session::Session;
+use crate::app::session::measured::{Differences, MeasuredData, Overlay, sentence};
+use crate::app::ui::knob::{How, Knob};
+use crate::app::ui::style::Style;
+use crate::app::words::fields::Reach;
+use crate::app::words::numbers::{below, decimals_for, three};
+use crate::dynamics::STANDARD_GRAVITY;
+use crate::numeric::short;
+use crate::scene::{Quantity, Start};
+use crate::study::{Table, Values, metres};
+
+use super::ViewContext;
+
+/// Forcing periods, or characteristic times, by which the slider goes to either side.
+const PERIODS: f64 = 2.0;
+
+/// The most by which a record is moved in s, and by which it is stretched.
+const FARTHEST: f64 = 1e12;
+
+/// Of a number that is next to nothing no percent tell anything.
+const MOST_PERCENT: f64 = 1000.0;
+
+/// Width in points of the slider, where there is room.
+const SLIDER: f32 = 100.0;
+
+/// Draws it.
+pub fn measured_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let style = context.style;
+    let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
+    ground.show(ui, |ui| {
+        ui.set_min_size(ui.available_size());
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let Some(over) = context.session.measured.over.clone() else {
+                let text = "No measured data. A CSV of displacement, velocity or acceleration over time, or \
+                            of force over position, lies over what is computed: drop it on the window, or";
+                ui.add(egui::Label::new(RichText::new(text).color(style.faint())).wrap());
+                context.memory.open_measured |= ui.button("Open measured data...").clicked();
+                return;
+            };
+            context.session.want_differences();
+            head_ui(ui, context, &over);
+            ui.horizontal_wrapped(|ui| {
+                if over.record.timing.is_some() {
+                    time_ui(ui, context.session, &over);
+                }
+                zero_ui(ui, context.session, &over);
+            });
+            if let Some(why) = &context.session.measured.no_fit {
+                ui.label(format!("No shift was found. {why}"));
+            }
+            found_ui(ui, context, &over);
+        });
+    });
+}
+
+/// What it is, and what can be done with it.
+fn head_ui(ui: &mut Ui, context: &mut ViewContext<'_>, over: &Overlay) {
+    let record = &over.record;
+    ui.horizontal(|ui| {
+        let name = egui::Label::new(RichText::new(&record.name).heading()).truncate();
+        ui.scope(|ui| {
+            ui.set_max_width((ui.available_width() - 180.0).max(60.0));
+            let columns = format!(
+                "{} from `{}`, {} from `{}`. {}",
+                record.across.quantity.name(),
+                record.across.column,
+                record.values.quantity.name(),
+                record.values.column,
+                record.describe()
+            );
+            ui.add(name).on_hover_text(columns);
+        });
+        if record.timing.is_some() {
+            let fitting = context.session.measured.is_fitting();
+            let fit = ui.add_enabled(!fitting, Button::new("Fit the shift").small());
+            let hover = "The shift with the least mean square difference from the run of the scene, where at \
+                         least half of the shorter of the two overlaps; of several that fit, the one nearest \
+                         to 0.";
+            if fit.on_hover_text(hover).on_disabled_hover_text("Looking for it.").clicked() {
+                context.session.fit_shift();
+            }
+        }
+        if ui.add(Button::new("Remove").small()).clicked() {
+            context.session.measured = MeasuredData::default();
+        }
+    });
+}
+
+/// Shift and stretch.
+fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
+    let model = session.model();
+    let period = model.forcing_period().unwrap_or(model.characteristic_time());
+    let (low, high) = (over.centre - PERIODS * period, over.centre + PERIODS * period);
+    let knob = Knob {
+        name: "shift",
+        unit: "s",
+        reach: Reach { low, high, step: below(period / 200.0) },
+        typed: (-FARTHEST, FARTHEST),
+        hover: "What is added to the times of the record. Type a number to go farther than the slider.",
+        width: SLIDER,
+    };
+    let turn = ui.horizontal(|ui| knob.ui(ui, over.shift)).inner;
+    if let Some(shift) = turn.value {
+        session.measured.shift_to(shift, turn.how == How::Once);
+    }
+    let hover = "What the times of the record are multiplied by, before they are shifted: 0.999 for a \
+                 clock that is fast by a thousandth.";
+    let knob = Knob {
+        name: "time scale",
+        unit: "",
+        reach: Reach { low: 0.9, high: 1.1, step: 1e-4 },
+        typed: (1.0 / FARTHEST, FARTHEST),
+        hover,
+        width: SLIDER,
+    };
+    ui.label(knob.name).on_hover_text(hover);
+    if let Some(scale) = knob.alone_ui(ui, over.time_scale)
+        && let Some(over) = &mut session.measured.over
+    {
+        over.time_scale = scale;
+    }
+}
+
+/// What is added to a displacement or a position.
+fn zero_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
+    let record = &over.record;
+    if ![record.across.quantity, record.values.quantity].contains(&Quantity::Displacement) {
+        return;
+    }
+    let hover = "What is added to the displacement where the sensor has its zero elsewhere: the difference of \
+                 the means, once the shift is right.";
+    let knob = Knob {
+        name: "add",
+        unit: "mm",
+        reach: Reach { low: -10.0, high: 10.0, step: 0.01 },
+        typed: (-FARTHEST, FARTHEST),
+        hover,
+        width: SLIDER,
+    };
+    ui.label(knob.name).on_hover_text(hover);
+    if let Some(mm) = knob.alone_ui(ui, over.offset * 1e3)
+        && let Some(over) = &mut session.measured.over
+    {
+        over.offset = metres(mm);
+    }
+}
+
+/// The numbers, and what they are against.
+fn found_ui(ui: &mut Ui, context: &ViewContext<'_>, over: &Overlay) {
+    let (style, session) = (context.style, &context.session);
+    let faint = |text: String| egui::Label::new(RichText::new(text).color(style.faint())).wrap();
+    let (parts, current) = session.measured.found.parts();
+    match parts.last() {
+        None => _ = ui.label("Working it out."),
+        Some(Err(problem)) => _ = ui.label(problem),
+        Some(Ok(found)) => {
+            let (table, remarks) = match found {
+                Differences::Motion(own) => (&own.table, &own.remarks),
+                Differences::Force(own) => (&own.table, &own.remarks),
+            };
+            table_ui(ui, &style, table, current);
+            // how it was sampled was said before
+            let sampled = over.record.timing.as_ref().map(|own| own.describe());
+            for remark in remarks.iter().filter(|own| sampled.as_ref() != Some(*own)) {
+                ui.add(faint(sentence(remark)));
+            }
+        }
+    }
+    if over.record.timing.is_none() {
+        return;
+    }
+    let begin = match session.scene().start {
+        Start::Rest => "from rest",
+        Start::At { .. } => "from its start",
+    };
+    let end = short(session.model().duration());
+    let mut text = format!("Compared with the run of the scene {begin}, 0 to {end} s.");
+    if session.is_continued() {
+        text += " The motion on the screen was changed on its way and is another one: the button at the \
+                 left of the time bar begins it anew.";
+    }
+    ui.add(faint(text));
+}
+
+fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
+    let words = |name: &str| match table.column(name).map(|own| &own.values) {
+        Some(Values::Words(words)) => words.clone(),
+        _ => Vec::new(),
+    };
+    let numbers = |name: &str| table.numbers(name).unwrap_or_default();
+    let ink = if current { style.ink() } else { style.faint() };
+    let columns = ["measured", "computed", "difference", "difference_percent"].map(numbers);
+    Grid::new("differences").num_columns(4).spacing([10.0, 2.0]).show(ui, |ui| {
+        for name in ["", "measured", "computed", "difference"] {
+            ui.label(RichText::new(name).color(style.faint()));
+        }
+        ui.end_row();
+        for (row, (name, unit)) in words("quantity").iter().zip(words("unit")).enumerate() {
+            let [measured, computed, difference, percent] = columns.map(|own| own[row]);
+            // neither has any
+            if !difference.is_finite() && measured.is_nan() && computed.is_nan() {
+                continue;
+            }
+            let (scale, unit) = match unit {
+                "m" => (1e3, ", mm"),
+                "m/s" => (1e3, ", mm/s"),
+                "m/s2" => (1.0 / STANDARD_GRAVITY, ", g"),
+                "N" => (1.0, ", N"),
+                "s" => (1.0, ", s"),
+                "g" => (1.0, ", g"),
+                _ => (1.0, ""),
+            };
+            // both with the decimals of the larger
+            let most = measured.abs().max(computed.abs()) * scale;
+            let decimals = if unit.is_empty() { 0 } else { decimals_for(most) };
+            let both = |value: f64| match value.is_finite() {
+                true => format!("{:.decimals$}", value * scale),
+                false if difference.is_finite() => String::new(),
+                false => "-".to_owned(),
+            };
+            let mut apart = match difference.is_finite() && *name != "largest_difference_at" {
+                true if unit.is_empty() => format!("{difference:.0}"),
+                true => three(difference * scale),
+                false => String::new(),
+            };
+            if percent.abs() < MOST_PERCENT && !apart.is_empty() {
+                let digits = usize::from(percent.abs() < 99.95);
+                apart += &format!(" ({percent:.digits$} %)");
+            }
+            ui.label(RichText::new(format!("{}{unit}", called(name))).color(style.faint()));
+            for text in [both(measured), both(computed), apart] {
+                ui.label(RichText::new(text).color(ink));
+            }
+            ui.end_row();
+        }
+    });
+}
+
+/// What a row of the table is called.
+fn called(name: &str) -> String {
+    match name {
+        "first_crossing_amplitude" => "shaking then".to_owned(),
+        "rebound_height_left" | "rebound_height_right" => "their height".to_owned(),
+        "rebound_height_left_worst" | "rebound_height_right_worst" => "farthest apart".to_owned(),
+        "largest_difference_at" => "is at".to_owned(),
+        name => name.replace('_', " ").replace("rms", "RMS"),
+    }
+}

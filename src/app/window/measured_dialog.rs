@@ -1,0 +1,244 @@
+//! Dialog in which the columns and units of measured data are chosen.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use eframe::egui::{self, Button, ComboBox, Grid, RichText, Ui};
+
+use crate::app::session::measured::{MeasuredRecord, sentence};
+use crate::app::task::{Latest, Wake};
+use crate::app::ui::widgets::{dialog, dialog_width};
+use crate::scene::{ChosenColumn, MeasuredText, Quantity, Unit};
+
+/// The endings of files that are taken for measured data.
+pub(super) const ENDINGS: [&str; 4] = ["csv", "txt", "tsv", "dat"];
+
+/// What stands across, and what was measured over it.
+const ROWS: [(&str, &[Quantity]); 2] = [
+    ("across", &[Quantity::Time, Quantity::Displacement]),
+    ("values", &[Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration, Quantity::Force]),
+];
+
+/// Width in points of the dialog, of the names of columns, and of the units.
+const WIDTH: f32 = 560.0;
+const COLUMN: f32 = 190.0;
+const UNIT: f32 = 70.0;
+
+/// Whether a file is taken for measured data.
+pub(super) fn is_measured(path: &Path) -> bool {
+    let ending = path.extension().map(|own| own.to_string_lossy().to_ascii_lowercase());
+    ending.is_some_and(|own| ENDINGS.contains(&own.as_str()))
+}
+
+/// A file of measured data whose columns are being chosen.
+pub struct MeasuredDialog {
+    path: PathBuf,
+    name: String,
+    text: Latest<Result<Arc<MeasuredText>, String>>,
+    chosen: Option<[ChosenColumn; 2]>,
+    /// The columns that are read.
+    asked: Option<[(usize, Unit); 2]>,
+    record: Latest<Result<MeasuredRecord, String>>,
+    /// Why the base is not shaken with it.
+    refused: Option<String>,
+}
+
+/// How the dialog ended.
+pub(super) enum Ended {
+    /// The record lies over the computed.
+    Laid(Box<MeasuredRecord>),
+    /// It shakes the base: the file, and its columns.
+    Shaken(PathBuf, Box<MeasuredRecord>),
+    /// Nothing is done.
+    Cancelled,
+}
+
+impl MeasuredDialog {
+    /// Begins to read the file.
+    pub fn new(path: &Path, wake: &Wake) -> Self {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let mut text = Latest::default();
+        let own = path.to_owned();
+        text.ask(wake, move |_| {
+            let read = MeasuredText::read(&own).map(Arc::new);
+            Some(read.map_err(|problem| sentence(&format!("the file {problem}"))))
+        });
+        let record = Latest::default();
+        Self { path: path.to_owned(), name, text, chosen: None, asked: None, record, refused: None }
+    }
+
+    /// Says why the base is not shaken with it.
+    pub fn refuse(&mut self, why: String) {
+        self.refused = Some(why);
+    }
+
+    /// Chooses the column and the unit of a row, 0 across and 1 for the values.
+    pub fn choose(&mut self, row: usize, chosen: ChosenColumn) {
+        if let Some(own) = self.chosen.as_mut().and_then(|own| own.get_mut(row)) {
+            *own = chosen;
+            self.refused = None;
+        }
+    }
+
+    /// What is known: the record once it is read, or what keeps it from being read as a sentence.
+    pub fn known(&self) -> Option<Result<&MeasuredRecord, String>> {
+        let names = match self.text.current()? {
+            Ok(text) => &text.names,
+            Err(problem) => return Some(Err(problem.clone())),
+        };
+        let open = self.chosen?.into_iter().find(|own| own.1.is_none());
+        if let Some((at, _)) = open {
+            let name = names.get(at).map_or("", String::as_str);
+            return Some(Err(format!("Choose the unit of `{name}`: its name does not end with one.")));
+        }
+        Some(self.record.current()?.as_ref().map_err(Clone::clone))
+    }
+
+    /// Takes in what was read, and has the chosen columns read.
+    pub fn poll(&mut self, wake: &Wake) {
+        self.text.poll();
+        self.record.poll();
+        let Some(Ok(text)) = self.text.current() else { return };
+        let [across, values] = *self.chosen.get_or_insert_with(|| text.guess());
+        let Some(wanted) = across.1.zip(values.1).map(|own| [(across.0, own.0), (values.0, own.1)]) else {
+            self.asked = None;
+            return self.record.clear();
+        };
+        if self.asked != Some(wanted) {
+            self.asked = Some(wanted);
+            let (text, name) = (Arc::clone(text), self.name.clone());
+            self.record.ask(wake, move |_| Some(MeasuredRecord::of(&name, &text, wanted)));
+        }
+    }
+
+    /// Draws the question; the answer once there is one.
+    pub(super) fn ui(&mut self, ui: &Ui, wake: &Wake) -> Option<Ended> {
+        self.poll(wake);
+        let answer = dialog(ui.ctx(), "measured").show(ui.ctx(), |ui| {
+            ui.set_width(dialog_width(ui, WIDTH));
+            ui.heading(format!("Measured data: {}", self.name));
+            ui.add_space(4.0);
+            if let Some(Ok(text)) = self.text.current().cloned() {
+                self.columns_ui(ui, &text);
+            }
+            self.known_ui(ui);
+            ui.add_space(8.0);
+            self.buttons_ui(ui)
+        });
+        let closed = answer.should_close().then_some(Ended::Cancelled);
+        answer.inner.or(closed)
+    }
+
+    fn columns_ui(&mut self, ui: &mut Ui, text: &MeasuredText) {
+        let Some(chosen) = self.chosen else { return };
+        let guess = text.guess();
+        Grid::new("columns").num_columns(4).spacing([10.0, 6.0]).show(ui, |ui| {
+            for (row, (name, quantities)) in ROWS.into_iter().enumerate() {
+                let (at, unit) = chosen[row];
+                let label = ui.label(name);
+                let mut wanted = chosen[row];
+                let own = |at: usize| text.names.get(at).map_or("", String::as_str);
+                let column =
+                    ComboBox::from_id_salt((name, "column")).width(COLUMN).selected_text(own(at)).truncate();
+                let shown = column.show_ui(ui, |ui| {
+                    for (at, name) in text.names.iter().enumerate() {
+                        let is_own = at == chosen[row].0;
+                        if ui.selectable_label(is_own, name).clicked() {
+                            let told = Unit::of_name(name).filter(|own| quantities.contains(&own.quantity));
+                            wanted = (at, told);
+                        }
+                    }
+                });
+                shown.response.labelled_by(label.id).on_hover_text("The column of the file.");
+                let words = unit.map_or("unit?", Unit::word);
+                let units = ComboBox::from_id_salt((name, "unit")).width(UNIT).selected_text(words);
+                let shown = units.show_ui(ui, |ui| {
+                    for quantity in quantities {
+                        for own in Unit::all(*quantity) {
+                            let words = format!("{} ({})", own.word(), over(row, *quantity));
+                            if ui.selectable_label(unit == Some(own), words).clicked() {
+                                wanted.1 = Some(own);
+                            }
+                        }
+                    }
+                });
+                let hover = "The unit of its numbers.";
+                let unit_name = format!("unit of {name}");
+                shown.response.widget_info(|| {
+                    let mut own = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &unit_name);
+                    own.current_text_value = Some(words.to_owned());
+                    own
+                });
+                shown.response.on_hover_text(hover);
+                let how = match (chosen[row] == guess[row], unit) {
+                    (_, None) => String::new(),
+                    (true, Some(unit)) => format!("{}, by its name", over(row, unit.quantity)),
+                    (false, Some(unit)) => over(row, unit.quantity).to_owned(),
+                };
+                ui.label(RichText::new(how).small());
+                ui.end_row();
+                if wanted != chosen[row] {
+                    self.choose(row, wanted);
+                }
+            }
+        });
+    }
+
+    /// What was read, or why it is not.
+    fn known_ui(&self, ui: &mut Ui) {
+        ui.add_space(4.0);
+        match self.known() {
+            None => _ = ui.label("Reading the file."),
+            Some(Err(problem)) => _ = ui.label(RichText::new(problem).heading()),
+            Some(Ok(record)) => {
+                ui.label(record.describe());
+            }
+        }
+        if let Some(why) = &self.refused {
+            ui.label(RichText::new(format!("The base is not shaken with it. {why}")).heading());
+        }
+    }
+
+    fn buttons_ui(&mut self, ui: &mut Ui) -> Option<Ended> {
+        let ready = matches!(self.known(), Some(Ok(_)));
+        let taken = |dialog: &mut Self| dialog.record.take().and_then(Result::ok).map(Box::new);
+        ui.horizontal(|ui| {
+            let lay = ui.add_enabled(ready, Button::new("Lay it over"));
+            if ready && ui.memory(|memory| memory.focused().is_none()) {
+                lay.request_focus();
+            }
+            let accelerates =
+                matches!(self.known(), Some(Ok(own)) if own.values.quantity == Quantity::Acceleration);
+            let shaken = accelerates
+                && ui
+                    .button("Shake the base with it")
+                    .on_hover_text(
+                        "The excitation of the scene becomes this record, linear between its samples, from \
+                         its time 0 on. A step that can be undone.",
+                    )
+                    .clicked();
+            let cancelled = ui.button("Cancel").clicked();
+            if lay.clicked() {
+                return taken(self).map(Ended::Laid);
+            }
+            if shaken {
+                return self
+                    .record
+                    .current()
+                    .and_then(|own| own.clone().ok())
+                    .map(|own| Ended::Shaken(self.path.clone(), Box::new(own)));
+            }
+            cancelled.then_some(Ended::Cancelled)
+        })
+        .inner
+    }
+}
+
+/// What a quantity is called in a row: the displacement across is a position.
+fn over(row: usize, quantity: Quantity) -> &'static str {
+    match (row, quantity) {
+        (0, Quantity::Displacement) => "position",
+        (_, Quantity::Acceleration) => "acceleration of the base",
+        (_, quantity) => quantity.name(),
+    }
+}

@@ -1,0 +1,77 @@
+//! Options of `curve` that lay a measured force over the computed one.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use interwell::mechanics::Mechanism;
+use interwell::output::aligned;
+use interwell::scene::{Ask, Quantity, read_measured};
+use interwell::study::{ForceComparison, compare_force};
+
+use super::columns::PositionOptions;
+use super::failure::Failure;
+use super::measured::offset;
+use super::say;
+
+/// What it takes.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Comparison with a measured force")]
+pub struct MeasuredForceOptions {
+    /// Compare with this record, CSV with a header: force over position of a slow pull. With --plot both are
+    /// drawn over each other, and below them the difference
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub measured: Option<PathBuf>,
+
+    /// With --measured: write the numbers in which the two differ as CSV [default: on standard error]
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, requires = "measured")]
+    pub comparison: Option<PathBuf>,
+
+    /// With --measured: mm added to the positions, where the sensor has another zero [default: 0]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, requires = "measured")]
+    pub offset_mm: Option<String>,
+
+    /// The positions.
+    #[command(flatten)]
+    pub positions: PositionOptions,
+
+    /// Column of the force [default: the one whose name ends with a unit of force, as force_n or `F [mN]`]
+    #[arg(long, value_name = "COLUMN", requires = "measured")]
+    pub column: Option<String>,
+
+    /// Unit of the force: N, mN, uN or kN [default: as the column's name ends]
+    #[arg(long, value_name = "UNIT", requires = "measured")]
+    pub unit: Option<String>,
+}
+
+impl MeasuredForceOptions {
+    /// The record beside the curve of a mechanism, where there is one.
+    pub fn compare(&self, mechanism: &Mechanism, quiet: bool) -> Result<Option<ForceComparison>, Failure> {
+        let PositionOptions { position, position_unit } = &self.positions;
+        let Some(path) = &self.measured else {
+            let chosen = [("--position", position), ("--position-unit", position_unit)];
+            return match chosen.into_iter().find(|own| own.1.is_some()) {
+                None => Ok(None),
+                Some((option, _)) => {
+                    Err(Failure::argument(format!("{option} is of a record: name that by --measured FILE")))
+                }
+            };
+        };
+        let offset = offset(self.offset_mm.as_deref())?;
+        let name = path.display();
+        let (column, unit) = (self.column.clone(), self.unit.clone());
+        let force = Ask { quantities: vec![Quantity::Force], column, unit, options: ("--column", "--unit") };
+        let about = |problem: &dyn std::fmt::Display| Failure::argument(format!("{name}: {problem}"));
+        let record =
+            read_measured(path, &[self.positions.positions(), force]).map_err(|problem| about(&problem))?;
+        let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
+        let [x, force] = &record.channels;
+        let positions: Vec<f64> = x.values.iter().map(|x| x + offset).collect();
+        let found = compare_force(mechanism, &positions, &force.values).map_err(|problem| about(&problem))?;
+        if !quiet {
+            say(&format!("{name}: position from `{}`, force from `{}`{commas}", x.column, force.column));
+            found.remarks.iter().for_each(|remark| say(&format!("{name}: {remark}")));
+            say(aligned(&found.table).trim_end());
+        }
+        Ok(Some(found))
+    }
+}

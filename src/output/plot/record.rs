@@ -1,0 +1,400 @@
+//! Pictures of a measured record with what was identified from it or is computed beside it, and below them
+//! what is left over, or the numbers with their intervals.
+
+use super::axis::{PlotAxis, Ranges};
+use super::drawn::Drawn;
+use super::figure::{Area, Figure, Point};
+use super::frame::{Frame, stretched};
+use super::mark::{Caption, Marker, Sample, dot, legend, marker};
+use super::run::speed_unit;
+use super::style::{self, Ink, Theme};
+use super::swept::LEFT;
+use crate::dynamics::STANDARD_GRAVITY;
+use crate::numeric::short;
+use crate::scene::{Quantity, Timing};
+use crate::study::{ForceComparison, Identified, Identity, Table};
+
+/// The least height of the canvas, and the two frames in a canvas of the usual height.
+const LEAST: f64 = 640.0;
+const FRAMES: [(f64, f64); 2] = [(175.0, 640.0), (700.0, 900.0)];
+
+/// Fewer samples than this are dots.
+const DOTS: usize = 400;
+
+/// Points of the lower frame that are drawn at most; of more every so manieth.
+const MOST_LOWER: usize = 4000;
+
+/// A line or points over the record.
+struct Series {
+    /// In the legend; none for a line that belongs to the one before.
+    name: &'static str,
+    /// In the table of what is drawn.
+    series: &'static str,
+    points: Vec<Point>,
+    ink: Ink,
+    kind: Kind,
+}
+
+/// How a series is drawn.
+enum Kind {
+    Line,
+    Dashed,
+    Marks(Marker),
+}
+
+/// What stands below.
+enum Lower {
+    /// What is left over, about 0: its label and its series in the table of what is drawn.
+    Rest(&'static str, &'static str, Vec<Point>),
+    /// Numbers with their intervals over the same axis, and the one for all: their label and their column.
+    Intervals(&'static str, &'static str, Vec<(f64, [f64; 3])>, Option<Identity>),
+}
+
+/// A picture in the units of its axes.
+struct RecordPicture {
+    across: &'static str,
+    up: String,
+    /// Names of both in the table of what is drawn, and what 1 in SI is on the axes.
+    columns: [String; 2],
+    scales: [f64; 2],
+    /// The record.
+    record: Vec<Point>,
+    /// Whether its x rises from sample to sample.
+    rises: bool,
+    over: Vec<Series>,
+    lower: Lower,
+}
+
+/// The picture of what was identified `of` a record, from the two columns that it was identified from in SI,
+/// the second one of this quantity; of impact times alone there is one column.
+pub fn identified_figure(
+    (of, found): (&str, &Identified),
+    (across, values): (&[f64], &[f64]),
+    quantity: Quantity,
+    ranges: Ranges,
+    caption: &Caption,
+    theme: &Theme,
+) -> Figure {
+    let (scale, up) = unit(quantity, values);
+    let column = |table: &'_ Table, name: &str| table.numbers(name).unwrap_or_default().to_vec();
+    let fitted = |x: &str, y: &str, k: f64| -> Vec<Point> {
+        let (x, y) = (column(&found.fitted, x), column(&found.fitted, y));
+        x.into_iter().zip(y).map(|(x, y)| (x * k, y * scale)).collect()
+    };
+    let intervals = |x: Vec<f64>, name: &str| -> Vec<(f64, [f64; 3])> {
+        let all = ["", "_low", "_high"].map(|end| column(&found.rows, &format!("{name}{end}")));
+        x.into_iter().enumerate().map(|(i, x)| (x, [0, 1, 2].map(|k| all[k][i]))).collect()
+    };
+    let first = found.summary.first().copied();
+    let line = |name, series, points, kind| Series { name, series, points, ink: theme.ink, kind };
+    let names = [if of == "force" { "x_m" } else { "t_s" }.to_owned(), column_of(quantity)];
+    let k = if of == "force" { 1e3 } else { 1.0 };
+    let record = across.iter().zip(values).map(|(x, y)| (x * k, y * scale)).collect();
+    let picture = match of {
+        "force" => RecordPicture {
+            across: "position, mm",
+            up,
+            columns: names,
+            scales: [k, scale],
+            record,
+            rises: false,
+            over: vec![line("identified curve", "identified", pairs(&found.rows, scale), Kind::Line)],
+            lower: Lower::Rest("residual", "residual", fitted("x_m", "residual_n", 1e3)),
+        },
+        "damping" => {
+            let (from, to) = (column(&found.rows, "from_s"), column(&found.rows, "to_s"));
+            let middle = from.iter().zip(&to).map(|(a, b)| 0.5 * (a + b)).collect();
+            let envelope = |name, series, end| line(name, series, fitted("t_s", end, 1.0), Kind::Dashed);
+            let over = vec![
+                envelope("identified envelope", "upper_envelope", "upper"),
+                envelope("", "lower_envelope", "lower"),
+            ];
+            let rows = intervals(middle, "damping_ratio");
+            let lower = Lower::Intervals("damping ratio", "damping_ratio", rows, first);
+            let (columns, scales) = (names, [k, scale]);
+            RecordPicture { across: "time, s", up, columns, scales, record, rises: true, over, lower }
+        }
+        _ => {
+            let marks = |name, series, x, y, mark, ink| Series {
+                name,
+                series,
+                points: fitted(x, y, 1.0),
+                ink,
+                kind: Kind::Marks(mark),
+            };
+            let over = vec![
+                marks("impact", "impact", "t_s", "x_m", Marker::Disc, theme.ink),
+                marks(
+                    "end of a rebound",
+                    "rebound",
+                    "rebound_t_s",
+                    "rebound_x_m",
+                    Marker::Triangle,
+                    theme.second,
+                ),
+            ];
+            let rows = intervals(column(&found.rows, "t_s"), "restitution");
+            let lower = Lower::Intervals("restitution", "restitution", rows, first);
+            let (columns, scales) = (names, [k, scale]);
+            RecordPicture { across: "time, s", up, columns, scales, record, rises: true, over, lower }
+        }
+    };
+    picture.draw(&told(&found.summary), ranges, caption, theme)
+}
+
+/// The picture of a measured force over the computed curve, of which `curve` is the table.
+pub fn measured_force_figure(
+    found: &ForceComparison,
+    curve: &Table,
+    ranges: Ranges,
+    caption: &Caption,
+    theme: &Theme,
+) -> Figure {
+    let (scale, up) = unit(Quantity::Force, &found.measured);
+    let mm = |values: &[f64]| -> Vec<Point> {
+        found.positions.iter().zip(values).map(|(x, own)| (x * 1e3, own * scale)).collect()
+    };
+    let apart: Vec<f64> = found.measured.iter().zip(&found.computed).map(|(m, c)| c - m).collect();
+    let low = found.positions.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = found.positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let near = pairs(curve, scale).into_iter().filter(|own| (low * 1e3..=high * 1e3).contains(&own.0));
+    let name = "computed";
+    let computed = Series { name, series: name, points: near.collect(), ink: theme.ink, kind: Kind::Line };
+    let picture = RecordPicture {
+        across: "displacement, mm",
+        up,
+        columns: ["x_m".to_owned(), column_of(Quantity::Force)],
+        scales: [1e3, scale],
+        record: mm(&found.measured),
+        rises: false,
+        over: vec![computed],
+        lower: Lower::Rest("difference", "difference", mm(&apart)),
+    };
+    let ((rms, percent), (at, largest)) = (found.rms, found.largest);
+    let unit = picture.up.rsplit(", ").next().unwrap_or_default();
+    let mut words = format!("RMS difference {} {unit}", short(rms * scale));
+    if percent.is_finite() {
+        words += &format!(", {} % of the RMS measured", short(percent));
+    }
+    let (most, at) = (short((largest * scale).abs()), short(at * 1e3).replace('-', "\u{2212}"));
+    words += &format!("; at most {most} {unit}, at {at} mm");
+    picture.draw(&words, ranges, caption, theme)
+}
+
+/// The first number with its interval and the second one; of a force curve the wells, the barrier and the
+/// hysteresis.
+fn told(summary: &[Identity]) -> String {
+    let of = |name: &str| summary.iter().find(|own| own.name == name).map(|own| own.value);
+    let known = |name: &str, unit: f64| of(name).map(|own| short(own * unit));
+    let mut parts = Vec::new();
+    if let (Some(left), Some(right)) = (known("left_well_m", 1e3), known("right_well_m", 1e3)) {
+        parts.push(format!("wells at {left} and {right} mm"));
+    }
+    let barrier = (known("barrier_from_left_j", 1e3), known("barrier_from_right_j", 1e3));
+    if let (Some(left), Some(right)) = barrier {
+        parts.push(format!("barrier of {left} mJ from the left, {right} mJ from the right"));
+    }
+    parts.extend(known("hysteresis_n", 1.0).map(|own| format!("hysteresis {own} N")));
+    if parts.is_empty() {
+        parts.extend(summary.first().map(Identity::describe));
+        parts.extend(of("frequency_hz").map(|own| format!("{} Hz", short(own))));
+    }
+    parts.join(", ").replace('-', "\u{2212}")
+}
+
+/// The column of a quantity in the table of what is drawn.
+fn column_of(quantity: Quantity) -> String {
+    let name = match quantity {
+        Quantity::Velocity => "v",
+        Quantity::Acceleration => "accel",
+        Quantity::Force => "force",
+        _ => "x",
+    };
+    format!("{name}{}", quantity.ending())
+}
+
+/// Position and force of a table, in mm and scaled.
+fn pairs(table: &Table, scale: f64) -> Vec<Point> {
+    let [x, force] = ["x_m", "force_n"].map(|name| table.numbers(name).unwrap_or_default());
+    x.iter().zip(force).map(|(x, force)| (x * 1e3, force * scale)).collect()
+}
+
+/// The factor from SI to the unit of an axis, and what the axis is called.
+fn unit(quantity: Quantity, values: &[f64]) -> (f64, String) {
+    let most = values.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
+    match quantity {
+        Quantity::Velocity => {
+            let (scale, unit) = speed_unit(values.iter().copied());
+            (scale, format!("velocity, {unit}"))
+        }
+        Quantity::Acceleration => (1.0 / STANDARD_GRAVITY, "acceleration, g".to_owned()),
+        Quantity::Force if most < 0.1 => (1e3, "force, mN".to_owned()),
+        Quantity::Force => (1.0, "force, N".to_owned()),
+        _ => (1e3, "displacement, mm".to_owned()),
+    }
+}
+
+impl RecordPicture {
+    fn draw(&self, words: &str, ranges: Ranges, caption: &Caption, theme: &Theme) -> Figure {
+        let mut figure = Figure::new(theme, caption, LEAST);
+        let of_record = theme.regimes[3];
+        let inside = |own: &&Point| ranges.x.is_none_or(|(a, b)| (a..=b).contains(&own.0));
+        let shown = || self.record.iter().filter(inside);
+        let dots = shown().count() < DOTS;
+        let mut entries = Vec::new();
+        if !self.record.is_empty() {
+            entries.push((if dots { disc(of_record) } else { bar(of_record) }, "measured"));
+        }
+        entries.extend(self.over.iter().filter(|own| !own.name.is_empty()).map(|own| {
+            let sample = match own.kind {
+                Kind::Line => Sample::Line(own.ink, style::LINE, None),
+                Kind::Dashed => Sample::Line(own.ink, style::LINE, Some(style::DASH)),
+                Kind::Marks(mark) => Sample::Marker(mark, own.ink),
+            };
+            (sample, own.name)
+        }));
+        if matches!(self.lower, Lower::Intervals(..)) {
+            let band = theme.ink.over(theme.paper, 0.14);
+            entries.push((Sample::Patch(band, None), "of all, with its 95 % interval"));
+        }
+        let ends = (LEFT, figure.right());
+        let more = (legend(&mut figure, theme, &entries, ends, 142.0) - 161.0).max(0.0);
+        let (label, lower) = match &self.lower {
+            Lower::Rest(label, _, points) => {
+                let unit = self.up.rsplit(", ").next().unwrap_or_default();
+                (format!("{label}, {unit}"), points.iter().map(|own| own.1).chain([0.0]).collect())
+            }
+            Lower::Intervals(label, _, rows, all) => {
+                let ends = all.iter().flat_map(|own| [own.interval.0, own.interval.1]);
+                let rows = rows.iter().flat_map(|own| own.1);
+                ((*label).to_owned(), rows.chain(ends).collect::<Vec<f64>>())
+            }
+        };
+        let places = self.record.iter().map(|own| own.0).chain(match &self.lower {
+            Lower::Intervals(_, _, rows, _) => rows.iter().map(|own| own.0).collect(),
+            Lower::Rest(..) => Vec::new(),
+        });
+        let across = PlotAxis::around(places, 0.0, 8, self.across).or_given(ranges.x, 8, self.across);
+        let drawn = self.over.iter().flat_map(|own| &own.points).filter(inside);
+        let heights = shown().chain(drawn).map(|own| own.1);
+        let up = PlotAxis::around(heights, 0.08, 6, &self.up).or_given(ranges.y, 6, &self.up);
+        let below = PlotAxis::around(lower, 0.12, 4, &label);
+        let [first, second] = stretched(FRAMES, 175.0 + more, figure.bottom() - 8.0);
+        let height = |own: (f64, f64)| own.1 - own.0;
+        let left = Frame::left(&figure, &up, LEFT, height(first));
+        let left = left.max(Frame::left(&figure, &below, LEFT, height(second)));
+        let area = |(top, bottom): (f64, f64)| Area::new(left, top, figure.right(), bottom);
+        let upper = Frame::new(area(first), across.clone().silent(), up);
+        let lower = Frame::new(area(second), across, below);
+
+        upper.grid(&mut figure, theme);
+        lower.grid(&mut figure, theme);
+        match (dots, self.rises) {
+            (true, _) => {
+                let at = self.record.iter().map(|own| upper.place(*own));
+                at.filter(|at| upper.area.contains(*at)).for_each(|at| {
+                    dot(&mut figure, Marker::Disc, at, 4.0, of_record);
+                });
+            }
+            (_, true) => {
+                let timing = Timing::of(&self.record.iter().map(|own| own.0).collect::<Vec<_>>());
+                for part in self.record.chunk_by(|a, b| !timing.is_gap(b.0 - a.0)) {
+                    upper.dense_line(&mut figure, part.iter().copied(), style::LINE, of_record);
+                }
+            }
+            (_, false) => upper.path(&mut figure, self.record.iter().copied(), style::LINE, of_record),
+        }
+        for own in &self.over {
+            match own.kind {
+                Kind::Line => upper.path(&mut figure, own.points.iter().copied(), style::FINE_LINE, own.ink),
+                Kind::Dashed => {
+                    upper.dashed(&mut figure, &own.points, style::FINE_LINE, own.ink, style::DASH);
+                }
+                Kind::Marks(mark) => {
+                    let at = own.points.iter().map(|own| upper.place(*own));
+                    at.filter(|at| upper.area.contains(*at)).for_each(|at| {
+                        marker(&mut figure, mark, at, 6.0, own.ink, theme.paper);
+                    });
+                }
+            }
+        }
+        self.lower_frame(&mut figure, &lower, (of_record, theme));
+        upper.axes(&mut figure, theme);
+        lower.axes(&mut figure, theme);
+        figure.data = self.data();
+        caption.draw(&mut figure, theme, words, LEFT);
+        figure
+    }
+
+    fn lower_frame(&self, figure: &mut Figure, frame: &Frame, (of_record, theme): (Ink, &Theme)) {
+        let area = frame.area;
+        match &self.lower {
+            Lower::Rest(_, _, points) => {
+                let every = points.len().div_ceil(MOST_LOWER).max(1);
+                for own in points.iter().step_by(every) {
+                    let at = frame.place(*own);
+                    if area.contains(at) {
+                        dot(figure, Marker::Disc, at, 2.4, of_record);
+                    }
+                }
+                frame.horizontal(figure, 0.0, style::FINE_LINE, theme.ink, None);
+            }
+            Lower::Intervals(_, _, rows, all) => {
+                if let Some(own) = all {
+                    let ends = [own.interval.1, own.interval.0].map(|own| frame.down(own));
+                    let [top, bottom] = ends.map(|own| own.clamp(area.top, area.bottom));
+                    if ends.iter().all(|own| own.is_finite()) {
+                        figure.rect(
+                            Area::new(area.left, top, area.right, bottom.max(top + 1.0)),
+                            theme.ink.over(theme.paper, 0.14),
+                        );
+                    }
+                    frame.horizontal(figure, own.value, style::THIN, theme.ink, None);
+                }
+                for (x, [value, low, high]) in rows {
+                    let (at, ends) = (frame.place((*x, *value)), [*low, *high].map(|own| frame.down(own)));
+                    if ends.iter().all(|own| own.is_finite()) {
+                        figure.line(&[(at.0, ends[0]), (at.0, ends[1])], style::LINE, of_record, area);
+                    }
+                    if area.contains(at) {
+                        marker(figure, Marker::Disc, at, 7.0, of_record, theme.paper);
+                    }
+                }
+            }
+        }
+    }
+
+    /// What is drawn, in SI.
+    fn data(&self) -> Table {
+        let below = match &self.lower {
+            Lower::Rest(..) => Vec::new(),
+            Lower::Intervals(_, name, ..) => {
+                ["", "_low", "_high"].into_iter().map(|end| format!("{name}{end}")).collect()
+            }
+        };
+        let mut drawn = Drawn::new(self.columns.iter().chain(&below).map(String::as_str), &[]);
+        let [k, scale] = self.scales;
+        let mut put = |series, points: &[Point]| {
+            points.iter().for_each(|(x, y)| drawn.put(series, &[x / k, y / scale], &[]));
+        };
+        put("measured", &self.record);
+        self.over.iter().for_each(|own| put(own.series, &own.points));
+        match &self.lower {
+            Lower::Rest(_, series, points) => put(series, points),
+            Lower::Intervals(_, name, rows, _) => {
+                for (x, [y, low, high]) in rows {
+                    drawn.put(name, &[x / k, f64::NAN, *y, *low, *high], &[]);
+                }
+            }
+        }
+        drawn.table()
+    }
+}
+
+fn disc(ink: Ink) -> Sample {
+    Sample::Marker(Marker::Disc, ink)
+}
+
+fn bar(ink: Ink) -> Sample {
+    Sample::Line(ink, style::LINE, None)
+}
