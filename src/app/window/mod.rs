@@ -40,6 +40,7 @@ mod menu;
 mod messages;
 mod path_dialog;
 mod perform;
+mod saving_figure;
 mod size;
 mod state;
 mod wanted;
