@@ -2,8 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui::Ui;
-
 use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
 use crate::app::task::Latest;
@@ -11,10 +9,7 @@ use crate::app::views::{MapQuantity, Memory, View, stretch};
 use crate::output::{Format, Panel, RMS, Sheet, SheetText};
 use crate::system::files;
 
-use super::Window;
-use super::figure_dialog::Asked;
 use super::messages::Written;
-use super::wanted::Wanted;
 
 /// Share of the stretch of time that traces show below which all of the run is offered.
 const LITTLE: f64 = 0.05;
@@ -23,7 +18,7 @@ const LITTLE: f64 = 0.05;
 #[derive(Debug)]
 pub struct Figures {
     /// The view; none while no figure is asked for.
-    view: Option<View>,
+    pub(super) view: Option<View>,
     /// The file.
     pub path: String,
     /// Width on paper in mm.
@@ -202,56 +197,6 @@ impl Figures {
             words += " A file of that name exists and will be replaced.";
         }
         (true, words.trim_start().to_owned())
-    }
-}
-
-impl Window {
-    /// Asks for a figure of a view, or of the one under the pointer.
-    pub(super) fn ask_figure(&mut self, view: Option<View>) {
-        let view = view.or(self.filled).or(self.memory.hovered).unwrap_or(View::Displacement);
-        self.figures.open(view, &self.session, &self.memory);
-    }
-
-    /// The figure that is asked for.
-    pub fn figures(&mut self) -> &mut Figures {
-        &mut self.figures
-    }
-
-    pub(super) fn figure_ui(&mut self, ui: &Ui) {
-        let Some(view) = self.figures.view else { return };
-        let Some(asked) = self.figures.ui(ui, view, &self.session, &self.memory) else { return };
-        match asked {
-            Asked::Browse => return self.choose(Wanted::Figure),
-            Asked::Close => {
-                self.figures.job.clear();
-                self.figures.view = None;
-                return;
-            }
-            Asked::Save | Asked::Copy => {}
-        }
-        let Some(view) = self.figures.view else { return };
-        let order = match self.figures.order(view, &self.session, &self.memory) {
-            Ok(order) => order,
-            Err(problem) => return self.figures.problem = Some(problem),
-        };
-        if matches!(asked, Asked::Copy) {
-            ui.ctx().copy_text(order.command_line());
-            return self.messages.tell("Copied: the command line of this figure");
-        }
-        self.figures.problem = None;
-        self.figures.job.ask(&self.wake, move |cancel| order.save(cancel));
-    }
-
-    /// Takes in a figure that was saved, or why it was not: the question then stands as it was.
-    pub(super) fn take_figure(&mut self) {
-        match self.figures.job.take() {
-            Some(Ok(text)) => {
-                self.figures.view = None;
-                self.messages.tell(text);
-            }
-            Some(Err(problem)) => self.figures.problem = Some(problem),
-            None => {}
-        }
     }
 }
 

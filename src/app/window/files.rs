@@ -183,6 +183,7 @@ impl Window {
                 self.leave_for(ctx, Next::Text(text));
             }
         }
+        self.take_figure();
         self.tell_written();
         let dirty = if self.is_unsaved() { "* " } else { "" };
         let name = self.lesson().map_or(&self.session.scene().title, |own| &own.lesson().title);

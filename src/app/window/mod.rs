@@ -42,6 +42,7 @@ mod menu;
 mod messages;
 mod path_dialog;
 mod perform;
+mod saving_figure;
 mod size;
 mod state;
 mod wanted;

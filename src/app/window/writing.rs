@@ -47,7 +47,6 @@ impl Window {
 
     /// Says what was written on other threads.
     pub(super) fn tell_written(&mut self) {
-        self.take_figure();
         let run = self.run.take();
         for written in run.into_iter().chain(self.written.1.try_iter()) {
             self.messages.tell_written(written);
