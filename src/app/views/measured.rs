@@ -131,8 +131,8 @@ fn zero_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     if ![record.across.quantity, record.values.quantity].contains(&Quantity::Displacement) {
         return;
     }
-    let hover = "What is added to the displacement where the sensor has its zero elsewhere: the difference of \
-                 the means, once the shift is right.";
+    let hover = "What is added to the displacement where the sensor has its zero elsewhere: the \
+                 difference of the means, once the shift is right.";
     let knob = Knob {
         name: "add",
         unit: "mm",

@@ -5,13 +5,11 @@ use egui_plot::{Line, PlotPoint, PlotPoints, PlotUi, Points};
 
 use crate::app::session::Session;
 use crate::app::ui::style::Style;
-use crate::dynamics::STANDARD_GRAVITY;
 use crate::scene::Quantity;
 
 use super::ViewContext;
 use super::chart::Chart;
 use super::legend::Sign;
-use super::trace::TraceQuantity;
 
 /// Fewer samples than this in a picture are dots.
 const DOTS: usize = 400;
@@ -28,20 +26,19 @@ const ROOM: f64 = 0.05;
 /// What the entry of the legend is called.
 const NAME: &str = "measured";
 
-/// The unit of an axis in SI, where a trace shows what was measured.
-fn unit(session: &Session, quantity: TraceQuantity) -> Option<f64> {
+/// The unit of an axis in SI, where it shows what was measured: the quantity that it can show, and its unit.
+fn unit(session: &Session, axis: Option<(Quantity, f64)>) -> Option<f64> {
     let measured = session.measured.over.as_ref()?.record.values.quantity;
-    match (quantity, measured) {
-        (TraceQuantity::Displacement, Quantity::Displacement)
-        | (TraceQuantity::Velocity, Quantity::Velocity) => Some(1e-3),
-        (TraceQuantity::BaseAcceleration, Quantity::Acceleration) => Some(STANDARD_GRAVITY),
-        _ => None,
-    }
+    axis.filter(|own| own.0 == measured).map(|own| own.1)
 }
 
 /// The ends of the vertical axis of a trace, with room for what was measured.
-pub(super) fn with_room(session: &Session, quantity: TraceQuantity, (low, high): (f64, f64)) -> (f64, f64) {
-    let Some((unit, over)) = unit(session, quantity).zip(session.measured.over.as_ref()) else {
+pub(super) fn with_room(
+    session: &Session,
+    axis: Option<(Quantity, f64)>,
+    (low, high): (f64, f64),
+) -> (f64, f64) {
+    let Some((unit, over)) = unit(session, axis).zip(session.measured.over.as_ref()) else {
         return (low, high);
     };
     let (least, greatest) = over.record.range;
@@ -58,8 +55,8 @@ pub(super) struct MeasuredTrace {
 
 impl MeasuredTrace {
     /// What was measured from `from` to `to` in s, where a trace shows that quantity.
-    pub fn of(session: &Session, quantity: TraceQuantity, (from, to): (f64, f64)) -> Option<Self> {
-        let unit = unit(session, quantity)?;
+    pub fn of(session: &Session, axis: Option<(Quantity, f64)>, (from, to): (f64, f64)) -> Option<Self> {
+        let unit = unit(session, axis)?;
         let over = session.measured.over.as_ref()?;
         let (times, values) = (&over.record.across.values, &over.record.values.values);
         let first = times.partition_point(|t| over.time(*t) < from).saturating_sub(1);

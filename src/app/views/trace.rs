@@ -11,6 +11,7 @@ use crate::app::session::Session;
 use crate::app::session::pins::Pin;
 use crate::app::words::numbers::decimals_for;
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
+use crate::scene::Quantity;
 use crate::study::Watch;
 
 use super::ViewContext;
@@ -76,6 +77,16 @@ impl TraceQuantity {
         self.value(sample, mass)
     }
 
+    /// What can have been measured of it, and its unit in SI.
+    fn measured(self) -> Option<(Quantity, f64)> {
+        match self {
+            Self::Displacement => Some((Quantity::Displacement, 1e-3)),
+            Self::Velocity => Some((Quantity::Velocity, 1e-3)),
+            Self::BaseAcceleration => Some((Quantity::Acceleration, STANDARD_GRAVITY)),
+            Self::Power => None,
+        }
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Displacement => "displacement",
@@ -112,7 +123,7 @@ impl TraceQuantity {
 pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ends = quantity.ends(context);
-    let ends = with_room(context.session, quantity, ends);
+    let ends = with_room(context.session, quantity.measured(), ends);
     let (low, high) = context.memory.timeline.vertical[quantity as usize].unwrap_or(ends);
     let (now, model) = (context.session.player.time(), context.session.shown());
     let own = stretch(model);
@@ -135,7 +146,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         true => ghost_paths(context.session, (from, now), |watch, own| quantity.seen(watch, own)),
         false => Vec::new(),
     };
-    let measured = MeasuredTrace::of(context.session, quantity, (from, to));
+    let measured = MeasuredTrace::of(context.session, quantity.measured(), (from, to));
     let rests = rests(&samples);
     let impacts: Vec<f64> = watch
         .events()
