@@ -108,6 +108,10 @@ pub fn map_command_line(session: &Session) -> Option<String> {
     for axis in &question.axes {
         line += &format!(" --over {}", quoted(&over(axis)));
     }
+    let more = session.map.more_columns();
+    if !more.is_empty() {
+        line += &format!(" --columns {}", more.join(","));
+    }
     Some(line)
 }
 

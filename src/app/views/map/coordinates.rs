@@ -16,6 +16,13 @@ const BAR: f32 = 16.0;
 const BAR_ROOM: f32 = 84.0;
 const PLAIN_ROOM: f32 = 12.0;
 
+/// What the strips of cuts take of the width and of the height, at least and at most so many points, and
+/// what lies between them and the map.
+const STRIP: f32 = 0.24;
+const STRIP_WIDTH: (f32, f32) = (96.0, 240.0);
+const STRIP_HEIGHT: (f32, f32) = (56.0, 190.0);
+const BETWEEN: f32 = 18.0;
+
 /// Length of a tick in points.
 const TICK: f32 = 4.0;
 
@@ -25,6 +32,8 @@ pub struct Coordinates {
     pub rect: Rect,
     /// The colour bar, where there is one.
     pub bar: Option<Rect>,
+    /// The strips beside it: below, with the axis across, and to the right, with the axis up.
+    pub strips: Option<[Rect; 2]>,
     /// Across.
     pub x: PlotAxis,
     /// Up.
@@ -32,12 +41,25 @@ pub struct Coordinates {
 }
 
 impl Coordinates {
-    /// The map in `area`.
-    pub fn new(area: Rect, map: &Map, bar: bool) -> Self {
+    /// The map in `area`, with a colour bar and strips for cuts where these are to be there.
+    pub fn new(area: Rect, map: &Map, bar: bool, cuts: bool) -> Self {
         let room = if bar { BAR_ROOM } else { PLAIN_ROOM };
-        let rect = Rect::from_min_max(area.min + vec2(LEFT, TOP), area.max - vec2(room, BOTTOM));
+        let size = STRIP * area.size();
+        let strip =
+            vec2(size.x.clamp(STRIP_WIDTH.0, STRIP_WIDTH.1), size.y.clamp(STRIP_HEIGHT.0, STRIP_HEIGHT.1));
+        let (taken, top) =
+            if cuts { (strip + vec2(BETWEEN, BETWEEN), TOP + 12.0) } else { (Vec2::ZERO, TOP) };
+        let rect = Rect::from_min_max(area.min + vec2(LEFT, top), area.max - vec2(room, BOTTOM) - taken);
+        let strips = cuts.then(|| {
+            let below = pos2(rect.left(), rect.bottom() + BETWEEN);
+            let beside = pos2(rect.right() + BETWEEN, rect.top());
+            [
+                Rect::from_min_size(below, vec2(rect.width(), strip.y)),
+                Rect::from_min_size(beside, vec2(strip.x, rect.height())),
+            ]
+        });
         let bar = bar.then(|| {
-            let left = rect.right() + 12.0;
+            let left = rect.right() + taken.x + 12.0;
             Rect::from_min_max(pos2(left, rect.top()), pos2(left + BAR, rect.bottom()))
         });
         let names = map.grid().columns();
@@ -48,6 +70,7 @@ impl Coordinates {
             y: PlotAxis::between(ends[1].0, ends[1].1, count(rect.height(), 42.0), &label(&names[1])),
             rect,
             bar,
+            strips,
         }
     }
 
@@ -64,13 +87,14 @@ impl Coordinates {
         (between(&self.x, share.x), between(&self.y, 1.0 - share.y))
     }
 
-    /// Draws ticks, numbers and names around the map.
-    pub fn axes(&self, painter: &Painter, style: &Style) {
+    /// Draws ticks, numbers and names around the map; the strip below has that of the quantity.
+    pub fn axes(&self, painter: &Painter, style: &Style, quantity: Option<&str>) {
         let stroke = Stroke::new(1.0, style.ink());
         painter.rect_stroke(self.rect, 0.0, stroke, StrokeKind::Outside);
         let number = |at, align, text: &str| painter.text(at, align, text, style.small(), style.ink());
+        let bottom = self.strips.map_or(self.rect.bottom(), |strips| strips[0].bottom());
         for (value, text) in &self.x.ticks {
-            let at = pos2(self.screen_from_world((*value, self.y.low)).x, self.rect.bottom());
+            let at = pos2(self.screen_from_world((*value, self.y.low)).x, bottom);
             painter.line_segment([at, at + vec2(0.0, TICK)], stroke);
             number(at + vec2(0.0, TICK + 1.0), Align2::CENTER_TOP, text);
         }
@@ -79,10 +103,13 @@ impl Coordinates {
             painter.line_segment([at, at - vec2(TICK, 0.0)], stroke);
             number(at - vec2(TICK + 3.0, 0.0), Align2::RIGHT_CENTER, text);
         }
-        let below = pos2(self.rect.center().x, self.rect.bottom() + BOTTOM - 2.0);
+        let below = pos2(self.rect.center().x, bottom + BOTTOM - 2.0);
         painter.text(below, Align2::CENTER_BOTTOM, &self.x.label, style.body(), style.ink());
         let (beside, room) = (pos2(self.rect.left() - LEFT + 10.0, self.rect.center().y), self.rect.height());
         upright(painter, style, (beside, room), &self.y.label);
+        if let (Some([below, _]), Some(quantity)) = (self.strips, quantity) {
+            upright(painter, style, (pos2(beside.x, below.center().y), below.height()), quantity);
+        }
     }
 }
 
