@@ -108,9 +108,8 @@ pub fn map_command_line(session: &Session) -> Option<String> {
     for axis in &question.axes {
         line += &format!(" --over {}", quoted(&over(axis)));
     }
-    let more = session.map.more_columns();
-    if !more.is_empty() {
-        line += &format!(" --columns {}", more.join(","));
+    if let Some(columns) = session.map.columns() {
+        line += &format!(" --columns {}", columns.join(","));
     }
     Some(line)
 }

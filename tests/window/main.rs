@@ -14,6 +14,7 @@ mod keyboard;
 mod lesson_window;
 mod lessons;
 mod map;
+mod map_looks;
 mod memory;
 mod newcomer;
 mod past;

@@ -9,8 +9,8 @@ use crate::numeric::short;
 use crate::output::{header, rows};
 use crate::scene::SceneError;
 use crate::study::{
-    Cell, Edges, Grid, Levels, STANDARD_COLUMNS, STRIDES, SummaryField, Sweep, SweepOptions, Table,
-    first_crossing, first_crossing_edge,
+    Cell, Edges, Grid, Levels, STRIDES, SummaryField, Sweep, SweepOptions, Table, first_crossing,
+    first_crossing_edge,
 };
 
 use super::{Question, over};
@@ -177,18 +177,18 @@ impl Map {
         (0..if upright { rows } else { columns }).filter_map(cell).collect()
     }
 
-    /// The map as the command line writes it with `more` columns.
-    pub(super) fn csv(&self, more: &[&str]) -> String {
+    /// The map as the command line writes it with these columns after those of its axes.
+    pub(super) fn csv(&self, columns: &[&str]) -> String {
         let mut table = self.table();
-        let names: Vec<String> = self.grid().columns().to_vec();
-        let wanted = STANDARD_COLUMNS.iter().chain(more).map(|name| (*name).to_owned());
-        for field in more.iter().filter_map(|name| SummaryField::find(name)) {
+        for field in columns.iter().filter_map(|name| SummaryField::find(name)) {
             if table.column(field.name).is_none() {
                 let summaries = self.cells.iter().map(|cell| cell.as_ref().and_then(Cell::summary));
                 table = table.with(field.name, field.column(summaries));
             }
         }
-        let table = table.only(&names.into_iter().chain(wanted).collect::<Vec<_>>());
+        let axes = self.grid().columns().iter().cloned();
+        let names: Vec<String> = axes.chain(columns.iter().map(|name| (*name).to_owned())).collect();
+        let table = table.only(&names);
         header(&table) + &rows(&table, 0..usize::MAX)
     }
 

@@ -128,18 +128,21 @@ impl Mapping {
         self.quantity = Some(quantity);
     }
 
-    /// The columns of the map's table beyond the standard ones.
-    pub fn more_columns(&self) -> Vec<&'static str> {
+    /// The columns of the map's table, where they are more than the standard ones.
+    pub fn columns(&self) -> Option<Vec<&'static str>> {
         let ledger = self.map.as_ref().and_then(|map| map.question.ledger);
-        let mut all: Vec<&str> = ledger.into_iter().chain([self.quantity().column]).collect();
-        all.dedup();
-        all.retain(|name| !STANDARD_COLUMNS.contains(name));
-        all
+        let wanted = ledger.into_iter().chain([self.quantity().column]);
+        let mut more: Vec<&str> = wanted.filter(|name| !STANDARD_COLUMNS.contains(name)).collect();
+        more.dedup();
+        (!more.is_empty()).then(|| STANDARD_COLUMNS.into_iter().chain(more).collect())
     }
 
     /// The map as the command line writes it, once it is whole.
     pub fn csv(&self) -> Option<String> {
-        self.map.as_ref().filter(|map| map.is_whole()).map(|map| map.csv(&self.more_columns()))
+        self.map
+            .as_ref()
+            .filter(|map| map.is_whole())
+            .map(|map| map.csv(&self.columns().unwrap_or_else(|| STANDARD_COLUMNS.to_vec())))
     }
 
     /// Chooses axes; none for the scene's own.

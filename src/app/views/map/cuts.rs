@@ -45,9 +45,9 @@ pub fn draw(
     (column, row): (usize, usize),
     style: &Style,
 ) {
-    let Some([below, beside]) = frame.strips else { return };
+    let Some([across, beside]) = frame.strips else { return };
     let (x, y) = (map.edges[0].values[column], map.edges[1].values[row]);
-    for (upright, rect, at) in [(true, beside, (column, x)), (false, below, (row, y))] {
+    for (upright, rect, at) in [(true, beside, (column, x)), (false, across, (row, y))] {
         let strip = Strip { upright, rect, frame, scale, map, at };
         strip.place_on_map(painter);
         strip.draw(painter, style, if upright { row } else { column });
@@ -57,11 +57,12 @@ pub fn draw(
 impl Strip<'_> {
     /// Where a value of the axis along it and a share of the scale stand.
     fn place(&self, along: f64, share: f64) -> Pos2 {
-        let on_map = self.frame.screen_from_world((along, along));
         let share = MARGIN + (1.0 - 2.0 * MARGIN) * share as f32;
+        let Rect { min, max } = self.rect;
+        let size = self.rect.size();
         match self.upright {
-            true => pos2(self.rect.left() + share * self.rect.width(), on_map.y),
-            false => pos2(on_map.x, self.rect.bottom() - share * self.rect.height()),
+            true => pos2(min.x + share * size.x, max.y - self.frame.y.share(along) as f32 * size.y),
+            false => pos2(min.x + self.frame.x.share(along) as f32 * size.x, max.y - share * size.y),
         }
     }
 

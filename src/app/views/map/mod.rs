@@ -29,7 +29,7 @@ use quantity::ColourScale;
 use surface::Surface;
 
 /// Height and width in points from which on there is room for cuts.
-const ROOM_FOR_CUTS: (f32, f32) = (380.0, 230.0);
+const ROOM_FOR_CUTS: (f32, f32) = (440.0, 170.0);
 
 /// What was drawn of a map: seen from above, and as a surface.
 #[derive(Clone)]
@@ -73,7 +73,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let place = context.session.place_on_map(&map.question);
     let scene = nearest_cell(map, place);
     let spoken = |name: &str, rect: Rect| {
-        let spoken = ui.interact(rect, ui.scope_id().with("cells"), Sense::hover());
+        let spoken = ui.interact(rect, ui.scope_id().with(("cells", name)), Sense::hover());
         spoken.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
     };
     let hand = (&mut context.memory.map_pointer, context.session.map.is_enlarged());
@@ -106,6 +106,9 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let room = area.width() > ROOM_FOR_CUTS.0 && area.height() > ROOM_FOR_CUTS.1;
         let frame = Coordinates::new(area, map, scale.bar.is_some(), look.cuts && room);
         spoken("map", frame.rect);
+        for (rect, name) in frame.strips.iter().flatten().zip(["cut across", "cut upward"]) {
+            spoken(name, *rect);
+        }
         picture.draw(&painter, &frame, map, &style);
         cuts::draw(&painter, &frame, (map, &scale), scene, &style);
         trail::draw(&painter, &frame, &style, &trail);
@@ -172,7 +175,11 @@ fn cell_at(frame: &Coordinates, map: &Map, scene: (usize, usize), at: Pos2) -> O
     let (x, y) = frame.world_from_screen(at);
     let own = (map.edges[0].cell(x), map.edges[1].cell(y));
     match frame.strips {
-        Some([below, _]) if below.contains(at) => own.0.map(|column| (column, scene.1)),
+        Some([across, _]) if across.contains(at) => {
+            let share = f64::from((at.x - across.left()) / across.width());
+            let x = frame.x.low + share * (frame.x.high - frame.x.low);
+            map.edges[0].cell(x).map(|column| (column, scene.1))
+        }
         Some([_, beside]) if beside.contains(at) => own.1.map(|row| (scene.0, row)),
         _ => own.0.zip(own.1),
     }

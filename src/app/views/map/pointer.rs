@@ -153,11 +153,12 @@ pub fn perform(context: &mut ViewContext<'_>, action: Option<MapAction>) {
         }
         Some(MapAction::Part(axes)) if session.map_problem(&axes).is_none() => session.map.enlarge(axes),
         Some(MapAction::Closer(column, row)) => {
-            let Some((map, _)) = session.map.shown() else { return };
+            let (Some(axes), Some((map, _))) = (session.map_axes(), session.map.shown()) else { return };
+            // those that were chosen last, be their map still to come
             let around = |i: usize, place: usize| {
-                let (axis, value) = (&map.question.axes[i], map.edges[i].values[place]);
+                let (axis, value) = (&axes[i], map.edges[i].values[place]);
                 let quarter = 0.25 * (axis.to - axis.from);
-                let middle = value.clamp(axis.from + quarter, axis.to - quarter);
+                let middle = value.max(axis.from + quarter).min(axis.to - quarter);
                 part(axis, middle - quarter, middle + quarter)
             };
             let axes = [around(0, column), around(1, row)];

@@ -195,3 +195,50 @@ fn counts(most: f64, label: &str) -> PlotAxis {
     let ticks = std::iter::once(0).chain(powers).map(|n| (n as f64, n.to_string()));
     PlotAxis { low: 0.0, high, ticks: ticks.filter(|tick| tick.0 <= high).collect(), label: label.to_owned() }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::time::Duration;
+
+    use super::*;
+    use crate::app::session::Session;
+    use crate::app::session::editor::Editor;
+    use crate::app::words::columns::column_info;
+    use crate::scene::SweepAxis;
+
+    #[test]
+    fn nothing_of_a_motion_is_not_rest() {
+        let mut session = Session::new(Editor::open("paper").unwrap(), Arc::new(|| ())).unwrap();
+        let axis = |field: &str, from, to, step| {
+            let field = field.to_owned();
+            SweepAxis { field, from, to, step, ..SweepAxis::default() }
+        };
+        let axes =
+            [axis("stops.travel_limit_mm", 1.5, 6.5, 5.0), axis("excitation.amplitude_g", 0.4, 1.0, 0.3)];
+        session.map.choose(Some(axes));
+        session.want_map(0.0);
+        assert!(session.wait_for_map(Duration::from_secs(3600)));
+        let map = session.map.map().unwrap();
+        let scale = |column: &str| ColourScale::of(column_info(column).unwrap(), map);
+        let look =
+            |column: &str, place: (usize, usize)| scale(column).look(map.cell(place.0, place.1).unwrap().0);
+        let (rest, moves, crosses) = ((0, 0), (1, 2), (0, 2));
+        assert_eq!(look("regime", rest), (Look::Rest, true));
+        assert_eq!(look("regime", moves), (Look::Kind(Kind::Intrawell), false));
+        assert_eq!(look("regime", crosses), (Look::Kind(Kind::Interwell), false));
+        assert_eq!(look("crossings", rest), (Look::Rest, true));
+        assert_eq!(look("crossings", moves), (Look::Share(0.0), false));
+        assert_eq!(look("crossings", crosses), (Look::Share(1.0), false));
+        // a number of a motion at rest is that number, and at rest
+        let (own, rests) = look("max_abs_x_m", rest);
+        let reach = scale("max_abs_x_m");
+        assert!(rests && own == Look::Share((1.5 / reach.bar.as_ref().unwrap().high) as f32), "{own:?}");
+        assert_eq!(reach.reading(map.cell(0, 0).unwrap().0).unwrap(), "reach 1.50 mm");
+        // and what no run has is no zero
+        assert_eq!(look("peak_contact_force_n", crosses), (Look::None, false));
+        assert_eq!(look("work_j", crosses), (Look::None, false));
+        assert_eq!(look("side", crosses), (Look::Word(2), false));
+        assert_eq!(scale("side").word(2), "both sides");
+    }
+}

@@ -27,6 +27,7 @@ const LOW: f32 = 220.0;
 
 /// Title, choices, progress.
 pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    ui.spacing_mut().item_spacing.y = 1.0;
     ui.add_space(2.0);
     let narrow = ui.available_width() < NARROW;
     ui.horizontal(|ui| {
@@ -199,7 +200,7 @@ pub fn legend(
     style: &Style,
     (about, look): (&str, MapLook),
 ) -> f32 {
-    const ROW: f32 = 20.0;
+    const ROW: f32 = 18.0;
     const SAMPLE: f32 = 24.0;
     let left = area.left() + 12.0;
     let (mut x, mut y) = (left, area.top() + 0.5 * ROW);
