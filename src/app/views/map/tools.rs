@@ -27,7 +27,8 @@ const LOW: f32 = 220.0;
 
 /// Title, choices, progress.
 pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    ui.spacing_mut().item_spacing.y = 1.0;
+    // a low map needs the room more
+    ui.spacing_mut().item_spacing.y = if ui.available_height() > LOW + 100.0 { 5.0 } else { 1.0 };
     ui.add_space(2.0);
     let narrow = ui.available_width() < NARROW;
     ui.horizontal(|ui| {

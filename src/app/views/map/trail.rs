@@ -41,7 +41,7 @@ fn parts(places: &[[Option<f64>; 2]], screen: impl Fn((f64, f64)) -> Pos2) -> Ve
     let mut parts: Vec<(Vec<Pos2>, f32)> = Vec::new();
     for (i, pair) in points.windows(2).enumerate() {
         let fade = (i + 1) * FADES / many.max(1);
-        let strength = FAINTEST + (1.0 - FAINTEST) * fade as f32 / FADES as f32;
+        let strength = (FAINTEST + (1.0 - FAINTEST) * fade as f32 / FADES as f32).min(1.0);
         let (Some(from), Some(to)) = (pair[0], pair[1]) else { continue };
         match parts.last_mut().filter(|own| own.1 == strength && own.0.last() == Some(&from)) {
             Some(part) => part.0.push(to),
