@@ -48,9 +48,11 @@ pub static COLUMNS: [(&str, &[ColumnInfo]); 6] = [
         own("chatter_sums", "summed chatters", "Endings of a chatter that were summed in closed form."),
     ]),
     ("First", &[
-        own("first_release_s", "first release, time", "When the mass first left its stop, under shaking that changes."),
+        own("first_release_s", "first release, time",
+            "When the mass first left its stop, under shaking that changes."),
         own("first_release_g", "first release, shaking", "The amplitude of a ramp at that time."),
-        own("first_crossing_s", "first crossing, time", "When it first crossed the barrier, under shaking that changes."),
+        own("first_crossing_s", "first crossing, time",
+            "When it first crossed the barrier, under shaking that changes."),
         own("first_crossing_g", "first crossing, shaking", "The amplitude of a ramp at that time."),
         own("crosses_always_from_s", "crosses always from, time",
             "The time from which on it crossed in every forcing period."),

@@ -83,16 +83,16 @@ impl Session {
         question.axes.each_ref().map(|axis| FieldPath::new(&axis.field).get(self.scene()))
     }
 
-    /// Why axes cannot be those of a map of the scene: which of the two is at fault, which of its parts, and a
-    /// sentence. None where they can.
+    /// Why axes cannot be those of a map of the scene: which of the two is at fault, which of its parts, and
+    /// a sentence. None where they can.
     pub fn map_problem(&self, axes: &[SweepAxis; 2]) -> Option<(usize, &'static str, String)> {
         let ground = axes::ground(self.scene(), self.remembered_stops(), axes);
         let mut cells = 1;
         for (i, axis) in axes.iter().enumerate() {
             match Axis::from_scene(axis, &ground) {
                 Err((part, problem)) => {
-                    let problem = in_words(&problem, &ground);
-                    return Some((i, part, format!("{}, {part}: {problem}", name_and_unit(&axis.field).0)));
+                    let why = in_words(&problem, &ground);
+                    return Some((i, part, format!("{}, {part}: {why}", name_and_unit(&axis.field).0)));
                 }
                 Ok(axis) => cells *= axis.values.len() as u64,
             }

@@ -159,8 +159,8 @@ fn is_inside(map: &Map, place: [Option<f64>; 2]) -> bool {
     place.iter().zip(&map.edges).all(|(own, edges)| own.is_some_and(|own| edges.cell(own).is_some()))
 }
 
-/// The cell in which a scene stands, or the one at the edge beyond which it does: without a stop the mass goes
-/// as far as it would with one far out.
+/// The cell in which a scene stands, or the one at the edge beyond which it does: without a stop the mass
+/// goes as far as it would with one far out.
 fn nearest_cell(map: &Map, place: [Option<f64>; 2]) -> (usize, usize) {
     let near = |i: usize| {
         let (edges, own) = (&map.edges[i], place[i].unwrap_or(f64::INFINITY));

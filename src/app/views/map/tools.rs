@@ -91,8 +91,8 @@ fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &ColumnInfo) {
     };
     ui.selectable_value(&mut look.surface, true, "Surface").on_hover_text(surface);
     ui.toggle_value(&mut look.cuts, "Cuts").on_hover_text(
-        "Lines through the map where the scene is, beside it: the quantity over one axis at this value of the \
-         other, with regimes, release and first crossing.",
+        "Lines through the map where the scene is, beside it: the quantity over one axis at this value of \
+         the other, with regimes, release and first crossing.",
     );
 }
 
@@ -156,8 +156,8 @@ fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) 
         }
     });
     button.on_hover_text(
-        "Ends and steps of both axes. A box drawn over the map enlarges it as well; on the cross-hair the keys \
-         + and - do.",
+        "Ends and steps of both axes. A box drawn over the map enlarges it as well; on the cross-hair the \
+         keys + and - do.",
     );
 }
 
