@@ -79,6 +79,19 @@ pub fn first_crossing_edge(
     parts
 }
 
+/// Where a line over a map meets the places whose first number (`upright`), or second one, is `value`: their
+/// other number.
+pub fn line_meets(line: &[(f64, f64)], value: f64, upright: bool) -> Vec<f64> {
+    let turned = |(a, b): (f64, f64)| if upright { (a, b) } else { (b, a) };
+    let meets = |pair: &[(f64, f64)]| {
+        let (from, to) = (turned(pair[0]), turned(pair[1]));
+        let (low, high) = (from.0.min(to.0), from.0.max(to.0));
+        let inside = low < high && (low..=high).contains(&value);
+        inside.then(|| from.1 + (value - from.0) / (to.0 - from.0) * (to.1 - from.1))
+    };
+    line.windows(2).filter_map(meets).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -93,5 +106,14 @@ mod tests {
         );
         assert_eq!(Edges::new(&[0.0]).ends(), (-0.5, 0.5));
         assert_eq!((edges.place(2.0), edges.cell(f64::NAN)), (Some(1), None));
+    }
+    #[test]
+    fn a_line_is_met_where_it_passes() {
+        let line = [(0.0, 0.0), (1.0, 2.0), (1.0, 3.0), (2.0, 1.0)];
+        assert_eq!(line_meets(&line, 0.25, true), [0.5]);
+        assert_eq!(line_meets(&line, 1.5, true), [2.0]);
+        assert_eq!(line_meets(&line, 1.5, false), [0.75, 1.75]);
+        assert_eq!(line_meets(&line, 1.0, true), [2.0, 3.0], "both ends of a step");
+        assert!(line_meets(&line, 2.5, true).is_empty());
     }
 }

@@ -56,7 +56,7 @@ pub use curve::{
 };
 pub use dense_output::between;
 pub use distance::distances;
-pub use edges::{Edges, first_crossing_edge};
+pub use edges::{Edges, first_crossing_edge, line_meets};
 pub use exponents::{
     Estimate, ExponentCells, ExponentOptions, ExponentTally, Exponents, NoExponents, average_exponents,
     drive_fault, exponents, exponents_row,

@@ -9,6 +9,8 @@ use interwell::app::session::explore::WalkQuantity;
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
+use interwell::app::words::columns::COLUMNS;
+use interwell::scene::Layout;
 use interwell::study::Signal;
 
 use crate::shared::axis;
@@ -145,6 +147,13 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
     let line = same_bytes(&mut harness, View::Map, "svg");
     assert!(line.contains("--over stops.travel_limit_mm=1:2:0.5 --over excitation.amplitude_g=0.6:1:0.2"));
     assert!(line.contains("--quantity rms_velocity_m_per_s"), "{line}");
+    command(&mut harness, Command::Arrange(Layout::Map));
+    harness.get_by_label("Surface").click();
+    harness.run_steps(3);
+    let column = COLUMNS.iter().flat_map(|own| own.1).find(|own| own.column == "impact_share").unwrap();
+    harness.state_mut().session.map.show(column);
+    let line = same_bytes(&mut harness, View::Map, "svg");
+    assert!(line.contains("--quantity impact_share --surface"), "{line}");
     let line = same_bytes(&mut harness, View::UpAndDown, "svg");
     assert!(line.contains("section paper") && line.contains("--carry both"), "{line}");
     harness.state_mut().session.explore.walks.quantity = WalkQuantity::RmsVelocity;

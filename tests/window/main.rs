@@ -15,6 +15,7 @@ mod keyboard;
 mod lesson_window;
 mod lessons;
 mod map;
+mod map_looks;
 mod measured;
 mod memory;
 mod newcomer;

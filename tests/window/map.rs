@@ -160,7 +160,7 @@ fn it_is_the_sweep_of_the_command_line() {
         assert_eq!(words[0], "interwell");
         let output = assert_cmd::Command::cargo_bin("interwell").unwrap().args(&words[1..]).output().unwrap();
         assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
-        let own = session.map.map().and_then(Map::csv).unwrap();
+        let own = session.map.csv().unwrap();
         assert_eq!(own, String::from_utf8(output.stdout).unwrap(), "{command}");
     }
 }

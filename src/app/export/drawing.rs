@@ -47,7 +47,7 @@ fn drawn(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure, String> {
     match &order.subject {
         Subject::Run(times, panels) => own.run(*times, panels),
         Subject::Curve => own.curve(),
-        Subject::Sweep(_, quantity) => own.sweep(&order.subject, quantity),
+        Subject::Sweep(_, quantity, surface) => own.sweep(&order.subject, quantity, *surface),
         Subject::Diagram(_) => own.diagram(&order.subject),
         Subject::Section => own.section(),
         Subject::Basins(x_mm, v) => own.basins(*x_mm, *v),
@@ -126,7 +126,7 @@ impl Drawing<'_> {
         Ok(curve_figure(&table, &mechanism, stops, Ranges::default(), &self.caption, &self.theme))
     }
 
-    fn sweep(&self, subject: &Subject, quantity: &str) -> Result<Figure, String> {
+    fn sweep(&self, subject: &Subject, quantity: &str, surface: bool) -> Result<Figure, String> {
         let (grid, pool) = self.grid(subject)?;
         let scene = &self.document.scene;
         let carry = subject.is_walked().then_some(Carry::Both);
@@ -134,7 +134,7 @@ impl Drawing<'_> {
         let columns = names.filter_map(SummaryField::find).collect();
         let options = SweepOptions { columns, until_settled: None, carry };
         let sweep = Sweep::new(scene, &self.document.files, grid).with(options);
-        let view = View::Top;
+        let view = if surface { View::Surface } else { View::Top };
         can_show(sweep.grid(), (quantity, &view), &sweep.empty_table()).map_err(|error| error.to_string())?;
         sweep.validate(&pool, &self.task).map_err(|cell| self.wrong_cell(cell))?;
         let mut rows = Table::new();

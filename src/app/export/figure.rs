@@ -8,7 +8,9 @@ use crate::app::session::editor::keep_start_inside;
 use crate::app::session::explore::{STARTS, WalkQuantity, longest_wait};
 use crate::app::session::map::{ground, over};
 use crate::numeric::short;
-use crate::output::{Argument, Figure, Format, Panel, RMS, Sheet, Sink, header, picture_arguments, rows};
+use crate::output::{
+    Argument, Figure, Format, Panel, RMS, Sheet, Sink, header, picture_arguments, rows, words_of,
+};
 use crate::scene::{FieldPath, Scene, Start, SweepAxis, arguments};
 use crate::study::Signal;
 use crate::system::files::canonical;
@@ -23,8 +25,8 @@ pub enum Subject {
     Run(Option<(f64, f64)>, Vec<Panel>),
     /// Force and potential of the mechanism.
     Curve,
-    /// A quantity over two fields, or over one that is walked up and down.
-    Sweep(Vec<SweepAxis>, &'static str),
+    /// A quantity over two fields, or over one that is walked up and down; over two also as a surface.
+    Sweep(Vec<SweepAxis>, &'static str, bool),
     /// Stroboscopic displacements over a field that is walked up and down.
     Diagram(SweepAxis),
     /// Stroboscopic states of one run.
@@ -80,14 +82,16 @@ impl Subject {
         let axis = session.walk_axis().filter(|_| walks.problem.is_none()).ok_or_else(problem)?;
         Ok(match walks.quantity {
             WalkQuantity::Strobes => Self::Diagram(axis),
-            WalkQuantity::RmsVelocity => Self::Sweep(vec![axis], RMS),
+            WalkQuantity::RmsVelocity => Self::Sweep(vec![axis], RMS, false),
         })
     }
 
     /// A quantity of the map.
-    pub fn map(session: &Session, quantity: &'static str) -> Result<Self, String> {
+    pub fn map(session: &Session, surface: bool) -> Result<Self, String> {
         let none = || "This scene has no two fields to make a map over.".to_owned();
-        Ok(Self::Sweep(session.map_axes().ok_or_else(none)?.to_vec(), quantity))
+        let quantity = session.map.quantity().column;
+        let surface = surface && words_of(quantity).is_none();
+        Ok(Self::Sweep(session.map_axes().ok_or_else(none)?.to_vec(), quantity, surface))
     }
 
     /// The basins as the view shows them.
@@ -104,7 +108,7 @@ impl Subject {
     /// The fields that are swept.
     pub(super) fn axes(&self) -> &[SweepAxis] {
         match self {
-            Self::Sweep(axes, _) => axes,
+            Self::Sweep(axes, ..) => axes,
             Self::Diagram(axis) => std::slice::from_ref(axis),
             _ => &[],
         }
@@ -132,8 +136,9 @@ impl Subject {
                 "simulate"
             }
             Self::Curve => "curve",
-            Self::Sweep(_, quantity) => {
+            Self::Sweep(_, quantity, surface) => {
                 own.push(Argument::of("quantity", *quantity));
+                own.extend(surface.then(|| Argument::switch("surface")));
                 "sweep"
             }
             Self::Diagram(_) | Self::Section => "section",

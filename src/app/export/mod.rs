@@ -111,6 +111,9 @@ pub fn map_command_line(session: &Session) -> Option<String> {
     for axis in &question.axes {
         line += &format!(" --over {}", quoted(&over(axis)));
     }
+    if let Some(columns) = session.map.columns() {
+        line += &format!(" --columns {}", columns.join(","));
+    }
     Some(line)
 }
 

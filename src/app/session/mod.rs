@@ -89,6 +89,7 @@ impl Session {
             keeps_remedy: false,
             wake,
         };
+        session.map.trail.note(&session.built);
         session.ask_settled();
         session.ask_thresholds();
         Ok(session)
@@ -142,6 +143,7 @@ impl Session {
             Ok(model) => {
                 self.fault = None;
                 self.model = Arc::new(model);
+                self.map.trail.note(&self.built);
                 self.go_on();
                 if !differ_in_amplitude_alone(&before, &self.built) {
                     self.thresholds.clear();

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId, Stroke, TextStyle, Theme};
 
 use crate::app::words::kind::Kind;
-use crate::output::{Ink, attractor_colour, viridis};
+use crate::output::{BLACK, Ink, attractor_colour, viridis};
 
 /// Zoom of the projector mode.
 pub const PROJECTOR_ZOOM: f32 = 1.5;
@@ -288,6 +288,23 @@ impl Style {
     pub fn marker_strokes(&self) -> [Stroke; 2] {
         let width = self.width(2.4);
         [Stroke::new(width + 2.6, Color32::BLACK), Stroke::new(width, ORANGE)]
+    }
+
+    /// Where the scene has been on a map: an outline and the line.
+    pub fn trail_strokes(&self) -> [Stroke; 2] {
+        let width = self.width(1.8);
+        [Stroke::new(width + 1.8, Color32::BLACK), Stroke::new(width, ORANGE)]
+    }
+
+    /// A line over a map in any theme: light, or its dark outline.
+    pub fn over_map(light: bool) -> Color32 {
+        if light { Color32::WHITE } else { Color32::BLACK }
+    }
+
+    /// The edge of a face of a surface at a share from 0 to 1 of the scale.
+    pub fn scale_edge(share: f64) -> Color32 {
+        let Ink(red, green, blue) = viridis(share).over(BLACK, 0.62);
+        Color32::from_rgb(red, green, blue)
     }
 
     /// The cell under the pointer.

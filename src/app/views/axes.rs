@@ -7,8 +7,12 @@ use crate::app::ui::knob::Knob;
 use crate::app::words::fields::Reach;
 use crate::scene::{SweepAxis, column_names};
 
-/// The name of a field without its unit.
+/// The name of a field without its unit: what its control is called, or its column.
 pub fn field_name(path: &str) -> String {
+    let (name, _) = crate::app::words::fields::name_and_unit(path);
+    if name != path {
+        return name.trim_end_matches(" ±").to_owned();
+    }
     let column = column_names(&[path]).pop().unwrap_or_default();
     name_and_unit(&column).0
 }

@@ -6,7 +6,6 @@ use crate::app::session::Session;
 use crate::app::session::pins::PinKind;
 use crate::mechanics::flexure::State;
 
-use super::map::MapQuantity;
 use super::ranges::Ranges;
 use super::span::Span;
 use super::view::View;
@@ -38,8 +37,8 @@ pub struct Memory {
     pub(super) ranges: Ranges,
     /// The phase portrait shows a point a period and no path.
     pub points_only: bool,
-    /// What the map shows.
-    pub map_quantity: MapQuantity,
+    /// How the map is shown.
+    pub map_look: MapLook,
     /// State of the pointer on the map.
     pub(super) map_pointer: PointerState,
     /// What the view Accuracy shows where there is no room for all of it.
@@ -96,6 +95,23 @@ pub(super) struct Ring {
     pub began: f64,
     /// Share of the energy scale.
     pub size: f64,
+}
+
+/// How the map is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapLook {
+    /// As a surface, or from above.
+    pub surface: bool,
+    /// Lines through it where the scene is stand beside it.
+    pub cuts: bool,
+    /// Where the scene has been is drawn.
+    pub trail: bool,
+}
+
+impl Default for MapLook {
+    fn default() -> Self {
+        Self { surface: false, cuts: false, trail: true }
+    }
 }
 
 /// State of the pointer on the map.

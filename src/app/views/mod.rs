@@ -43,8 +43,7 @@ use crate::app::ui::style::Style;
 
 pub(super) use context::too_small_ui;
 pub use context::{Cover, ViewContext};
-pub use map::MapQuantity;
-pub use memory::{Memory, Timeline};
+pub use memory::{MapLook, Memory, Timeline};
 pub use span::Span;
 pub use trace::TraceQuantity;
 pub(super) use trace::stretch;

@@ -239,6 +239,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Row("Hands", "Left, Right", "move what has the focus by a step, the held mass by 0.1 mm"),
         Row("Hands", "Shift", "with these, ten steps"),
         Row("Hands", "Enter", "let go of the mass"),
+        Row("Hands", "+, -", "enlarge the map around its cross-hair, and back"),
         Row("Hands", "Tab, Space", "to the next control, press it"),
     ]),
     ("Lessons", &[

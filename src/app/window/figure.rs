@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
 use crate::app::task::Latest;
-use crate::app::views::{MapQuantity, Memory, View, stretch};
-use crate::output::{Format, Panel, RMS, Sheet, SheetText};
+use crate::app::views::{Memory, View, stretch};
+use crate::output::{Format, Panel, Sheet, SheetText};
 use crate::system::files;
 
 use super::messages::Written;
@@ -135,7 +135,7 @@ impl Figures {
             }
             View::Section => Ok(Subject::Section),
             View::Well | View::ForceCurve => Ok(Subject::Curve),
-            View::Map => Subject::map(session, column(memory.map_quantity)),
+            View::Map => Subject::map(session, memory.map_look.surface),
             View::UpAndDown => Subject::walks(session),
             View::Basins => Subject::basins(session),
             View::Spectrum => Ok(Subject::spectrum(session)),
@@ -217,15 +217,4 @@ fn times(session: &Session, memory: &Memory) -> Option<(f64, f64)> {
     let window = memory.timeline.window.unwrap_or_else(|| stretch(session.model()));
     let from = (now - window).max(0.0);
     (!session.is_continued() && now - from > LITTLE * window).then(|| round_times((from, now))).flatten()
-}
-
-/// The column of a table that has what a map shows.
-fn column(quantity: MapQuantity) -> &'static str {
-    match quantity {
-        MapQuantity::Speed => RMS,
-        MapQuantity::Regime => "regime",
-        MapQuantity::Reach => "max_abs_x_m",
-        MapQuantity::Impacts => "impacts",
-        MapQuantity::Period => "period",
-    }
 }

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use eframe::egui;
 
 use crate::app::export;
-use crate::app::session::map::Map;
 use crate::output::write_file;
 
 use super::Window;
@@ -94,7 +93,7 @@ impl Window {
 
     /// Writes the map as the rows of a sweep.
     pub(super) fn write_map(&mut self, path: &Path) {
-        let Some(text) = self.session.map.map().and_then(Map::csv) else { return };
+        let Some(text) = self.session.map.csv() else { return };
         self.put(path, &text);
     }
 

@@ -17,6 +17,11 @@ impl Argument {
         Self { option: Some(option.to_owned()), value: Some(value.into()) }
     }
 
+    /// A switch.
+    pub fn switch(option: &str) -> Self {
+        Self { option: Some(option.to_owned()), value: None }
+    }
+
     /// The words of it.
     pub fn words(&self) -> impl Iterator<Item = String> {
         let option = self.option.as_ref().map(|option| format!("--{option}"));

@@ -9,6 +9,7 @@ use super::quantity::Quantity;
 use super::style::{self, Theme};
 use super::swept::{Cut, LEFT, MARKER_ROOM, SweepPicture, TOP, label, thinned, words};
 use crate::numeric::short;
+use crate::study::line_meets;
 
 /// Share of a wide canvas at which the map ends, its colour bar beside it, and where the cuts begin.
 const MAP: f64 = 0.46;
@@ -103,7 +104,8 @@ impl Panel {
             .collect();
         marks.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
         let cuts = |lines: &[Vec<Point>]| {
-            let mut all: Vec<f64> = lines.iter().flat_map(|own| met(own, cut.value, upright)).collect();
+            let mut all: Vec<f64> =
+                lines.iter().flat_map(|own| line_meets(own, cut.value, upright)).collect();
             all.sort_by(f64::total_cmp);
             all.dedup();
             all
@@ -168,33 +170,5 @@ impl Panel {
             align: Align::Left,
             upright: false,
         });
-    }
-}
-
-/// Where a line meets the places whose first number (`upright`), or second one, is `value`: their other
-/// number.
-fn met(line: &[Point], value: f64, upright: bool) -> Vec<f64> {
-    let turned = |(a, b): Point| if upright { (a, b) } else { (b, a) };
-    let meets = |pair: &[Point]| {
-        let (from, to) = (turned(pair[0]), turned(pair[1]));
-        let (low, high) = (from.0.min(to.0), from.0.max(to.0));
-        let inside = low < high && (low..=high).contains(&value);
-        inside.then(|| from.1 + (value - from.0) / (to.0 - from.0) * (to.1 - from.1))
-    };
-    line.windows(2).filter_map(meets).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_line_is_met_where_it_passes() {
-        let line = [(0.0, 0.0), (1.0, 2.0), (1.0, 3.0), (2.0, 1.0)];
-        assert_eq!(met(&line, 0.25, true), [0.5]);
-        assert_eq!(met(&line, 1.5, true), [2.0]);
-        assert_eq!(met(&line, 1.5, false), [0.75, 1.75]);
-        assert_eq!(met(&line, 1.0, true), [2.0, 3.0], "both ends of a step");
-        assert!(met(&line, 2.5, true).is_empty());
     }
 }

@@ -22,6 +22,7 @@ mod measured;
 mod paint;
 mod panels;
 mod pdf;
+mod projection;
 mod quantity;
 mod record;
 mod run;
@@ -50,13 +51,16 @@ pub use mark::Caption;
 pub use measured::measured_figure;
 pub use paint::PaintError;
 pub use panels::Panel;
-pub use quantity::{RMS, quantities};
+pub use projection::{
+    AXIS_EDGES, BACK_EDGES, BoxPlace, Face, Projection, SIDES, faces as surface_faces, wall_lines,
+};
+pub use quantity::{RMS, quantities, words_of};
 pub use record::{identified_figure, measured_force_figure};
 pub use run::{run_figure, speed_unit};
 pub use section::{SectionPicture, section_figure};
 pub use sheet::{Sheet, SheetError, SheetText};
 pub use spectrum::{SpectrumQuantity, spectrum_figure};
-pub use style::{Ink, Theme, viridis};
+pub use style::{BLACK, Ink, Theme, viridis};
 pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_figure};
 pub use swept::{Cut, Overlay, SweepPicture, View};
 pub use threshold::{ThresholdPicture, can_show_thresholds, threshold_figure};

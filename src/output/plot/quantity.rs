@@ -28,7 +28,7 @@ const WORDS: [(&str, &[&str]); 4] = [
 ];
 
 /// The words that the column called `name` can have; none where it has numbers.
-pub(super) fn words_of(name: &str) -> Option<&'static [&'static str]> {
+pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
     WORDS.iter().find(|own| own.0 == name).map(|own| own.1)
 }
 

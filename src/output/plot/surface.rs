@@ -1,27 +1,17 @@
 //! Picture of a sweep over two fields as a surface in projection: its height and its colour are the quantity.
-//!
-//! The projection is parallel, turned by 37.5 degrees and seen from 30 degrees above, with the least values
-//! of both fields in front. Faces are painted from back to front, which for a height over a grid is exact.
 
 use super::axis::PlotAxis;
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
 use super::map::{Cell, Mosaic, colour_bar, meanings};
 use super::mark::legend;
+use super::projection::{AXIS_EDGES, BACK_EDGES, BoxPlace, Projection, SIDES, faces, wall_lines};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
 use super::swept::{LEFT, SweepPicture, TOP, drawn, label};
 
 /// The most cells that are drawn as faces.
 pub const MAX_SURFACE_CELLS: u64 = 60_000;
-
-/// Turn and elevation of the view in degrees, and height of the box over the length of its sides.
-const TURN: f64 = 37.5;
-const ELEVATION: f64 = 30.0;
-const HEIGHT: f64 = 0.72;
-
-/// About so many lines over the surface each way.
-const LINES: usize = 40;
 
 /// What the surface needs between its captions.
 pub(super) const SURFACE: f64 = 560.0;
@@ -35,57 +25,34 @@ struct View {
 }
 
 impl View {
-    /// Where a place in the box stands, before it is fitted: to the right, upward.
-    fn flat((u, v, w): (f64, f64, f64)) -> Point {
-        let ((sin, cos), (up, flat)) = (TURN.to_radians().sin_cos(), ELEVATION.to_radians().sin_cos());
-        (u * cos - v * sin, (u * sin + v * cos) * up + w * HEIGHT * flat)
-    }
-
     /// Where a place in the box stands on the canvas.
-    fn place(&self, at: (f64, f64, f64)) -> Point {
+    fn place(&self, at: BoxPlace) -> Point {
         let Area { left, top, right, bottom } = self.area;
-        let (least, most) = (Self::flat((0.0, 1.0, 0.0)).0, Self::flat((1.0, 0.0, 0.0)).0);
-        let highest = Self::flat((1.0, 1.0, 1.0)).1;
-        let (across, up) = Self::flat(at);
-        (left + (across - least) / (most - least) * (right - left), bottom - up / highest * (bottom - top))
+        Projection { left, top, right, bottom }.place(at)
     }
 
-    fn line(&self, figure: &mut Figure, from: (f64, f64, f64), to: (f64, f64, f64), width: f64, ink: Ink) {
+    fn line(&self, figure: &mut Figure, (from, to): (BoxPlace, BoxPlace), width: f64, ink: Ink) {
         let canvas = figure.canvas;
         figure.line(&[self.place(from), self.place(to)], width, ink, canvas);
     }
 
     /// Floor and back walls with the lines of their ticks.
     fn walls(&self, figure: &mut Figure, theme: &Theme) {
-        for x in self.x.ticks.iter().map(|tick| self.x.share(tick.0)) {
-            self.line(figure, (x, 0.0, 0.0), (x, 1.0, 0.0), style::GRID, theme.grid);
-            self.line(figure, (x, 1.0, 0.0), (x, 1.0, 1.0), style::GRID, theme.grid);
+        let shares = |axis: &PlotAxis| axis.ticks.iter().map(|tick| axis.share(tick.0)).collect::<Vec<_>>();
+        let [x, y, z] = [&self.x, &self.y, &self.z].map(|axis| shares(axis).into_iter());
+        for line in wall_lines(x, y, z) {
+            self.line(figure, line, style::GRID, theme.grid);
         }
-        for y in self.y.ticks.iter().map(|tick| self.y.share(tick.0)) {
-            self.line(figure, (0.0, y, 0.0), (1.0, y, 0.0), style::GRID, theme.grid);
-            self.line(figure, (1.0, y, 0.0), (1.0, y, 1.0), style::GRID, theme.grid);
-        }
-        for z in self.z.ticks.iter().map(|tick| self.z.share(tick.0)) {
-            self.line(figure, (0.0, 1.0, z), (1.0, 1.0, z), style::GRID, theme.grid);
-            self.line(figure, (1.0, 1.0, z), (1.0, 0.0, z), style::GRID, theme.grid);
-        }
-        for (from, to) in [
-            ((1.0, 0.0, 0.0), (1.0, 1.0, 0.0)),
-            ((0.0, 1.0, 0.0), (1.0, 1.0, 0.0)),
-            ((1.0, 1.0, 0.0), (1.0, 1.0, 1.0)),
-            ((0.0, 1.0, 1.0), (1.0, 1.0, 1.0)),
-            ((1.0, 1.0, 1.0), (1.0, 0.0, 1.0)),
-            ((1.0, 0.0, 0.0), (1.0, 0.0, 1.0)),
-        ] {
-            self.line(figure, from, to, style::THIN, theme.soft);
+        for line in BACK_EDGES {
+            self.line(figure, line, style::THIN, theme.soft);
         }
     }
 
     /// The edges that carry ticks, their numbers and labels.
     fn axes(&self, figure: &mut Figure, theme: &Theme) {
         let (near, right, left) = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0));
-        for (from, to) in [(near, right), (near, left), (left, (0.0, 1.0, 1.0))] {
-            self.line(figure, from, to, style::FRAME, theme.ink);
+        for line in AXIS_EDGES {
+            self.line(figure, line, style::FRAME, theme.ink);
         }
         let canvas = figure.canvas;
         let text = |words: &str, at: Point, size: f64, align: Align, upright: bool| Text {
@@ -165,7 +132,7 @@ pub(super) fn surface(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str
         z: bar.clone(),
     };
     view.walls(figure, theme);
-    faces(figure, &view, &mosaic, theme);
+    skin(figure, &view, &mosaic, theme);
     view.axes(figure, theme);
     let high = 0.55 * (figure.bottom() - top);
     let right = figure.canvas.right - if figure.is_narrow() { 130.0 } else { 160.0 };
@@ -174,47 +141,28 @@ pub(super) fn surface(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str
     figure.data = drawn(picture, &[(x, picture.ranges.x), (y, picture.ranges.y)]).table();
 }
 
-/// The faces between the values of four neighbours, the farthest first; none where one of them is missing.
-fn faces(figure: &mut Figure, view: &View, mosaic: &Mosaic, theme: &Theme) {
+/// The faces of the surface; none where one of the four values is missing.
+fn skin(figure: &mut Figure, view: &View, mosaic: &Mosaic, theme: &Theme) {
     let (across, up) = (&mosaic.across.values, &mosaic.up.values);
     let height = |column: usize, row: usize| match mosaic.cells[column * up.len() + row] {
         Cell::Missing => None,
         Cell::Rest => Some((0.0, true)),
         Cell::Value(value) => Some((value, false)),
     };
-    let corner = |column: usize, row: usize, value: f64| {
-        view.place((view.x.share(across[column]), view.y.share(up[row]), view.z.share(value)))
-    };
-    let every = |count: usize| count.div_ceil(LINES).max(1);
-    let (step_across, step_up) = (every(across.len()), every(up.len()));
+    let shares =
+        |values: &[f64], axis: &PlotAxis| values.iter().map(|own| axis.share(*own)).collect::<Vec<_>>();
     let canvas = figure.canvas;
-    for column in (0..across.len().saturating_sub(1)).rev() {
-        for row in (0..up.len().saturating_sub(1)).rev() {
-            let around = [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)];
-            let [Some(a), Some(b), Some(c), Some(d)] = around.map(|(i, j)| height(i, j)) else { continue };
-            let own = [a, b, c, d];
-            let mean = own.iter().map(|own| own.0).sum::<f64>() / 4.0;
-            let resting = own.iter().all(|own| own.1);
-            let ink = if resting { theme.rest } else { viridis(view.z.share(mean)) };
-            let mut points: Vec<Point> =
-                around.iter().zip(own).map(|((i, j), own)| corner(*i, *j, own.0)).collect();
-            // two triangles: the four places need not lie in a plane
-            for three in [[0, 1, 2], [0, 2, 3]] {
-                figure.polygon(three.map(|i| points[i]).to_vec(), ink);
-            }
-            points.push(points[0]);
-            figure.line(&points, 0.9, ink, canvas);
-            let edge = if resting { theme.rest_hatch } else { ink.over(style::BLACK, 0.62) };
-            for (side, shown) in [
-                ([0, 1], row % step_up == 0),
-                ([2, 3], (row + 1) % step_up == 0 || row + 2 == up.len()),
-                ([3, 0], column % step_across == 0),
-                ([1, 2], (column + 1) % step_across == 0 || column + 2 == across.len()),
-            ] {
-                if shown {
-                    figure.line(&side.map(|i| points[i]), 1.1, edge, canvas);
-                }
-            }
+    for face in faces(&shares(across, &view.x), &shares(up, &view.y), height, |value| view.z.share(value)) {
+        let ink = if face.resting { theme.rest } else { viridis(face.share) };
+        let mut points: Vec<Point> = face.corners.iter().map(|own| view.place(*own)).collect();
+        for three in [[0, 1, 2], [0, 2, 3]] {
+            figure.polygon(three.map(|i| points[i]).to_vec(), ink);
+        }
+        points.push(points[0]);
+        figure.line(&points, 0.9, ink, canvas);
+        let edge = if face.resting { theme.rest_hatch } else { ink.over(style::BLACK, 0.62) };
+        for (side, _) in SIDES.iter().zip(face.lined).filter(|own| own.1) {
+            figure.line(&side.map(|i| points[i]), 1.1, edge, canvas);
         }
     }
 }

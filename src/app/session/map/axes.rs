@@ -5,7 +5,7 @@ use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};
 use crate::study::{Column, Values};
 
 /// The fields that make a map worth looking at, by the ends of their paths.
-const FIELDS: [&str; 16] = [
+const FIELDS: [&str; 31] = [
     "travel_limit_mm",
     "amplitude_g",
     "frequency_hz",
@@ -22,6 +22,21 @@ const FIELDS: [&str; 16] = [
     "thickness_mm",
     "equilibrium_mm",
     "barrier_mj",
+    "linear_n_per_m",
+    "cubic_n_per_m3",
+    "parallel.length_mm",
+    "parallel.width_mm",
+    "buckling.length_mm",
+    "buckling.width_mm",
+    "young_gpa",
+    "stiffness_n_per_m1_5",
+    "loss_s_per_m",
+    "radius_mm",
+    "accel_g",
+    "to_g",
+    "over_s",
+    "to_hz",
+    "seed",
 ];
 
 /// Travel limit and amplitude of the prototype's map, for scenes of its size.
@@ -91,7 +106,8 @@ pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Opti
 pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> SweepAxis {
     let with_stops =
         ground(scene, when_on, &[SweepAxis { field: path.to_owned(), step: 1.0, ..SweepAxis::default() }]);
-    let present = FieldPath::new(path).get(&with_stops).unwrap_or(1.0).abs();
+    let signed = FieldPath::new(path).get(&with_stops).unwrap_or(1.0);
+    let present = signed.abs();
     let name = path.rsplit('.').next().unwrap_or(path);
     let upward = |greatest: f64| {
         let to = round_up(greatest);
@@ -114,6 +130,11 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
             (0.0, to, decimal(to / STEPS))
         }
         name if name.starts_with("restitution") => (0.0, 1.0, 1.0 / STEPS),
+        "seed" => (1.0, STEPS, 1.0),
+        _ if signed < 0.0 => {
+            let (from, to, step) = upward(2.0 * present);
+            (-to, -from, step)
+        }
         _ => upward(if present > 0.0 { 2.0 * present } else { 1.0 }),
     };
     SweepAxis { field: path.to_owned(), from, to, step, values: Vec::new() }

@@ -8,12 +8,31 @@ use crate::app::words::fields::in_words;
 use crate::numeric::short;
 use crate::output::{header, rows};
 use crate::scene::SceneError;
-use crate::study::{Cell, Edges, Grid, Levels, STRIDES, Sweep, Table, first_crossing, first_crossing_edge};
+use crate::study::{
+    Cell, Edges, Grid, Levels, STRIDES, SummaryField, Sweep, SweepOptions, Table, first_crossing,
+    first_crossing_edge,
+};
 
 use super::{Question, over};
 
 /// The most cells of a map in the window.
 const MOST_CELLS: u64 = 200_000;
+
+/// Why a map of so many cells is not made; none where it is.
+pub(super) fn too_many(cells: u64) -> Option<String> {
+    let words = || format!("{cells} cells are more than the window makes ({MOST_CELLS}): take longer steps");
+    (cells > MOST_CELLS).then(words)
+}
+
+/// A cell on a line through a map.
+pub struct CutCell<'a> {
+    /// Its place along the line.
+    pub place: usize,
+    /// What it came to.
+    pub cell: &'a Cell,
+    /// Whether it lies on the line; if not it is the nearest one that is known so far.
+    pub own: bool,
+}
 
 /// A map as far as it is known.
 pub struct Map {
@@ -48,17 +67,16 @@ impl Map {
         let arguments = question.axes.each_ref().map(over);
         let axes = document.axes(&arguments).map_err(words)?;
         let grid = Grid::new(axes).map_err(|error| error.to_string())?;
-        if grid.cells() > MOST_CELLS {
-            return Err(format!(
-                "{} cells are more than the window makes ({MOST_CELLS}): take longer steps",
-                grid.cells()
-            ));
+        if let Some(problem) = too_many(grid.cells()) {
+            return Err(problem);
         }
         let [across, up] = grid.axes() else { return Err("a map has two axes".to_owned()) };
         let edges = [across, up].map(|axis| Edges::new(&axis.values));
         let cells = vec![None; grid.cells() as usize];
         let levels = Arc::new(Levels::of(&grid));
-        let sweep = Arc::new(Sweep::new(&document.scene, &document.files, grid));
+        let columns = question.ledger.and_then(SummaryField::find).into_iter().collect();
+        let options = SweepOptions { columns, ..SweepOptions::default() };
+        let sweep = Arc::new(Sweep::new(&document.scene, &document.files, grid).with(options));
         Ok(Self {
             question: question.clone(),
             edges,
@@ -140,12 +158,38 @@ impl Map {
         self.sweep.table(0, &cells)
     }
 
-    /// The map as the command line writes it, once it is whole.
-    pub fn csv(&self) -> Option<String> {
-        self.is_whole().then(|| {
-            let table = self.table();
-            header(&table) + &rows(&table, 0..usize::MAX)
-        })
+    /// The cells along a line through the map: up in a column (`upright`), or across in a row. Those that are
+    /// not known yet are left out, but for the nearest ones of the coarse levels.
+    pub fn cut(&self, upright: bool, at: usize) -> Vec<CutCell<'_>> {
+        let [columns, rows] = self.size();
+        let index = |place: usize| if upright { at * rows + place } else { place * rows + at };
+        let along = |index: u64| if upright { index as usize % rows } else { index as usize / rows };
+        let cell = |place: usize| {
+            let index = index(place) as u64;
+            if let Some(cell) = self.cells[index as usize].as_ref() {
+                return Some(CutCell { place, cell, own: true });
+            }
+            let stand_ins = (0..STRIDES.len() - 1).rev().map(|level| self.levels.stand_in(index, level));
+            let beside = |other: &u64| along(*other) == place;
+            let cell = stand_ins.filter(beside).find_map(|other| self.cells[other as usize].as_ref())?;
+            Some(CutCell { place, cell, own: false })
+        };
+        (0..if upright { rows } else { columns }).filter_map(cell).collect()
+    }
+
+    /// The map as the command line writes it with these columns after those of its axes.
+    pub(super) fn csv(&self, columns: &[&str]) -> String {
+        let mut table = self.table();
+        for field in columns.iter().filter_map(|name| SummaryField::find(name)) {
+            if table.column(field.name).is_none() {
+                let summaries = self.cells.iter().map(|cell| cell.as_ref().and_then(Cell::summary));
+                table = table.with(field.name, field.column(summaries));
+            }
+        }
+        let axes = self.grid().columns().iter().cloned();
+        let names: Vec<String> = axes.chain(columns.iter().map(|name| (*name).to_owned())).collect();
+        let table = table.only(&names);
+        header(&table) + &rows(&table, 0..usize::MAX)
     }
 
     /// Draws the line of first crossings anew, `worked` into the work; not for every part of a map that is

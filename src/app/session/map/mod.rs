@@ -7,20 +7,23 @@
 mod axes;
 mod cells;
 mod of_session;
+mod trail;
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::task::{Job, Wake, pool};
+use crate::app::words::columns::{COLUMNS, ColumnInfo};
 use crate::scene::{Scene, SweepAxis};
-use crate::study::{self, Cell};
+use crate::study::{self, Cell, STANDARD_COLUMNS};
 use crate::system::clock::WallClock;
 
 use super::editor::Editor;
 
 pub use crate::numeric::short;
 pub use axes::{ground, label, name_and_unit, over, part};
-pub use cells::Map;
+pub use cells::{CutCell, Map};
+pub use trail::Trail;
 
 /// Seconds for which a hand has to be still before a map is begun in the middle of a gesture.
 const STILL: f64 = 0.25;
@@ -32,18 +35,24 @@ pub struct Question {
     pub scene: Scene,
     /// Across and up.
     pub axes: [SweepAxis; 2],
+    /// The column for which the runs sum up their energies, where they do.
+    pub ledger: Option<&'static str>,
 }
 
 /// The map of a session.
 #[derive(Default)]
 pub struct Mapping {
+    /// What the map shows, where it is not the RMS velocity.
+    quantity: Option<&'static ColumnInfo>,
+    /// Where the scene has been.
+    pub trail: Trail,
     /// The axes that were chosen; none for the scene's own.
     chosen: Option<[SweepAxis; 2]>,
     /// The scene's own, as they were when the map was first looked at: they do not follow the scene over its
     /// map.
     held: Option<[SweepAxis; 2]>,
-    /// What was chosen before a part of the map was enlarged.
-    whole: Option<Option<[SweepAxis; 2]>>,
+    /// What was chosen before a part of the map was enlarged, once for each part within the one before.
+    larger: Vec<Option<[SweepAxis; 2]>>,
     map: Option<Map>,
     /// The map before, shown until the new one covers its ground.
     before: Option<Map>,
@@ -67,6 +76,12 @@ impl Mapping {
         let own = self.map.as_ref().filter(|map| map.is_covered() || self.before.is_none());
         let current = self.waiting.is_none() && self.problem.is_none();
         own.map(|map| (map, current)).or_else(|| self.before.as_ref().map(|map| (map, false)))
+    }
+
+    /// Where the scene has been on the axes of the map that is to be seen, the oldest place first.
+    pub fn trail_places(&mut self) -> Vec<[Option<f64>; 2]> {
+        let Some(axes) = self.shown().map(|own| own.0.question.axes.clone()) else { return Vec::new() };
+        self.trail.places(axes.each_ref().map(|axis| axis.field.as_str())).to_vec()
     }
 
     /// The map of the present question, as far as it is known.
@@ -103,27 +118,59 @@ impl Mapping {
         }
     }
 
+    /// What the map shows.
+    pub fn quantity(&self) -> &'static ColumnInfo {
+        self.quantity.unwrap_or(&COLUMNS[0].1[0])
+    }
+
+    /// Has the map show a column.
+    pub fn show(&mut self, quantity: &'static ColumnInfo) {
+        self.quantity = Some(quantity);
+    }
+
+    /// The columns of the map's table, where they are more than the standard ones.
+    pub fn columns(&self) -> Option<Vec<&'static str>> {
+        let ledger = self.map.as_ref().and_then(|map| map.question.ledger);
+        let wanted = ledger.into_iter().chain([self.quantity().column]);
+        let mut more: Vec<&str> = wanted.filter(|name| !STANDARD_COLUMNS.contains(name)).collect();
+        more.dedup();
+        (!more.is_empty()).then(|| STANDARD_COLUMNS.into_iter().chain(more).collect())
+    }
+
+    /// The map as the command line writes it, once it is whole.
+    pub fn csv(&self) -> Option<String> {
+        self.map
+            .as_ref()
+            .filter(|map| map.is_whole())
+            .map(|map| map.csv(&self.columns().unwrap_or_else(|| STANDARD_COLUMNS.to_vec())))
+    }
+
     /// Chooses axes; none for the scene's own.
     pub fn choose(&mut self, axes: Option<[SweepAxis; 2]>) {
-        (self.chosen, self.whole) = (axes, None);
+        (self.chosen, self.larger) = (axes, Vec::new());
     }
 
     /// Enlarges a part of the map, which has these axes.
     pub fn enlarge(&mut self, axes: [SweepAxis; 2]) {
-        self.whole.get_or_insert(self.chosen.take());
-        self.chosen = Some(axes);
+        self.larger.push(self.chosen.replace(axes));
     }
 
     /// Whether a part of the map is enlarged.
     pub fn is_enlarged(&self) -> bool {
-        self.whole.is_some()
+        !self.larger.is_empty()
+    }
+
+    /// Back to what was there before the last part was enlarged.
+    pub fn show_larger(&mut self) {
+        if let Some(axes) = self.larger.pop() {
+            self.chosen = axes;
+        }
     }
 
     /// Back to the whole map.
     pub fn show_whole(&mut self) {
-        if let Some(axes) = self.whole.take() {
-            self.chosen = axes;
-        }
+        self.larger.truncate(1);
+        self.show_larger();
     }
 
     fn pause(&mut self) {
@@ -203,7 +250,9 @@ impl Mapping {
             Ok(map) => {
                 let old = self.map.take().filter(Map::is_covered).or_else(|| self.before.take());
                 let fields = |question: &Question| question.axes.clone().map(|axis| axis.field);
-                self.before = old.filter(|old| fields(&old.question) == fields(&question));
+                let shows = |old: &Question| old.ledger.is_some() || question.ledger.is_none();
+                let alike = |old: &Map| fields(&old.question) == fields(&question) && shows(&old.question);
+                self.before = old.filter(alike);
                 self.map = Some(map);
                 (self.waiting, self.problem) = (None, None);
                 self.generation += 1;

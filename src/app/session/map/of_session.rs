@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use crate::app::session::Session;
 use crate::app::task::wait_while;
-use crate::app::words::fields::name_and_unit;
+use crate::app::words::fields::{in_words, name_and_unit};
 use crate::scene::{Axis, FieldPath, Stops, SweepAxis};
 use crate::study::release_line;
 
+use super::cells::too_many;
 use super::{Map, Question, axes};
 
 impl Session {
@@ -57,7 +58,13 @@ impl Session {
         }
         let wake = Arc::clone(self.wake());
         let in_gesture = self.editor.in_gesture();
-        let waits = self.map.ask(Question { scene, axes }, &self.editor, in_gesture, time, &wake);
+        let quantity = self.map.quantity();
+        let same =
+            self.map.map.as_ref().filter(|map| map.question.scene == scene && map.question.axes == axes);
+        // runs that sum up their energies have all that the others have
+        let needed = || quantity.field().filter(|field| field.needs_ledger).map(|_| quantity.column);
+        let ledger = same.and_then(|map| map.question.ledger).or_else(needed);
+        let waits = self.map.ask(Question { scene, axes, ledger }, &self.editor, in_gesture, time, &wake);
         let mechanism = Arc::clone(self.model().mechanism());
         if let Some(map) = self.map.map.as_mut().filter(|map| map.known == 0 && map.release.is_empty())
             && !map.grid().changes_mechanism()
@@ -76,15 +83,21 @@ impl Session {
         question.axes.each_ref().map(|axis| FieldPath::new(&axis.field).get(self.scene()))
     }
 
-    /// Why axes cannot be those of a map of the scene; none where they can.
-    pub fn map_problem(&self, axes: &[SweepAxis; 2]) -> Option<String> {
+    /// Why axes cannot be those of a map of the scene: which of the two is at fault, which of its parts, and
+    /// a sentence. None where they can.
+    pub fn map_problem(&self, axes: &[SweepAxis; 2]) -> Option<(usize, &'static str, String)> {
         let ground = axes::ground(self.scene(), self.remembered_stops(), axes);
-        for axis in axes {
-            if let Err((part, problem)) = Axis::from_scene(axis, &ground) {
-                return Some(format!("{}, {part}: {problem}", name_and_unit(&axis.field).0));
+        let mut cells = 1;
+        for (i, axis) in axes.iter().enumerate() {
+            match Axis::from_scene(axis, &ground) {
+                Err((part, problem)) => {
+                    let why = in_words(&problem, &ground);
+                    return Some((i, part, format!("{}, {part}: {why}", name_and_unit(&axis.field).0)));
+                }
+                Ok(axis) => cells *= axis.values.len() as u64,
             }
         }
-        None
+        too_many(cells).map(|problem| (1, "step", problem))
     }
 
     /// Takes the scene to a cell of its map, by one gesture; the motion goes on from where it is.

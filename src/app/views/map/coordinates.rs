@@ -10,11 +10,19 @@ use crate::output::PlotAxis;
 
 /// Room for numbers and names beside the map, in points.
 const LEFT: f32 = 52.0;
-const BOTTOM: f32 = 40.0;
-const TOP: f32 = 8.0;
+const BOTTOM: f32 = 37.0;
+const TOP: f32 = 6.0;
 const BAR: f32 = 16.0;
 const BAR_ROOM: f32 = 84.0;
 const PLAIN_ROOM: f32 = 12.0;
+
+/// What the strips of cuts take of the width and of the height, at least and at most so many points, what
+/// lies between them and the map, and the height up to which both stand to the right.
+const STRIP: f32 = 0.24;
+const STRIP_WIDTH: (f32, f32) = (96.0, 240.0);
+const STRIP_HEIGHT: (f32, f32) = (56.0, 190.0);
+const BETWEEN: f32 = 18.0;
+const LOW: f32 = 330.0;
 
 /// Length of a tick in points.
 const TICK: f32 = 4.0;
@@ -25,6 +33,8 @@ pub struct Coordinates {
     pub rect: Rect,
     /// The colour bar, where there is one.
     pub bar: Option<Rect>,
+    /// The strips beside it: with the axis across, below or to the right, and to the right with the axis up.
+    pub strips: Option<[Rect; 2]>,
     /// Across.
     pub x: PlotAxis,
     /// Up.
@@ -32,22 +42,42 @@ pub struct Coordinates {
 }
 
 impl Coordinates {
-    /// The map in `area`.
-    pub fn new(area: Rect, map: &Map, bar: bool) -> Self {
+    /// The map in `area`, with a colour bar and strips for cuts where these are to be there.
+    pub fn new(area: Rect, map: &Map, bar: bool, cuts: bool) -> Self {
         let room = if bar { BAR_ROOM } else { PLAIN_ROOM };
-        let rect = Rect::from_min_max(area.min + vec2(LEFT, TOP), area.max - vec2(room, BOTTOM));
+        let size = STRIP * area.size();
+        let strip =
+            vec2(size.x.clamp(STRIP_WIDTH.0, STRIP_WIDTH.1), size.y.clamp(STRIP_HEIGHT.0, STRIP_HEIGHT.1));
+        let is_low = area.height() < LOW;
+        let (taken, top) = match (cuts, is_low) {
+            (false, _) => (Vec2::ZERO, TOP),
+            (true, false) => (strip + vec2(BETWEEN, BETWEEN), TOP + 12.0),
+            (true, true) => (vec2(2.0 * strip.x + BETWEEN + LEFT, 0.0), TOP + 12.0),
+        };
+        let rect = Rect::from_min_max(area.min + vec2(LEFT, top), area.max - vec2(room, BOTTOM) - taken);
+        let strips = cuts.then(|| {
+            let beside = pos2(rect.right() + BETWEEN, rect.top());
+            let upward = Rect::from_min_size(beside, vec2(strip.x, rect.height()));
+            let below = pos2(rect.left(), rect.bottom() + BETWEEN);
+            let across = match is_low {
+                true => upward.translate(vec2(strip.x + LEFT, 0.0)),
+                false => Rect::from_min_size(below, vec2(rect.width(), strip.y)),
+            };
+            [across, upward]
+        });
         let bar = bar.then(|| {
-            let left = rect.right() + 12.0;
+            let left = rect.right() + taken.x + 12.0;
             Rect::from_min_max(pos2(left, rect.top()), pos2(left + BAR, rect.bottom()))
         });
         let names = map.grid().columns();
         let ends = map.edges.each_ref().map(|edges| edges.ends());
         let count = |points: f32, each: f32| (points / each).clamp(2.0, 12.0) as usize;
         Self {
-            x: PlotAxis::between(ends[0].0, ends[0].1, count(rect.width(), 70.0), &label(&names[0])),
+            x: PlotAxis::between(ends[0].0, ends[0].1, count(rect.width(), 55.0), &label(&names[0])),
             y: PlotAxis::between(ends[1].0, ends[1].1, count(rect.height(), 42.0), &label(&names[1])),
             rect,
             bar,
+            strips,
         }
     }
 
@@ -64,25 +94,41 @@ impl Coordinates {
         (between(&self.x, share.x), between(&self.y, 1.0 - share.y))
     }
 
-    /// Draws ticks, numbers and names around the map.
-    pub fn axes(&self, painter: &Painter, style: &Style) {
+    /// Draws ticks, numbers and names around the map; the strip below has that of the quantity.
+    pub fn axes(&self, painter: &Painter, style: &Style, quantity: Option<&str>) {
         let stroke = Stroke::new(1.0, style.ink());
         painter.rect_stroke(self.rect, 0.0, stroke, StrokeKind::Outside);
         let number = |at, align, text: &str| painter.text(at, align, text, style.small(), style.ink());
-        for (value, text) in &self.x.ticks {
-            let at = pos2(self.screen_from_world((*value, self.y.low)).x, self.rect.bottom());
-            painter.line_segment([at, at + vec2(0.0, TICK)], stroke);
-            number(at + vec2(0.0, TICK + 1.0), Align2::CENTER_TOP, text);
+        // under the strip that is in line with the map, or under both
+        let under = match self.strips {
+            Some([across, _]) if across.top() > self.rect.bottom() => vec![across],
+            Some([across, _]) => vec![self.rect, across],
+            None => vec![self.rect],
+        };
+        for rect in &under {
+            let mut last = f32::NEG_INFINITY;
+            for (value, text) in &self.x.ticks {
+                let at = pos2(rect.left() + self.x.share(*value) as f32 * rect.width(), rect.bottom());
+                painter.line_segment([at, at + vec2(0.0, TICK)], stroke);
+                if at.x - last > 24.0 {
+                    number(at + vec2(0.0, TICK + 1.0), Align2::CENTER_TOP, text);
+                    last = at.x;
+                }
+            }
+            let below = pos2(rect.center().x, rect.bottom() + BOTTOM - 2.0);
+            painter.text(below, Align2::CENTER_BOTTOM, &self.x.label, style.body(), style.ink());
         }
         for (value, text) in &self.y.ticks {
             let at = pos2(self.rect.left(), self.screen_from_world((self.x.low, *value)).y);
             painter.line_segment([at, at - vec2(TICK, 0.0)], stroke);
             number(at - vec2(TICK + 3.0, 0.0), Align2::RIGHT_CENTER, text);
         }
-        let below = pos2(self.rect.center().x, self.rect.bottom() + BOTTOM - 2.0);
-        painter.text(below, Align2::CENTER_BOTTOM, &self.x.label, style.body(), style.ink());
         let (beside, room) = (pos2(self.rect.left() - LEFT + 10.0, self.rect.center().y), self.rect.height());
         upright(painter, style, (beside, room), &self.y.label);
+        if let (Some([across, _]), Some(quantity)) = (self.strips, quantity) {
+            let beside = pos2(across.left() - LEFT + 10.0, across.center().y);
+            upright(painter, style, (beside, across.height()), quantity);
+        }
     }
 }
 

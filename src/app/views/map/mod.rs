@@ -1,26 +1,42 @@
 //! View of the map: every combination of two fields, each run from rest.
 
 mod coordinates;
+mod cuts;
 mod picture;
 mod pointer;
 mod quantity;
+mod surface;
 mod tools;
+mod trail;
 
-use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use std::sync::Arc;
+
+use eframe::egui::{self, Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::session::map::{Map, name_and_unit, short};
 use crate::app::ui::style::Style;
 use crate::app::words::kind::Kind;
 use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
-use crate::output::{PlotAxis, sweep_about};
+use crate::output::{PlotAxis, RMS, sweep_about};
 
 use super::{ViewContext, too_small_ui};
 
 use coordinates::Coordinates;
-use picture::{Picture, bar, lines};
+use picture::{Picture, bar};
+use pointer::Hand;
 use quantity::ColourScale;
-pub use quantity::MapQuantity;
+use surface::Surface;
+
+/// Height and width in points from which on there is room for cuts.
+const ROOM_FOR_CUTS: (f32, f32) = (440.0, 170.0);
+
+/// What was drawn of a map: seen from above, and as a surface.
+#[derive(Clone)]
+struct Drawn {
+    picture: Picture,
+    surface: Option<Arc<Surface>>,
+}
 
 /// Draws it.
 pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -35,52 +51,138 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         ui.label(format!("  No map: {}", problem.lines().next().unwrap_or_default()));
     }
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+    let look = context.memory.map_look;
+    let trail = if look.trail { context.session.map.trail_places() } else { Vec::new() };
     let Some((map, current)) = context.session.map.shown() else { return };
     if area.width() < 140.0 || area.height() < 110.0 {
         return too_small_ui(ui, &style, area);
     }
-    let quantity = context.memory.map_quantity;
-    let scale = ColourScale::of(quantity, map);
+    let quantity = context.session.map.quantity();
     let id = ui.scope_id().with("picture");
-    let old = ui.data(|data| data.get_temp::<Option<Picture>>(id)).flatten();
-    let key = (context.session.map.version(), quantity, style, current);
-    let picture = Picture::of(ui, old, map, &scale, key);
+    let old = ui.data(|data| data.get_temp::<Option<Drawn>>(id)).flatten();
+    let key = (context.session.map.version(), quantity.column, style, current);
+    let (old, mut surface) = old.map_or((None, None), |old| (Some(old.picture), old.surface));
+    let mut picture = Picture::of(ui, old, map, quantity, key);
+    surface = surface.filter(|_| !picture.is_new());
+    let scale = Arc::clone(&picture.scale);
     let painter = ui.painter().with_clip_rect(area);
     let about = sweep_about(map.grid(), &map.question.scene, &[], None);
-    let legend = tools::legend(&painter, area, &picture, map, &style, &about);
-    let frame = Coordinates::new(area.with_min_y(legend), map, scale.bar.is_some());
-    let spoken = ui.interact(frame.rect, ui.scope_id().with("cells"), Sense::hover());
-    spoken.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "map"));
-    picture.draw(&painter, &frame, &style);
-    lines(&painter, &frame, map, &style);
-    frame.axes(&painter, &style);
-    bar(&painter, &frame, &scale, &style);
-    if !current {
-        painter.rect_filled(frame.rect, 0.0, style.veil());
-        let words =
-            if context.session.map.problem().is_some() { "not of this scene" } else { "of the scene before" };
-        let at = frame.rect.center_top() + vec2(0.0, 8.0);
-        painter.text(at, Align2::CENTER_TOP, words, style.body(), style.ink());
-    }
+    let is_surface = look.surface && scale.bar.is_some();
+    let legend = tools::legend(&painter, area, &picture, map, &style, (&about, look));
+    let area = area.with_min_y(legend);
     let place = context.session.place_on_map(&map.question);
-    let at = marker(&painter, &frame, &style, place);
-    let hovered = response.hover_pos().and_then(|at| cell_at(&frame, map, at));
-    if let Some((column, row)) = hovered.filter(|_| !response.dragged()) {
-        painter.add(outline(&frame, map, column, row, &style));
-        let text = reading(map, column, row);
-        let over = response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
-        over.on_hover_text_at_pointer(text);
-    }
+    let scene = nearest_cell(map, place);
+    let spoken = |name: &str, rect: Rect| {
+        let spoken = ui.interact(rect, ui.scope_id().with(("cells", name)), Sense::hover());
+        spoken.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
+    };
     let hand = (&mut context.memory.map_pointer, context.session.map.is_enlarged());
-    let wanted = pointer::action_ui(ui, (&response, &frame), map, hand, (&style, at));
-    ui.data_mut(|data| data.insert_temp(id, Some(picture)));
+    let wanted = if is_surface {
+        let at = (area, painter.pixels_per_point());
+        surface = surface.filter(|own| own.is_at(at));
+        let own = surface.or_else(|| Surface::new(at, map, &scale, &style).map(Arc::new));
+        surface = own.clone();
+        let Some(own) = own else { return };
+        spoken("map as a surface", own.rect());
+        own.draw(&painter, &style);
+        if look.cuts {
+            own.cuts(&painter, (map, &scale), scene);
+        }
+        veil(&painter, own.rect(), &style, (current, context.session.map.problem().is_some()));
+        let ball = own.place_of(map, &scale, scene);
+        if let Some(ball) = ball.filter(|_| is_inside(map, place)) {
+            own.ball(&painter, &style, ball);
+        }
+        let cell_at = |at: Pos2| own.cell_at(at);
+        let outline = |(column, row)| {
+            let at = own.place_of(map, &scale, (column, row)).map_or(Pos2::ZERO, |own| own[0]);
+            Shape::circle_stroke(at, 5.0, style.cell_stroke())
+        };
+        hover(&response, &painter, (map, &scale), &cell_at, &outline);
+        let at = ball.map_or(own.rect().left_top(), |own| own[0]);
+        let places = Hand { cell_at: &cell_at, frame: None, rect: area, scene: (at, scene) };
+        pointer::action_ui(ui, &response, map, hand, (&style, &places))
+    } else {
+        let room = area.width() > ROOM_FOR_CUTS.0 && area.height() > ROOM_FOR_CUTS.1;
+        let frame = Coordinates::new(area, map, scale.bar.is_some(), look.cuts && room);
+        spoken("map", frame.rect);
+        for (rect, name) in frame.strips.iter().flatten().zip(["cut across", "cut upward"]) {
+            spoken(name, *rect);
+        }
+        picture.draw(&painter, &frame, map, &style);
+        cuts::draw(&painter, &frame, (map, &scale), scene, &style);
+        trail::draw(&painter, &frame, &style, &trail);
+        frame.axes(&painter, &style, scale.bar.as_ref().map(|bar| bar.label.as_str()));
+        if let Some(rect) = frame.bar {
+            bar(&painter, rect, &scale, &style);
+        }
+        veil(&painter, frame.rect, &style, (current, context.session.map.problem().is_some()));
+        let at = marker(&painter, &frame, &style, place);
+        let cell_at = |at: Pos2| cell_at(&frame, map, scene, at);
+        let outline = |(column, row)| outline(&frame, map, column, row, &style);
+        hover(&response, &painter, (map, &scale), &cell_at, &outline);
+        let places = Hand { cell_at: &cell_at, frame: Some(&frame), rect: frame.rect, scene: (at, scene) };
+        pointer::action_ui(ui, &response, map, hand, (&style, &places))
+    };
+    ui.data_mut(|data| data.insert_temp(id, Some(Drawn { picture, surface })));
     pointer::perform(context, wanted);
 }
 
-/// The cell at a place on the screen.
-fn cell_at(frame: &Coordinates, map: &Map, at: Pos2) -> Option<(usize, usize)> {
+/// What is over a map that is not that of the scene.
+fn veil(painter: &egui::Painter, rect: Rect, style: &Style, (current, has_problem): (bool, bool)) {
+    if current {
+        return;
+    }
+    painter.rect_filled(rect, 0.0, style.veil());
+    let words = if has_problem { "not of this scene" } else { "of the scene before" };
+    let at = rect.center_top() + vec2(0.0, 8.0);
+    painter.text(at, Align2::CENTER_TOP, words, style.body(), style.ink());
+}
+
+/// What is said of the cell under the pointer.
+fn hover(
+    response: &Response,
+    painter: &egui::Painter,
+    (map, scale): (&Map, &ColourScale),
+    cell_at: &dyn Fn(Pos2) -> Option<(usize, usize)>,
+    outline: &dyn Fn((usize, usize)) -> Shape,
+) {
+    let cell = response.hover_pos().filter(|_| !response.dragged()).and_then(cell_at);
+    let Some((column, row)) = cell else { return };
+    painter.add(outline((column, row)));
+    let over = response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
+    over.on_hover_text_at_pointer(reading(map, scale, column, row));
+}
+
+/// Whether a scene stands on the map and not beside it.
+fn is_inside(map: &Map, place: [Option<f64>; 2]) -> bool {
+    place.iter().zip(&map.edges).all(|(own, edges)| own.is_some_and(|own| edges.cell(own).is_some()))
+}
+
+/// The cell in which a scene stands, or the one at the edge beyond which it does: without a stop the mass
+/// goes as far as it would with one far out.
+fn nearest_cell(map: &Map, place: [Option<f64>; 2]) -> (usize, usize) {
+    let near = |i: usize| {
+        let (edges, own) = (&map.edges[i], place[i].unwrap_or(f64::INFINITY));
+        let outside = if own < edges.ends().0 { 0 } else { edges.values.len() - 1 };
+        edges.cell(own).unwrap_or(outside)
+    };
+    (near(0), near(1))
+}
+
+/// The cell at a place on the screen: of the map, or in the cuts through that of the `scene`.
+fn cell_at(frame: &Coordinates, map: &Map, scene: (usize, usize), at: Pos2) -> Option<(usize, usize)> {
     let (x, y) = frame.world_from_screen(at);
-    map.edges[0].cell(x).zip(map.edges[1].cell(y))
+    let own = (map.edges[0].cell(x), map.edges[1].cell(y));
+    match frame.strips {
+        Some([across, _]) if across.contains(at) => {
+            let share = f64::from((at.x - across.left()) / across.width());
+            let x = frame.x.low + share * (frame.x.high - frame.x.low);
+            map.edges[0].cell(x).map(|column| (column, scene.1))
+        }
+        Some([_, beside]) if beside.contains(at) => own.1.map(|row| (scene.0, row)),
+        _ => own.0.zip(own.1),
+    }
 }
 
 /// The edge of a cell.
@@ -92,8 +194,11 @@ fn outline(frame: &Coordinates, map: &Map, column: usize, row: usize, style: &St
     Shape::rect_stroke(rect, 0.0, style.cell_stroke(), egui::StrokeKind::Outside)
 }
 
+/// The columns of which every reading tells.
+const IN_EVERY_READING: [&str; 6] = [RMS, "regime", "max_abs_x_m", "impacts", "crossings", "period"];
+
 /// What a cell says.
-fn reading(map: &Map, column: usize, row: usize) -> String {
+fn reading(map: &Map, scale: &ColourScale, column: usize, row: usize) -> String {
     let names = map.grid().columns();
     let place = [map.edges[0].values[column], map.edges[1].values[row]];
     let mut lines: Vec<String> = names.iter().zip(place).map(|(name, value)| named(name, value)).collect();
@@ -130,6 +235,7 @@ fn reading(map: &Map, column: usize, row: usize) -> String {
                     lines.push("not settled in this time".to_owned());
                 }
             }
+            lines.extend(scale.reading(cell).filter(|_| !IN_EVERY_READING.contains(&scale.column())));
             lines.push("click: take the scene there; drag: enlarge".to_owned());
         }
     }

@@ -2,18 +2,20 @@
 
 use std::sync::Arc;
 
+use eframe::egui::epaint::{TessellationOptions, Tessellator};
 use eframe::egui::{
-    Align2, Color32, ColorImage, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, TextureHandle,
+    Align2, Color32, ColorImage, Mesh, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, TextureHandle,
     TextureOptions, Ui, pos2, vec2,
 };
 
 use crate::app::session::map::Map;
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::kind_shapes;
+use crate::app::words::columns::ColumnInfo;
 use crate::app::words::kind::Kind;
 
 use super::coordinates::{Coordinates, upright};
-use super::quantity::{ColourScale, Look, MapQuantity};
+use super::quantity::{ColourScale, Look};
 
 /// Points between lines of hatching, and between samples along one.
 const HATCH: f32 = 7.0;
@@ -29,28 +31,50 @@ const SYMBOLS: f32 = 46.0;
 /// What was drawn, so that it is made again only where it would differ.
 #[derive(Clone)]
 pub struct Picture {
+    /// The colours of its quantity.
+    pub scale: Arc<ColourScale>,
     texture: TextureHandle,
     looks: Arc<[Look]>,
+    /// Which cells show a motion at rest.
+    resting: Arc<[bool]>,
     /// Which cells show a motion that had not settled.
     unsettled: Arc<[bool]>,
     size: [usize; 2],
     key: Key,
+    /// What lies over the cells, and where it was made for.
+    over: Option<(Place, Arc<Mesh>)>,
+    is_new: bool,
 }
 
-/// Version of the map, quantity, style, and whether the map is that of the scene.
-type Key = (u64, MapQuantity, Style, bool);
+/// Version of the map, column, style, and whether the map is that of the scene.
+pub type Key = (u64, &'static str, Style, bool);
+
+/// The rectangle of a picture and its pixels in a point.
+pub type Place = (Rect, f32);
+
+/// Shapes as triangles, so that they are turned into these once and not in every frame. No texts are among
+/// them.
+pub fn baked(pixels_per_point: f32, shapes: Vec<Shape>) -> Arc<Mesh> {
+    // the discs of the graphics have places in a texture that may change
+    let options = TessellationOptions { prerasterized_discs: false, ..TessellationOptions::default() };
+    let mut tessellator = Tessellator::new(pixels_per_point, options, [1, 1], Vec::new());
+    let mut mesh = Mesh::default();
+    shapes.into_iter().for_each(|shape| tessellator.tessellate_shape(shape, &mut mesh));
+    Arc::new(mesh)
+}
 
 impl Picture {
     /// The picture of a map, made anew where the map or the way it is shown has changed.
-    pub fn of(ui: &Ui, old: Option<Self>, map: &Map, scale: &ColourScale, key: Key) -> Self {
+    pub fn of(ui: &Ui, old: Option<Self>, map: &Map, quantity: &'static ColumnInfo, key: Key) -> Self {
         if let Some(old) = old.as_ref().filter(|old| old.key == key && old.size == map.size()) {
-            return old.clone();
+            return Self { is_new: false, ..old.clone() };
         }
+        let scale = ColourScale::of(quantity, map);
         let size = map.size();
         let [columns, rows] = size;
         let cell = |i: usize| map.cell(i % columns, rows - 1 - i / columns);
-        let look = |i: usize| cell(i).map_or(Look::Unknown, |c| scale.look(c.0));
-        let looks: Arc<[Look]> = (0..columns * rows).map(look).collect();
+        let look = |i: usize| cell(i).map_or((Look::Unknown, false), |c| scale.look(c.0));
+        let (looks, resting): (Vec<Look>, Vec<bool>) = (0..columns * rows).map(look).unzip();
         let transient = |i: usize| cell(i).and_then(|c| c.0.settled()?.settled) == Some(false);
         let unsettled = (0..columns * rows).map(transient).collect();
         let image = ColorImage::new(size, looks.iter().map(|look| colour(&key.2, *look)).collect());
@@ -61,7 +85,23 @@ impl Picture {
             }
             None => ui.ctx().load_texture("map", image, TextureOptions::NEAREST),
         };
-        Self { texture, looks, unsettled, size, key }
+        let (looks, resting) = (looks.into(), resting.into());
+        Self {
+            scale: Arc::new(scale),
+            texture,
+            looks,
+            resting,
+            unsettled,
+            size,
+            key,
+            over: None,
+            is_new: true,
+        }
+    }
+
+    /// Whether it was made in this frame and not drawn before.
+    pub fn is_new(&self) -> bool {
+        self.is_new
     }
 
     /// Whether some cell shows this.
@@ -69,17 +109,9 @@ impl Picture {
         self.looks.contains(&look)
     }
 
-    /// Draws cells, hatching and symbols.
-    pub fn draw(&self, painter: &Painter, frame: &Coordinates, style: &Style) {
-        let all = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-        painter.image(self.texture.id(), frame.rect, all, Color32::WHITE);
-        self.hatch(painter, frame.rect, Look::Rest, 1.0, style.hatch_stroke());
-        self.hatch(painter, frame.rect, Look::Missing, 1.0, style.missing_stroke());
-        self.hatch(painter, frame.rect, Look::Missing, -1.0, style.missing_stroke());
-        if self.key.1 == MapQuantity::Regime {
-            self.symbols(painter, frame.rect, style);
-        }
-        self.dots(painter, frame.rect, style);
+    /// Whether some cell shows a motion at rest.
+    pub fn shows_rest(&self) -> bool {
+        self.resting.contains(&true)
     }
 
     /// Whether some cell shows a motion that had not settled.
@@ -87,29 +119,64 @@ impl Picture {
         self.unsettled.contains(&true)
     }
 
+    /// Draws cells, hatching, symbols and the colour bar.
+    pub fn draw(&mut self, painter: &Painter, frame: &Coordinates, map: &Map, style: &Style) {
+        let all = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+        painter.image(self.texture.id(), frame.rect, all, Color32::WHITE);
+        let place = (frame.rect, painter.pixels_per_point());
+        let mesh = match &self.over {
+            Some((own, mesh)) if *own == place => Arc::clone(mesh),
+            _ => baked(place.1, self.shapes(frame, map, style)),
+        };
+        painter.with_clip_rect(frame.rect).add(Shape::Mesh(Arc::clone(&mesh)));
+        self.over = Some((place, mesh));
+    }
+
+    /// What lies over the cells.
+    fn shapes(&self, frame: &Coordinates, map: &Map, style: &Style) -> Vec<Shape> {
+        let mut shapes = Vec::new();
+        let rest = |i: usize| self.resting[i];
+        let missing = |i: usize| self.looks[i] == Look::Missing;
+        self.hatch(&mut shapes, frame.rect, rest, (1.0, style.hatch_stroke()));
+        for way in [1.0, -1.0] {
+            self.hatch(&mut shapes, frame.rect, missing, (way, style.missing_stroke()));
+        }
+        self.symbols(&mut shapes, frame.rect, style);
+        self.dots(&mut shapes, frame.rect, style);
+        lines(&mut shapes, frame, map, style);
+        shapes
+    }
+
     /// A dot on every cell whose motion had not settled, where cells are large enough to bear one.
-    fn dots(&self, painter: &Painter, rect: Rect, style: &Style) {
+    fn dots(&self, shapes: &mut Vec<Shape>, rect: Rect, style: &Style) {
         let [columns, rows] = self.size;
         let cell = rect.size() / vec2(columns as f32, rows as f32);
-        if !self.shows_unsettled() || cell.min_elem() < SMALLEST_DOTTED {
+        if cell.min_elem() < SMALLEST_DOTTED {
             return;
         }
         for (i, _) in self.unsettled.iter().enumerate().filter(|(_, unsettled)| **unsettled) {
             let place = vec2((i % columns) as f32 + 0.5, (i / columns) as f32 + 0.5);
-            dot(painter, rect.min + place * cell, style);
+            shapes.push(dot(rect.min + place * cell, style));
         }
     }
 
-    fn look_at(&self, rect: Rect, at: Pos2) -> Look {
+    /// The cell at a place on the screen.
+    fn cell_at(&self, rect: Rect, at: Pos2) -> usize {
         let [columns, rows] = self.size;
         let share = (at - rect.min) / rect.size();
         let place = |share: f32, count: usize| ((share * count as f32).max(0.0) as usize).min(count - 1);
-        self.looks[place(share.y, rows) * columns + place(share.x, columns)]
+        place(share.y, rows) * columns + place(share.x, columns)
     }
 
-    /// Parallel lines over the cells that show `wanted`, rising to the right for `way` 1.
-    fn hatch(&self, painter: &Painter, rect: Rect, wanted: Look, way: f32, stroke: Stroke) {
-        if !self.shows(wanted) {
+    /// Parallel lines over the cells that are `wanted`, rising to the right for `way` 1.
+    fn hatch(
+        &self,
+        shapes: &mut Vec<Shape>,
+        rect: Rect,
+        wanted: impl Fn(usize) -> bool,
+        (way, stroke): (f32, Stroke),
+    ) {
+        if !(0..self.looks.len()).any(&wanted) {
             return;
         }
         let count = ((rect.width() + rect.height()) / HATCH) as usize;
@@ -128,78 +195,74 @@ impl Picture {
             let mut begin: Option<Pos2> = None;
             for step in 0..=steps {
                 let place = at(step);
-                let on = rect.contains(place) && self.look_at(rect, place) == wanted;
+                let on = rect.contains(place) && wanted(self.cell_at(rect, place));
                 match begin {
                     None if on => begin = Some(place),
                     Some(from) if !on => {
-                        painter.line_segment([from, at(step - 1)], stroke);
+                        shapes.push(Shape::line_segment([from, at(step - 1)], stroke));
                         begin = None;
                     }
                     _ => {}
                 }
             }
             if let Some(from) = begin {
-                painter.line_segment([from, at(steps)], stroke);
+                shapes.push(Shape::line_segment([from, at(steps)], stroke));
             }
         }
     }
 
     /// The symbol of the regime here and there, so that colour is not all that tells.
-    fn symbols(&self, painter: &Painter, rect: Rect, style: &Style) {
+    fn symbols(&self, shapes: &mut Vec<Shape>, rect: Rect, style: &Style) {
         let (columns, rows) = ((rect.width() / SYMBOLS) as usize, (rect.height() / SYMBOLS) as usize);
+        let look_at = |at: Pos2| self.looks[self.cell_at(rect, at)];
         for i in 0..columns * rows.max(1) {
             let corner = rect.min + vec2((i % columns) as f32 + 0.5, (i / columns) as f32 + 0.5) * SYMBOLS;
-            let Look::Kind(kind) = self.look_at(rect, corner) else { continue };
+            let Look::Kind(kind) = look_at(corner) else { continue };
             // only where its surroundings are the same
             let around = [vec2(9.0, 0.0), vec2(-9.0, 0.0), vec2(0.0, 9.0), vec2(0.0, -9.0)];
-            if around.iter().all(|step| self.look_at(rect, corner + *step) == Look::Kind(kind)) {
-                painter.extend(kind_shapes(kind, corner, 5.0, style.over_kind()));
+            if around.iter().all(|step| look_at(corner + *step) == Look::Kind(kind)) {
+                shapes.extend(kind_shapes(kind, corner, 5.0, style.over_kind()));
             }
         }
     }
 }
 
-fn colour(style: &Style, look: Look) -> Color32 {
+/// The colour of a look.
+pub fn colour(style: &Style, look: Look) -> Color32 {
     match look {
         Look::Unknown => style.panel(),
         Look::Missing | Look::None => style.ground(),
         Look::Rest => style.rest_shade(),
         Look::Kind(kind) => style.kind(kind),
+        Look::Word(place) => style.attractor(place.into()),
         Look::Share(share) => style.scale(f64::from(share)),
     }
 }
 
 /// Release and first crossing.
-pub fn lines(painter: &Painter, frame: &Coordinates, map: &Map, style: &Style) {
-    let painter = painter.with_clip_rect(frame.rect);
+fn lines(shapes: &mut Vec<Shape>, frame: &Coordinates, map: &Map, style: &Style) {
     let screen =
         |points: &[(f64, f64)]| -> Vec<Pos2> { points.iter().map(|p| frame.screen_from_world(*p)).collect() };
     for stroke in style.crossing_strokes() {
-        for part in &map.crossing {
-            painter.add(Shape::line(screen(part), stroke));
-        }
+        shapes.extend(map.crossing.iter().map(|part| Shape::line(screen(part), stroke)));
     }
     let [halo, release] = style.release_strokes();
     let points = screen(&map.release);
-    painter.add(Shape::line(points.clone(), halo));
-    painter.extend(Shape::dashed_line(&points, release, 9.0, 6.0));
+    shapes.push(Shape::line(points.clone(), halo));
+    shapes.extend(Shape::dashed_line(&points, release, 9.0, 6.0));
 }
 
-/// The colours and their values.
-pub fn bar(painter: &Painter, frame: &Coordinates, scale: &ColourScale, style: &Style) {
-    let (Some(rect), Some(axis)) = (frame.bar, &scale.bar) else { return };
-    let steps = scale.steps().unwrap_or(rect.height().max(2.0) as usize);
-    let height = rect.height() / steps as f32;
+/// The colours and their values in a bar.
+pub fn bar(painter: &Painter, rect: Rect, scale: &ColourScale, style: &Style) {
+    let Some(axis) = &scale.bar else { return };
+    let mut mesh = Mesh::default();
+    let steps = scale.steps().unwrap_or(64);
     for step in 0..steps {
-        let bottom = rect.bottom() - step as f32 * height;
-        // a point of overlap leaves no seams between pixels
-        let part = Rect::from_min_max(
-            pos2(rect.left(), bottom - height),
-            pos2(rect.right(), (bottom + 1.0).min(rect.bottom())),
-        );
-        let share = (step as f64 + 0.5) / steps as f64;
-        painter.rect_filled(part, 0.0, style.scale(share));
+        let at = |part: usize| rect.bottom() - part as f32 / steps as f32 * rect.height();
+        let part = Rect::from_min_max(pos2(rect.left(), at(step + 1)), pos2(rect.right(), at(step)));
+        mesh.add_colored_rect(part, style.scale((step as f64 + 0.5) / steps as f64));
     }
+    painter.add(Shape::mesh(mesh));
     let stroke = Stroke::new(1.0, style.ink());
     painter.rect_stroke(rect, 0.0, stroke, StrokeKind::Outside);
     let mut above = f32::INFINITY;
@@ -216,8 +279,8 @@ pub fn bar(painter: &Painter, frame: &Coordinates, scale: &ColourScale, style: &
 }
 
 /// The mark of a motion that had not settled.
-pub fn dot(painter: &Painter, at: Pos2, style: &Style) {
-    painter.circle_filled(at, DOT, style.hatch_stroke().color);
+pub fn dot(at: Pos2, style: &Style) -> Shape {
+    Shape::circle_filled(at, DOT, style.hatch_stroke().color)
 }
 
 /// The regimes that a picture shows, in the order of the legend.

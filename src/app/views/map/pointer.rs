@@ -8,7 +8,6 @@ use crate::scene::SweepAxis;
 
 use super::super::ViewContext;
 use super::super::memory::PointerState;
-use super::cell_at;
 use super::coordinates::Coordinates;
 
 /// The least side in points of a box that enlarges: less is a click of an unsteady state.
@@ -23,47 +22,67 @@ pub enum MapAction {
     Drag(Option<(usize, usize)>, bool),
     /// A part of it.
     Part([SweepAxis; 2]),
+    /// The half of each axis around a cell.
+    Closer(usize, usize),
+    /// What was there before the last part was enlarged.
+    Larger,
     /// All of it.
     Whole,
 }
 
-/// Reads pointer and keyboard; the scene stands at the place `at` on the screen.
+/// Where things are on the screen.
+pub struct Hand<'a> {
+    /// The cell at a place.
+    pub cell_at: &'a dyn Fn(Pos2) -> Option<(usize, usize)>,
+    /// The coordinates in which a box can be drawn; none for a surface.
+    pub frame: Option<&'a Coordinates>,
+    /// What a place is kept inside.
+    pub rect: Rect,
+    /// Where the scene stands, and in or beside which cell.
+    pub scene: (Pos2, (usize, usize)),
+}
+
+/// Reads pointer and keyboard.
 pub fn action_ui(
     ui: &Ui,
-    (response, frame): (&Response, &Coordinates),
+    response: &Response,
     map: &Map,
     (state, is_enlarged): (&mut PointerState, bool),
-    (style, at): (&Style, Pos2),
+    (style, hand): (&Style, &Hand<'_>),
 ) -> Option<MapAction> {
     // only on an enlarged map there is something that a second click means
     let second = ui.options(|options| options.input_options.max_double_click_delay);
     let wait = if is_enlarged { second } else { 0.0 };
-    if let Some(action) = cross_hair_ui(ui, frame, map, (style, at)) {
+    if let Some(action) = cross_hair_ui(ui, map, (style, hand)) {
         return Some(action);
     }
     let time = ui.input(|input| input.time);
-    let pointer = response.interact_pointer_pos().map(|at| frame.rect.clamp(at));
-    if response.drag_started() {
-        let origin = ui.input(|input| input.pointer.press_origin());
-        state.corner = origin.filter(|at| frame.rect.contains(*at));
-    }
-    if let (Some(corner), Some(pointer)) = (state.corner, pointer) {
-        let dragged = Rect::from_two_pos(corner, pointer);
-        let painter = ui.painter();
-        painter.rect_filled(dragged, 0.0, style.veil());
-        painter.rect_stroke(dragged, 0.0, Stroke::new(1.5, style.ink()), StrokeKind::Inside);
-        if response.drag_stopped() {
-            state.corner = None;
-            let large = dragged.width() >= LEAST_BOX && dragged.height() >= LEAST_BOX;
-            return large.then(|| MapAction::Part(axes_of(frame, map, dragged)));
+    if let Some(frame) = hand.frame {
+        let pointer = response.interact_pointer_pos().map(|at| frame.rect.clamp(at));
+        if response.drag_started() {
+            let origin = ui.input(|input| input.pointer.press_origin());
+            state.corner = origin.filter(|at| frame.rect.contains(*at));
         }
+        if let (Some(corner), Some(pointer)) = (state.corner, pointer) {
+            let dragged = Rect::from_two_pos(corner, pointer);
+            let painter = ui.painter();
+            painter.rect_filled(dragged, 0.0, style.veil());
+            painter.rect_stroke(dragged, 0.0, Stroke::new(1.5, style.ink()), StrokeKind::Inside);
+            if response.drag_stopped() {
+                state.corner = None;
+                let large = dragged.width() >= LEAST_BOX && dragged.height() >= LEAST_BOX;
+                return large.then(|| MapAction::Part(axes_of(frame, map, dragged)));
+            }
+        }
+    } else {
+        state.corner = None;
     }
     if response.double_clicked() {
         state.clicked = None;
         return Some(MapAction::Whole);
     }
     if response.clicked() {
-        let cell = response.interact_pointer_pos().and_then(|at| cell_at(frame, map, at))?;
+        let cell = response.interact_pointer_pos().and_then(hand.cell_at)?;
         state.clicked = Some((cell, time));
     }
     let ((column, row), since) = state.clicked?;
@@ -82,15 +101,16 @@ fn axes_of(frame: &Coordinates, map: &Map, dragged: Rect) -> [SweepAxis; 2] {
     [part(across, left, right), part(up, low, high)]
 }
 
-/// The cross-hair can be dragged, and moved from cell to cell by the arrow keys.
-fn cross_hair_ui(ui: &Ui, frame: &Coordinates, map: &Map, (style, at): (&Style, Pos2)) -> Option<MapAction> {
+/// The cross-hair can be dragged, moved from cell to cell by the arrow keys, and enlarged around.
+fn cross_hair_ui(ui: &Ui, map: &Map, (style, hand): (&Style, &Hand<'_>)) -> Option<MapAction> {
+    let (at, (column, row)) = hand.scene;
     let grab = Rect::from_center_size(at, Vec2::splat(2.0 * GRAB));
     let id = ui.scope_id().with("cross-hair");
     let response = ui.interact(grab, id, Sense::drag()).on_hover_and_drag_cursor(CursorIcon::Move);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "cross-hair"));
     if response.dragged() || response.drag_stopped() {
-        let inside = |at: Pos2| frame.rect.shrink(0.5).clamp(at);
-        let cell = response.interact_pointer_pos().and_then(|at| cell_at(frame, map, inside(at)));
+        let inside = |at: Pos2| hand.rect.shrink(0.5).clamp(at);
+        let cell = response.interact_pointer_pos().and_then(|at| (hand.cell_at)(inside(at)));
         return Some(MapAction::Drag(cell, response.drag_stopped()));
     }
     if !response.has_focus() {
@@ -101,12 +121,17 @@ fn cross_hair_ui(ui: &Ui, frame: &Coordinates, map: &Map, (style, at): (&Style, 
         egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..egui::EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
     let presses = |key| ui.input(|input| i64::try_from(input.num_presses(key)).unwrap_or(0));
+    if presses(Key::Plus) + presses(Key::Equals) > 0 {
+        return Some(MapAction::Closer(column, row));
+    }
+    if presses(Key::Minus) > 0 {
+        return Some(MapAction::Larger);
+    }
     let across = presses(Key::ArrowRight) - presses(Key::ArrowLeft);
     let up = presses(Key::ArrowUp) - presses(Key::ArrowDown);
     if (across, up) == (0, 0) {
         return None;
     }
-    let (column, row) = cell_at(frame, map, frame.rect.shrink(0.5).clamp(at))?;
     let [columns, rows] = map.size();
     let moved = |own: usize, by: i64, count: usize| own.saturating_add_signed(by as isize).min(count - 1);
     Some(MapAction::Cell(moved(column, across, columns), moved(row, up, rows)))
@@ -127,6 +152,21 @@ pub fn perform(context: &mut ViewContext<'_>, action: Option<MapAction>) {
             }
         }
         Some(MapAction::Part(axes)) if session.map_problem(&axes).is_none() => session.map.enlarge(axes),
+        Some(MapAction::Closer(column, row)) => {
+            let (Some(axes), Some((map, _))) = (session.map_axes(), session.map.shown()) else { return };
+            // those that were chosen last, be their map still to come
+            let around = |i: usize, place: usize| {
+                let (axis, value) = (&axes[i], map.edges[i].values[place]);
+                let quarter = 0.25 * (axis.to - axis.from);
+                let middle = value.max(axis.from + quarter).min(axis.to - quarter);
+                part(axis, middle - quarter, middle + quarter)
+            };
+            let axes = [around(0, column), around(1, row)];
+            if session.map_problem(&axes).is_none() {
+                session.map.enlarge(axes);
+            }
+        }
+        Some(MapAction::Larger) => session.map.show_larger(),
         Some(MapAction::Whole) => session.map.show_whole(),
         Some(MapAction::Part(_)) | None => {}
     }

@@ -1,26 +1,15 @@
-//! Quantities that a map can show, and their colours.
+//! Colours of a column of the map.
 
 use crate::app::session::map::Map;
+use crate::app::words::columns::{ColumnInfo, said};
 use crate::app::words::kind::Kind;
-use crate::dynamics::Regime;
-use crate::output::{PlotAxis, speed_unit};
-use crate::study::Cell;
+use crate::app::words::numbers::three;
+use crate::dynamics::{Regime, Summary};
+use crate::output::PlotAxis;
+use crate::study::{Cell, Read, SummaryField};
 
-/// What the colour of a map says.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum MapQuantity {
-    /// RMS velocity.
-    #[default]
-    Speed,
-    /// Kind of motion.
-    Regime,
-    /// Largest displacement.
-    Reach,
-    /// Impacts in the settled window.
-    Impacts,
-    /// Forcing periods after which it repeats.
-    Period,
-}
+/// The most forcing periods after which a motion is found to repeat.
+const PERIODS: usize = 12;
 
 /// What one cell shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,97 +20,172 @@ pub enum Look {
     Missing,
     /// At rest, which is not little motion.
     Rest,
-    /// A value that there is no number for: motion that does not repeat.
+    /// A value that there is none of: a period of motion that does not repeat, a first release that did not
+    /// come.
     None,
     /// A kind of motion.
     Kind(Kind),
+    /// A word, by its place among those that the column can have.
+    Word(u8),
     /// A share of the scale, 0 to 1.
     Share(f32),
 }
 
-impl MapQuantity {
-    /// All of them, in the order of the choice.
-    pub const ALL: [Self; 5] = [Self::Speed, Self::Regime, Self::Reach, Self::Impacts, Self::Period];
-
-    /// What it is called.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Speed => "RMS velocity",
-            Self::Regime => "Regime",
-            Self::Reach => "Reach",
-            Self::Impacts => "Impacts",
-            Self::Period => "Period",
-        }
-    }
-
-    /// The number in the unit of its scale; none for a regime.
-    fn value(self, cell: &Cell, per_speed: f64) -> Option<f64> {
-        let own = cell.settled()?;
-        match self {
-            Self::Speed => own.rms_velocity.map(|rms| rms * per_speed),
-            Self::Reach => own.max_abs_x.map(|reach| reach * 1e3),
-            Self::Impacts => Some(own.impacts as f64),
-            Self::Period => own.period.map(f64::from),
-            Self::Regime => None,
-        }
-    }
+/// How numbers become places on a scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Steps {
+    /// Equal differences are equal steps.
+    Even,
+    /// Counts, of which equal ratios are nearly equal steps.
+    Ratios,
+    /// Each whole number has a step of its own.
+    Whole,
 }
 
 /// The colours of one map of one quantity.
+#[derive(Debug, Clone)]
 pub struct ColourScale {
-    quantity: MapQuantity,
-    per_speed: f64,
-    /// The bar beside the map; none for regimes.
+    info: &'static ColumnInfo,
+    field: Option<&'static SummaryField>,
+    factor: f64,
+    unit: &'static str,
+    /// The bar beside the map; none for words.
     pub bar: Option<PlotAxis>,
-    /// Whether equal ratios are equal steps of colour.
-    log: bool,
+    steps: Steps,
+}
+
+/// The number in a summary, for a word its place.
+fn number(field: &SummaryField, words: Option<&[&str]>, summary: &Summary) -> Option<f64> {
+    let place = |word: &str| words?.iter().position(|own| *own == word).map(|place| place as f64);
+    match field.read {
+        Read::Number(of) => of(summary).filter(|value| value.is_finite()),
+        Read::Count(of) => of(summary).map(|count| count as f64),
+        Read::Word(of) => place(of(summary)),
+        Read::Flag(of) => of(summary).and_then(|flag| place(if flag { "true" } else { "false" })),
+    }
 }
 
 impl ColourScale {
-    /// From nothing to the largest value that the map has so far.
-    pub fn of(quantity: MapQuantity, map: &Map) -> Self {
-        let speeds = map.own_cells().filter_map(|cell| cell.summary()?.rms_velocity);
-        let (per_speed, unit) = speed_unit(speeds);
-        let values = map.own_cells().filter_map(|cell| quantity.value(cell, per_speed));
-        let most = values.fold(0.0_f64, f64::max);
-        let window = map.window_s();
-        let bar = match quantity {
-            MapQuantity::Regime => None,
-            MapQuantity::Speed => Some(PlotAxis::between(0.0, most, 5, &format!("RMS velocity ({unit})"))),
-            MapQuantity::Reach => Some(PlotAxis::between(0.0, most, 5, "reach (mm)")),
-            MapQuantity::Impacts => Some(counts(most, &format!("impacts in {window} s"))),
-            MapQuantity::Period => Some(PlotAxis {
-                low: 0.5,
-                high: 12.5,
-                ticks: (1..=12).map(|n| (f64::from(n), n.to_string())).collect(),
-                label: "repeats after forcing periods".to_owned(),
-            }),
+    /// From 0, or from the least value where that is below, to the largest value that the map has so far.
+    pub fn of(info: &'static ColumnInfo, map: &Map) -> Self {
+        let (field, words) = (info.field(), info.words());
+        let values = || {
+            let read = |cell: &Cell| number(field?, words, cell.summary()?);
+            map.own_cells().filter_map(read)
         };
-        Self { quantity, per_speed, bar, log: quantity == MapQuantity::Impacts }
+        let (factor, unit) = info.unit(values());
+        let (low, high) = values().fold((0.0_f64, 0.0_f64), |(low, high), value| {
+            (low.min(value * factor), high.max(value * factor))
+        });
+        let label = match (info.column, unit) {
+            ("period", _) => "repeats after forcing periods".to_owned(),
+            ("crossings" | "impacts" | "releases", _) => format!("{} in {} s", info.name, map.window_s()),
+            (_, "") => info.name.to_owned(),
+            _ => format!("{} ({unit})", info.name),
+        };
+        let (bar, steps) = match info.column {
+            _ if words.is_some() => (None, Steps::Even),
+            "period" => {
+                let ticks = (1..=PERIODS).map(|n| (n as f64, n.to_string())).collect();
+                let bar = PlotAxis { low: 0.5, high: PERIODS as f64 + 0.5, ticks, label };
+                (Some(bar), Steps::Whole)
+            }
+            _ if info.is_count() => (Some(counts(high, &label)), Steps::Ratios),
+            _ => (Some(PlotAxis::between(low, high, 5, &label)), Steps::Even),
+        };
+        Self { info, field, factor, unit, bar, steps }
     }
 
-    /// What a cell shows.
-    pub fn look(&self, cell: &Cell) -> Look {
-        let Some(summary) = cell.settled() else { return Look::Missing };
-        match (summary.regime, self.quantity) {
-            (Regime::Rest, _) => Look::Rest,
-            (regime, MapQuantity::Regime) => Look::Kind(Kind::from(regime)),
-            _ => match (self.quantity.value(cell, self.per_speed), &self.bar) {
-                (Some(value), Some(bar)) => Look::Share(self.share(value, bar) as f32),
-                _ => Look::None,
-            },
-        }
+    /// The number of a cell in the unit of the scale, for a word its place; none where it has none.
+    pub fn value(&self, cell: &Cell) -> Option<f64> {
+        Some(number(self.field?, self.info.words(), cell.summary()?)? * self.factor)
+    }
+
+    /// What a cell shows, and whether its motion is at rest.
+    pub fn look(&self, cell: &Cell) -> (Look, bool) {
+        let rests = is_at_rest(cell);
+        // nothing of a motion that there is not: that is not little of it
+        let of_motion = |value: f64| value == 0.0 || ["regime", "period"].contains(&self.info.column);
+        let look = match (self.value(cell), &self.bar) {
+            (None, _) if cell.settled().is_none() => Look::Missing,
+            (Some(value), _) if rests && of_motion(value) => Look::Rest,
+            (None, _) if rests && ["regime", "period"].contains(&self.info.column) => Look::Rest,
+            (Some(value), Some(bar)) => Look::Share(self.share(value, bar) as f32),
+            _ if self.info.column == "regime" => {
+                cell.settled().map_or(Look::None, |own| Look::Kind(Kind::from(own.regime)))
+            }
+            (Some(place), None) => Look::Word(place as u8),
+            (None, _) => Look::None,
+        };
+        (look, rests)
     }
 
     /// Where a value stands on the bar, 0 to 1.
     pub fn share(&self, value: f64, bar: &PlotAxis) -> f64 {
-        if self.log { (1.0 + value).ln() / (1.0 + bar.high).ln() } else { bar.share(value) }
+        match self.steps {
+            Steps::Ratios => (1.0 + value).ln() / (1.0 + bar.high).ln(),
+            Steps::Even | Steps::Whole => bar.share(value),
+        }
     }
 
-    /// Whether each whole number has one colour of its own.
-    pub fn steps(&self) -> Option<usize> {
-        (self.quantity == MapQuantity::Period).then_some(12)
+    /// Where a cell stands on a scale upward, 0 to 1; words stand in the middle of equal parts.
+    pub fn height(&self, cell: &Cell) -> Option<f64> {
+        let value = self.value(cell)?;
+        match (&self.bar, self.info.words()) {
+            (Some(bar), _) => Some(self.share(value, bar)),
+            (None, Some(words)) => Some((value + 0.5) / words.len() as f64),
+            (None, None) => None,
+        }
     }
+
+    /// How many steps of colour the bar has; none for as many as there are pixels.
+    pub fn steps(&self) -> Option<usize> {
+        (self.steps == Steps::Whole).then_some(PERIODS)
+    }
+
+    /// The column.
+    pub fn column(&self) -> &'static str {
+        self.info.column
+    }
+
+    /// Whether it is a column of words.
+    pub fn is_of_words(&self) -> bool {
+        self.info.words().is_some()
+    }
+
+    /// A word by its place, as it is said.
+    pub fn word(&self, place: u8) -> String {
+        let word = self.info.words().and_then(|words| words.get(usize::from(place)));
+        said(self.info.column, word.copied().unwrap_or_default())
+    }
+
+    /// What a cell says in words: `fastest impact 12.3 mm/s`.
+    pub fn reading(&self, cell: &Cell) -> Option<String> {
+        let value = self.value(cell)?;
+        Some(match self.info.words() {
+            Some(_) => self.word(value as u8),
+            None if self.info.is_count() => format!("{} {value:.0}", self.info.name),
+            None => format!("{} {} {}", self.info.name, three(value), self.unit).trim_end().to_owned(),
+        })
+    }
+
+    /// Why a cell of a motion that went on to its end has no value.
+    pub fn without_value(&self) -> &'static str {
+        match self.info.column {
+            "period" | "settles_at_s" => "does not repeat",
+            "first_release_s" | "first_release_g" => "no release, or the shaking does not change",
+            "first_crossing_s" | "first_crossing_g" => "no crossing, or the shaking does not change",
+            "impact_speed_max_m_per_s" => "no impact",
+            "peak_contact_force_n" | "peak_contact_pressure_pa" => "no compliant stop is touched",
+            "ended_at_s" => "lasted to its end",
+            _ => "has no such value",
+        }
+    }
+}
+
+/// Whether the settled motion of a cell is none.
+pub fn is_at_rest(cell: &Cell) -> bool {
+    cell.settled().is_some_and(|own| own.regime == Regime::Rest)
 }
 
 /// A scale of counts, which go from two to a thousand: ticks at 1 and 3 times powers of ten.
@@ -130,4 +194,51 @@ fn counts(most: f64, label: &str) -> PlotAxis {
     let powers = (0..9).flat_map(|power| [1, 3].map(|digit| digit * 10_u64.pow(power)));
     let ticks = std::iter::once(0).chain(powers).map(|n| (n as f64, n.to_string()));
     PlotAxis { low: 0.0, high, ticks: ticks.filter(|tick| tick.0 <= high).collect(), label: label.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::time::Duration;
+
+    use super::*;
+    use crate::app::session::Session;
+    use crate::app::session::editor::Editor;
+    use crate::app::words::columns::column_info;
+    use crate::scene::SweepAxis;
+
+    #[test]
+    fn nothing_of_a_motion_is_not_rest() {
+        let mut session = Session::new(Editor::open("paper").unwrap(), Arc::new(|| ())).unwrap();
+        let axis = |field: &str, from, to, step| {
+            let field = field.to_owned();
+            SweepAxis { field, from, to, step, ..SweepAxis::default() }
+        };
+        let axes =
+            [axis("stops.travel_limit_mm", 1.5, 6.5, 5.0), axis("excitation.amplitude_g", 0.4, 1.0, 0.3)];
+        session.map.choose(Some(axes));
+        session.want_map(0.0);
+        assert!(session.wait_for_map(Duration::from_secs(3600)));
+        let map = session.map.map().unwrap();
+        let scale = |column: &str| ColourScale::of(column_info(column).unwrap(), map);
+        let look =
+            |column: &str, place: (usize, usize)| scale(column).look(map.cell(place.0, place.1).unwrap().0);
+        let (rest, moves, crosses) = ((0, 0), (1, 2), (0, 2));
+        assert_eq!(look("regime", rest), (Look::Rest, true));
+        assert_eq!(look("regime", moves), (Look::Kind(Kind::Intrawell), false));
+        assert_eq!(look("regime", crosses), (Look::Kind(Kind::Interwell), false));
+        assert_eq!(look("crossings", rest), (Look::Rest, true));
+        assert_eq!(look("crossings", moves), (Look::Share(0.0), false));
+        assert_eq!(look("crossings", crosses), (Look::Share(1.0), false));
+        // a number of a motion at rest is that number, and at rest
+        let (own, rests) = look("max_abs_x_m", rest);
+        let reach = scale("max_abs_x_m");
+        assert!(rests && own == Look::Share((1.5 / reach.bar.as_ref().unwrap().high) as f32), "{own:?}");
+        assert_eq!(reach.reading(map.cell(0, 0).unwrap().0).unwrap(), "reach 1.50 mm");
+        // and what no run has is no zero
+        assert_eq!(look("peak_contact_force_n", crosses), (Look::None, false));
+        assert_eq!(look("work_j", crosses), (Look::None, false));
+        assert_eq!(look("side", crosses), (Look::Word(2), false));
+        assert_eq!(scale("side").word(2), "both sides");
+    }
 }

@@ -3,19 +3,21 @@
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{self, Align2, ComboBox, Painter, PopupCloseBehavior, Rect, RichText, Ui, pos2, vec2};
 
-use crate::app::session::map::Map;
+use crate::app::session::map::{Map, Mapping};
 use crate::app::ui::knob::refuse;
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::kind_shapes;
+use crate::app::words::columns::{COLUMNS, ColumnInfo};
 use crate::scene::SweepAxis;
 
 use super::super::ViewContext;
 use super::super::axes::{field_ui, range_row_ui};
+use super::super::memory::MapLook;
 use super::picture::{self, Picture, kinds};
-use super::quantity::{Look, MapQuantity};
+use super::quantity::Look;
 
 /// Width in points below which the choices take two rows.
-const NARROW: f32 = 740.0;
+const NARROW: f32 = 1080.0;
 
 /// Width in points from which on the legend stands beside what was run.
 const WIDE: f32 = 760.0;
@@ -25,16 +27,19 @@ const LOW: f32 = 220.0;
 
 /// Title, choices, progress.
 pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    // a low map needs the room more
+    ui.spacing_mut().item_spacing.y = if ui.available_height() > LOW + 100.0 { 5.0 } else { 1.0 };
     ui.add_space(2.0);
     let narrow = ui.available_width() < NARROW;
     ui.horizontal(|ui| {
         ui.add_space(8.0);
-        quantity_ui(ui, &mut context.memory.map_quantity);
+        quantity_ui(ui, &mut context.session.map);
         ui.label(RichText::new("from rest").heading())
             .on_hover_text("Every cell is a run of its own from rest.");
         if !narrow {
             axes_ui(ui, context);
         }
+        look_ui(ui, &mut context.memory.map_look, context.session.map.quantity());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.add_space(8.0);
             progress_ui(ui, context);
@@ -48,20 +53,47 @@ pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
 }
 
-fn quantity_ui(ui: &mut Ui, quantity: &mut MapQuantity) {
-    let combo = ComboBox::from_id_salt("quantity")
-        .width(118.0)
-        .selected_text(RichText::new(quantity.name()).heading());
+/// The choice of what the colour says, by groups of columns.
+fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
+    let chosen = mapping.quantity();
+    let title = RichText::new(chosen.title()).heading();
+    let combo = ComboBox::from_id_salt("quantity").width(118.0).height(420.0).selected_text(title).truncate();
     let inner = combo.show_ui(ui, |ui| {
-        for one in MapQuantity::ALL {
-            ui.selectable_value(quantity, one, one.name());
+        ui.set_min_width(230.0);
+        for (group, columns) in &COLUMNS {
+            ui.label(RichText::new(*group).small());
+            for own in *columns {
+                let entry = ui.selectable_label(own == chosen, own.title());
+                let cost = if own.field().is_some_and(|field| field.needs_ledger) {
+                    " The runs are made anew for it, one by one."
+                } else {
+                    ""
+                };
+                if entry.on_hover_text(format!("{}{cost}", own.about)).clicked() {
+                    mapping.show(own);
+                }
+            }
         }
     });
-    let name = quantity.name();
-    inner
-        .response
-        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, format!("map of {name}")));
-    inner.response.on_hover_text("What the colour says.");
+    let name = format!("map of {}", chosen.title());
+    inner.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name.clone()));
+    inner.response.on_hover_text(chosen.about);
+}
+
+/// From above or as a surface, with cuts.
+fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &ColumnInfo) {
+    ui.selectable_value(&mut look.surface, false, "From above")
+        .on_hover_text("Each run is a cell, and its colour the quantity.");
+    let surface = if quantity.words().is_some() {
+        "Words have no height: they are seen from above."
+    } else {
+        "The same as a surface: height and colour are the quantity."
+    };
+    ui.selectable_value(&mut look.surface, true, "Surface").on_hover_text(surface);
+    ui.toggle_value(&mut look.cuts, "Cuts").on_hover_text(
+        "Lines through the map where the scene is, beside it: the quantity over one axis at this value of \
+         the other, with regimes, release and first crossing.",
+    );
 }
 
 fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -75,11 +107,27 @@ fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         wanted = field_ui(ui, axis, role, &others).map(|path| (i, path)).or(wanted);
     }
     ranges_ui(ui, context, &axes);
+    trail_ui(ui, context);
     if let Some((i, path)) = wanted {
         let mut chosen = axes;
         chosen[i] = context.session.map_axis(&path);
         context.session.map.choose(Some(chosen));
     }
+}
+
+/// A menu of the line where the scene has been.
+fn trail_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let (button, _) = MenuButton::new("Trail").config(config).ui(ui, |ui| {
+        *ui.style_mut() = (*ui.ctx().global_style()).clone();
+        ui.checkbox(&mut context.memory.map_look.trail, "Show where the scene has been");
+        let trail = &mut context.session.map.trail;
+        if ui.add_enabled(!trail.is_clear(), egui::Button::new("Clear the trail")).clicked() {
+            trail.clear();
+            ui.close();
+        }
+    });
+    button.on_hover_text("Where the live motion has been since the scene was opened, as a line that fades.");
 }
 
 /// A menu in which the ends and steps of both axes are typed.
@@ -98,10 +146,8 @@ fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) 
         if wanted != *axes {
             match context.session.map_problem(&wanted) {
                 None => context.session.map.choose(Some(wanted)),
-                Some(why) => {
-                    let changed = wanted.iter().zip(axes).position(|(new, old)| new != old);
-                    let role = if changed == Some(0) { "across" } else { "up" };
-                    refuse(ui, &format!("{role}, to"), why);
+                Some((i, part, why)) => {
+                    refuse(ui, &format!("{}, {part}", ["across", "up"][i]), why);
                 }
             }
         }
@@ -109,7 +155,10 @@ fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) 
             context.session.map.choose(None);
         }
     });
-    button.on_hover_text("Ends and steps of both axes. A box drawn over the map enlarges it as well.");
+    button.on_hover_text(
+        "Ends and steps of both axes. A box drawn over the map enlarges it as well; on the cross-hair the \
+         keys + and - do.",
+    );
 }
 
 fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -150,9 +199,9 @@ pub fn legend(
     picture: &Picture,
     map: &Map,
     style: &Style,
-    about: &str,
+    (about, look): (&str, MapLook),
 ) -> f32 {
-    const ROW: f32 = 20.0;
+    const ROW: f32 = 18.0;
     const SAMPLE: f32 = 24.0;
     let left = area.left() + 12.0;
     let (mut x, mut y) = (left, area.top() + 0.5 * ROW);
@@ -190,8 +239,16 @@ pub fn legend(
         }
         painter.rect_stroke(rect, 0.0, style.ghost_stroke(), egui::StrokeKind::Inside);
     };
+    let scale = &picture.scale;
+    if look.surface && scale.is_of_words() {
+        entry("words have no height: seen from above", &|_| ());
+    }
+    let surface = look.surface && !scale.is_of_words();
     if picture.shows(Look::Rest) {
-        entry("at rest", &|rect| patch(rect, style.rest_shade(), &[(1.0, style.hatch_stroke())]));
+        let hatching = [(1.0, style.hatch_stroke())];
+        entry("at rest", &|rect| patch(rect, style.rest_shade(), if surface { &[] } else { &hatching }));
+    } else if picture.shows_rest() && !surface {
+        entry("at rest", &|rect| patch(rect, style.ground(), &[(1.0, style.hatch_stroke())]));
     }
     for kind in kinds(picture) {
         entry(kind.name(), &|rect| {
@@ -199,16 +256,23 @@ pub fn legend(
             painter.extend(kind_shapes(kind, rect.center(), 4.5, style.over_kind()));
         });
     }
-    if picture.shows(Look::None) {
-        entry("does not repeat", &|rect| patch(rect, style.ground(), &[]));
+    for place in (0..16).filter(|place| picture.shows(Look::Word(*place))) {
+        entry(&scale.word(place), &|rect| patch(rect, style.attractor(place.into()), &[]));
     }
-    if picture.shows_unsettled() {
-        entry("not settled", &|rect| picture::dot(painter, rect.center(), style));
+    if picture.shows(Look::None) {
+        let words = scale.without_value();
+        entry(words, &|rect| patch(rect, style.ground(), &[]));
+    }
+    if picture.shows_unsettled() && !surface {
+        entry("not settled", &|rect| _ = painter.add(picture::dot(rect.center(), style)));
     }
     if picture.shows(Look::Missing) {
         entry("ended early", &|rect| {
             patch(rect, style.ground(), &[(1.0, style.missing_stroke()), (-1.0, style.missing_stroke())])
         });
+    }
+    if surface {
+        return y + 0.5 * ROW;
     }
     let line = |rect: Rect, [halo, stroke]: [egui::Stroke; 2], dashed: bool| {
         let ends = [rect.left_center(), rect.right_center()];

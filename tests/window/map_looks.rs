@@ -1,0 +1,364 @@
+//! The map in its looks: as a surface, with cuts, of any column, with a trail; its cost; zoom by keys.
+
+use eframe::egui::epaint::ColorMode;
+use eframe::egui::{Event, Key, Modifiers, Pos2, Shape, accesskit::Role, pos2, vec2};
+use egui_kittest::{Harness, kittest::Queryable as _};
+use interwell::app::export::map_command_line;
+use interwell::app::session::map::Map;
+use interwell::app::ui::settings::Settings;
+use interwell::app::window::{Command, Window};
+use interwell::app::words::columns::{COLUMNS, column_info};
+use interwell::output::Projection;
+use interwell::scene::{Layout, Stops, SweepAxis};
+use interwell::study::{Cell, STANDARD_COLUMNS, line_meets};
+
+use crate::shared::axis;
+use crate::support::{LONG, PROJECTED, WIDE, command, is_painted, painted, session, sliced, window};
+
+/// A small map, so that a test takes no longer than it must.
+fn axes(steps: (f64, f64)) -> [SweepAxis; 2] {
+    [axis("stops.travel_limit_mm", (1.0, 3.0, steps.0)), axis("excitation.amplitude_g", (0.5, 1.5, steps.1))]
+}
+
+/// A window on a map that is whole, paused so that no frame differs.
+fn open(size: [f32; 2], steps: (f64, f64)) -> Harness<'static, Window> {
+    let mut harness = window("paper", size, Settings::default());
+    harness.state_mut().session.player.set_playing(false);
+    harness.state_mut().session.map.choose(Some(axes(steps)));
+    command(&mut harness, Command::Arrange(Layout::Map));
+    assert!(harness.state_mut().session.wait_for_map(LONG));
+    harness.run_steps(3);
+    harness
+}
+
+fn map(window: &Window) -> &Map {
+    window.session.map.map().unwrap()
+}
+
+/// A click, after which some frames pass.
+fn click(harness: &mut Harness<'static, Window>, at: Pos2) {
+    harness.drag_at(at);
+    harness.run_steps(1);
+    harness.drop_at(at);
+    harness.run_steps(3);
+}
+
+fn press(harness: &mut Harness<'static, Window>, label: &str) {
+    harness.get_by_label(label).click();
+    harness.run_steps(3);
+}
+
+fn stops_mm(harness: &Harness<'static, Window>) -> f64 {
+    let Stops::Rigid { travel_limit_mm, .. } = harness.state().session.scene().stops else { panic!("stops") };
+    travel_limit_mm
+}
+
+fn amplitude_g(harness: &Harness<'static, Window>) -> f64 {
+    harness.state().session.amplitude_g().unwrap()
+}
+
+fn rms(cell: &Cell) -> f64 {
+    cell.summary().unwrap().rms_velocity.unwrap()
+}
+
+#[test]
+fn a_click_on_the_surface_takes_the_scene_there() {
+    let mut harness = open(WIDE, (0.25, 0.25));
+    press(&mut harness, "Surface");
+    let rect = harness.get_by_role_and_label(Role::Image, "map as a surface").rect();
+    let [left, top, right, bottom] = [rect.left(), rect.top(), rect.right(), rect.bottom()].map(f64::from);
+    let projection = Projection { left, top, right, bottom };
+    let most = map(harness.state()).own_cells().map(rms).fold(0.0, f64::max);
+    // 2.5 mm and 1.25 g, whose height is its share of the largest velocity: no face hides it
+    let (column, row) = (6, 3);
+    let own = rms(map(harness.state()).cell(column, row).unwrap().0);
+    assert!(own > 0.5 * most);
+    let (x, y) = projection.place((0.75, 0.75, own / most));
+    click(&mut harness, pos2(x as f32, y as f32 + 1.0));
+    assert_eq!((stops_mm(&harness), amplitude_g(&harness)), (2.5, 1.25));
+    // words have no height
+    harness.state_mut().session.map.show(column_info("regime").unwrap());
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::Image, "map");
+    assert!(is_painted(&harness, "words have no height"));
+}
+
+#[test]
+fn cuts_are_rows_of_the_table_and_lead_to_their_cells() {
+    let mut harness = open(WIDE, (0.25, 0.25));
+    press(&mut harness, "Cuts");
+    assert!(is_painted(&harness, "at travel limit 1.5 mm") && is_painted(&harness, "at amplitude 1 g"));
+    let own = map(harness.state());
+    for (upright, at, count) in [(true, 2, 5), (false, 2, 9)] {
+        let cut = own.cut(upright, at);
+        assert_eq!(cut.iter().map(|own| own.place).collect::<Vec<_>>(), (0..count).collect::<Vec<_>>());
+        for cell in cut {
+            let (column, row) = if upright { (at, cell.place) } else { (cell.place, at) };
+            assert!(cell.own && *cell.cell == *own.cell(column, row).unwrap().0);
+        }
+    }
+    // both thresholds of 1.5 mm: release in closed form, and the step from 0.5 to 0.75 g
+    let release = line_meets(&own.release, 1.5, true);
+    assert!(release.len() == 1 && (release[0] - 0.688).abs() < 2e-3, "{release:?}");
+    let crossing: Vec<f64> = own.crossing.iter().flat_map(|part| line_meets(part, 1.5, true)).collect();
+    assert_eq!(crossing, [0.625]);
+    let place = |harness: &Harness<'static, Window>, name: &str| {
+        harness.get_by_role_and_label(Role::Image, name).rect()
+    };
+    let (whole, upward, across) =
+        (place(&harness, "map"), place(&harness, "cut upward"), place(&harness, "cut across"));
+    // in line with the map
+    assert_eq!((upward.top(), upward.bottom()), (whole.top(), whole.bottom()));
+    assert_eq!((across.left(), across.right()), (whole.left(), whole.right()));
+    let at = pos2(upward.center().x, upward.top() + 0.1 * upward.height());
+    click(&mut harness, at);
+    assert_eq!((stops_mm(&harness), amplitude_g(&harness)), (1.5, 1.5));
+    let at = pos2(across.center().x, across.center().y);
+    click(&mut harness, at);
+    assert_eq!((stops_mm(&harness), amplitude_g(&harness)), (2.0, 1.5));
+}
+
+/// A map that was stopped early shows of a line what is known of it, and its nearest neighbours.
+#[test]
+fn a_cut_through_a_coarse_map_says_what_is_its_own() {
+    let mut session = session("paper", &["run.duration_s=100", "run.recurrence=false"]);
+    session.map.choose(Some(axes((0.005, 0.005))));
+    session.want_map(0.0);
+    crate::support::wait_until("a coarse map", || {
+        session.map.take();
+        session.map.map().is_some_and(Map::is_covered)
+    });
+    session.map.stop();
+    let map = session.map.map().unwrap();
+    assert!(!map.is_whole());
+    let [columns, rows] = map.size();
+    for column in [0, 1, columns / 2, columns - 1] {
+        let cut = map.cut(true, column);
+        assert!(cut.len() > 3 && cut.len() < rows, "{}", cut.len());
+        assert!(cut.windows(2).all(|pair| pair[0].place < pair[1].place));
+        for own in cut {
+            assert_eq!(map.cell(column, own.place).unwrap().1, own.own);
+            assert_eq!(map.cell(column, own.place).unwrap().0, own.cell);
+        }
+    }
+}
+
+#[test]
+fn every_column_is_a_quantity_with_its_unit() {
+    let mut harness = open(WIDE, (0.5, 0.5));
+    harness.get_by_role_and_label(Role::ComboBox, "map of RMS velocity").click();
+    harness.run_steps(4);
+    press(&mut harness, "Reach");
+    assert_eq!(harness.state().session.map.quantity().column, "max_abs_x_m");
+    assert!(is_painted(&harness, "reach (mm)"));
+    for own in COLUMNS.iter().flat_map(|group| group.1) {
+        harness.state_mut().session.map.show(own);
+        harness.run_steps(2);
+        assert!(harness.state_mut().session.wait_for_map(LONG), "{}", own.column);
+        harness.run_steps(3);
+        let label = format!("map of {}", own.title());
+        harness.get_by_role_and_label(Role::ComboBox, &label);
+        assert!(
+            own.words().is_some()
+                || painted(&harness).iter().any(|text| text.0.contains(own.name) || own.column == "period"),
+            "{}",
+            own.column
+        );
+    }
+    // what no run has is said
+    for (column, words) in [
+        ("peak_contact_force_n", "no compliant stop is touched"),
+        ("first_release_g", "no release, or the shaking does not change"),
+    ] {
+        harness.state_mut().session.map.show(column_info(column).unwrap());
+        harness.run_steps(3);
+        assert!(is_painted(&harness, words), "{column}");
+    }
+}
+
+/// With a column of the energy ledger and one without, byte for byte, as the copied command makes it.
+#[test]
+fn more_columns_are_those_of_the_command_line() {
+    let mut session = session("paper", &[]);
+    session.map.choose(Some(axes((1.0, 0.25))));
+    for (column, more) in [
+        ("max_abs_x_m", None),
+        ("travel_m", Some("travel_m")),
+        ("mean_x_m", Some("mean_x_m")),
+        // what was summed up is kept
+        ("impact_share", Some("mean_x_m,impact_share")),
+        ("rms_velocity_m_per_s", Some("mean_x_m")),
+    ] {
+        session.map.show(column_info(column).unwrap());
+        session.want_map(0.0);
+        assert!(session.wait_for_map(LONG));
+        let command = map_command_line(&session).unwrap();
+        let asked = command.split_once(" --columns ").map(|own| own.1.to_owned());
+        let standard = STANDARD_COLUMNS.join(",");
+        assert_eq!(asked, more.map(|more| format!("{standard},{more}")), "{command}");
+        let words = command.split(' ').skip(1);
+        let output = assert_cmd::Command::cargo_bin("interwell").unwrap().args(words).output().unwrap();
+        assert_eq!(session.map.csv().unwrap(), String::from_utf8(output.stdout).unwrap(), "{command}");
+    }
+}
+
+#[test]
+fn the_trail_is_where_the_motion_has_been() {
+    let mut harness = open(WIDE, (0.25, 0.25));
+    let trail = |harness: &mut Harness<'static, Window>| harness.state_mut().session.map.trail_places();
+    assert_eq!(trail(&mut harness), [[Some(1.5), Some(1.0)]]);
+    // paths in the colour of the mass, however faint
+    let lines = |harness: &Harness<'static, Window>| {
+        let mut count = 0;
+        each_shape(harness, &mut |shape| {
+            if let Shape::Path(path) = shape
+                && let ColorMode::Solid(own) = path.stroke.color
+            {
+                let ratio = f32::from(own.g()) / f32::from(own.r().max(1));
+                count += usize::from(own.b() == 0 && own.r() > 20 && (0.66..0.72).contains(&ratio));
+            }
+        });
+        count
+    };
+    assert_eq!(lines(&harness), 0);
+    let place = harness.get_by_role_and_label(Role::Image, "map").rect();
+    click(&mut harness, place.center());
+    harness.state_mut().session.set_number("mass_g", 16.0).unwrap();
+    harness.state_mut().session.end_gesture();
+    harness.state_mut().session.switch_stops(false);
+    harness.run_steps(3);
+    let been = [[Some(1.5), Some(1.0)], [Some(2.0), Some(1.0)], [None, Some(1.0)]];
+    assert_eq!(trail(&mut harness), been);
+    assert_eq!(lines(&harness), 1);
+    harness.state_mut().session.undo();
+    // over another field it has other places, and it is cleared when that is asked for
+    harness
+        .state_mut()
+        .session
+        .map
+        .choose(Some([axes((0.5, 0.5))[0].clone(), axis("mass_g", (12.0, 18.0, 2.0))]));
+    harness.run_steps(3);
+    assert_eq!(
+        trail(&mut harness),
+        [(1.5, 15.2), (2.0, 15.2), (2.0, 16.0)]
+            .map(|(x, y)| [Some(x), Some(y)])
+            .iter()
+            .copied()
+            .chain([[None, Some(16.0)], [Some(2.0), Some(16.0)]])
+            .collect::<Vec<_>>()
+    );
+    press(&mut harness, "Trail");
+    press(&mut harness, "Clear the trail");
+    assert_eq!(trail(&mut harness), [[Some(2.0), Some(16.0)]]);
+    assert_eq!(lines(&harness), 0);
+}
+
+/// Hands every shape of the last frame on, those within others too.
+fn each_shape(harness: &Harness<'static, Window>, each: &mut dyn FnMut(&Shape)) {
+    fn inner(shape: &Shape, each: &mut dyn FnMut(&Shape)) {
+        match shape {
+            Shape::Vec(all) => all.iter().for_each(|shape| inner(shape, each)),
+            own => each(own),
+        }
+    }
+    harness.output().shapes.iter().for_each(|own| inner(&own.shape, each));
+}
+
+/// A finer map has no more shapes in a frame: its picture, its hatching and its surface are each one.
+#[test]
+fn the_cost_of_a_frame_does_not_grow_with_the_map() {
+    let count = |steps: (f64, f64), look: &[&str], column: &str| {
+        let mut harness = open(WIDE, steps);
+        harness.state_mut().session.map.show(column_info(column).unwrap());
+        look.iter().for_each(|label| press(&mut harness, label));
+        let place = harness.get_by_label("Recompute").rect();
+        harness.hover_at(place.left_top() - vec2(400.0, 80.0));
+        harness.run_steps(3);
+        let mut count = 0_usize;
+        each_shape(&harness, &mut |_| count += 1);
+        count
+    };
+    for (look, column) in
+        [(&[][..], "rms_velocity_m_per_s"), (&[], "regime"), (&["Surface"], "rms_velocity_m_per_s")]
+    {
+        let [coarse, fine] = [(0.5, 0.25), (0.1, 0.05)].map(|steps| count(steps, look, column));
+        assert!(fine <= coarse + 30, "{look:?} {column}: {coarse} {fine}");
+    }
+}
+
+#[test]
+fn nothing_is_cut_in_any_look() {
+    for size in [WIDE, [1920.0, 1080.0], PROJECTED] {
+        let mut harness = open(size, (0.25, 0.25));
+        for label in ["Cuts", "Surface", "From above"] {
+            press(&mut harness, label);
+            assert_eq!(sliced(&harness), Vec::<String>::new(), "{size:?} {label}");
+            if label != "Surface" {
+                let place = harness.get_by_role_and_label(Role::Image, "cut across").rect();
+                assert!(place.right() <= size[0] && place.bottom() <= size[1] && place.width() > 80.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn keys_enlarge_and_go_back() {
+    let mut harness = open(WIDE, (0.25, 0.25));
+    let ranges = |harness: &Harness<'static, Window>| {
+        harness.state().session.map_axes().unwrap().map(|axis| (axis.from, axis.to, axis.step))
+    };
+    let before = ranges(&harness);
+    let scene = harness.state().session.scene().clone();
+    harness.get_by_role_and_label(Role::Slider, "cross-hair").focus();
+    harness.run_steps(2);
+    let mut key = |key: Key| {
+        harness.key_press(key);
+        harness.run_steps(3);
+        ranges(&harness)
+    };
+    let once = key(Key::Plus);
+    assert_eq!(once, [(1.0, 2.0, 0.1), (0.8, 1.3, 0.1)]);
+    let twice = key(Key::Plus);
+    assert!(twice[0].0 > 1.0 && twice[0].1 < 2.0, "{twice:?}");
+    assert_eq!(key(Key::Minus), once);
+    assert_eq!(key(Key::Minus), before);
+    assert_eq!(key(Key::Minus), before);
+    assert_eq!(*harness.state().session.scene(), scene);
+}
+
+#[test]
+fn a_range_that_cannot_be_is_refused_where_it_was_typed() {
+    let mut harness = open(WIDE, (0.25, 0.25));
+    press(&mut harness, "Range");
+    let before = harness.state().session.map_axes();
+    for (name, text, words) in [
+        ("up, step", "0", "step"),
+        ("across, step", "0.0000001", "values are more than an axis may have"),
+        ("across, from", "-1", "travel limit"),
+        ("up, to", "0.1", "amplitude, to"),
+    ] {
+        harness.get_by_role_and_label(Role::SpinButton, name).click();
+        harness.run_steps(2);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        harness.event(Event::Text(text.to_owned()));
+        harness.run_steps(2);
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        assert_eq!(harness.state().session.map_axes(), before, "{name}");
+        assert!(painted(&harness).iter().any(|own| own.0.contains(words)), "{name}: {words}");
+    }
+    // each is well alone, and together they are too many
+    let mut many = axes((0.002, 0.002));
+    many[0].to = 3.0;
+    let (_, part, why) = harness.state().session.map_problem(&many).unwrap();
+    assert!(part == "step" && why.contains("are more than the window makes"), "{why}");
+}
+
+#[test]
+fn fields_that_are_offered_have_names_of_their_own() {
+    let harness = window("first-look", WIDE, Settings::default());
+    let fields = harness.state().session.map_fields();
+    for path in ["mechanism.parallel.length_mm", "mechanism.buckling.length_mm", "mechanism.young_gpa"] {
+        assert!(fields.iter().any(|own| own == path), "{path}");
+    }
+}
