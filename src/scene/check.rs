@@ -12,6 +12,7 @@ use super::mechanism::Mechanism;
 use super::ranges::{HIGH_HZ, LOW_HZ, MAX_COEFFICIENTS, number_text};
 use super::shape;
 use super::stops::Stops;
+use super::transducer::Transducer;
 
 /// The most sines that an excitation may have, the lines of noises included: four noises of the most lines.
 /// Each takes part in every step of a run.
@@ -35,6 +36,7 @@ pub fn check(scene: &Scene) -> Checked {
     if let Some(stops_when_on) = scene.app.as_ref().and_then(|app| app.stops_when_on.as_ref()) {
         stops("app.stops_when_on", stops_when_on, &mut checked);
     }
+    transducer(&scene.transducer, &mut checked);
     relations(scene, &mut checked);
     bands(&scene.excitation, "excitation", &mut checked);
     sines(&scene.excitation, &mut checked);
@@ -136,6 +138,15 @@ fn hertz(field: &str, stops: &Stops, checked: &mut Checked) {
                 checked.fault(field, "Hertz(..)", problem);
             }
         }
+    }
+}
+
+/// A current needs a resistance.
+fn transducer(transducer: &Transducer, checked: &mut Checked) {
+    if let Transducer::Electromagnetic { coil_ohm: 0.0, load_ohm: 0.0, .. } = transducer {
+        let problem = "without a coil_ohm above 0 nothing limits the current of a short circuit; give the \
+                       resistance of the coil or of the load";
+        checked.fault("transducer.load_ohm", "0", problem);
     }
 }
 

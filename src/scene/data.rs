@@ -16,6 +16,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::mechanism::Mechanism;
 use super::record::Record;
 use super::stops::Stops;
+use super::transducer::Transducer;
 
 /// A scene: one mechanism, how it is shaken and stopped, and how long it runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -38,6 +39,9 @@ pub struct Scene {
     /// Travel limits.
     #[serde(default, skip_serializing_if = "is_default")]
     pub stops: Stops,
+    /// What turns motion into electrical power.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub transducer: Transducer,
     /// Acceleration of the base.
     #[serde(default, skip_serializing_if = "is_default")]
     pub excitation: Excitation,
@@ -189,7 +193,7 @@ pub struct SweepAxis {
     pub to: f64,
     /// Step, 1e-200 to 1e200.
     pub step: f64,
-    /// The values one by one, each -1e200 to 1e200; where there are any, the three numbers above have no
+    /// The values one by one, each -1e200 to inf; where there are any, the three numbers above have no
     /// meaning.
     pub values: Vec<f64>,
 }
@@ -208,7 +212,7 @@ struct WrittenAxis {
     /// As in the axis, 1e-200 to 1e200.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     step: Option<f64>,
-    /// As in the axis, each -1e200 to 1e200.
+    /// As in the axis, each -1e200 to inf.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     values: Vec<f64>,
 }
@@ -266,7 +270,7 @@ pub enum Layout {
 }
 
 /// RON would write the choice `None` as `r#None`, to tell it from an absent option.
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 

@@ -36,7 +36,7 @@ pub struct LiveOutput {
 }
 
 /// Energy balance of a live run since it began, in J. `stored` is what is there now less what was there at
-/// the start: work + by hand - damping - impact = stored.
+/// the start: work + by hand - damping - impact - harvested - coil = stored.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct LiveLedger {
@@ -46,6 +46,10 @@ pub struct LiveLedger {
     pub damping_j: f64,
     /// Taken by impacts.
     pub impact_j: f64,
+    /// Taken by the load of a transducer.
+    pub harvested_j: f64,
+    /// Taken by its coil.
+    pub coil_j: f64,
     /// Put in by changes: a stop dragged over the mass, a mass placed, another potential.
     pub by_hand_j: f64,
     /// Change of kinetic energy and potential.
@@ -284,15 +288,17 @@ impl Live {
 }
 
 impl LiveLedger {
-    /// What is left over: work + by hand - damping - impact - stored in J. Each term is integrated on its
-    /// own, so it is not 0 but as small as the tolerance makes it.
+    /// What is left over: work + by hand - damping - impact - harvested - coil - stored in J. Each term is
+    /// integrated on its own, so it is not 0 but as small as the tolerance makes it.
     pub fn residual_j(&self) -> f64 {
-        self.work_j + self.by_hand_j - self.damping_j - self.impact_j - self.stored_j
+        let taken = self.damping_j + self.impact_j + (self.harvested_j + self.coil_j);
+        self.work_j + self.by_hand_j - taken - self.stored_j
     }
 
     /// |residual| over the sum of the magnitudes moved; 0 where nothing moved.
     pub fn energy_residual(&self) -> f64 {
-        let terms = [self.work_j, self.by_hand_j, self.damping_j, self.impact_j, self.stored_j];
+        let Self { work_j, damping_j, impact_j, harvested_j, coil_j, by_hand_j, stored_j } = *self;
+        let terms = [work_j, by_hand_j, damping_j, impact_j, harvested_j, coil_j, stored_j];
         let moved: f64 = terms.iter().map(|term| term.abs()).sum();
         if moved > 0.0 { self.residual_j().abs() / moved } else { 0.0 }
     }
@@ -303,6 +309,8 @@ impl LiveLedger {
             work_j: self.work_j - earlier.work_j,
             damping_j: self.damping_j - earlier.damping_j,
             impact_j: self.impact_j - earlier.impact_j,
+            harvested_j: self.harvested_j - earlier.harvested_j,
+            coil_j: self.coil_j - earlier.coil_j,
             by_hand_j: self.by_hand_j - earlier.by_hand_j,
             stored_j: self.stored_j - earlier.stored_j,
         }
@@ -314,6 +322,11 @@ impl LiveLedger {
         self.work_j += sums.work * energy;
         self.damping_j += model.damping * sums.squared_velocity / unit;
         self.impact_j += sums.impact * energy;
+        if let Some(own) = &model.transducer {
+            let (load, coil) = own.energies(sums.squared_velocity / unit);
+            self.harvested_j += load;
+            self.coil_j += coil;
+        }
     }
 }
 

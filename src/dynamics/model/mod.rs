@@ -7,6 +7,7 @@ mod read;
 pub(crate) mod scales;
 mod start;
 pub(crate) mod stops;
+pub(crate) mod transducer;
 
 use std::sync::Arc;
 
@@ -16,6 +17,7 @@ use excitation::{ExcitationParts, Rhythm};
 use scales::{Scales, scales};
 use start::{fault, start_state};
 use stops::{StopAt, StopPair};
+use transducer::Transducer;
 
 /// The most periods of the fastest tone that the clock counts exactly, about 2^53.
 const MOST_PERIODS: f64 = 9e15;
@@ -24,7 +26,9 @@ const MOST_PERIODS: f64 = 9e15;
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(in crate::dynamics) mass: f64,
+    /// Of the mechanism alone.
     pub(in crate::dynamics) damping: f64,
+    pub(in crate::dynamics) transducer: Option<Transducer>,
     /// Shared between the cells of a sweep.
     pub(in crate::dynamics) mechanism: Arc<Mechanism>,
     pub(in crate::dynamics) duration: f64,
@@ -82,6 +86,7 @@ impl Model {
                 }
             },
         };
+        let transducer = Transducer::of(&scene.transducer);
         let stops = StopPair::of(&scene.stops);
         let compliant = Hertz::of(&scene.stops);
         let start = match start_state(scene, &mechanism, stops.as_ref(), compliant.as_ref()) {
@@ -120,6 +125,7 @@ impl Model {
         Ok(Self {
             mass,
             damping,
+            transducer,
             duration: scene.run.duration_s,
             forcing_period,
             scales,

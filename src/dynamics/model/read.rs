@@ -6,6 +6,8 @@ use super::Model;
 use super::excitation::ExcitationParts;
 use super::scales::Scales;
 use super::stops::StopPair;
+use super::transducer::Output;
+use crate::dynamics::result::Sample;
 use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::{DoubleDouble, Number, Scalar};
 
@@ -15,9 +17,25 @@ impl Model {
         self.mass
     }
 
-    /// Damping coefficient in N s/m.
+    /// Damping coefficient in N s/m of the mechanism alone.
     pub fn damping(&self) -> f64 {
         self.damping
+    }
+
+    /// Damping coefficient in N s/m that acts on the motion: with that of a transducer without an electrical
+    /// state.
+    pub fn total_damping(&self) -> f64 {
+        self.damping + self.transducer.map_or(0.0, |own| own.damping)
+    }
+
+    /// Whether the scene has a transducer.
+    pub fn has_transducer(&self) -> bool {
+        self.transducer.is_some()
+    }
+
+    /// What the transducer gives at a sample of the motion; none without one.
+    pub fn output(&self, sample: &Sample) -> Option<Output> {
+        self.transducer.map(|own| own.output(sample.v))
     }
 
     /// The mechanism.

@@ -6,7 +6,7 @@ use super::Stopped;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::mechanics::{ForceCurve, Mechanism as Built};
 use crate::scene::{
-    Damping, Document, Excitation, Files, Mechanism, RunSettings, Scene, Start, Stops, check,
+    Damping, Document, Excitation, Files, Mechanism, RunSettings, Scene, Start, Stops, Transducer, check,
 };
 
 /// Every case runs at the tightest tolerance, so that what is left is rounding.
@@ -30,6 +30,7 @@ impl Setup {
                 mechanism,
                 damping: Damping::None,
                 stops: Stops::None,
+                transducer: Transducer::None,
                 excitation: Excitation::None,
                 start: Start::At { x_mm: x * 1e3, v_m_per_s: v },
                 run: RunSettings { duration_s, settle_s: Some(0.0), tolerance: TOLERANCE, recurrence: false },

@@ -57,7 +57,7 @@ impl Tangent {
             2.0 * pair.map_or(1.0, |stop| stop.restitution).ln()
         };
         let struck = model.compliant().is_none().then(|| [Side::Left, Side::Right].map(kept));
-        let damped = -model.damping() * map.period() / model.mass();
+        let damped = -model.total_damping() * map.period() / model.mass();
         Ok(Self { scales: model.scales(), map, damped, struck })
     }
 

@@ -15,6 +15,7 @@ pub fn scene(mechanism: Mechanism, start: Start, duration_s: f64) -> Scene {
         mechanism,
         damping: Damping::None,
         stops: Stops::None,
+        transducer: Default::default(),
         excitation: Excitation::None,
         start,
         run: RunSettings { duration_s, settle_s: Some(0.0), tolerance: 1e-12, recurrence: false },

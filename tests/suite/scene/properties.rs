@@ -127,6 +127,7 @@ fn scene() -> impl Strategy<Value = Scene> {
                 mechanism,
                 damping: Damping::Ratio(mass_g),
                 stops,
+                transducer: Default::default(),
                 excitation,
                 start: Start::At { x_mm: mass_g, v_m_per_s: tolerance },
                 run: RunSettings { duration_s, settle_s, tolerance, recurrence },

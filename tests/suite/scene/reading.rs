@@ -14,6 +14,7 @@ fn the_smallest_scene_has_the_documented_defaults() {
         mechanism: Mechanism::Cubic { linear_n_per_m: -40.0, cubic_n_per_m3: 8.2e5 },
         damping: Damping::None,
         stops: Stops::None,
+        transducer: Default::default(),
         excitation: Excitation::None,
         start: Start::Rest,
         run: RunSettings { duration_s: 10.0, settle_s: None, tolerance: 1e-9, recurrence: true },
@@ -202,8 +203,8 @@ fn structural_errors_have_a_place_and_the_known_names() {
         ),
         (("mass_g", "15 title: \"t\""), "expected a comma before this"),
         (
-            ("transducer", "None"),
-            "unknown field `transducer` in Scene; known: title, notes, mass_g, mechanism,",
+            ("tolerance", "None"),
+            "unknown field `tolerance` in Scene; known: title, notes, mass_g, mechanism,",
         ),
         (("app", "(layout: Big)"), "app.layout: unknown choice `Big` in Layout; known: Look, Study, Map"),
     ] {

@@ -1,0 +1,3 @@
+//! Transducers: power, damping and limits against exact answers.
+
+mod resistive;
