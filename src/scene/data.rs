@@ -161,6 +161,10 @@ pub enum Start {
         x_mm: f64,
         /// Velocity in m/s, -1e30 to 1e30.
         v_m_per_s: f64,
+        /// Current in A of a coil with inductance, or voltage in V of a piezoelectric transducer, -1e30 to
+        /// 1e30; 0 for every other scene.
+        #[serde(default, skip_serializing_if = "is_default")]
+        electrical: f64,
     },
 }
 

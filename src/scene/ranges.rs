@@ -126,6 +126,12 @@ specs! {
     COIL = "coil_ohm", 0.0, 1e30, "give the resistance of the coil in ohm, such as 40";
     LOAD_OHM = "load_ohm", 0.0, f64::INFINITY,
         "give the resistance of the load in ohm; 0 is a short circuit, inf an open one";
+    INDUCTANCE = "inductance_mh", 0.0, 1e30, "give the inductance of the coil in mH; 0 makes it a damping";
+    COUPLING_N = "coupling_n_per_v", -1e30, 1e30,
+        "give the coupling in N/V (the same number in A s/m), such as 1e-3";
+    CAPACITANCE = "capacitance_nf", 1e-30, 1e30, "give the capacitance in nF, such as 40";
+    LOAD_KOHM = "load_kohm", 0.0, f64::INFINITY,
+        "give the resistance of the load in kohm; 0 is a short circuit, inf an open one";
     ACCEL = "accel_g", ACCELERATION.0, ACCELERATION.1, "give an acceleration in g, of either sign";
     FREQUENCY = "frequency_hz", 1e-15, 1e15,
         "give a frequency in Hz, such as 3; use `Constant` for a steady acceleration";
@@ -144,6 +150,8 @@ specs! {
     LINES = whole "lines", 1.0, 4096.0, "256 sines look like noise for some minutes";
     X = "x_mm", -1e15, 1e15, "give a displacement in mm";
     V = "v_m_per_s", -1e30, 1e30, "give a velocity in m/s";
+    ELECTRICAL = "electrical", -1e30, 1e30,
+        "give the current of a coil in A, the voltage of a piezoelectric layer in V";
     DURATION = "duration_s", 1e-15, 1e9, "give how long to run in s, such as 10";
     SETTLE = "settle_s", 0.0, 1e9, "give when the settled window begins in s, or leave it out for half the \
                                     duration";

@@ -147,9 +147,10 @@ pub(super) fn walk(scene: &mut Scene, v: &mut impl Visitor) {
     within(v, Segment::Name("excitation"), &mut scene.excitation, walk_excitation);
     within(v, Segment::Name("start"), &mut scene.start, |start, v| match start {
         Start::Rest => {}
-        Start::At { x_mm, v_m_per_s } => {
+        Start::At { x_mm, v_m_per_s, electrical } => {
             number(v, &ranges::X, x_mm);
             number(v, &ranges::V, v_m_per_s);
+            number(v, &ranges::ELECTRICAL, electrical);
         }
     });
     within(v, Segment::Name("run"), &mut scene.run, |run, v| {
@@ -267,10 +268,16 @@ fn walk_stops(stops: &mut Stops, v: &mut impl Visitor) {
 fn walk_transducer(transducer: &mut Transducer, v: &mut impl Visitor) {
     match transducer {
         Transducer::None => {}
-        Transducer::Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm } => {
+        Transducer::Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh } => {
             number(v, &ranges::COUPLING_V, coupling_v_s_per_m);
             number(v, &ranges::COIL, coil_ohm);
             number(v, &ranges::LOAD_OHM, load_ohm);
+            number(v, &ranges::INDUCTANCE, inductance_mh);
+        }
+        Transducer::Piezoelectric { coupling_n_per_v, capacitance_nf, load_kohm } => {
+            number(v, &ranges::COUPLING_N, coupling_n_per_v);
+            number(v, &ranges::CAPACITANCE, capacitance_nf);
+            number(v, &ranges::LOAD_KOHM, load_kohm);
         }
     }
 }

@@ -89,7 +89,7 @@ impl Live {
         let shifts = vec![0.0; model.excitation.tones.len()];
         let kernel = Kernel::new(&model);
         let (start, coming) = kernel.start(&model, 0.0);
-        let start_energy = energy(&model, model.start);
+        let start_energy = energy(&model, model.start) + model.charged(model.start_electrical);
         Self {
             kernel,
             shifts,
@@ -187,7 +187,13 @@ impl Live {
             v: carried.state.v / self.kernel.unit(),
             base_accel: self.kernel.base(carried),
             phase: carried.state.phase(),
+            electrical: self.electrical(carried),
         }
+    }
+
+    /// Electrical state of the transducer, in A or V; 0 where it has none.
+    fn electrical(&self, carried: &Checkpoint<f64>) -> f64 {
+        self.model.circuit().map_or(0.0, |own| own.amount * carried.state.circuit / self.kernel.unit())
     }
 
     /// The state at the present time and the energies from the tail to there.
@@ -201,7 +207,8 @@ impl Live {
         let mut ledger = self.past;
         ledger.add(&sums, &self.model);
         let v = carried.state.v / self.kernel.unit();
-        ledger.stored_j = energy(&self.model, (carried.state.x, v)) - self.start_energy;
+        let now = energy(&self.model, (carried.state.x, v)) + self.model.charged(self.electrical(&carried));
+        ledger.stored_j = now - self.start_energy;
         ledger
     }
 
@@ -234,14 +241,17 @@ impl Live {
 
     fn go_on(&mut self, mut next: Model, wanted: (f64, f64), was: Phase, into: &mut LiveOutput) {
         let (carried, sums) = self.present();
-        let before = energy(&self.model, (carried.state.x, carried.state.v / self.kernel.unit()));
+        let before = energy(&self.model, (carried.state.x, carried.state.v / self.kernel.unit()))
+            + self.model.charged(self.electrical(&carried));
         self.past.add(&sums, &self.model);
         // Where a stop was pressed in, it stays so: only what a stop is moved over is carried along.
         let depth = self.model.pressed_depth(wanted.0).filter(|_| was != Phase::Free);
         let depth = depth.filter(|_| next.compliant.is_some()).map_or(0.0, |own| own.0);
         next.start = next.held_within(wanted, depth);
         next.motionless = false;
-        self.past.by_hand_j += energy(&next, next.start) - before;
+        next.start_electrical = next.taken_over(&self.model, self.electrical(&carried));
+        let charged = next.charged(next.start_electrical);
+        self.past.by_hand_j += energy(&next, next.start) + charged - before;
         let (gave, gives) = (self.model.compliant.is_some(), next.compliant.is_some());
         self.model = next;
         self.kernel = Kernel::new(&self.model);
@@ -282,6 +292,7 @@ impl Live {
         model.start_phase = (model.start_phase + turns).rem_euclid(1.0);
         let (carried, _) = self.present();
         model.start = (carried.state.x, carried.state.v / self.kernel.unit());
+        model.start_electrical = self.electrical(&carried);
         model.motionless = carried.state.contact == Contact::Motionless;
         Some(model)
     }
@@ -323,7 +334,11 @@ impl LiveLedger {
         self.damping_j += model.damping * sums.squared_velocity / unit;
         self.impact_j += sums.impact * energy;
         if let Some(own) = &model.transducer {
-            let (load, coil) = own.energies(sums.squared_velocity / unit);
+            let squared = match &own.circuit {
+                Some(circuit) => circuit.amount * circuit.amount * sums.circuit,
+                None => sums.squared_velocity,
+            };
+            let (load, coil) = own.energies(squared / unit);
             self.harvested_j += load;
             self.coil_j += coil;
         }

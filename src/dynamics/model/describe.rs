@@ -85,7 +85,7 @@ impl Model {
             absent.push("excitation");
         }
         match &self.transducer {
-            Some(own) => lines.extend(own.describe()),
+            Some(own) => lines.push(own.describe()),
             None => absent.push("transducer"),
         }
         lines.push(format!(
@@ -102,7 +102,9 @@ impl Model {
             short(self.scales.speed),
             short(self.scales.time)
         ));
-        lines.push(format!("left out: {}", absent.join(", ")));
+        if !absent.is_empty() {
+            lines.push(format!("left out: {}", absent.join(", ")));
+        }
         lines
     }
 }

@@ -17,6 +17,8 @@ pub(crate) struct Ending<T> {
     pub state: (T, T),
     /// Velocity at time 0, kernel units.
     pub start_v: T,
+    /// State of the circuit at time 0 and at the end.
+    pub circuit: (T, T),
     pub phase: Phase,
     /// Change of the potential over the run in J.
     pub potential: f64,
@@ -26,7 +28,7 @@ pub(crate) struct Ending<T> {
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     /// Closes the record.
     pub fn finish(mut self, ending: &Ending<T>, base: impl Fn(&Instant<T>) -> f64) -> Run {
-        let &Ending { at: end, state: (x, v), start_v, phase, potential, outcome } = ending;
+        let &Ending { at: end, state: (x, v), start_v, circuit, phase, potential, outcome } = ending;
         let final_x = x.to_f64();
         let final_v = v.to_f64() / self.unit;
         // What was asked for at the very end (to rounding) is the final state.
@@ -41,6 +43,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 v: final_v,
                 base_accel: base(&self.clock.at(t)),
                 phase,
+                electrical: self.electrical(circuit.1),
             });
             self.next_time += 1;
         }
@@ -57,7 +60,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             let work_j = value(&self.whole.work) * energy;
             let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
             let impact_j = value(&self.whole.impact) * energy;
-            let stored_j = (kinetic(v) - kinetic(start_v)) * energy + potential;
+            let charged = transducer.map_or(0.0, |_| kinetic(circuit.1) - kinetic(circuit.0));
+            let stored_j = (kinetic(v) - kinetic(start_v) + charged) * energy + potential;
             let (taken, moved) = ((work_j - damping_j) - impact_j, self.work_moved + self.peak_kinetic);
             let moved = moved * energy + damping_j + impact_j.abs() + stored_j.abs();
             let electrical = transducer.map(|own| own.energies(self.squared_signal(&self.whole)));
@@ -175,6 +179,10 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
 
     /// Integral over time in s of the squared signal of the transducer, SI.
     fn squared_signal(&self, sums: &Sums<T>) -> f64 {
-        sums.squared_velocity.value().to_f64() / self.unit
+        let squared = match self.model.circuit() {
+            Some(own) => own.amount * own.amount * sums.circuit.value().to_f64(),
+            None => sums.squared_velocity.value().to_f64(),
+        };
+        squared / self.unit
     }
 }

@@ -32,7 +32,7 @@ impl Setup {
                 stops: Stops::None,
                 transducer: Transducer::None,
                 excitation: Excitation::None,
-                start: Start::At { x_mm: x * 1e3, v_m_per_s: v },
+                start: Start::At { x_mm: x * 1e3, v_m_per_s: v, electrical: 0.0 },
                 run: RunSettings { duration_s, settle_s: Some(0.0), tolerance: TOLERANCE, recurrence: false },
                 sweep: Vec::new(),
                 app: None,
@@ -82,7 +82,7 @@ impl Setup {
     }
 
     pub fn start(mut self, x: f64, v: f64) -> Self {
-        self.scene.start = Start::At { x_mm: x * 1e3, v_m_per_s: v };
+        self.scene.start = Start::At { x_mm: x * 1e3, v_m_per_s: v, electrical: 0.0 };
         self
     }
 

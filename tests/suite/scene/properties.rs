@@ -129,7 +129,7 @@ fn scene() -> impl Strategy<Value = Scene> {
                 stops,
                 transducer: Default::default(),
                 excitation,
-                start: Start::At { x_mm: mass_g, v_m_per_s: tolerance },
+                start: Start::At { x_mm: mass_g, v_m_per_s: tolerance, electrical: 0.0 },
                 run: RunSettings { duration_s, settle_s, tolerance, recurrence },
                 sweep,
                 app,

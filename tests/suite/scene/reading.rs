@@ -84,9 +84,10 @@ fn every_damping_and_stop_and_start_reads_and_writes() {
         document.check().unwrap();
         reads_back(&document.scene);
     }
-    for (text, start) in
-        [("Rest", Start::Rest), ("At(x_mm: -3, v_m_per_s: 0.1)", Start::At { x_mm: -3.0, v_m_per_s: 0.1 })]
-    {
+    for (text, start) in [
+        ("Rest", Start::Rest),
+        ("At(x_mm: -3, v_m_per_s: 0.1)", Start::At { x_mm: -3.0, v_m_per_s: 0.1, electrical: 0.0 }),
+    ] {
         let document = document(&[("start", text)]);
         assert_eq!(document.scene.start, start);
         document.check().unwrap();
