@@ -20,14 +20,6 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         self.circuit_series().map(|own| polynomial::value(own, t))
     }
 
-    /// What the circuit takes from the acceleration of a mass held in place, and its first two derivatives,
-    /// where the series begins.
-    #[inline(always)]
-    pub fn circuit_push(&self) -> Option<[T; 3]> {
-        let state = D::circuit_state(&self.cursor)?;
-        self.drive.circuit().map(|own| own.push(state[0]))
-    }
-
     /// What the circuit does to a mass that moves little, as a stiffness over mass: the square of the
     /// coupling.
     #[inline(always)]

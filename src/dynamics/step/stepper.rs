@@ -145,6 +145,14 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         }
     }
 
+    /// What the circuit takes from the acceleration of a mass held in place, and its first two derivatives,
+    /// where the series begins.
+    #[inline(always)]
+    pub fn circuit_push(&self) -> Option<[T; 3]> {
+        let state = D::circuit_state(&self.cursor)?;
+        self.drive.circuit().map(|own| own.push(state[0]))
+    }
+
     /// What rounding may make of it.
     #[inline]
     pub fn contact_acceleration_rounding(&self, end: End) -> T {
