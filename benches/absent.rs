@@ -71,6 +71,12 @@ fn main() {
     compare("no stops: statistics over half the run", (&free(&["run.settle_s=9.999"]), &none), (&p1, &none));
     compare("no stops: stops out of reach", (&p1, &none), (&free(&[far]), &none));
     compare("no stops: a second tone of amplitude 0", (&p1, &none), (&free(&[silent]), &none));
+    let open = "transducer=Electromagnetic(coupling_v_s_per_m: 5, coil_ohm: 40, load_ohm: inf)";
+    let coil = "transducer=Electromagnetic(coupling_v_s_per_m: 0.1, coil_ohm: 40, load_ohm: 60)";
+    let damped = "damping=Coefficient(c_n_s_per_m: 0.1)";
+    compare("no stops: a transducer in an open circuit", (&p1, &none), (&free(&[open]), &none));
+    let (bare, with) = (free(&[damped]), free(&[damped, coil, "transducer.inductance_mh=50"]));
+    compare("no stops: a transducer with a state", (&bare, &none), (&with, &none));
     for (name, request) in &asked {
         compare(&format!("no stops: {name}"), (&p1, &none), (&p1, request));
     }

@@ -15,8 +15,8 @@ use super::failure::Failure;
 use super::options::{Common, PlotOptions, RangeOptions, whole};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
-    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, until_settled, warn, write_table,
-    write_text,
+    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, refuse_electrical_state, until_settled,
+    warn, write_table, write_text,
 };
 use super::sweep::{bar, file_name, located, manifest_path, pool};
 use super::{interrupt, say};
@@ -81,6 +81,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     if let Some(fault) = drive_fault(&model, &document.scene) {
         return Err(document.error_from(vec![fault]).into());
     }
+    refuse_electrical_state(&document, &[], "exponents")?;
     let asked = asked(options, &document, Some(&model))?;
     let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", common.out()))])?;
     let found = exponents(&model, &asked, interrupt::listen()).map_err(|problem| match problem {
@@ -136,6 +137,7 @@ fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
         document.hold_files();
     }
     let grid = Grid::new(document.axes(&options.over)?)?;
+    refuse_electrical_state(&document, grid.axes(), "exponents")?;
     if picture.is_some() {
         can_show_exponents(Some(&grid))?;
     }

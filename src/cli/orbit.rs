@@ -13,7 +13,7 @@ use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, 
 use super::failure::Failure;
 use super::options::{Common, PlotOptions, RangeOptions, whole};
 use super::picture::{Picture, caption, ranges};
-use super::support::{finish, inputs, mechanism, open, read, warn, write_table};
+use super::support::{finish, inputs, mechanism, open, read, refuse_electrical_state, warn, write_table};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -90,6 +90,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
             document.name
         )));
     }
+    refuse_electrical_state(&document, &[], "orbit")?;
     let cancel = interrupt::listen();
     let [plot, data] = Picture::outputs(picture);
     let outputs = [Some(("--out", common.out())), plot, data];

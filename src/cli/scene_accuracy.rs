@@ -32,7 +32,7 @@ pub fn run(spec: &str, options: &Arguments) -> Result<(), Failure> {
         for step in &steps {
             let run = step_size(&model, scheme, *step, cancel).map_err(|unfit| match unfit {
                 Unfit::Cancelled => Failure::interrupted(),
-                Unfit::Compliant => Failure::argument(format!("--step-s: {unfit}")),
+                Unfit::Compliant | Unfit::ElectricalState => Failure::argument(format!("--step-s: {unfit}")),
             })?;
             text += &format!(
                 "{} in steps of {}: {}\n",

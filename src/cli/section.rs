@@ -13,8 +13,8 @@ use super::failure::Failure;
 use super::options::{Common, PlotOptions, RangeOptions, whole};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
-    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, until_settled, warn, write_table,
-    write_text,
+    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, refuse_electrical_state, until_settled,
+    warn, write_table, write_text,
 };
 use super::sweep::{bar, file_name, located, manifest_path, pool};
 use super::{interrupt, say};
@@ -158,6 +158,9 @@ fn diagram(options: &Arguments, asked: SectionOptions) -> Result<(), Failure> {
         document.hold_files();
     }
     let grid = Grid::new(document.axes(&options.over)?)?;
+    if asked.carry.is_some() {
+        refuse_electrical_state(&document, grid.axes(), "--carry")?;
+    }
     if picture.is_some() && grid.axes().len() > 1 {
         let fields = grid.axes().len();
         return Err(Failure::argument(format!(

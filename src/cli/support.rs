@@ -6,8 +6,8 @@ use std::sync::Arc;
 use interwell::dynamics::Model;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Provenance, Sink, header, rows, same_target};
-use interwell::scene::{Document, SceneError, is_manifest, is_scene_file};
-use interwell::study::Table;
+use interwell::scene::{Axis, Document, SceneError, Transducer, is_manifest, is_scene_file};
+use interwell::study::{ELECTRICAL_STATE, Table};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::files::{canonical, is_file};
 
@@ -238,6 +238,23 @@ pub fn finish<const N: usize>(mut sinks: [Option<Sink>; N]) -> Result<(), Failur
         sink.finish().map_err(|error| Failure::writing(&name, error))?;
     }
     Ok(())
+}
+
+/// Refuses a scene whose transducer has a state of its own, or may have along the swept fields, for what
+/// knows a motion by displacement and velocity alone.
+pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -> Result<(), Failure> {
+    let swept = |name: &str| axes.iter().any(|axis| axis.field == format!("transducer.{name}"));
+    let may_have = match document.scene.transducer {
+        Transducer::None => false,
+        Transducer::Electromagnetic { inductance_mh, .. } => {
+            swept("inductance_mh") || inductance_mh > 0.0 && swept("load_ohm")
+        }
+        Transducer::Piezoelectric { .. } => swept("load_kohm"),
+    };
+    match may_have || document.scene.transducer.has_state() {
+        true => Err(Failure::argument(format!("{}: {what}: {ELECTRICAL_STATE}", document.name))),
+        false => Ok(()),
+    }
 }
 
 #[cfg(test)]

@@ -21,7 +21,10 @@ use interwell::system::threads::{Pool, processors};
 use super::failure::{Failure, wrong_cell};
 use super::options::{Common, PlotOptions, RangeOptions};
 use super::picture::{Picture, caption, ranges};
-use super::support::{MANIFEST, Watch, finish, inputs, load, open, unbuilt, until_settled, warn, write_text};
+use super::support::{
+    MANIFEST, Watch, finish, inputs, load, open, refuse_electrical_state, unbuilt, until_settled, warn,
+    write_text,
+};
 use super::{interrupt, say};
 
 /// What it takes.
@@ -90,6 +93,9 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
     let mechanism = first_mechanism(&document, &sweep)?;
     let carry = options.carry.as_deref().and_then(Carry::named);
+    if carry.is_some() {
+        refuse_electrical_state(&document, sweep.grid().axes(), "--carry")?;
+    }
     let columns = columns(&options.columns, sweep.grid(), carry)?;
     let looked_at = Task { tick: &|| (), cancel: interrupt::listen() };
     let until_settled = match &sweep.first_model(&looked_at).and_then(Result::ok) {

@@ -42,4 +42,5 @@ pub use model::Model;
 pub use model::excitation::{ChirpPart, ExcitationParts, NoisePart, STANDARD_GRAVITY, TonePart};
 pub use model::scales::Scales;
 pub use model::stops::{StopAt, StopPair};
+pub use model::transducer::Output;
 pub use result::*;

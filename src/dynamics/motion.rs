@@ -69,11 +69,13 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let mut record = Recorder::new(model, clock, unit, settings.order, request, (x, v));
         let until_settled = request.until_settled.filter(|_| model.can_settle());
         let end = if until_settled.is_some() { record.window_end() } else { clock.at(model.duration) };
+        let mut state = MotionState::new((x, v), mode, contact);
+        state.circuit = T::of(model.circuit().map_or(0.0, |own| own.state(model.start_electrical) * unit));
         let stepper = Stepper::new(equation, drive, clock, settings, end, Work::new(request.cancel));
         record.samples_per_look = stepper.costs.samples_per_look();
         Self {
             stepper,
-            state: MotionState::new((x, v), mode, contact),
+            state,
             record,
             log: None,
             steps: 0,
@@ -87,8 +89,8 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
 
     /// Where `recurs`, lets the run be completed from a recurrence.
     pub fn with_recurrence(mut self, recurs: bool, model: &Model) -> Self {
-        self.recurs = recurs;
-        self.symmetric = recurs && model.is_symmetric();
+        self.recurs = recurs && self.stepper.drive.circuit().is_none();
+        self.symmetric = self.recurs && model.is_symmetric();
         self
     }
 

@@ -47,14 +47,13 @@ pub(crate) struct Depth<T> {
 
 /// The state of a motion. The cursor of the drive's series is no part of it: that only keeps what would be
 /// computed again, to the bit.
-///
-/// `E` is room for state variables that go on with displacement and velocity; without any it takes no space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct MotionState<T, E = ()> {
+pub(crate) struct MotionState<T> {
     pub at: Instant<T>,
     pub x: T,
     pub v: T,
-    pub extra: E,
+    /// State of the circuit of a transducer; 0 where there is none.
+    pub circuit: T,
     pub mode: usize,
     /// Segment of the drive.
     pub segment: usize,
@@ -74,7 +73,7 @@ impl<T: Scalar> MotionState<T> {
             at: Instant { cycle: 0, phase: T::zero() },
             x,
             v,
-            extra: (),
+            circuit: T::zero(),
             mode,
             segment: 0,
             touch: None,
@@ -111,6 +110,7 @@ impl<T: Scalar> MotionState<T> {
         Self {
             x: minus(self.x),
             v: minus(self.v),
+            circuit: minus(self.circuit),
             mode: modes - 1 - self.mode,
             touch: self.touch.map(|touch| Touch { end: touch.end.other(), ..touch }),
             contact,

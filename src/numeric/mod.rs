@@ -2,6 +2,7 @@
 
 mod bisect;
 mod correlation;
+mod decay;
 mod decimal;
 mod double_double;
 mod dual;
@@ -22,6 +23,7 @@ mod sum;
 
 pub use bisect::bisect;
 pub use correlation::{Alignment, alignment};
+pub(crate) use decay::decay;
 pub use decimal::Decimal;
 pub use double_double::DoubleDouble;
 pub use dual::Dual;

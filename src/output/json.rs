@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::manifest::{Provenance, seed};
+use super::manifest::{Provenance, scene_value, seed};
 use crate::dynamics::{Ledger, Outcome, Summary};
 use crate::mechanics::{Landscape, Mechanism};
 use crate::scene::{Scene, Timing};
@@ -24,7 +24,7 @@ pub fn summary(summary: &Summary, scene: &Scene, origin: &Provenance) -> String 
     }
     add("cpu_s", json!(summary.cpu_s));
     add("ledger", summary.ledger.as_ref().map_or(Value::Null, ledger));
-    add("scene", serde_json::to_value(scene).unwrap_or(Value::Null));
+    add("scene", scene_value(scene));
     add("version", json!(origin.version));
     add("arguments", json!(origin.arguments));
     add("seed", seed(scene));
@@ -33,8 +33,8 @@ pub fn summary(summary: &Summary, scene: &Scene, origin: &Provenance) -> String 
 }
 
 /// A field with its value. What only some runs have is left out of the others: the contact with a compliant
-/// stop, an early end, what happened first under a drive that changes, and the terms of the ledger, which
-/// stand together elsewhere.
+/// stop, what a transducer gives, an early end, what happened first under a drive that changes, and the terms
+/// of the ledger, which stand together elsewhere.
 fn entry(field: &SummaryField, summary: &Summary) -> Option<(String, Value)> {
     let value = match field.read {
         Read::Number(of) => json!(of(summary)),
@@ -44,8 +44,9 @@ fn entry(field: &SummaryField, summary: &Summary) -> Option<(String, Value)> {
     };
     let has = match field.name {
         "peak_contact_force_n" | "peak_contact_pressure_pa" => summary.peak_contact_force.is_some(),
+        "mean_load_power_w" | "mean_coil_power_w" | "voltage_rms_v" => summary.harvest.is_some(),
         "ended_at_s" => !value.is_null(),
-        "work_j" | "damping_j" | "impact_j" | "stored_j" => false,
+        "work_j" | "damping_j" | "impact_j" | "harvested_j" | "coil_j" | "stored_j" => false,
         name if name.starts_with("first_") || name.starts_with("crosses_always") => summary.firsts.is_some(),
         _ => true,
     };
@@ -53,13 +54,16 @@ fn entry(field: &SummaryField, summary: &Summary) -> Option<(String, Value)> {
 }
 
 fn ledger(ledger: &Ledger) -> Value {
-    json!({
-        "work_j": ledger.work_j,
-        "damping_j": ledger.damping_j,
-        "impact_j": ledger.impact_j,
-        "stored_j": ledger.stored_j,
-        "residual_j": ledger.residual_j,
-    })
+    let terms = [
+        ("work_j", Some(ledger.work_j)),
+        ("damping_j", Some(ledger.damping_j)),
+        ("impact_j", Some(ledger.impact_j)),
+        ("harvested_j", ledger.harvested_j),
+        ("coil_j", ledger.coil_j),
+        ("stored_j", Some(ledger.stored_j)),
+        ("residual_j", Some(ledger.residual_j)),
+    ];
+    terms.into_iter().filter_map(|(name, own)| Some((name.to_owned(), json!(own?)))).collect()
 }
 
 /// The landscape of a mechanism that carries `mass` in kg, as text.

@@ -77,7 +77,9 @@ fn swept(
         .axes()
         .iter()
         .zip(grid.columns())
-        .map(|(axis, column)| json!({ "field": axis.field, "column": column, "values": axis.values }))
+        .map(|(axis, column)| {
+            json!({ "field": axis.field, "column": column, "values": numbers(&axis.values) })
+        })
         .collect();
     let sweep = grid.axes().iter().map(|axis| axis.to_scene(&document.scene)).collect();
     let scene = &Scene { sweep, ..document.scene.clone() };
@@ -132,7 +134,7 @@ fn written(
         "jobs": origin.jobs,
         "wall_s": origin.wall_s,
         "cpu_s": origin.cpu_s,
-        "scene": serde_json::to_value(scene).unwrap_or(Value::Null),
+        "scene": scene_value(scene),
         // null where it cannot be written, and never an empty scene
         "scene_ron": crate::scene::write(scene).ok(),
         "files": document.files.held,
@@ -160,6 +162,32 @@ pub fn origin(document: &Document, version: &str) -> Map<String, Value> {
         "scene_ron": crate::scene::write(scene).ok(),
     });
     if let Value::Object(all) = all { all } else { Map::new() }
+}
+
+/// A scene as JSON. It knows no infinity: that of an open circuit is the text `inf`, in the transducer and in
+/// the values of a sweep, where no number can be missing.
+pub(super) fn scene_value(scene: &Scene) -> Value {
+    let mut value = serde_json::to_value(scene).unwrap_or(Value::Null);
+    for part in ["transducer", "sweep"] {
+        value.get_mut(part).into_iter().for_each(name_infinity);
+    }
+    value
+}
+
+/// The numbers of an axis, infinity as `inf`.
+fn numbers(values: &[f64]) -> Value {
+    let mut value = json!(values);
+    name_infinity(&mut value);
+    value
+}
+
+fn name_infinity(value: &mut Value) {
+    match value {
+        Value::Null => *value = json!("inf"),
+        Value::Array(inner) => inner.iter_mut().for_each(name_infinity),
+        Value::Object(inner) => inner.values_mut().for_each(name_infinity),
+        _ => {}
+    }
 }
 
 /// The seed of the scene's random numbers: null where it has none, a list where it has several.

@@ -3,14 +3,14 @@
 use std::fmt::Write;
 
 /// Appends `value` in its shortest form: plain (`0.58`) or with an exponent (`1e-9`), whichever has
-/// fewer characters, plain where they tie. Minus infinity, the logarithm of nothing, is `-inf`; NaN and plus
-/// infinity append nothing.
+/// fewer characters, plain where they tie. Minus infinity, the logarithm of nothing, is `-inf`, plus
+/// infinity, an open circuit, `inf`; NaN appends nothing.
 ///
 /// The digits are the fewest that parse back to the same double (the standard library's `{:e}`,
 /// after Grisu, Loitsch 2010); only their layout is chosen here, so that one conversion serves both.
 pub fn push_number(text: &mut String, value: f64) {
-    if value == f64::NEG_INFINITY {
-        text.push_str("-inf");
+    if value.is_infinite() {
+        text.push_str(if value > 0.0 { "inf" } else { "-inf" });
     }
     if !value.is_finite() {
         return;
@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn a_missing_number_is_an_empty_cell() {
         assert_eq!(short(f64::NAN), "");
-        assert_eq!(short(f64::INFINITY), "");
+        assert_eq!(short(f64::INFINITY), "inf");
     }
 
     #[test]

@@ -53,9 +53,13 @@ impl Axis {
             steps = Some(parts.map(Decimal::value));
             write_out(EvenSteps::new(parts[0], parts[1], parts[2])?)?
         } else {
-            let listed: Result<Vec<f64>, String> =
-                values.split(',').map(|text| Ok(read(text)?.value())).collect();
-            listed?
+            // (infinity is a value where the field takes it: an open circuit)
+            let endless = |text: &str| text.trim() == "inf" && spec.range.high == f64::INFINITY;
+            let listed = values.split(',').map(|text| match endless(text) {
+                true => Ok(f64::INFINITY),
+                false => Ok(read(text)?.value()),
+            });
+            listed.collect::<Result<Vec<f64>, String>>()?
         };
         Self { field: field.to_owned(), values, steps, path: FieldPath::new(field) }.within(spec)
     }

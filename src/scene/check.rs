@@ -12,6 +12,7 @@ use super::mechanism::Mechanism;
 use super::ranges::{HIGH_HZ, LOW_HZ, MAX_COEFFICIENTS, number_text};
 use super::shape;
 use super::stops::Stops;
+use super::transducer::Transducer;
 
 /// The most sines that an excitation may have, the lines of noises included: four noises of the most lines.
 /// Each takes part in every step of a run.
@@ -35,6 +36,7 @@ pub fn check(scene: &Scene) -> Checked {
     if let Some(stops_when_on) = scene.app.as_ref().and_then(|app| app.stops_when_on.as_ref()) {
         stops("app.stops_when_on", stops_when_on, &mut checked);
     }
+    transducer(scene, &mut checked);
     relations(scene, &mut checked);
     bands(&scene.excitation, "excitation", &mut checked);
     sines(&scene.excitation, &mut checked);
@@ -136,6 +138,42 @@ fn hertz(field: &str, stops: &Stops, checked: &mut Checked) {
                 checked.fault(field, "Hertz(..)", problem);
             }
         }
+    }
+}
+
+/// A current needs a resistance or an inductance, and an electrical state rigid stops.
+fn transducer(scene: &Scene, checked: &mut Checked) {
+    if let Transducer::Electromagnetic { coil_ohm: 0.0, load_ohm: 0.0, inductance_mh: 0.0, .. } =
+        scene.transducer
+    {
+        let problem = "without coil_ohm or inductance_mh above 0 nothing limits the current of a short \
+                       circuit; give the resistance of the coil or of the load";
+        checked.fault("transducer.load_ohm", "0", problem);
+    }
+    let has_state = scene.transducer.has_state();
+    if has_state && matches!(scene.stops, Stops::Hertz { .. }) {
+        let (field, remedy) = match scene.transducer {
+            Transducer::Piezoelectric { .. } => ("transducer", "take Rigid or Uneven stops"),
+            _ => ("transducer.inductance_mh", "take Rigid or Uneven stops, or an inductance of 0"),
+        };
+        let value = FieldPath::new(field).word(scene).unwrap_or_default();
+        let problem = format!(
+            "makes a state of its own, which is not followed through contact with compliant stops (Hertz); \
+             {remedy}"
+        );
+        checked.fault(field, value, problem);
+    }
+    if let Start::At { electrical, .. } = scene.start
+        && electrical != 0.0
+        && !has_state
+        && !known_bad("start.electrical", checked)
+    {
+        checked.fault(
+            "start.electrical",
+            number_text(electrical),
+            "needs a transducer with a current or voltage of its own: Electromagnetic with an inductance and \
+             a load that is not open, or Piezoelectric with a load that is not short; else it is 0",
+        );
     }
 }
 

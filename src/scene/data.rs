@@ -16,6 +16,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::mechanism::Mechanism;
 use super::record::Record;
 use super::stops::Stops;
+use super::transducer::Transducer;
 
 /// A scene: one mechanism, how it is shaken and stopped, and how long it runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -38,6 +39,9 @@ pub struct Scene {
     /// Travel limits.
     #[serde(default, skip_serializing_if = "is_default")]
     pub stops: Stops,
+    /// What turns motion into electrical power.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub transducer: Transducer,
     /// Acceleration of the base.
     #[serde(default, skip_serializing_if = "is_default")]
     pub excitation: Excitation,
@@ -158,6 +162,10 @@ pub enum Start {
         x_mm: f64,
         /// Velocity in m/s, -1e30 to 1e30.
         v_m_per_s: f64,
+        /// Current in A of a coil with inductance, or voltage in V of a piezoelectric transducer, -1e30 to
+        /// 1e30; 0 for every other scene.
+        #[serde(default, skip_serializing_if = "is_default")]
+        electrical: f64,
     },
 }
 
@@ -190,7 +198,7 @@ pub struct SweepAxis {
     pub to: f64,
     /// Step, 1e-200 to 1e200.
     pub step: f64,
-    /// The values one by one, each -1e200 to 1e200; where there are any, the three numbers above have no
+    /// The values one by one, each -1e200 to inf; where there are any, the three numbers above have no
     /// meaning.
     pub values: Vec<f64>,
 }
@@ -209,7 +217,7 @@ struct WrittenAxis {
     /// As in the axis, 1e-200 to 1e200.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     step: Option<f64>,
-    /// As in the axis, each -1e200 to 1e200.
+    /// As in the axis, each -1e200 to inf.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     values: Vec<f64>,
 }
@@ -267,7 +275,7 @@ pub enum Layout {
 }
 
 /// RON would write the choice `None` as `r#None`, to tell it from an absent option.
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 

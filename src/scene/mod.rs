@@ -39,6 +39,7 @@ mod steps;
 mod stops;
 mod text;
 mod timing;
+mod transducer;
 mod unit;
 mod walk;
 
@@ -64,4 +65,5 @@ pub use record::{Record, RecordError, read_record};
 pub use stops::Stops;
 pub use text::{LARGEST_SCENE, write};
 pub use timing::Timing;
+pub use transducer::Transducer;
 pub use unit::{Quantity, STANDARD_GRAVITY, Unit};

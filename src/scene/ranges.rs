@@ -7,7 +7,7 @@ use std::fmt;
 /// The most coefficients that a `Polynomial` may have; the force curve's own limit.
 pub const MAX_COEFFICIENTS: usize = 16;
 
-/// A closed range: both ends are valid, NaN and the infinities never are.
+/// A closed range: both ends are valid, NaN never is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Range {
     pub low: f64,
@@ -121,6 +121,17 @@ specs! {
     CONTACT_YOUNG = "young_gpa", MODULUS.0, MODULUS.1, "give Young's modulus in GPa, such as 69 for \
         aluminium";
     CONTACT_YIELD = "yield_gpa", MODULUS.0, MODULUS.1, "give the yield strength in GPa, such as 0.276";
+    COUPLING_V = "coupling_v_s_per_m", -1e30, 1e30,
+        "give the coupling in V s/m (the same number in N/A), such as 5";
+    COIL = "coil_ohm", 0.0, 1e30, "give the resistance of the coil in ohm, such as 40";
+    LOAD_OHM = "load_ohm", 0.0, f64::INFINITY,
+        "give the resistance of the load in ohm; 0 is a short circuit, inf an open one";
+    INDUCTANCE = "inductance_mh", 0.0, 1e30, "give the inductance of the coil in mH; 0 makes it a damping";
+    COUPLING_N = "coupling_n_per_v", -1e30, 1e30,
+        "give the coupling in N/V (the same number in A s/m), such as 1e-3";
+    CAPACITANCE = "capacitance_nf", 1e-30, 1e30, "give the capacitance in nF, such as 40";
+    LOAD_KOHM = "load_kohm", 0.0, f64::INFINITY,
+        "give the resistance of the load in kohm; 0 is a short circuit, inf an open one";
     ACCEL = "accel_g", ACCELERATION.0, ACCELERATION.1, "give an acceleration in g, of either sign";
     FREQUENCY = "frequency_hz", 1e-15, 1e15,
         "give a frequency in Hz, such as 3; use `Constant` for a steady acceleration";
@@ -139,6 +150,8 @@ specs! {
     LINES = whole "lines", 1.0, 4096.0, "256 sines look like noise for some minutes";
     X = "x_mm", -1e15, 1e15, "give a displacement in mm";
     V = "v_m_per_s", -1e30, 1e30, "give a velocity in m/s";
+    ELECTRICAL = "electrical", -1e30, 1e30,
+        "give the current of a coil in A, the voltage of a piezoelectric layer in V";
     DURATION = "duration_s", 1e-15, 1e9, "give how long to run in s, such as 10";
     SETTLE = "settle_s", 0.0, 1e9, "give when the settled window begins in s, or leave it out for half the \
                                     duration";
@@ -146,7 +159,7 @@ specs! {
     FROM = "from", COEFFICIENT.0, COEFFICIENT.1, "give the first value of the axis";
     TO = "to", COEFFICIENT.0, COEFFICIENT.1, "give the last value of the axis";
     STEP = "step", 1e-200, 1e200, "an axis goes upwards in steps above 0";
-    VALUES = "values", COEFFICIENT.0, COEFFICIENT.1, "give the values of the axis, in the field's unit";
+    VALUES = "values", COEFFICIENT.0, f64::INFINITY, "give the values of the axis, in the field's unit";
     SPEED = "speed", 1e-15, 1000.0, "1 is real time, 0.1 a tenth of it";
 }
 
@@ -158,6 +171,7 @@ mod tests {
     #[test]
     fn documented_ranges_are_the_checked_ones() {
         let source = concat!(include_str!("data.rs"), include_str!("mechanism.rs"), include_str!("stops.rs"));
+        let source = format!("{source}{}", include_str!("transducer.rs"));
         let mut doc = String::new();
         let mut seen = Vec::new();
         for line in source.lines().map(str::trim) {
@@ -190,7 +204,9 @@ mod tests {
         for spec in ALL {
             let Range { low, high, .. } = spec.range;
             assert!(spec.range.contains(low) && spec.range.contains(high));
-            for outside in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, low.next_down(), high.next_up()] {
+            // (beyond an end that is infinite there is nothing)
+            let above = [f64::INFINITY, high.next_up()].into_iter().filter(|above| *above > high);
+            for outside in [f64::NAN, f64::NEG_INFINITY, low.next_down()].into_iter().chain(above) {
                 assert!(!spec.range.contains(outside), "{} takes {outside}", spec.name);
             }
         }

@@ -15,6 +15,7 @@ use super::mechanism::{FlexureGroup, Mechanism};
 use super::ranges::{self, Spec};
 use super::stops::Stops;
 use super::text;
+use super::transducer::Transducer;
 
 /// One step of a path, as the walk knows it.
 #[derive(Debug, Clone, Copy)]
@@ -142,12 +143,14 @@ pub(super) fn walk(scene: &mut Scene, v: &mut impl Visitor) {
         Damping::Coefficient { c_n_s_per_m } => number(v, &ranges::C, c_n_s_per_m),
     });
     within(v, Segment::Name("stops"), &mut scene.stops, walk_stops);
+    within(v, Segment::Name("transducer"), &mut scene.transducer, walk_transducer);
     within(v, Segment::Name("excitation"), &mut scene.excitation, walk_excitation);
     within(v, Segment::Name("start"), &mut scene.start, |start, v| match start {
         Start::Rest => {}
-        Start::At { x_mm, v_m_per_s } => {
+        Start::At { x_mm, v_m_per_s, electrical } => {
             number(v, &ranges::X, x_mm);
             number(v, &ranges::V, v_m_per_s);
+            number(v, &ranges::ELECTRICAL, electrical);
         }
     });
     within(v, Segment::Name("run"), &mut scene.run, |run, v| {
@@ -258,6 +261,23 @@ fn walk_stops(stops: &mut Stops, v: &mut impl Visitor) {
             optional(v, &ranges::CONTACT_YOUNG, young_gpa);
             optional(v, &ranges::POISSON, poisson);
             optional(v, &ranges::CONTACT_YIELD, yield_gpa);
+        }
+    }
+}
+
+fn walk_transducer(transducer: &mut Transducer, v: &mut impl Visitor) {
+    match transducer {
+        Transducer::None => {}
+        Transducer::Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh } => {
+            number(v, &ranges::COUPLING_V, coupling_v_s_per_m);
+            number(v, &ranges::COIL, coil_ohm);
+            number(v, &ranges::LOAD_OHM, load_ohm);
+            number(v, &ranges::INDUCTANCE, inductance_mh);
+        }
+        Transducer::Piezoelectric { coupling_n_per_v, capacitance_nf, load_kohm } => {
+            number(v, &ranges::COUPLING_N, coupling_n_per_v);
+            number(v, &ranges::CAPACITANCE, capacitance_nf);
+            number(v, &ranges::LOAD_KOHM, load_kohm);
         }
     }
 }

@@ -12,7 +12,7 @@ pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
         return None;
     }
     let mut scene = scene.clone();
-    scene.start = Start::At { x_mm: millimetres(x), v_m_per_s: v };
+    scene.start = Start::At { x_mm: millimetres(x), v_m_per_s: v, electrical: here.start_electrical() };
     let mut turns = here.excitation().tones.iter().map(|tone| {
         let half = if tone.amplitude < 0.0 { 0.5 } else { 0.0 };
         (tone.phase + if tone.quarter { 0.25 } else { 0.0 }, half)

@@ -64,7 +64,8 @@ mod tests {
         let model = Model::build(&document.scene, Arc::new(mechanism)).unwrap();
         let w = (40.0_f64 / 15.2e-3).sqrt();
         let quarter = 0.25 * TAU / w;
-        let sample = |t: f64, x: f64, v: f64| Sample { t, x, v, base_accel: 0.0, phase: Phase::Free };
+        let sample =
+            |t: f64, x: f64, v: f64| Sample { t, x, v, base_accel: 0.0, phase: Phase::Free, electrical: 0.0 };
         let way = between(&model, &sample(0.0, 0.0, w * 1e-3), &sample(quarter, 1e-3, 0.0), 9);
         assert_eq!(way.len(), 8);
         for (i, (x, v)) in (1..).zip(&way) {

@@ -75,6 +75,9 @@ pub const SUMMARY_FIELDS: &[SummaryField] = &[
     plain("period", Read::Count(|s| s.period.map(u64::from))),
     plain("peak_contact_force_n", Read::Number(|s| s.peak_contact_force)),
     plain("peak_contact_pressure_pa", Read::Number(|s| s.peak_contact_pressure)),
+    plain("mean_load_power_w", Read::Number(|s| s.harvest.and_then(|own| own.mean_load_power))),
+    plain("mean_coil_power_w", Read::Number(|s| s.harvest.and_then(|own| own.mean_coil_power))),
+    plain("voltage_rms_v", Read::Number(|s| s.harvest.and_then(|own| own.voltage_rms))),
     plain("outcome", Read::Word(|s| s.outcome.name())),
     plain("ended_at_s", Read::Number(|s| s.outcome.ended_at())),
     plain("steps", Read::Count(|s| Some(s.steps))),
@@ -82,6 +85,8 @@ pub const SUMMARY_FIELDS: &[SummaryField] = &[
     of_ledger("work_j", Read::Number(|s| s.ledger.map(|ledger| ledger.work_j))),
     of_ledger("damping_j", Read::Number(|s| s.ledger.map(|ledger| ledger.damping_j))),
     of_ledger("impact_j", Read::Number(|s| s.ledger.map(|ledger| ledger.impact_j))),
+    of_ledger("harvested_j", Read::Number(|s| s.ledger.and_then(|ledger| ledger.harvested_j))),
+    of_ledger("coil_j", Read::Number(|s| s.ledger.and_then(|ledger| ledger.coil_j))),
     of_ledger("stored_j", Read::Number(|s| s.ledger.map(|ledger| ledger.stored_j))),
     of_ledger("energy_residual", Read::Number(|s| s.ledger.map(|ledger| ledger.energy_residual))),
 ];
@@ -108,7 +113,9 @@ impl SummaryField {
     pub fn column<'a>(&self, summaries: impl Iterator<Item = Option<&'a Summary>>) -> Values {
         match self.read {
             Read::Number(of) => {
-                Values::Numbers(summaries.map(|own| own.and_then(of).unwrap_or(f64::NAN)).collect())
+                // (that of a run that blew up is no number)
+                let number = |own: &Summary| of(own).filter(|number| number.is_finite());
+                Values::Numbers(summaries.map(|own| own.and_then(number).unwrap_or(f64::NAN)).collect())
             }
             Read::Count(of) => Values::Counts(summaries.map(|own| own.and_then(of)).collect()),
             Read::Word(of) => Values::Words(summaries.map(|own| own.map_or("", of)).collect()),

@@ -108,3 +108,8 @@ impl Task<'_> {
         self.cancel.load(Ordering::Relaxed)
     }
 }
+
+/// Why a study that knows a motion by displacement and velocity alone refuses a scene.
+pub const ELECTRICAL_STATE: &str = "transducer: its current or voltage goes on with the motion as a third \
+     state, and this compares displacement and velocity alone; take inductance_mh: 0 (of a piezoelectric one \
+     load_kohm: 0, a short circuit), or transducer: None";

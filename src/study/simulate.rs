@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::table::Table;
 use super::times::{SamplingStep, TimesError, even_times, listed_times};
-use crate::dynamics::{Event, Model, Request, Sample, Summary};
+use crate::dynamics::{Event, Model, Output, Request, Sample, Summary};
 use crate::scene::{Excitation, Scene};
 
 /// When to sample.
@@ -32,7 +32,8 @@ pub struct Keep {
 /// One run, recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
-    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`; up to the end of the run.
+    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`, with a transducer also `voltage_v,current_a,power_w`;
+    /// up to the end of the run.
     pub samples: Table,
     /// `t_s,kind,side,v_in_m_per_s,v_out_m_per_s` in order of time.
     pub events: Table,
@@ -74,7 +75,11 @@ pub fn simulate(model: &Model, keep: &Keep, cancel: Option<&AtomicBool>) -> Simu
     let request = Request { sample_times, events: keep.events, cancel, ..Request::default() };
     let run = model.run(&Request { ledger: true, until_settled: keep.until_settled, ..request });
     let samples = if ascending { run.samples } else { in_order(&keep.times, &run.samples) };
-    Simulation { samples: samples_table(&samples), events: events_table(&run.events), summary: run.summary }
+    Simulation {
+        samples: samples_table(&samples, |own| model.output(own)),
+        events: events_table(&run.events),
+        summary: run.summary,
+    }
 }
 
 /// The samples in the order of `times`; times that an early end left without one are left out.
@@ -86,14 +91,24 @@ pub(super) fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
     times.iter().filter_map(find).collect()
 }
 
-/// Samples as the table `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`.
-pub fn samples_table(samples: &[Sample]) -> Table {
-    Table::new()
+/// Samples as the table `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`; where any has an `output` of a
+/// transducer also `voltage_v,current_a,power_w`, which the others miss.
+pub fn samples_table(samples: &[Sample], output: impl Fn(&Sample) -> Option<Output>) -> Table {
+    let table = Table::new()
         .each("t_s", samples, |own| own.t)
         .each("x_m", samples, |own| own.x)
         .each("v_m_per_s", samples, |own| own.v)
         .each("base_accel_m_per_s2", samples, |own| own.base_accel)
-        .each("phase", samples, |own| own.phase.name())
+        .each("phase", samples, |own| own.phase.name());
+    let outputs: Vec<Option<Output>> = samples.iter().map(output).collect();
+    if outputs.iter().all(Option::is_none) {
+        return table;
+    }
+    let column = |of: fn(&Output) -> f64| move |own: &Option<Output>| own.as_ref().map_or(f64::NAN, of);
+    table
+        .each("voltage_v", &outputs, column(|own| own.voltage))
+        .each("current_a", &outputs, column(|own| own.current))
+        .each("power_w", &outputs, column(|own| own.power))
 }
 
 /// Events as a table: `t_s,kind,side,v_in_m_per_s,v_out_m_per_s`, a row an event, SI.

@@ -106,7 +106,7 @@ pub fn simulate_with_trace(
         settle: span.0,
         end,
     };
-    let samples = samples_table(&in_order(&keep.times, &run.samples));
+    let samples = samples_table(&in_order(&keep.times, &run.samples), |own| model.output(own));
     let events = events_table(if keep.events { &run.events } else { &[] });
     (Simulation { samples, events, summary: run.summary }, trace)
 }

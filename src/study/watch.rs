@@ -245,6 +245,17 @@ impl Watch {
             v: a.v + s * (2.0 * c + s * 3.0 * bend) / h,
             base_accel: a.base_accel + s * (b.base_accel - a.base_accel),
             phase: Phase::Free,
+            electrical: match b.electrical - a.electrical {
+                // (a corner does not know it)
+                change if change.is_nan() => {
+                    if a.electrical.is_nan() {
+                        b.electrical
+                    } else {
+                        a.electrical
+                    }
+                }
+                change => a.electrical + s * change,
+            },
         }
     }
 
@@ -293,7 +304,9 @@ impl Watch {
         let (left, right) = self.live.model().stop_positions();
         let Some(x) = (if event.side == Side::Left { left } else { right }) else { return };
         let base_accel = self.live.base_acceleration(event.t);
-        let sample = |v: f64, phase: Phase| Sample { t: event.t, x, v, base_accel, phase };
+        // An event does not say it: a missing number in a table.
+        let electrical = if self.live.model().has_electrical_state() { f64::NAN } else { 0.0 };
+        let sample = |v: f64, phase: Phase| Sample { t: event.t, x, v, base_accel, phase, electrical };
         match event.kind {
             EventKind::Impact => {
                 self.samples.push_back(sample(event.v_in, Phase::Free));

@@ -34,6 +34,7 @@ fn every_field_of_a_scene_is_documented_with_its_range() {
         include_str!("../../src/scene/data.rs"),
         include_str!("../../src/scene/mechanism.rs"),
         include_str!("../../src/scene/stops.rs"),
+        include_str!("../../src/scene/transducer.rs"),
     ];
     let dictionaries = ["scene.dict", "arguments.dict"].map(|name| {
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/dictionaries").join(name))

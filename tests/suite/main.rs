@@ -37,6 +37,7 @@ mod spectrum;
 mod stroboscopic;
 mod studies;
 mod support;
+mod transducer;
 mod untrusted;
 mod up_and_down;
 mod verdicts;

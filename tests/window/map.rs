@@ -119,7 +119,7 @@ fn what_it_depends_on_makes_another() {
     fill(&mut harness);
     let session = &mut harness.state_mut().session;
     session.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 1.2, restitution: 0.36 });
-    session.edit_once(|scene| scene.start = Start::At { x_mm: 0.5, v_m_per_s: 0.0 });
+    session.edit_once(|scene| scene.start = Start::At { x_mm: 0.5, v_m_per_s: 0.0, electrical: 0.0 });
     harness.run_steps(2);
     assert!(map(harness.state()).is_whole());
     // while a hand moves it waits, and the one before stays to be seen

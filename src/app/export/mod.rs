@@ -22,7 +22,7 @@ use crate::study::{
 /// The motion that is remembered, in the columns of the command line's `simulate`.
 pub fn motion_csv(player: &Player) -> String {
     let samples: Vec<_> = player.watch().samples().iter().copied().collect();
-    csv(&samples_table(&samples))
+    csv(&samples_table(&samples, |own| player.watch().model_at(own.t).output(own)))
 }
 
 /// The run of a scene from its start to its end, as `simulate` writes it; none where it was cancelled.

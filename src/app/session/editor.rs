@@ -295,9 +295,9 @@ mod tests {
     #[test]
     fn a_stop_takes_the_start_along() {
         let mut editor = editor();
-        editor.edit_once(|scene| scene.start = Start::At { x_mm: 5.0, v_m_per_s: 0.1 });
+        editor.edit_once(|scene| scene.start = Start::At { x_mm: 5.0, v_m_per_s: 0.1, electrical: 0.0 });
         editor.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 2.0, restitution: 0.3 });
-        assert_eq!(editor.scene().start, Start::At { x_mm: 2.0, v_m_per_s: 0.1 });
+        assert_eq!(editor.scene().start, Start::At { x_mm: 2.0, v_m_per_s: 0.1, electrical: 0.0 });
     }
 
     #[test]

@@ -247,7 +247,7 @@ fn damping(scene: &Scene) -> String {
 fn start(scene: &Scene) -> String {
     match scene.start {
         Start::Rest => "at rest".to_owned(),
-        Start::At { x_mm, v_m_per_s } => format!("{} mm, {} m/s", shown(x_mm, 1), shown(v_m_per_s, 0)),
+        Start::At { x_mm, v_m_per_s, .. } => format!("{} mm, {} m/s", shown(x_mm, 1), shown(v_m_per_s, 0)),
     }
 }
 

@@ -35,7 +35,10 @@ const UNITS: [(f64, &str); 5] = [(1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9,
 /// A row of the ledger: its name, what it says, its value with its sign, its colour.
 type Row = (&'static str, &'static str, fn(&LiveLedger) -> f64, fn(&Style) -> Color32);
 
-const LEDGER: [Row; 5] = [
+/// The row that only a scene with a transducer has.
+const TRANSDUCER: &str = "transducer";
+
+const LEDGER: [Row; 6] = [
     ("work in", "Work of the base on the mass.", |own| own.work_j, Style::base),
     (
         "by hand",
@@ -46,6 +49,12 @@ const LEDGER: [Row; 5] = [
     ),
     ("damping", "Taken by damping.", |own| -own.damping_j, Style::faint),
     ("impacts", "Taken by impacts: (1 - e²) of the kinetic energy each.", |own| -own.impact_j, Style::impact),
+    (
+        TRANSDUCER,
+        "Taken by the load and the coil of the transducer.",
+        |own| -(own.harvested_j + own.coil_j),
+        Style::curve,
+    ),
     ("stored", "What that leaves in the mass and its mechanism.", |own| own.stored_j, Style::ink),
 ];
 
@@ -95,7 +104,8 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         .iter()
         .map(|pin| (pin.place(), [pin.watch().ledger_at(now).map(|own| own.1), pin.watch().last_period(now)]))
         .collect();
-    let row = (area.height() / COUNT).clamp(ROWS.0, ROWS.1);
+    let count = COUNT + if model.has_transducer() { 1.0 } else { 0.0 };
+    let row = (area.height() / count).clamp(ROWS.0, ROWS.1);
     let shaken = model.forcing_period().is_some();
     let columns = if shaken { 2.0 } else { 1.0 };
     let column = (area.width() - NAMES) / columns;
@@ -118,6 +128,9 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     put_ui(ui, cell(area.left(), y, NAMES, row), unit_name, Align::Min, hover);
     y += row;
     for (name, hover, value, color) in LEDGER {
+        if name == TRANSDUCER && !model.has_transducer() {
+            continue;
+        }
         let names = cell(area.left(), y, NAMES, row);
         put_ui(ui, names, RichText::new(name).color(style.ink()), Align::Min, hover);
         for (i, (ledger, ..)) in heads.iter().rev().enumerate() {

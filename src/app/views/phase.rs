@@ -325,7 +325,8 @@ mod tests {
 
     #[test]
     fn the_trail_is_capped_and_ends_at_the_state() {
-        let sample = |t: f64| Sample { t, x: t, v: 0.0, base_accel: 0.0, phase: Phase::Free };
+        let sample =
+            |t: f64| Sample { t, x: t, v: 0.0, base_accel: 0.0, phase: Phase::Free, electrical: 0.0 };
         let samples: VecDeque<Sample> = (0..20_000).map(|i| sample(f64::from(i) * 1e-3)).collect();
         let path = recent(&samples, sample(10.0005), 2.0);
         assert!(path.len() == 2001 && path.last().is_some_and(|last| last.t == 10.0005));

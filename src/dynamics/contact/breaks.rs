@@ -23,6 +23,14 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let a = &self.stepper.series.a;
         let rates = [-(sign * (force + a[0])), -(sign * a[1]), -(sign * a[2])];
         let rounding = rounding + a[0].abs() * T::of(4.0 * T::EPSILON);
+        let (rates, rounding) = match self.stepper.circuit_push() {
+            Some(push) => {
+                let by_circuit = [push[0], push[1], push[2] * T::of(0.5)];
+                let size = push[0].abs() * T::of(4.0 * T::EPSILON);
+                (std::array::from_fn(|i| rates[i] - sign * by_circuit[i]), rounding + size)
+            }
+            None => (rates, rounding),
+        };
         self.state.v += T::zero(); // makes a 0 of -0
         self.state.touch = Some(Touch { end, multiplicity: HELD });
         for (multiplicity, rate) in (BY_ACCELERATION..).zip(rates) {

@@ -8,7 +8,7 @@ use crate::dynamics::record::events::Call;
 use crate::dynamics::result::Phase;
 use crate::dynamics::state::{BY_ACCELERATION, BY_JERK, Contact, Label, MotionState, Touch, UNDECIDED};
 use crate::dynamics::step::stepper::Stepper;
-use crate::numeric::Scalar;
+use crate::numeric::{Scalar, decay};
 
 /// Share of the clock's cycle by which the search for a release skips an instant at which the contact
 /// acceleration only touched 0: well above what the rounding of a double root spans, well below any change
@@ -53,8 +53,14 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
 
     /// The mass stands still until `until`.
     pub fn stand(&mut self, until: Instant<T>, phase: Phase) {
-        let MotionState { at, x, v, .. } = self.state;
+        let MotionState { at, x, v, circuit: state, .. } = self.state;
+        let samples = self.record.samples.len();
         self.tell(Call::Stand { at, until, state: (x, v), phase });
+        if let Some(circuit) = self.stepper.drive.circuit() {
+            self.record.circuit_decays(circuit, (&at, &until), state, samples);
+            let time = self.stepper.clock.between(&at, &until);
+            self.state.circuit = state * decay(circuit.decay * time).0;
+        }
         self.state.at = until;
     }
 
@@ -69,7 +75,11 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             from = self.stepper.clock.advance(&from, self.stepper.clock.period() * T::of(PAST_A_TOUCH));
         }
         let threshold = self.stepper.equation.stop(end).map_or(T::zero(), |s| s.acceleration);
-        let acceleration = ContactAcceleration { threshold, sign: end.sign::<T>() };
+        let circuit = self.stepper.drive.circuit().map_or(T::zero(), |own| {
+            let time = self.stepper.clock.between(&self.state.at, &from);
+            self.state.circuit * decay(own.decay * time).0
+        });
+        let acceleration = ContactAcceleration { threshold, sign: end.sign::<T>(), circuit };
         let since = self.searched.take().filter(|(segment, _)| *segment == self.state.segment);
         let since = since.map_or(from, |(_, since)| since);
         let span = Span { from, until, segment: self.state.segment, since };

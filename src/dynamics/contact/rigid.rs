@@ -51,6 +51,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             + damping * damping
             + stop.stiffness.abs()
             + snap.abs() / acceleration;
+        let squares = self.stepper.circuit_stiffness().map_or(squares, |own| squares + own);
         let change = whole * whole * squares;
         if change > T::of(2.5e-3) || whole * change > T::of(0.1 * self.stepper.settings.tolerance) {
             return false;

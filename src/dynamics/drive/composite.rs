@@ -157,10 +157,22 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         if acceleration.threshold - acceleration.sign * self.constant > self.reach {
             return (ReleaseRoot::Never, 0);
         }
-        let mut search = Search::new(self, clock, acceleration, span.segment);
+        self.search(clock, acceleration, span.segment).first(span, cursor)
+    }
+}
+
+impl<T: Scalar> Composite<T> {
+    /// A search for a release in one of its segments.
+    pub(super) fn search<'a>(
+        &'a self,
+        clock: &'a Clock<T>,
+        acceleration: ContactAcceleration<T>,
+        segment: usize,
+    ) -> Search<'a, T, Self> {
+        let mut search = Search::new(self, clock, acceleration, segment);
         (search.fastest, search.reach) = (self.fastest, self.reach);
-        search.common_cycles = self.common_cycles.filter(|_| span.segment >= self.segment_ends.len());
+        search.common_cycles = self.common_cycles.filter(|_| segment >= self.segment_ends.len());
         search.parts = self.tones.len() + 4 * self.chirps.len() + self.records.len();
-        search.first(span, cursor)
+        search
     }
 }

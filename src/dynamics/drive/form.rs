@@ -3,12 +3,15 @@
 use super::Still;
 use super::base_at;
 use super::chirp::Chirp;
+use super::circuit::Circuit;
 use super::composite::Composite;
+use super::coupled::Coupled;
 use super::record::{Line, Record};
 use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::model::Model;
 use crate::dynamics::model::excitation::TonePart;
+use crate::dynamics::model::scales::Scales;
 use crate::numeric::{Ratio, Scalar};
 use crate::scene;
 
@@ -27,18 +30,22 @@ impl Model {
     }
 }
 
-/// The three forms of a drive.
+/// The forms of a drive.
 #[derive(Debug)]
 pub(crate) enum Form<T> {
     Still(Still<T>),
     Sine(Sine<T>),
     Composite(Composite<T>),
+    Coupled(Coupled<T>),
 }
 
 /// The simplest form that this model's drive has.
 pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
     let drive = &model.excitation;
     let unit = clock.unit();
+    if let Some(circuit) = circuit(model, unit) {
+        return Form::Coupled(Coupled { drive: composite(model, unit, clock), circuit });
+    }
     match drive.tones.as_slice() {
         _ if !(drive.chirps.is_empty() && drive.records.is_empty()) => {
             Form::Composite(composite(model, unit, clock))
@@ -57,6 +64,18 @@ pub(crate) fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
         1.0 / (unit * SHORTEST_CYCLE.max((units.log2().ceil() - 50.0).exp2()))
     });
     Clock::new(frequency, unit)
+}
+
+/// The circuit of the model's transducer, where that has a state.
+fn circuit<T: Scalar>(model: &Model, unit: f64) -> Option<Circuit<T>> {
+    let own = model.circuit()?;
+    let (coupling, decay) = (own.coupling * unit, own.decay * unit);
+    let Scales { speed, time, .. } = model.scales;
+    let (speed, time) = (speed * unit, time / unit);
+    // As large as the motion makes it: by what it moves, and by what it can give.
+    let moved = speed * (coupling.abs() * time / (1.0 + decay * time)).min(1.0);
+    let scale = if moved > 0.0 { moved } else { own.state(model.start_electrical) * unit };
+    Some(Circuit::new(T::of(coupling), T::of(decay), T::of(scale.abs())))
 }
 
 fn still<T: Scalar>(model: &Model, unit: f64) -> Still<T> {

@@ -1,12 +1,15 @@
 //! Drive: acceleration of the base in kernel units, as a series about any instant.
 //!
-//! There are three forms, a constant, one sine and a sum of anything, and one is chosen per run, so that a
+//! There are three forms, a constant, one sine and a sum of anything, and that with a circuit beside it; one
+//! is chosen per run, so that a
 //! scene pays only for what it names. A tone is evaluated from the clock's exact phase at the start of a step
 //! and continued by its own series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so nothing drifts and no library
 //! function is called.
 
 mod chirp;
+pub(crate) mod circuit;
 pub(crate) mod composite;
+pub(crate) mod coupled;
 pub(crate) mod form;
 mod record;
 mod release;
@@ -15,6 +18,7 @@ pub(crate) mod tone;
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, Tail};
 use crate::numeric::Scalar;
+use circuit::Circuit;
 
 /// Acceleration of the base, in kernel units.
 pub(crate) trait Drive<T: Scalar>: Tail<T> {
@@ -26,6 +30,22 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
     fn cost(&self, _order: usize) -> u64 {
         0
     }
+
+    /// The circuit beside it, where there is one.
+    #[inline(always)]
+    fn circuit(&self) -> Option<&Circuit<T>> {
+        None
+    }
+
+    /// Coefficients of the circuit's state.
+    #[inline(always)]
+    fn circuit_state(_: &Self::Cursor) -> Option<&[T; ROOM]> {
+        None
+    }
+
+    /// Lets the series of the circuit's state begin.
+    #[inline(always)]
+    fn begin_circuit(_: &mut Self::Cursor, _state: T) {}
 
     /// Cycles of the clock after which it repeats, where it does.
     fn common_cycles(&self) -> i64 {
@@ -112,6 +132,8 @@ pub(crate) struct ContactAcceleration<T> {
     pub threshold: T,
     /// -1 on the left stop, 1 on the right one.
     pub sign: T,
+    /// State of the circuit where the span begins; 0 without one.
+    pub circuit: T,
 }
 
 /// A constant acceleration, 0 included.

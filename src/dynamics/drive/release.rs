@@ -6,7 +6,7 @@
 use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, SEEDED};
-use crate::numeric::{PolynomialRoots, Scalar};
+use crate::numeric::{PolynomialRoots, Scalar, decay};
 
 /// How long a stride is, in radians of the fastest tone, and the order of its series: the first neglected
 /// term, 2^27/27!, is below rounding.
@@ -39,8 +39,18 @@ pub(super) struct Search<'a, T: Scalar, D: Drive<T>> {
     pub common_cycles: Option<i64>,
     /// Parts of the drive, each as often as it costs.
     pub parts: usize,
+    /// An acceleration beside the drive's that decays, where there is one.
+    pub decaying: Option<Decaying<T>>,
     a: [T; ROOM],
     inverse: [T; ROOM],
+}
+
+/// An acceleration as of the base, `push` at first, which decays exponentially.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Decaying<T> {
+    pub push: T,
+    pub rate: T,
+    pub since: Instant<T>,
 }
 
 /// The contact acceleration over a stride, as a polynomial in the share of it.
@@ -71,6 +81,7 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
             reach: zero,
             common_cycles: None,
             parts: 0,
+            decaying: None,
             a,
             inverse,
         }
@@ -131,7 +142,7 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
 
     /// The contact acceleration over a stride of length `h` from `at`.
     fn stride(&mut self, at: &Instant<T>, h: T, cursor: &mut D::Cursor) -> Stride<T> {
-        let Self { drive, a, inverse, acceleration: ContactAcceleration { threshold, sign }, .. } = self;
+        let Self { drive, a, inverse, acceleration: ContactAcceleration { threshold, sign, .. }, .. } = self;
         drive.seed(self.clock, at, self.segment, a, cursor);
         let order = if self.fastest > T::zero() { STRIDE_ORDER } else { 1 };
         for k in SEEDED..=order {
@@ -144,6 +155,13 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
             power = power * h;
         }
         g[0] += *threshold;
+        if let Some(own) = &self.decaying {
+            let mut term = *sign * own.push * decay(own.rate * self.clock.between(&own.since, at)).0;
+            for (k, slot) in g[..=order].iter_mut().enumerate() {
+                *slot -= term;
+                term = -(term * (own.rate * h) / T::whole(k + 1));
+            }
+        }
         Stride { g, order }
     }
 

@@ -192,7 +192,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         &self,
         clock: &Clock<T>,
         &Span { from, until, .. }: &Span<T>,
-        ContactAcceleration { threshold, sign }: ContactAcceleration<T>,
+        ContactAcceleration { threshold, sign, .. }: ContactAcceleration<T>,
         _: &mut Self::Cursor,
     ) -> (ReleaseRoot<T>, u64) {
         // threshold - b sin = 0 with sin rising through it (b > 0) or falling (b < 0).

@@ -92,7 +92,8 @@ impl<T: Scalar> Equation<T> {
                 modes = cut(modes, T::of(at.x));
             }
         }
-        Self { damping: T::of(model.damping * unit) / T::of(model.mass), modes, left, right, compliant, unit }
+        let damping = T::of(model.total_damping() * unit) / T::of(model.mass);
+        Self { damping, modes, left, right, compliant, unit }
     }
 
     /// The most products of series that a piece's force takes beyond the first.

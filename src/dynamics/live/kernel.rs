@@ -11,6 +11,7 @@ use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::{Event, Outcome, Request, Sample};
 use crate::dynamics::state::{Checkpoint, Contact, MotionState};
+use crate::numeric::decay;
 
 /// Work of one call, in units of [`work`](crate::dynamics::step::work): some tens of milliseconds. More is
 /// only asked for where impacts crowd without end, or a step takes long.
@@ -22,6 +23,7 @@ pub(crate) struct Sums {
     pub work: f64,
     pub squared_velocity: f64,
     pub impact: f64,
+    pub circuit: f64,
 }
 
 impl Sums {
@@ -30,6 +32,7 @@ impl Sums {
             work: self.work - other.work,
             squared_velocity: self.squared_velocity - other.squared_velocity,
             impact: self.impact - other.impact,
+            circuit: self.circuit - other.circuit,
         }
     }
 }
@@ -62,6 +65,7 @@ macro_rules! with_drive {
             Form::Still($drive) => $call,
             Form::Sine($drive) => $call,
             Form::Composite($drive) => $call,
+            Form::Coupled($drive) => $call,
         }
     };
 }
@@ -204,7 +208,12 @@ impl Kernel {
             into.extend(times.iter().map(|&t| {
                 let base_accel =
                     base_at(drive, &self.clock, tail.state.segment, &self.clock.at(t), self.unit());
-                Sample { t, x, v: 0.0, base_accel, phase }
+                let electrical = model.circuit().map_or(0.0, |own| {
+                    let time = self.clock.between(&tail.state.at, &self.clock.at(t)).max(0.0);
+                    let left = decay(own.decay * self.unit() * time).0;
+                    own.amount * (tail.state.circuit * left) / self.unit()
+                });
+                Sample { t, x, v: 0.0, base_accel, phase, electrical }
             }));
             return;
         }
@@ -264,5 +273,6 @@ fn sums<D: Drive<f64>>(motion: &Motion<'_, f64, D, true>) -> Sums {
         work: whole.work.value(),
         squared_velocity: whole.squared_velocity.value(),
         impact: whole.impact.value(),
+        circuit: whole.circuit.value(),
     }
 }

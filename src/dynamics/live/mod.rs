@@ -36,7 +36,7 @@ pub struct LiveOutput {
 }
 
 /// Energy balance of a live run since it began, in J. `stored` is what is there now less what was there at
-/// the start: work + by hand - damping - impact = stored.
+/// the start: work + by hand - damping - impact - harvested - coil = stored.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct LiveLedger {
@@ -46,6 +46,10 @@ pub struct LiveLedger {
     pub damping_j: f64,
     /// Taken by impacts.
     pub impact_j: f64,
+    /// Taken by the load of a transducer.
+    pub harvested_j: f64,
+    /// Taken by its coil.
+    pub coil_j: f64,
     /// Put in by changes: a stop dragged over the mass, a mass placed, another potential.
     pub by_hand_j: f64,
     /// Change of kinetic energy and potential.
@@ -85,7 +89,7 @@ impl Live {
         let shifts = vec![0.0; model.excitation.tones.len()];
         let kernel = Kernel::new(&model);
         let (start, coming) = kernel.start(&model, 0.0);
-        let start_energy = energy(&model, model.start);
+        let start_energy = energy(&model, model.start) + model.charged(model.start_electrical);
         Self {
             kernel,
             shifts,
@@ -183,7 +187,13 @@ impl Live {
             v: carried.state.v / self.kernel.unit(),
             base_accel: self.kernel.base(carried),
             phase: carried.state.phase(),
+            electrical: self.electrical(carried),
         }
+    }
+
+    /// Electrical state of the transducer, in A or V; 0 where it has none.
+    fn electrical(&self, carried: &Checkpoint<f64>) -> f64 {
+        self.model.circuit().map_or(0.0, |own| own.amount * carried.state.circuit / self.kernel.unit())
     }
 
     /// The state at the present time and the energies from the tail to there.
@@ -197,7 +207,8 @@ impl Live {
         let mut ledger = self.past;
         ledger.add(&sums, &self.model);
         let v = carried.state.v / self.kernel.unit();
-        ledger.stored_j = energy(&self.model, (carried.state.x, v)) - self.start_energy;
+        let now = energy(&self.model, (carried.state.x, v)) + self.model.charged(self.electrical(&carried));
+        ledger.stored_j = now - self.start_energy;
         ledger
     }
 
@@ -230,14 +241,17 @@ impl Live {
 
     fn go_on(&mut self, mut next: Model, wanted: (f64, f64), was: Phase, into: &mut LiveOutput) {
         let (carried, sums) = self.present();
-        let before = energy(&self.model, (carried.state.x, carried.state.v / self.kernel.unit()));
+        let before = energy(&self.model, (carried.state.x, carried.state.v / self.kernel.unit()))
+            + self.model.charged(self.electrical(&carried));
         self.past.add(&sums, &self.model);
         // Where a stop was pressed in, it stays so: only what a stop is moved over is carried along.
         let depth = self.model.pressed_depth(wanted.0).filter(|_| was != Phase::Free);
         let depth = depth.filter(|_| next.compliant.is_some()).map_or(0.0, |own| own.0);
         next.start = next.held_within(wanted, depth);
         next.motionless = false;
-        self.past.by_hand_j += energy(&next, next.start) - before;
+        next.start_electrical = next.taken_over(&self.model, self.electrical(&carried));
+        let charged = next.charged(next.start_electrical);
+        self.past.by_hand_j += energy(&next, next.start) + charged - before;
         let (gave, gives) = (self.model.compliant.is_some(), next.compliant.is_some());
         self.model = next;
         self.kernel = Kernel::new(&self.model);
@@ -278,21 +292,24 @@ impl Live {
         model.start_phase = (model.start_phase + turns).rem_euclid(1.0);
         let (carried, _) = self.present();
         model.start = (carried.state.x, carried.state.v / self.kernel.unit());
+        model.start_electrical = self.electrical(&carried);
         model.motionless = carried.state.contact == Contact::Motionless;
         Some(model)
     }
 }
 
 impl LiveLedger {
-    /// What is left over: work + by hand - damping - impact - stored in J. Each term is integrated on its
-    /// own, so it is not 0 but as small as the tolerance makes it.
+    /// What is left over: work + by hand - damping - impact - harvested - coil - stored in J. Each term is
+    /// integrated on its own, so it is not 0 but as small as the tolerance makes it.
     pub fn residual_j(&self) -> f64 {
-        self.work_j + self.by_hand_j - self.damping_j - self.impact_j - self.stored_j
+        let taken = self.damping_j + self.impact_j + (self.harvested_j + self.coil_j);
+        self.work_j + self.by_hand_j - taken - self.stored_j
     }
 
     /// |residual| over the sum of the magnitudes moved; 0 where nothing moved.
     pub fn energy_residual(&self) -> f64 {
-        let terms = [self.work_j, self.by_hand_j, self.damping_j, self.impact_j, self.stored_j];
+        let Self { work_j, damping_j, impact_j, harvested_j, coil_j, by_hand_j, stored_j } = *self;
+        let terms = [work_j, by_hand_j, damping_j, impact_j, harvested_j, coil_j, stored_j];
         let moved: f64 = terms.iter().map(|term| term.abs()).sum();
         if moved > 0.0 { self.residual_j().abs() / moved } else { 0.0 }
     }
@@ -303,6 +320,8 @@ impl LiveLedger {
             work_j: self.work_j - earlier.work_j,
             damping_j: self.damping_j - earlier.damping_j,
             impact_j: self.impact_j - earlier.impact_j,
+            harvested_j: self.harvested_j - earlier.harvested_j,
+            coil_j: self.coil_j - earlier.coil_j,
             by_hand_j: self.by_hand_j - earlier.by_hand_j,
             stored_j: self.stored_j - earlier.stored_j,
         }
@@ -314,6 +333,15 @@ impl LiveLedger {
         self.work_j += sums.work * energy;
         self.damping_j += model.damping * sums.squared_velocity / unit;
         self.impact_j += sums.impact * energy;
+        if let Some(own) = &model.transducer {
+            let squared = match &own.circuit {
+                Some(circuit) => circuit.amount * circuit.amount * sums.circuit,
+                None => sums.squared_velocity,
+            };
+            let (load, coil) = own.energies(squared / unit);
+            self.harvested_j += load;
+            self.coil_j += coil;
+        }
     }
 }
 

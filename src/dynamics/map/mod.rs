@@ -61,9 +61,10 @@ pub struct StroboscopicMap {
 
 impl Model {
     /// The map of the state at a phase of the drive, in forcing periods from 0 to 1, to that one forcing
-    /// period later. None where the drive has no period.
+    /// period later. None where the drive has no period, and where a transducer has a state of its own.
     pub fn stroboscopic_map(&self, phase: f64) -> Option<StroboscopicMap> {
-        let period = self.forcing_period.filter(|_| self.repeats())?;
+        let alone = self.repeats() && !self.has_electrical_state();
+        let period = self.forcing_period.filter(|_| alone)?;
         let cycles = self.cycles_per_period;
         let turns = (phase - self.start_phase).rem_euclid(1.0) * cycles as f64;
         Some(StroboscopicMap {
@@ -152,6 +153,7 @@ impl StroboscopicMap {
             Form::Still(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
             Form::Sine(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
             Form::Composite(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
+            Form::Coupled(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
         }
     }
 }

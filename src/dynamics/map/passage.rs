@@ -102,9 +102,10 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
     let rested = motion.record.counts.rests > 0;
     let events = motion.record.events.take().unwrap_or_default();
     let time = clock.between(&from, &at).to_f64() * equation.unit;
-    let determinant = equation.compliant.is_none().then(|| match rested {
+    let known = equation.compliant.is_none() && model.circuit().is_none();
+    let determinant = known.then(|| match rested {
         true => 0.0,
-        false => (-model.damping * time / model.mass).exp() * squared_restitutions(model, &events),
+        false => (-model.total_damping() * time / model.mass).exp() * squared_restitutions(model, &events),
     });
     let state = (x.to_f64(), v.to_f64() / equation.unit);
     Traced { passage: Passage { state, events, determinant, nearest_miss, outcome }, end: (x, v), rested }

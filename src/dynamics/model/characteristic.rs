@@ -89,7 +89,7 @@ impl Model {
     /// motion m a = -F(x) - c v - m a_b, at a displacement in m, a velocity in m/s and an acceleration of the
     /// base in m/s^2.
     pub fn acceleration(&self, x: f64, v: f64, base_accel: f64) -> f64 {
-        -(self.mechanism.curve.force(x) + self.damping * v) / self.mass - base_accel
+        -(self.mechanism.curve.force(x) + self.total_damping() * v) / self.mass - base_accel
     }
 }
 

@@ -84,7 +84,10 @@ impl Model {
         if excitation_lines == lines.len() {
             absent.push("excitation");
         }
-        absent.push("transducer");
+        match &self.transducer {
+            Some(own) => lines.push(own.describe()),
+            None => absent.push("transducer"),
+        }
         lines.push(format!(
             "start at x = {} mm, v = {} m/s; runs {} s, settled after {} s",
             short(self.start.0 * 1e3),
@@ -99,7 +102,9 @@ impl Model {
             short(self.scales.speed),
             short(self.scales.time)
         ));
-        lines.push(format!("left out: {}", absent.join(", ")));
+        if !absent.is_empty() {
+            lines.push(format!("left out: {}", absent.join(", ")));
+        }
         lines
     }
 }

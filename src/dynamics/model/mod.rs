@@ -7,15 +7,17 @@ mod read;
 pub(crate) mod scales;
 mod start;
 pub(crate) mod stops;
+pub(crate) mod transducer;
 
 use std::sync::Arc;
 
 use crate::mechanics::{Hertz, Mechanism};
-use crate::scene::{Damping, Excitation, Fault, Scene, Start};
+use crate::scene::{self, Damping, Excitation, Fault, Scene, Start};
 use excitation::{ExcitationParts, Rhythm};
 use scales::{Scales, scales};
 use start::{fault, start_state};
 use stops::{StopAt, StopPair};
+use transducer::Transducer;
 
 /// The most periods of the fastest tone that the clock counts exactly, about 2^53.
 const MOST_PERIODS: f64 = 9e15;
@@ -24,7 +26,9 @@ const MOST_PERIODS: f64 = 9e15;
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(in crate::dynamics) mass: f64,
+    /// Of the mechanism alone.
     pub(in crate::dynamics) damping: f64,
+    pub(in crate::dynamics) transducer: Option<Transducer>,
     /// Shared between the cells of a sweep.
     pub(in crate::dynamics) mechanism: Arc<Mechanism>,
     pub(in crate::dynamics) duration: f64,
@@ -37,6 +41,8 @@ pub struct Model {
     pub(in crate::dynamics) compliant: Option<Hertz>,
     pub(in crate::dynamics) excitation: ExcitationParts,
     pub(in crate::dynamics) start: (f64, f64),
+    /// Electrical state at the start in A or V; 0 without one.
+    pub(in crate::dynamics) start_electrical: f64,
     /// At rest in an equilibrium with nothing to move it.
     pub(in crate::dynamics) motionless: bool,
     /// Where a crossing is counted.
@@ -82,6 +88,16 @@ impl Model {
                 }
             },
         };
+        let transducer = Transducer::of(&scene.transducer, mass);
+        if transducer.is_some_and(|own| !own.is_finite()) {
+            let value = match scene.transducer {
+                scene::Transducer::Piezoelectric { .. } => "Piezoelectric(..)",
+                _ => "Electromagnetic(..)",
+            };
+            let problem = "its numbers make no finite rates, damping and power with this mass; give some \
+                           nearer to those of a real one";
+            faults.push(fault("transducer", value, problem));
+        }
         let stops = StopPair::of(&scene.stops);
         let compliant = Hertz::of(&scene.stops);
         let start = match start_state(scene, &mechanism, stops.as_ref(), compliant.as_ref()) {
@@ -113,13 +129,21 @@ impl Model {
         let forcing_period = drive.fastest().and_then(|f| common.map(|cycles| cycles as f64 / f));
         let barrier = landscape.barrier.as_ref();
         let crossing_level = landscape.crossing_position();
-        let scales = scales(scene, mass, &mechanism, &drive, start, (stops, compliant));
+        let start_electrical = match scene.start {
+            Start::At { electrical, .. } => electrical,
+            Start::Rest => 0.0,
+        };
+        let charged = transducer.and_then(|own| own.circuit).map_or(0.0, |own| own.state(start_electrical));
+        // A charge can give the mass as much energy as a speed.
+        let fastest = (start.0, start.1.abs().max(charged.abs()));
+        let scales = scales(scene, mass, &mechanism, &drive, fastest, (stops, compliant));
         let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
         let on_a_stop = left.is_some_and(|s| s.x == start.0) || right.is_some_and(|s| s.x == start.0);
         let motionless = scene.start == Start::Rest && !on_a_stop && drive.is_still();
         Ok(Self {
             mass,
             damping,
+            transducer,
             duration: scene.run.duration_s,
             forcing_period,
             scales,
@@ -131,6 +155,7 @@ impl Model {
             rhythm: drive.rhythm(common),
             excitation: drive,
             start,
+            start_electrical,
             motionless,
             crossing_level,
             one_well: barrier.is_none(),

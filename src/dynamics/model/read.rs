@@ -6,6 +6,8 @@ use super::Model;
 use super::excitation::ExcitationParts;
 use super::scales::Scales;
 use super::stops::StopPair;
+use super::transducer::{Circuit, Output};
+use crate::dynamics::result::Sample;
 use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::{DoubleDouble, Number, Scalar};
 
@@ -15,9 +17,51 @@ impl Model {
         self.mass
     }
 
-    /// Damping coefficient in N s/m.
+    /// Damping coefficient in N s/m of the mechanism alone.
     pub fn damping(&self) -> f64 {
         self.damping
+    }
+
+    /// Damping coefficient in N s/m that acts on the motion: with that of a transducer without an electrical
+    /// state.
+    pub fn total_damping(&self) -> f64 {
+        self.damping + self.transducer.map_or(0.0, |own| own.damping)
+    }
+
+    /// Whether the scene has a transducer.
+    pub fn has_transducer(&self) -> bool {
+        self.transducer.is_some()
+    }
+
+    /// What the transducer gives at a sample of the motion; none without one.
+    pub fn output(&self, sample: &Sample) -> Option<Output> {
+        self.transducer.map(|own| own.output(sample.v, sample.electrical))
+    }
+
+    /// Whether the transducer has a state of its own, a current or a voltage, that goes on with the motion.
+    pub fn has_electrical_state(&self) -> bool {
+        self.circuit().is_some()
+    }
+
+    /// Electrical state at the start in A or V; 0 without one.
+    pub fn start_electrical(&self) -> f64 {
+        self.start_electrical
+    }
+
+    /// The circuit of the transducer, where that has a state.
+    pub(in crate::dynamics) fn circuit(&self) -> Option<&Circuit> {
+        self.transducer.as_ref().and_then(|own| own.circuit.as_ref())
+    }
+
+    /// Energy in J that the transducer stores in this electrical state.
+    pub(in crate::dynamics) fn charged(&self, electrical: f64) -> f64 {
+        self.circuit().map_or(0.0, |own| 0.5 * self.mass * own.state(electrical).powi(2))
+    }
+
+    /// The electrical state with which this model goes on from that of another one.
+    pub(in crate::dynamics) fn taken_over(&self, before: &Self, electrical: f64) -> f64 {
+        let pair = self.transducer.as_ref().zip(before.transducer.as_ref());
+        pair.map_or(0.0, |(own, was)| own.taken_over(was, electrical))
     }
 
     /// The mechanism.

@@ -38,7 +38,7 @@ pub(crate) fn start_state(
             }
             Ok((x, 0.0))
         }
-        Start::At { x_mm, v_m_per_s } => {
+        Start::At { x_mm, v_m_per_s, .. } => {
             let x = x_mm / 1e3;
             if let Some(stop) = right.filter(|s| x > s.x).or(left.filter(|s| x < s.x)) {
                 return Err(fault(

@@ -125,7 +125,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             while let Some(t) = self.next_sample(end) {
                 let base_accel = base(&self.clock.at(t));
                 let v = if t <= begin { v.to_f64() / self.unit } else { 0.0 };
-                self.samples.push(Sample { t, x: x.to_f64(), v, base_accel, phase });
+                self.samples.push(Sample { t, x: x.to_f64(), v, base_accel, phase, electrical: 0.0 });
                 self.next_time += 1;
             }
         }

@@ -1,6 +1,7 @@
 //! Record of a run: samples, events, statistics, ledger. Nothing here acts on the motion.
 
 pub(crate) mod barrier;
+mod circuit;
 mod crossings;
 pub(crate) mod event_free;
 pub(crate) mod events;

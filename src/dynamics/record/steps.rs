@@ -40,6 +40,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 self.settled.work.add(-av);
             }
         }
+        self.circuit(step, rule, overlap);
         if let Some((begin, end)) = overlap {
             // (a time of contact is inverted to half its digits, which the ends of a whole step need not
             // suffer)
@@ -87,6 +88,10 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                     v: step.path.velocity(into).to_f64() / self.unit,
                     base_accel: base(&instant),
                     phase: step.path.phase(),
+                    electrical: step
+                        .path
+                        .circuit()
+                        .map_or(0.0, |w| self.electrical(polynomial::value(w, into))),
                 });
                 self.next_time += 1;
             }

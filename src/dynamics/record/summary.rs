@@ -1,9 +1,10 @@
 //! Summary of a record: statistics, regime and energy ledger.
 
 use super::recorder::Recorder;
+use super::sums::Sums;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::model::excitation::Rhythm;
-use crate::dynamics::result::{Ledger, Outcome, Phase, Place, Regime, Run, Sample, Summary};
+use crate::dynamics::result::{Harvest, Ledger, Outcome, Phase, Place, Regime, Run, Sample, Summary};
 use crate::numeric::{CompensatedSum, Scalar};
 
 /// Below this share of the length scale a motion is rounding: the mass has not moved.
@@ -16,6 +17,8 @@ pub(crate) struct Ending<T> {
     pub state: (T, T),
     /// Velocity at time 0, kernel units.
     pub start_v: T,
+    /// State of the circuit at time 0 and at the end.
+    pub circuit: (T, T),
     pub phase: Phase,
     /// Change of the potential over the run in J.
     pub potential: f64,
@@ -25,7 +28,7 @@ pub(crate) struct Ending<T> {
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     /// Closes the record.
     pub fn finish(mut self, ending: &Ending<T>, base: impl Fn(&Instant<T>) -> f64) -> Run {
-        let &Ending { at: end, state: (x, v), start_v, phase, potential, outcome } = ending;
+        let &Ending { at: end, state: (x, v), start_v, circuit, phase, potential, outcome } = ending;
         let final_x = x.to_f64();
         let final_v = v.to_f64() / self.unit;
         // What was asked for at the very end (to rounding) is the final state.
@@ -40,6 +43,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 v: final_v,
                 base_accel: base(&self.clock.at(t)),
                 phase,
+                electrical: self.electrical(circuit.1),
             });
             self.next_time += 1;
         }
@@ -50,23 +54,39 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         let value = |sum: &CompensatedSum<T>| sum.value().to_f64();
         let covered = value(&self.covered);
         let seen = covered > 0.0;
+        let transducer = self.model.transducer;
         let ledger = LEDGER.then(|| {
             let kinetic = |v: T| (v * v).to_f64() * 0.5;
             let work_j = value(&self.whole.work) * energy;
             let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
             let impact_j = value(&self.whole.impact) * energy;
-            let stored_j = (kinetic(v) - kinetic(start_v)) * energy + potential;
-            let residual_j = ((work_j - damping_j) - impact_j) - stored_j;
-            let moved =
-                (self.work_moved + self.peak_kinetic) * energy + damping_j + impact_j.abs() + stored_j.abs();
+            let charged = transducer.map_or(0.0, |_| kinetic(circuit.1) - kinetic(circuit.0));
+            let stored_j = (kinetic(v) - kinetic(start_v) + charged) * energy + potential;
+            let (taken, moved) = ((work_j - damping_j) - impact_j, self.work_moved + self.peak_kinetic);
+            let moved = moved * energy + damping_j + impact_j.abs() + stored_j.abs();
+            let electrical = transducer.map(|own| own.energies(self.squared_signal(&self.whole)));
+            let (harvested_j, coil_j) = (electrical.map(|own| own.0), electrical.map(|own| own.1));
+            let (residual_j, moved) = match electrical {
+                Some((load, coil)) => ((taken - load - coil) - stored_j, moved + load + coil),
+                None => (taken - stored_j, moved),
+            };
             let energy_residual = match residual_j.abs() / moved {
                 _ if moved == 0.0 => 0.0,
                 share if share.is_finite() => share,
                 _ => f64::INFINITY, // the run blew up
             };
-            Ledger { work_j, damping_j, impact_j, stored_j, residual_j, energy_residual }
+            Ledger { work_j, damping_j, impact_j, harvested_j, coil_j, stored_j, residual_j, energy_residual }
         });
         let rms = (value(&self.settled.squared_velocity) / covered).sqrt() / self.unit;
+        let harvest = transducer.map(|own| {
+            let squared = Some(self.squared_signal(&self.settled) / (covered * self.unit));
+            let squared = squared.filter(|squared| seen && squared.is_finite());
+            Harvest {
+                mean_load_power: squared.map(|squared| own.energies(squared).0),
+                mean_coil_power: squared.map(|squared| own.energies(squared).1),
+                voltage_rms: squared.map(|squared| own.voltage_rms(squared.sqrt())),
+            }
+        });
         let travel = (self.high - self.low).to_f64();
         let scales = &self.model.scales;
         let counts = &self.counts;
@@ -147,6 +167,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 peak_contact_force: force,
                 peak_contact_pressure: pressure,
                 contact_yields: yields,
+                harvest,
                 outcome,
                 steps: 0,
                 evaluations: 0,
@@ -154,5 +175,14 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 ledger,
             },
         }
+    }
+
+    /// Integral over time in s of the squared signal of the transducer, SI.
+    fn squared_signal(&self, sums: &Sums<T>) -> f64 {
+        let squared = match self.model.circuit() {
+            Some(own) => own.amount * own.amount * sums.circuit.value().to_f64(),
+            None => sums.squared_velocity.value().to_f64(),
+        };
+        squared / self.unit
     }
 }

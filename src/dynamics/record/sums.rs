@@ -15,12 +15,14 @@ pub(crate) struct Sums<T> {
     pub rested: CompensatedSum<T>,
     /// Integral of the displacement; with a ledger only.
     pub displacement: CompensatedSum<T>,
+    /// Integral of the squared state of a circuit.
+    pub circuit: CompensatedSum<T>,
 }
 
 impl<T: Scalar> Sums<T> {
     pub fn new() -> Self {
         let sum = CompensatedSum::new();
-        Self { squared_velocity: sum, work: sum, impact: sum, rested: sum, displacement: sum }
+        Self { squared_velocity: sum, work: sum, impact: sum, rested: sum, displacement: sum, circuit: sum }
     }
 }
 
@@ -60,11 +62,12 @@ impl<T: Scalar> Sums<T> {
         more: impl Fn(&mut CompensatedSum<T>, &CompensatedSum<T>, &CompensatedSum<T>),
     ) {
         // no sum can be forgotten
-        let Self { squared_velocity, work, impact, rested, displacement } = self;
+        let Self { squared_velocity, work, impact, rested, displacement, circuit } = self;
         more(squared_velocity, &before.squared_velocity, &after.squared_velocity);
         more(work, &before.work, &after.work);
         more(impact, &before.impact, &after.impact);
         more(rested, &before.rested, &after.rested);
         more(displacement, &before.displacement, &after.displacement);
+        more(circuit, &before.circuit, &after.circuit);
     }
 }

@@ -36,6 +36,8 @@ pub struct Sample {
     pub base_accel: f64,
     /// Free or resting.
     pub phase: Phase,
+    /// Electrical state of a transducer that has one, current in A or voltage in V; else 0.
+    pub electrical: f64,
 }
 
 impl Sample {

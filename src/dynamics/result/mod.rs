@@ -10,7 +10,7 @@ pub use arrival::{Arrival, Capture, Pursuit, Region, ReleaseIdentity};
 pub use event::{Event, EventKind, Phase, Sample, SectionPoint, Side};
 pub use outcome::{Outcome, Place, Regime};
 pub use request::Request;
-pub use summary::{First, Firsts, Ledger, Summary};
+pub use summary::{First, Firsts, Harvest, Ledger, Summary};
 
 /// Everything a run returns.
 #[derive(Debug, Clone, PartialEq)]

@@ -12,12 +12,28 @@ pub struct Ledger {
     pub damping_j: f64,
     /// Taken by impacts in J, the loss of compliant stops among them.
     pub impact_j: f64,
+    /// Taken by the load of a transducer in J; none without one.
+    pub harvested_j: Option<f64>,
+    /// Taken by the coil of a transducer in J; none without one.
+    pub coil_j: Option<f64>,
     /// Change of kinetic energy and potential in J.
     pub stored_j: f64,
-    /// work - damping - impact - stored in J.
+    /// work - damping - impact - harvested - coil - stored in J.
     pub residual_j: f64,
     /// |residual| over the sum of the magnitudes moved; 0 where nothing moved.
     pub energy_residual: f64,
+}
+
+/// What a transducer gives over the settled window; none where the run ended before it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct Harvest {
+    /// Mean power into the load in W.
+    pub mean_load_power: Option<f64>,
+    /// Mean power lost in the coil in W.
+    pub mean_coil_power: Option<f64>,
+    /// Root mean square of the voltage over the load in V.
+    pub voltage_rms: Option<f64>,
 }
 
 /// When something happened first.
@@ -111,6 +127,8 @@ pub struct Summary {
     pub peak_contact_pressure: Option<f64>,
     /// Whether that pressure is one at which the material yields.
     pub contact_yields: bool,
+    /// What the transducer gives; none without one.
+    pub harvest: Option<Harvest>,
     /// How the run ended.
     pub outcome: Outcome,
     /// Steps of the integrator.

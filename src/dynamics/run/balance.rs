@@ -45,8 +45,10 @@ pub(super) fn judged(model: &Model, run: &Run, reach: Excursion) -> Outcome {
     let numbers = [summary.final_x, summary.final_v, summary.travel().unwrap_or(0.0)];
     let averaged = summary.travel().is_none() || summary.rms_velocity.is_some();
     let ledger = summary.ledger.unwrap_or_default();
-    let Ledger { work_j, damping_j, impact_j, stored_j, residual_j, energy_residual } = ledger;
-    let energies = [work_j, damping_j, impact_j, stored_j, residual_j, energy_residual];
+    let Ledger { work_j, damping_j, impact_j, stored_j, residual_j, energy_residual, .. } = ledger;
+    let electrical = [ledger.harvested_j, ledger.coil_j].map(Option::unwrap_or_default);
+    let energies =
+        [work_j, damping_j, impact_j, stored_j, residual_j, energy_residual, electrical[0], electrical[1]];
     if !(averaged && numbers.into_iter().chain(energies).all(f64::is_finite) && samples()) {
         return Outcome::NotFinite { at: model.duration };
     }

@@ -7,21 +7,23 @@ use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::summary::Ending;
 use crate::dynamics::result::{Outcome, Run};
+use crate::dynamics::state::MotionState;
 use crate::numeric::Scalar;
 
 /// What is kept of a run's first instant: the velocity, the mode and the place in it, and in J what a
-/// compliant stop stores.
+/// compliant stop stores; the state of a circuit.
 pub(crate) struct Begun<T> {
     v: T,
+    circuit: T,
     place: (usize, f64, f64),
 }
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// Starts the motion.
     pub fn begin(&mut self, model: &Model) -> Begun<T> {
-        let v = self.state.v;
+        let MotionState { v, circuit, .. } = self.state;
         self.place_at_start();
-        Begun { v, place: (self.state.mode, self.state.x.to_f64(), self.stop_energy_j(model)) }
+        Begun { v, circuit, place: (self.state.mode, self.state.x.to_f64(), self.stop_energy_j(model)) }
     }
 
     /// Closes the record.
@@ -36,6 +38,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 at: self.state.at,
                 state: (self.state.x, self.state.v),
                 start_v,
+                circuit: (begun.circuit, self.state.circuit),
                 phase,
                 potential,
                 outcome,

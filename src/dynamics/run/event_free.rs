@@ -34,7 +34,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     #[inline]
     pub fn event_free_steps(&mut self) -> FastPath<T> {
         let free = self.state.contact == Contact::Free && self.state.touch.is_none();
-        if LEDGER || !free || self.log.is_some() || !self.record.needs_no_samples() {
+        let alone = self.stepper.drive.circuit().is_none();
+        if LEDGER || !alone || !free || self.log.is_some() || !self.record.needs_no_samples() {
             return FastPath::NotTaken;
         }
         let most = self.stepper.work.pieces_until_look(self.stepper.costs.step);

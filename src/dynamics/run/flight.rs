@@ -6,6 +6,7 @@ use crate::dynamics::equation::End;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::Outcome;
 use crate::dynamics::state::Flow;
+use crate::dynamics::step::circuit::CoupledPath;
 use crate::dynamics::step::path::Path;
 use crate::dynamics::step::stepper::Step;
 use crate::dynamics::step::work::ARRIVAL;
@@ -76,7 +77,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         arrival: Option<Instant<T>>,
         touched: Option<End>,
     ) -> Flow {
-        if !(x.is_finite() && v.is_finite()) {
+        let circuit = self.stepper.circuit_at(length);
+        if !(x.is_finite() && v.is_finite() && circuit.is_none_or(|own| own.is_finite())) {
             return Some(Outcome::NotFinite { at: self.stepper.seconds(&self.state) });
         }
         self.steps += 1;
@@ -85,11 +87,19 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         if let Some(log) = &mut self.log {
             log.add_step(&view);
         }
-        self.record.step(&view, self.stepper.base(self.state.segment));
+        let base = self.stepper.base(self.state.segment);
+        match self.stepper.circuit_series() {
+            None => self.record.step(&view, base),
+            Some(state) => {
+                let path = CoupledPath { series: &self.stepper.series, state };
+                self.record.step(&view.along(&path), base);
+            }
+        }
         let at_once = length == T::zero();
         let state = &mut self.state;
         state.at = arrival.unwrap_or_else(|| self.stepper.clock.advance(&state.at, length));
         (state.x, state.v, state.touch) = (x, v, None);
+        state.circuit = circuit.unwrap_or(state.circuit);
         state.turned_back &= at_once;
         touched.and_then(|end| self.reach(end, at_once))
     }

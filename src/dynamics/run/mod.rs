@@ -47,6 +47,7 @@ fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64, recurs: bool
         Form::Still(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
         Form::Sine(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
         Form::Composite(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
+        Form::Coupled(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
     };
     run.summary.cpu_s = watch.seconds();
     run

@@ -42,6 +42,7 @@ pub(crate) fn pursue_alone(model: &Model, pursuits: &[Pursuit], request: &Reques
         Form::Still(drive) => with_drive(model, pursuits, request, &equation, clock, &drive),
         Form::Sine(drive) => with_drive(model, pursuits, request, &equation, clock, &drive),
         Form::Composite(drive) => with_drive(model, pursuits, request, &equation, clock, &drive),
+        Form::Coupled(drive) => with_drive(model, pursuits, request, &equation, clock, &drive),
     }
 }
 

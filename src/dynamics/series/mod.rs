@@ -230,6 +230,10 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
             }
             let base = if k < D::ZERO_FROM { Some(a[k]) } else { None };
             let drag = damping * T::whole(k + 1) * y[k + 1];
+            let drag = match drive.couple(k, y, cursor) {
+                Some(push) => drag + push,
+                None => drag,
+            };
             y[k + 2] = -(force(k, y, base) + drag) * inverse[k + 2];
         },
     );

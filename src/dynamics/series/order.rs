@@ -17,6 +17,13 @@ pub(crate) trait Tail<T: Number> {
     /// From here on all coefficients are 0; a constant, so that their addition is compiled away.
     const ZERO_FROM: usize = usize::MAX;
 
+    /// What a circuit takes from the acceleration at order `k`, from y\[0..=k+1\]; none without one. Asked
+    /// for in ascending order; its own next coefficient becomes known with it.
+    #[inline(always)]
+    fn couple(&self, _k: usize, _y: &[T; ROOM], _cursor: &mut Self::Cursor) -> Option<T> {
+        None
+    }
+
     /// Fills a\[k\], k >= `SEEDED`, once each and in ascending order; `inverse[n]` is 1/(n(n-1)).
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], cursor: &mut Self::Cursor);
 }

@@ -104,6 +104,14 @@ pub(crate) fn integrals<T: Number, const WORK: bool>(
     (squared * length, power * length)
 }
 
+/// The integral of the square over (from, to) within the step.
+pub(crate) fn squared<T: Scalar>(w: &[T], rule: &GaussLegendre<T>, from: T, to: T) -> T {
+    let length = to - from;
+    let parts = rule.nodes().iter().zip(rule.weights());
+    let square = |t: T| value(w, t) * value(w, t);
+    parts.fold(T::zero(), |sum, (node, weight)| sum + square(from + length * *node) * *weight) * length
+}
+
 /// The integral of the displacement over (from, to) within the step.
 pub(crate) fn moment<T: Scalar>(y: &[T], rule: &GaussLegendre<T>, from: T, to: T) -> T {
     let length = to - from;

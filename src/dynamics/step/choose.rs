@@ -24,7 +24,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     #[inline(always)]
     pub fn choose_step(&mut self, state: &MotionState<T>, flight: Option<T>, left: T) -> Option<Step<T>> {
         let length = match flight {
-            Some(flight) if self.expand_for(state, flight) => flight,
+            Some(flight) if self.drive.circuit().is_none() && self.expand_for(state, flight) => flight,
             _ => {
                 self.expand(state);
                 let natural = self.natural_step();
@@ -37,7 +37,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     #[inline]
     fn natural_step(&self) -> T {
         let s = &self.settings;
-        T::of(self.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest))
+        let own = self.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest);
+        T::of(self.circuit_step().map_or(own, |step| own.min(step)))
     }
 
     /// The step of up to length `h` that ends in time, and with which the equation of motion holds.
@@ -143,16 +144,19 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let series = &self.series;
         let base = self.drive.value(&self.clock, &at, state.segment, || series.base(h), &mut self.cursor);
         let sum = (acceleration + self.equation.damping * v) + base;
+        let push = self.drive.circuit().and_then(|own| Some(own.coupling * self.circuit_at(h)?));
+        let sum = push.map_or(sum, |push| sum + push);
         let residual = (mode.force.at(y) + sum).abs() * h;
         let order = self.series.known - 1;
         let speed = if order < self.settings.order { state.v.abs() } else { self.settings.speed };
         let allowed = T::of(RESIDUAL * order as f64 * self.settings.tolerance) * speed;
         if residual <= allowed {
-            return true;
+            return self.circuit_holds(h, v);
         }
         // larger than asked for: rounding?
         let (_, _, rounding) = mode.force.value(y);
         let size = acceleration.abs() + (self.equation.damping * v).abs() + base.abs();
-        residual <= (rounding + size * T::of(T::EPSILON)) * h * T::of(ROUNDINGS)
+        let size = push.map_or(size, |push| size + push.abs());
+        residual <= (rounding + size * T::of(T::EPSILON)) * h * T::of(ROUNDINGS) && self.circuit_holds(h, v)
     }
 }

@@ -3,6 +3,7 @@
 
 mod choose;
 pub(crate) mod chord;
+pub(crate) mod circuit;
 pub(crate) mod contact;
 mod contact_path;
 mod exit;

@@ -22,6 +22,11 @@ pub(crate) trait Path<T: Scalar> {
     fn in_time(&self) -> Option<(&[T], &[T])> {
         None
     }
+    /// The coefficients of a circuit's state, where there is one.
+    #[inline(always)]
+    fn circuit(&self) -> Option<&[T]> {
+        None
+    }
     /// Number of coefficients of the displacement.
     fn known(&self) -> usize;
     /// Displacement from the piece's origin at the step's start.
@@ -66,6 +71,12 @@ pub(crate) struct StepView<'a, T, P = Series<T>> {
 }
 
 impl<T: Scalar, P: Path<T>> StepView<'_, T, P> {
+    /// The same step along another path.
+    pub fn along<'a, Q>(&self, path: &'a Q) -> StepView<'a, T, Q> {
+        let Self { origin, at, whole, length, duration, bound, limits, x, v, .. } = *self;
+        StepView { path, origin, at, whole, length, duration, bound, limits, x, v }
+    }
+
     /// Displacement at a parameter of the step, never beyond the mode by the rounding of its origin.
     pub fn x_at(&self, t: T) -> T {
         let x = self.path.position(t) + self.origin;
@@ -82,6 +93,11 @@ pub(crate) trait InTime {
     fn coefficients(&self) -> &[Self::Number];
     /// Coefficients of the base's acceleration.
     fn base_coefficients(&self) -> &[Self::Number];
+    /// Those of a circuit's state, where there is one.
+    #[inline(always)]
+    fn circuit(&self) -> Option<&[Self::Number]> {
+        None
+    }
 
     /// As [`Path::integrals`].
     #[inline]
@@ -131,6 +147,10 @@ impl<T: Scalar, P: InTime<Number = T>> Path<T> for P {
     #[inline]
     fn in_time(&self) -> Option<(&[T], &[T])> {
         Some((self.coefficients(), self.base_coefficients()))
+    }
+    #[inline(always)]
+    fn circuit(&self) -> Option<&[T]> {
+        InTime::circuit(self)
     }
     #[inline]
     fn known(&self) -> usize {

@@ -56,6 +56,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (speed, damping) = (state.v.abs(), self.equation.damping);
         let stiffness = self.equation.stop(end).map_or(T::zero(), |stop| stop.stiffness.abs());
         let flight = T::of(3.0) * speed / acceleration;
+        let stiffness = self.circuit_stiffness().map_or(stiffness, |own| stiffness + own);
         let change = (jerk.abs() + stiffness * speed + damping * acceleration) * flight;
         (self.equation.compliant.is_some() || change < acceleration * T::of(1.5)).then_some(flight)
     }
@@ -69,7 +70,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (level, kind) = self.mode(state).end(end);
         let border = self.drive.segment_end(state.segment);
         let before = |border| flight < self.clock.between(&state.at, &border);
-        if kind != EndKind::Stop || !(flight < left) || !border.is_none_or(before) {
+        let alone = self.drive.circuit().is_none();
+        if kind != EndKind::Stop || !alone || !(flight < left) || !border.is_none_or(before) {
             return None;
         }
         if !self.expand_for(state, flight) {

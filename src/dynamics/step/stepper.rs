@@ -73,6 +73,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     #[inline]
     pub fn seed(&mut self, state: &MotionState<T>) {
         self.drive.seed(&self.clock, &state.at, state.segment, &mut self.series.a, &mut self.cursor);
+        D::begin_circuit(&mut self.cursor, state.circuit);
     }
 
     /// Acceleration of the base in m/s^2 at instants within a segment of the drive.
@@ -137,13 +138,29 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     pub fn seeded_contact_acceleration(&self, end: End) -> [T; 3] {
         let (a, sign) = (&self.series.a, end.sign::<T>());
         let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.acceleration);
-        [stop - sign * a[0], -(sign * a[1]), -(sign * a[2] * T::of(2.0))]
+        let rates = [stop - sign * a[0], -(sign * a[1]), -(sign * a[2] * T::of(2.0))];
+        match self.circuit_push() {
+            Some(push) => std::array::from_fn(|i| rates[i] - sign * push[i]),
+            None => rates,
+        }
+    }
+
+    /// What the circuit takes from the acceleration of a mass held in place, and its first two derivatives,
+    /// where the series begins.
+    #[inline(always)]
+    pub fn circuit_push(&self) -> Option<[T; 3]> {
+        let state = D::circuit_state(&self.cursor)?;
+        self.drive.circuit().map(|own| own.push(state[0]))
     }
 
     /// What rounding may make of it.
     #[inline]
     pub fn contact_acceleration_rounding(&self, end: End) -> T {
         let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.acceleration_rounding);
-        stop + self.series.a[0].abs() * T::of(4.0 * T::EPSILON)
+        let rounding = stop + self.series.a[0].abs() * T::of(4.0 * T::EPSILON);
+        match self.circuit_push() {
+            Some(push) => rounding + push[0].abs() * T::of(4.0 * T::EPSILON),
+            None => rounding,
+        }
     }
 }

@@ -6,7 +6,7 @@ use super::Stopped;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::mechanics::{ForceCurve, Mechanism as Built};
 use crate::scene::{
-    Damping, Document, Excitation, Files, Mechanism, RunSettings, Scene, Start, Stops, check,
+    Damping, Document, Excitation, Files, Mechanism, RunSettings, Scene, Start, Stops, Transducer, check,
 };
 
 /// Every case runs at the tightest tolerance, so that what is left is rounding.
@@ -30,8 +30,9 @@ impl Setup {
                 mechanism,
                 damping: Damping::None,
                 stops: Stops::None,
+                transducer: Transducer::None,
                 excitation: Excitation::None,
-                start: Start::At { x_mm: x * 1e3, v_m_per_s: v },
+                start: Start::At { x_mm: x * 1e3, v_m_per_s: v, electrical: 0.0 },
                 run: RunSettings { duration_s, settle_s: Some(0.0), tolerance: TOLERANCE, recurrence: false },
                 sweep: Vec::new(),
                 app: None,
@@ -81,7 +82,7 @@ impl Setup {
     }
 
     pub fn start(mut self, x: f64, v: f64) -> Self {
-        self.scene.start = Start::At { x_mm: x * 1e3, v_m_per_s: v };
+        self.scene.start = Start::At { x_mm: x * 1e3, v_m_per_s: v, electrical: 0.0 };
         self
     }
 

@@ -46,6 +46,9 @@ pub enum NoBasins {
          of sines whose frequencies have a common period, or None"
     )]
     NoPeriod,
+    /// Its transducer has a state of its own.
+    #[error("{}", crate::study::ELECTRICAL_STATE)]
+    ElectricalState,
     /// It loses no energy.
     #[error(
         "it has no damping and no stop that takes energy, so that no motion attracts others; set damping, \
@@ -83,12 +86,15 @@ impl Basins {
     /// matter. Its mass rests or swings once a period of its excitation; without one, once a period of small
     /// oscillations.
     pub fn new(scene: &Scene, mechanism: Arc<Mechanism>, starts: Starts) -> Result<Self, NoBasins> {
+        if scene.transducer.has_state() {
+            return Err(NoBasins::ElectricalState);
+        }
         if !loses_energy(scene) {
             return Err(NoBasins::NoLoss);
         }
         let ((low, high), v) = starts.extent();
         let at = |x_mm: f64, v_m_per_s: f64, excitation: &Excitation| {
-            let start = Start::At { x_mm, v_m_per_s };
+            let start = Start::At { x_mm, v_m_per_s, electrical: 0.0 };
             let scene = Scene { start, excitation: excitation.clone(), ..scene.clone() };
             Model::build(&scene, Arc::clone(&mechanism)).map_err(NoBasins::Faults)
         };

@@ -111,6 +111,9 @@ pub enum NoExponents {
     /// The excitation changes and does not repeat.
     #[error("its excitation has no period that repeats")]
     NoPeriod,
+    /// Its transducer has a state of its own.
+    #[error("{}", crate::study::ELECTRICAL_STATE)]
+    ElectricalState,
     /// It was told to stop.
     #[error("interrupted")]
     Cancelled,

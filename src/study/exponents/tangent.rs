@@ -46,6 +46,9 @@ impl Tangent {
     /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time of the
     /// mechanism.
     pub fn of(model: &Model, phase: f64) -> Result<Self, NoExponents> {
+        if model.has_electrical_state() {
+            return Err(NoExponents::ElectricalState);
+        }
         let map = match model.stroboscopic_map(phase) {
             Some(map) => map,
             None if model.excitation().is_constant() => StroboscopicMap::over(model, model.natural_time()),
@@ -57,7 +60,7 @@ impl Tangent {
             2.0 * pair.map_or(1.0, |stop| stop.restitution).ln()
         };
         let struck = model.compliant().is_none().then(|| [Side::Left, Side::Right].map(kept));
-        let damped = -model.damping() * map.period() / model.mass();
+        let damped = -model.total_damping() * map.period() / model.mass();
         Ok(Self { scales: model.scales(), map, damped, struck })
     }
 

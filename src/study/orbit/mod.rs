@@ -73,6 +73,8 @@ pub enum NoOrbit {
     Shorter(u32),
     /// The run does not come to a motion that repeats.
     NotSettled,
+    /// Its transducer has a state of its own.
+    ElectricalState,
     /// It was cancelled.
     Cancelled,
 }
@@ -94,6 +96,7 @@ impl fmt::Display for NoOrbit {
                 "the run comes to no motion that repeats after at most 12 forcing periods; name a period, or \
                  start elsewhere",
             ),
+            Self::ElectricalState => f.write_str(crate::study::ELECTRICAL_STATE),
             Self::Cancelled => f.write_str("it was told to stop"),
         }
     }
@@ -212,6 +215,9 @@ fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Orbit {
 ///
 /// Precondition: the drive repeats.
 pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool) -> Result<Orbit, NoOrbit> {
+    if model.has_electrical_state() {
+        return Err(NoOrbit::ElectricalState);
+    }
     let (Some(map), Some(forcing)) = (map_of(model, phase), model.forcing_period()) else {
         return Err(NoOrbit::NotSettled);
     };

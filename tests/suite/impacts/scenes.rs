@@ -15,6 +15,7 @@ pub fn scene(mechanism: Mechanism, start: Start, duration_s: f64) -> Scene {
         mechanism,
         damping: Damping::None,
         stops: Stops::None,
+        transducer: Default::default(),
         excitation: Excitation::None,
         start,
         run: RunSettings { duration_s, settle_s: Some(0.0), tolerance: 1e-12, recurrence: false },
@@ -65,7 +66,7 @@ pub fn left_stop(left_mm: f64, restitution: f64) -> Stops {
 }
 
 pub fn at(x_mm: f64, v_m_per_s: f64) -> Start {
-    Start::At { x_mm, v_m_per_s }
+    Start::At { x_mm, v_m_per_s, electrical: 0.0 }
 }
 
 /// A sine of an amplitude in m/s^2.

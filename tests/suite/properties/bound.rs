@@ -102,7 +102,7 @@ fn moved(scene: &Scene, model: &Model, share: f64) -> Vec<Scene> {
     });
     with(&|own| own.excitation = Excitation::Sum(vec![own.excitation.clone(), wobble(model, share)]));
     let [left, right] = distances(&scene.stops).map(|own| own.0 * 1e3);
-    if let Start::At { x_mm: x, v_m_per_s: v } = scene.start {
+    if let Start::At { x_mm: x, v_m_per_s: v, .. } = scene.start {
         let (dx, dv) = (share * model.scales().length * 1e3, share * model.scales().speed);
         // A mass beside a stop is moved inward for either sign: what that moves is then no smooth answer.
         let inward = |stop: f64| (x - stop).abs() <= dx.abs();
@@ -111,8 +111,10 @@ fn moved(scene: &Scene, model: &Model, share: f64) -> Vec<Scene> {
             () if inward(-left) => (dx.abs(), dv.abs()),
             () => (dx, dv),
         };
-        with(&|own| own.start = Start::At { x_mm: (x + dx).clamp(-left, right), v_m_per_s: v });
-        with(&|own| own.start = Start::At { x_mm: x, v_m_per_s: v + dv });
+        with(&|own| {
+            own.start = Start::At { x_mm: (x + dx).clamp(-left, right), v_m_per_s: v, electrical: 0.0 }
+        });
+        with(&|own| own.start = Start::At { x_mm: x, v_m_per_s: v + dv, electrical: 0.0 });
     }
     all
 }

@@ -107,7 +107,9 @@ fn scene() -> impl Strategy<Value = Scene> {
     ];
     let start = prop_oneof![
         1 => Just(Start::Rest),
-        3 => (signed(-15, 15), signed(-30, 30)).prop_map(|(x_mm, v_m_per_s)| Start::At { x_mm, v_m_per_s }),
+        3 => (signed(-15, 15), signed(-30, 30)).prop_map(|(x_mm, v_m_per_s)| {
+            Start::At { x_mm, v_m_per_s, electrical: 0.0 }
+        }),
     ];
     let run = (1e-3..20.0f64, prop::sample::select(vec![1e-3, 1e-9, 1e-14]));
     (magnitude(-15, 15), mechanism(), damping, (stops(), excitation()), start, run).prop_map(
@@ -118,6 +120,7 @@ fn scene() -> impl Strategy<Value = Scene> {
             mechanism,
             damping,
             stops,
+            transducer: Default::default(),
             excitation,
             start,
             run: RunSettings { duration_s, settle_s: Some(0.0), tolerance, recurrence: false },
@@ -192,8 +195,9 @@ fn a_damping_ratio_without_a_finite_coefficient_is_refused() {
         mass_g: 1.0,
         damping: Damping::Ratio(1.0),
         stops: Stops::None,
+        transducer: Default::default(),
         excitation: Excitation::None,
-        start: Start::At { x_mm: 0.0, v_m_per_s: 0.0 },
+        start: Start::At { x_mm: 0.0, v_m_per_s: 0.0, electrical: 0.0 },
         run,
         sweep: vec![],
         app: None,

@@ -61,7 +61,7 @@ pub fn image(scene: &Scene) -> Option<Scene> {
         std::mem::swap(restitution_left, restitution_right);
     }
     match &mut image.start {
-        Start::At { x_mm, v_m_per_s } => {
+        Start::At { x_mm, v_m_per_s, .. } => {
             *x_mm = -*x_mm;
             *v_m_per_s = -*v_m_per_s;
         }

@@ -226,6 +226,7 @@ pub fn scene_with(
                 mechanism,
                 damping: units.damping(damping),
                 stops: units.stops(natural_stops),
+                transducer: Default::default(),
                 excitation: units.excitation(&excitation),
                 run: RunSettings {
                     duration_s: units.seconds(run.duration_s),

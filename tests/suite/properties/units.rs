@@ -109,7 +109,7 @@ impl Units {
 
     /// A start whose displacement and velocity are natural.
     pub fn start(self, (x, v): (f64, f64)) -> Start {
-        Start::At { x_mm: self.millimetres(x), v_m_per_s: v * self.length / self.time }
+        Start::At { x_mm: self.millimetres(x), v_m_per_s: v * self.length / self.time, electrical: 0.0 }
     }
 
     /// An excitation whose amplitudes, frequencies and times are natural.

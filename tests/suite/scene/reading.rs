@@ -14,6 +14,7 @@ fn the_smallest_scene_has_the_documented_defaults() {
         mechanism: Mechanism::Cubic { linear_n_per_m: -40.0, cubic_n_per_m3: 8.2e5 },
         damping: Damping::None,
         stops: Stops::None,
+        transducer: Default::default(),
         excitation: Excitation::None,
         start: Start::Rest,
         run: RunSettings { duration_s: 10.0, settle_s: None, tolerance: 1e-9, recurrence: true },
@@ -83,9 +84,10 @@ fn every_damping_and_stop_and_start_reads_and_writes() {
         document.check().unwrap();
         reads_back(&document.scene);
     }
-    for (text, start) in
-        [("Rest", Start::Rest), ("At(x_mm: -3, v_m_per_s: 0.1)", Start::At { x_mm: -3.0, v_m_per_s: 0.1 })]
-    {
+    for (text, start) in [
+        ("Rest", Start::Rest),
+        ("At(x_mm: -3, v_m_per_s: 0.1)", Start::At { x_mm: -3.0, v_m_per_s: 0.1, electrical: 0.0 }),
+    ] {
         let document = document(&[("start", text)]);
         assert_eq!(document.scene.start, start);
         document.check().unwrap();
@@ -202,8 +204,8 @@ fn structural_errors_have_a_place_and_the_known_names() {
         ),
         (("mass_g", "15 title: \"t\""), "expected a comma before this"),
         (
-            ("transducer", "None"),
-            "unknown field `transducer` in Scene; known: title, notes, mass_g, mechanism,",
+            ("tolerance", "None"),
+            "unknown field `tolerance` in Scene; known: title, notes, mass_g, mechanism,",
         ),
         (("app", "(layout: Big)"), "app.layout: unknown choice `Big` in Layout; known: Look, Study, Map"),
     ] {

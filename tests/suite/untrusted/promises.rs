@@ -84,7 +84,8 @@ pub fn table(bytes: &[u8]) {
         assert!(equilibria.is_sorted_by(|a, b| a.x < b.x), "{equilibria:?}");
         assert!(equilibria.iter().all(|own| low <= own.x && own.x <= high), "{equilibria:?}");
         let mut document = small();
-        document.scene.start = Start::At { x_mm: 0.5e3 * low + 0.5e3 * high, v_m_per_s: 0.0 };
+        document.scene.start =
+            Start::At { x_mm: 0.5e3 * low + 0.5e3 * high, v_m_per_s: 0.0, electrical: 0.0 };
         runs(&document, mechanism);
     }
 }

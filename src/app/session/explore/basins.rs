@@ -68,7 +68,7 @@ impl Session {
         let rounded = |value: f64, unit: f64| (value / unit).round() * unit;
         let x_mm = crate::app::words::numbers::decimal(rounded(x * 1e3, 1e-3));
         let v_m_per_s = crate::app::words::numbers::decimal(rounded(v, 1e-4));
-        if self.edit_once(|scene| scene.start = Start::At { x_mm, v_m_per_s }) {
+        if self.edit_once(|scene| scene.start = Start::At { x_mm, v_m_per_s, electrical: 0.0 }) {
             self.apply();
             self.restart();
         }

@@ -83,7 +83,7 @@ impl Session {
         let (_, right) = self.model.stop_positions();
         let room = right.is_none_or(|stop| (stop - start.x) * 1e3 > BESIDE_MM);
         let aside = if room { BESIDE_MM } else { -BESIDE_MM };
-        Start::At { x_mm: start.x * 1e3 + aside, v_m_per_s: start.v }
+        Start::At { x_mm: start.x * 1e3 + aside, v_m_per_s: start.v, electrical: start.electrical }
     }
 
     /// The model of a scene with the mechanism of the open one, or why there is none.

@@ -75,7 +75,7 @@ impl<'a> Problem<'a> {
             // a stage may look beyond the known curve, where a run does not go
             None => self.model.mechanism().curve.force(x.clamp(self.domain.0, self.domain.1)),
         };
-        -(force + self.model.damping() * v) / self.model.mass() - self.base(t)
+        -(force + self.model.total_damping() * v) / self.model.mass() - self.base(t)
     }
 
     /// Whether the run may go on from here.

@@ -61,7 +61,7 @@ impl<'a> Tally<'a> {
     }
 
     fn sample(&mut self, problem: &Problem, t: f64, x: f64, v: f64, phase: Phase) {
-        self.run.samples.push(Sample { t, x, v, base_accel: problem.base(t), phase });
+        self.run.samples.push(Sample { t, x, v, base_accel: problem.base(t), phase, electrical: 0.0 });
         self.next += 1;
     }
 

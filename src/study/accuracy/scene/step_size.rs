@@ -29,6 +29,9 @@ pub enum Unfit {
     /// Its stops give way, and clamp and bounce is for stops that do not.
     #[error("clamp and bounce is for rigid stops, and these give way")]
     Compliant,
+    /// Its transducer has a state of its own, which the schemes do not step.
+    #[error("the schemes step displacement and velocity, and its transducer has a state of its own")]
+    ElectricalState,
     /// It was told to stop.
     #[error("told to stop")]
     Cancelled,
@@ -93,6 +96,9 @@ impl StepSize {
 pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) -> Result<StepSize, Unfit> {
     if model.compliant().is_some() {
         return Err(Unfit::Compliant);
+    }
+    if model.has_electrical_state() {
+        return Err(Unfit::ElectricalState);
     }
     let model = &within_reach(model, step).with_tolerance(model.tolerance().min(TRUE_TOLERANCE));
     let drawn = model.duration().min(DRAWN_PERIODS * model.characteristic_time());

@@ -1,0 +1,44 @@
+//! Circuit of a transducer whose state goes on with the motion, in kernel units.
+//!
+//! The state w of the circuit (a current or a voltage) is scaled so that w^2/2 is its energy over the mass;
+//! it is a velocity then, and the coupling is the same in both directions:
+//!
+//! ```text
+//! x'' = .. - g w,    w' = g x' - d w.
+//! ```
+//!
+//! Its Taylor coefficients follow from those of the motion by one product and one sum each.
+
+use crate::dynamics::series::ROOM;
+use crate::numeric::Scalar;
+
+/// A circuit in kernel units.
+#[derive(Debug, Clone)]
+pub(crate) struct Circuit<T> {
+    /// g.
+    pub coupling: T,
+    /// d.
+    pub decay: T,
+    /// d/k, by which coefficient k follows from the one before.
+    pub rates: [T; ROOM],
+    /// What the tolerance of its state is relative to.
+    pub scale: T,
+}
+
+impl<T: Scalar> Circuit<T> {
+    pub fn new(coupling: T, decay: T, scale: T) -> Self {
+        let mut rates = [T::zero(); ROOM];
+        for (k, rate) in rates.iter_mut().enumerate().skip(1) {
+            *rate = decay / T::whole(k);
+        }
+        Self { coupling, decay, rates, scale }
+    }
+
+    /// What the state `w` takes from the acceleration of a mass that is held in place, and its first two
+    /// derivatives.
+    pub fn push(&self, w: T) -> [T; 3] {
+        let push = self.coupling * w;
+        let falling = -(self.decay * push);
+        [push, falling, -(self.decay * falling)]
+    }
+}

@@ -1,0 +1,163 @@
+//! Transducer of a scene in SI: what it does to the motion, and what it gives.
+//!
+//! Voltage, current and powers follow from one signal. Without an electrical state that is the velocity: a
+//! coil without inductance is a damping k^2/(coil + load), exactly. Else it is the state, the current in the
+//! coil or the voltage of the piezoelectric layer.
+
+use crate::numeric::short;
+use crate::scene;
+
+/// A transducer as run. SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Transducer {
+    /// Damping coefficient in N s/m that it adds.
+    pub damping: f64,
+    /// The circuit whose state goes on with the motion, where there is one.
+    pub circuit: Option<Circuit>,
+    /// Voltage over the load per signal.
+    voltage: f64,
+    /// Current through the load per signal.
+    current: f64,
+    /// Power into the load, and lost in the coil, per squared signal.
+    load: f64,
+    coil: f64,
+}
+
+/// A circuit: of its state s, in A or V, and the speed w = s/amount, x'' = .. - coupling w and
+/// w' = coupling x' - decay w.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Circuit {
+    /// In 1/s.
+    pub coupling: f64,
+    /// In 1/s.
+    pub decay: f64,
+    /// State at w = 1 m/s, whose energy is that of the mass at this speed.
+    pub amount: f64,
+    /// Whether the state is a voltage.
+    is_voltage: bool,
+}
+
+impl Circuit {
+    /// Of a coupling in N/A or N/V, a storage in H or F, and its decay in 1/s.
+    fn new(coupling: f64, storage: f64, decay: f64, mass: f64, is_voltage: bool) -> Self {
+        let amount = (mass / storage).sqrt();
+        Self { coupling: coupling * amount / mass, decay, amount, is_voltage }
+    }
+
+    /// The state as a speed in m/s.
+    pub fn state(&self, electrical: f64) -> f64 {
+        electrical / self.amount
+    }
+
+    fn is_finite(&self) -> bool {
+        let numbers = [self.coupling * self.coupling, self.decay, self.amount * self.amount];
+        numbers.into_iter().all(f64::is_finite) && self.amount > 0.0
+    }
+}
+
+/// What a transducer gives at an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Output {
+    /// Voltage over the load in V.
+    pub voltage: f64,
+    /// Current through the load in A.
+    pub current: f64,
+    /// Power into the load in W.
+    pub power: f64,
+}
+
+impl Transducer {
+    /// The transducer of a scene whose mass in kg is given; none where it has none.
+    pub fn of(transducer: &scene::Transducer, mass: f64) -> Option<Self> {
+        use scene::Transducer::{Electromagnetic, Piezoelectric};
+        let nothing = Self { damping: 0.0, circuit: None, voltage: 0.0, current: 0.0, load: 0.0, coil: 0.0 };
+        Some(match *transducer {
+            scene::Transducer::None => return None,
+            Electromagnetic { coupling_v_s_per_m, load_ohm, .. } if load_ohm.is_infinite() => {
+                Self { voltage: coupling_v_s_per_m, ..nothing }
+            }
+            Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh } => {
+                let (resistance, inductance) = (coil_ohm + load_ohm, inductance_mh / 1e3);
+                // per current, which is the signal or follows from it
+                let (gain, circuit) = match transducer.has_state() {
+                    true => {
+                        let (k, decay) = (coupling_v_s_per_m, resistance / inductance);
+                        (1.0, Some(Circuit::new(k, inductance, decay, mass, false)))
+                    }
+                    false => (coupling_v_s_per_m / resistance, None),
+                };
+                Self {
+                    damping: if circuit.is_none() { coupling_v_s_per_m * gain } else { 0.0 },
+                    circuit,
+                    voltage: load_ohm * gain,
+                    current: gain,
+                    load: load_ohm * gain * gain,
+                    coil: coil_ohm * gain * gain,
+                }
+            }
+            Piezoelectric { coupling_n_per_v, load_kohm: 0.0, .. } => {
+                Self { current: coupling_n_per_v, ..nothing }
+            }
+            Piezoelectric { coupling_n_per_v, capacitance_nf, load_kohm } => {
+                let (conductance, capacitance) = (1.0 / (load_kohm * 1e3), capacitance_nf / 1e9);
+                let decay = conductance / capacitance;
+                let circuit = Some(Circuit::new(coupling_n_per_v, capacitance, decay, mass, true));
+                Self { circuit, voltage: 1.0, current: conductance, load: conductance, ..nothing }
+            }
+        })
+    }
+
+    /// Whether a motion can be computed with it.
+    pub fn is_finite(&self) -> bool {
+        let numbers = [self.damping, self.voltage, self.current, self.load, self.coil];
+        numbers.into_iter().all(f64::is_finite) && self.circuit.is_none_or(|own| own.is_finite())
+    }
+
+    /// What it gives at a velocity in m/s and an electrical state in A or V.
+    pub fn output(&self, v: f64, electrical: f64) -> Output {
+        let signal = if self.circuit.is_some() { electrical } else { v };
+        Output {
+            voltage: self.voltage * signal,
+            current: self.current * signal,
+            power: self.load * signal * signal,
+        }
+    }
+
+    /// Energy into the load and lost in the coil in J, from the integral of the squared signal over time; of
+    /// its mean, the mean powers in W.
+    pub fn energies(&self, squared: f64) -> (f64, f64) {
+        (self.load * squared, self.coil * squared)
+    }
+
+    /// Root mean square of the voltage over the load in V, from that of the signal.
+    pub fn voltage_rms(&self, signal: f64) -> f64 {
+        self.voltage.abs() * signal
+    }
+
+    /// The state of this transducer after one of `before` had the state `electrical`: a current goes on as a
+    /// current and a voltage as a voltage.
+    pub fn taken_over(&self, before: &Self, electrical: f64) -> f64 {
+        match (&self.circuit, &before.circuit) {
+            (Some(own), Some(was)) if own.is_voltage == was.is_voltage => electrical,
+            _ => 0.0,
+        }
+    }
+
+    /// It in words, for `check`.
+    pub fn describe(&self) -> String {
+        match &self.circuit {
+            None => format!(
+                "transducer: a damping of {} N s/m; {} V over the load and {} A through it at 1 m/s",
+                short(self.damping),
+                short(self.voltage),
+                short(self.current)
+            ),
+            Some(own) => format!(
+                "transducer: {} with a time constant of {} s beside the motion",
+                if own.is_voltage { "a voltage" } else { "a current" },
+                short(1.0 / own.decay)
+            ),
+        }
+    }
+}
