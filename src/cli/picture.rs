@@ -90,7 +90,7 @@ impl<'a> Picture<'a> {
 /// change nothing on a picture, such as the number of threads and the places of files, are left out, so that
 /// the same picture is the same bytes.
 fn arguments() -> Vec<String> {
-    const IDLE: [&str; 12] = [
+    const IDLE: [&str; 14] = [
         "headless",
         "out",
         "jobs",
@@ -103,6 +103,8 @@ fn arguments() -> Vec<String> {
         "contact",
         "attractors",
         "strict",
+        "resume",
+        "force",
     ];
     let program = Options::command();
     let Ok(matches) = program.clone().try_get_matches_from(std::env::args_os()) else { return Vec::new() };

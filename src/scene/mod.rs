@@ -52,7 +52,7 @@ pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 pub use fields::{FieldPath, all_fields, numeric_fields};
 pub use files::{FileError, Files, LARGEST_TABLE};
 pub use locate::{Place, Places, has_comments};
-pub use manifest::{PROGRAM, is_manifest};
+pub use manifest::{PROGRAM, Swept, is_manifest};
 pub use measured::{Ask, Channel, LARGEST_MEASURED, MOST_MEASURED, Measured, MeasuredError, read_measured};
 pub use mechanism::{FlexureGroup, Mechanism};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
