@@ -14,15 +14,14 @@ use serde_json::Value;
 use super::failure::Failure;
 use super::options::Common;
 use super::shard::{PLACE, command, other_name, value};
-use super::support::{MANIFEST, Watch, finish, open, write_text};
-use super::sweep::{file_name, manifest_path};
+use super::support::{MANIFEST, Watch, file_name, finish, manifest_path, open, write_text};
 use super::{interrupt, say};
 
 /// What it takes.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// The files that `sweep --shard` wrote, in any order; the manifest of each stands beside it
-    #[arg(value_name = "PART", required = true)]
+    #[arg(value_name = "PART")]
     pub parts: Vec<PathBuf>,
 
     /// What every command takes.
@@ -98,6 +97,10 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
         }
     }
     let Some(first) = parts.first() else {
+        if paths.is_empty() {
+            let such = "such as merge map-*-of-5.csv --out map.csv";
+            return Err(Failure::argument(format!("merge: name the files of all shards, {such}")));
+        }
         let names = unfinished.join(", ");
         return Err(Failure::argument(format!(
             "{names}: no manifest stands beside it, as beside the rows of every shard that is whole"

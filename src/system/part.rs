@@ -122,7 +122,7 @@ impl Opened {
     }
 
     /// Whether there are rows of an earlier process.
-    pub fn exists(&self) -> bool {
+    pub fn has_rows(&self) -> bool {
         self.exists
     }
 

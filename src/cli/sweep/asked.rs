@@ -10,9 +10,10 @@ use interwell::study::{
     Carry, DIRECTION, Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, Shard, SummaryField, Sweep,
 };
 
+use super::super::failure::Failure;
 use super::super::shard::shard;
 use super::super::support::unbuilt;
-use super::{Arguments, Failure};
+use super::Arguments;
 
 /// What is asked for.
 pub struct Asked {

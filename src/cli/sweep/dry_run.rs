@@ -5,13 +5,14 @@ use std::time::Duration;
 
 use interwell::output::rows;
 use interwell::scene::Document;
-use interwell::study::{Slice, Sweep, Task};
+use interwell::study::{Shard, Slice, Sweep, Task};
 use interwell::system::clock::WallClock;
 use interwell::system::threads::{Pool, within};
 
+use super::super::failure::Failure;
 use super::super::progress::duration;
 use super::super::shard::{command, value};
-use super::{Failure, Shard, located};
+use super::super::support::located;
 
 /// Cells that are run at first for each thread, after how many seconds it is enough of them, and for how long
 /// they are run at most.

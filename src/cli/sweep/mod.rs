@@ -4,24 +4,22 @@ mod asked;
 mod dry_run;
 mod rows;
 
-use std::path::{Path, PathBuf};
-
 use clap::Args;
 use interwell::output::{
-    Made, Overlay, Sink, SweepPicture, can_show, csv_table, header, is_regular, manifest, plan, sweep_figure,
+    Made, Overlay, Sink, SweepPicture, can_show, csv_table, header, manifest, plan, sweep_figure,
 };
 use interwell::scene::Document;
-use interwell::study::{Grid, Shard, SummaryField, Sweep, SweepEnd, SweepOptions, Table, Tally, Task};
+use interwell::study::{Grid, SummaryField, Sweep, SweepEnd, SweepOptions, Table, Tally, Task};
 use interwell::study::{first_crossing, release_line};
-use interwell::system::threads::{Pool, processors};
 use serde_json::json;
 
-use super::failure::{Failure, wrong_cell};
+use super::failure::Failure;
 use super::options::{Common, PlotOptions, RangeOptions};
 use super::picture::{Picture, caption, ranges};
 pub use super::progress::bar;
 use super::shard;
 use super::support::{MANIFEST, Watch, finish, inputs, load, open, until_settled, warn, write_text};
+pub use super::support::{file_name, located, manifest_path, pool};
 use super::{interrupt, say};
 use asked::{Asked, view};
 use rows::{Begin, Blocks, Compared, Rows};
@@ -303,30 +301,4 @@ fn tell(options: &Arguments, document: &Document, tally: &Tally, (rows, before):
             document.name, tally.yielding
         ));
     }
-}
-
-/// Where the manifest of the rows at `out` goes: beside them, where they are a regular file.
-pub fn manifest_path(out: &Path) -> Option<PathBuf> {
-    is_regular(out).then(|| {
-        let mut name = out.as_os_str().to_owned();
-        name.push(".json");
-        name.into()
-    })
-}
-
-/// The name of the file with the rows.
-pub fn file_name(out: &Path) -> String {
-    out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
-}
-
-/// As many threads as were asked for.
-pub fn pool(common: &Common) -> Result<Pool, Failure> {
-    let count = common.jobs.map_or_else(processors, usize::from);
-    Pool::new(count).map_err(|error| Failure::Failed(error.into()))
-}
-
-/// The error of a cell that is wrong, with the places of its faults.
-pub fn located(document: &Document, cell: interwell::study::CellFaults) -> Failure {
-    let error = document.error_from(cell.faults.clone());
-    wrong_cell(&cell, error)
 }

@@ -10,7 +10,8 @@ use interwell::system::clock::WallClock;
 use interwell::system::{Opened, Part, PartError, files};
 use serde_json::{Value, json};
 
-use crate::cli::failure::Failure;
+use super::super::failure::Failure;
+use super::super::support::manifest_path;
 
 /// The most rows of a block, where a walk is not longer, and the time in s after which it ends.
 const MOST_ROWS: u64 = 4096;
@@ -75,11 +76,11 @@ impl Begin<'_> {
         let opened = Opened::new(self.out).map_err(refused)?;
         let part = opened.part().display().to_string();
         let head = json!({ "plan": self.plan, "shard": self.shard.to_string() });
-        if self.resume && !opened.exists() && self.is_whole() {
+        if self.resume && !opened.has_rows() && self.is_whole() {
             opened.leave();
             return Ok(None);
         }
-        if !opened.exists() || (self.force && !self.resume) {
+        if !opened.has_rows() || (self.force && !self.resume) {
             let part = opened.begin(&head.to_string(), self.header).map_err(refused)?;
             return Ok(Some((self.blocks(part), Tally::default())));
         }
@@ -123,7 +124,7 @@ impl Begin<'_> {
 
     /// Whether the file is there with all its rows, as its manifest says.
     fn is_whole(&self) -> bool {
-        let Some(beside) = super::manifest_path(self.out) else { return false };
+        let Some(beside) = manifest_path(self.out) else { return false };
         let text = files::bytes(&beside).ok();
         let manifest = text.and_then(|text| serde_json::from_slice::<Value>(&text).ok());
         manifest.is_some_and(|own| {
