@@ -152,15 +152,17 @@ fn a_changed_byte_is_found_and_nothing_is_lost() {
     flip("map.csv.part", 0.1);
     flip("map.csv.part", 0.5);
     own.refuses("--resume", 1, &["changed", "--resume --force keeps the "]);
-    flip("map.csv.part.journal", 0.9);
-    own.refuses("--resume", 1, &["changed"]);
+    // a line of the journal that is not the last one: that one might be torn
+    let journal = own.read("map.csv.part.journal");
+    let third = journal.match_indices('\n').nth(1).unwrap().0 + 40;
+    flip("map.csv.part.journal", third as f64 / journal.len() as f64);
+    own.refuses("--resume", 1, &["what its journal says after row 0 is changed"]);
     own.ends("--resume --force");
 
     let own = Unfinished::new(MAP, 400);
     fs::write(own.path("map.csv.part"), &own.bytes()[0][..1000]).unwrap();
     own.refuses("--resume", 1, &["rows 1 to ", "missing"]);
-    fs::remove_file(own.path("map.csv.part.journal")).unwrap();
-    fs::write(own.path("map.csv.part.journal"), "").unwrap();
+    fs::write(own.path("map.csv.part.journal"), "no journal").unwrap();
     own.refuses("--resume", 2, &["journal", "--force"]);
     own.ends("--force");
 }
