@@ -105,7 +105,8 @@ mod tests {
     fn a_byte_that_was_changed_is_found() {
         let text = text();
         let last = text.trim_end().rfind('\n').unwrap() + 1;
-        for at in 0..last {
+        // without the end of the last line but one, the last one looks torn
+        for at in 0..last - 1 {
             let mut bytes = text.clone().into_bytes();
             bytes[at] ^= 1;
             let journal = read(&bytes);

@@ -81,7 +81,8 @@ impl Pool {
         mut take: impl FnMut(R) -> bool,
     ) {
         let (permit, permits) = channel();
-        for _ in 0..ahead.max(1) {
+        // Each thread takes one more, by which it learns that there are no more parts.
+        for _ in 0..ahead.max(self.count()) {
             let _ = permit.send(());
         }
         let parts = Mutex::new((permits, parts.enumerate()));
