@@ -21,6 +21,9 @@ Examples:
   interwell --headless sweep paper --cut travel_limit_mm=1.5 --cut amplitude_g=1.2 --plot cuts.pdf
   interwell --headless sweep paper --over stops.travel_limit_mm=1:4:0.5 --over excitation.amplitude_g=0.5,1
   interwell --headless sweep paper --over excitation.amplitude_g=0:2:0.02 --carry both --plot hysteresis.png
+  interwell --headless sweep paper --out map.csv --resume
+  interwell --headless sweep paper --shard 2/5 --out 'map-{shard}.csv'
+  interwell --headless merge map-*-of-5.csv --out map.csv
   interwell --headless section paper --over excitation.amplitude_g=0.5:1.5:0.005 --plot diagram.png
   interwell --headless basins --x-mm -1.5:1.5:101 --v -0.5:0.5:101 --out basins.csv --plot basins.png
   interwell --headless exponents duffing-chaos --quiet
@@ -32,7 +35,7 @@ A scene is a .ron file or the name of a built-in one; `presets --write DIR` copi
 A scene is also the manifest that `sweep --out map.csv` writes beside its rows (map.csv.json), or - for
 standard input.
 Exit status: 0 done; 1 the run or the writing failed, a case of `accuracy` falls short, or a run of
-`simulate --strict` ended early; 2 the arguments or the scene are wrong.";
+`simulate --strict` or `sweep --strict` ended early; 2 the arguments or the scene are wrong.";
 
 /// Bistable mechanisms with hard travel limits: see and compute how stops start interwell motion.
 #[derive(Debug, Parser)]
@@ -110,6 +113,8 @@ commands! {
     simulate Simulate " [SCENE]";
     /// Run a grid of scenes: CSV with a row for each cell
     sweep Sweep " [SCENE]";
+    /// Put the parts of a sweep together that `sweep --shard` computed
+    merge Merge " PART...";
     /// The state once a forcing period or at every impact; over a field the bifurcation diagram
     section Section " [SCENE]";
     /// The least value of a field from which on a motion from rest is released, crosses or is interwell

@@ -216,7 +216,7 @@ fn diagram(options: &Arguments, asked: SectionOptions) -> Result<(), Failure> {
     if sinks[3].is_some() {
         let origin = watch.origin(pool.count());
         let data = file_name(common.out());
-        let text = manifest(("section", &document), sections.grid(), &tally, &origin, &data);
+        let text = manifest(("section", &document), sections.grid(), &tally, None, &origin, &data);
         write_text(&mut sinks[3], &text)?;
     }
     finish(sinks)?;

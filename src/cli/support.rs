@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use interwell::dynamics::Model;
 use interwell::mechanics::{BuildError, Mechanism};
-use interwell::output::{Provenance, Sink, header, rows, same_target};
+use interwell::output::{Provenance, Sink, header, is_regular, rows, same_target};
 use interwell::scene::{Axis, Document, SceneError, Transducer, is_manifest, is_scene_file};
-use interwell::study::{ELECTRICAL_STATE, Table};
+use interwell::study::{CellFaults, ELECTRICAL_STATE, Table};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::files::{canonical, is_file};
+use interwell::system::threads::{Pool, processors};
 
-use super::failure::Failure;
+use super::failure::{Failure, wrong_cell};
 use super::options::Common;
 use super::{interrupt, say};
 
@@ -255,6 +256,32 @@ pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -
         true => Err(Failure::argument(format!("{}: {what}: {ELECTRICAL_STATE}", document.name))),
         false => Ok(()),
     }
+}
+
+/// Where the manifest of the rows at `out` goes: beside them, where they are a regular file.
+pub fn manifest_path(out: &Path) -> Option<PathBuf> {
+    is_regular(out).then(|| {
+        let mut name = out.as_os_str().to_owned();
+        name.push(".json");
+        name.into()
+    })
+}
+
+/// The name of the file with the rows.
+pub fn file_name(out: &Path) -> String {
+    out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
+/// As many threads as were asked for.
+pub fn pool(common: &Common) -> Result<Pool, Failure> {
+    let count = common.jobs.map_or_else(processors, usize::from);
+    Pool::new(count).map_err(|error| Failure::Failed(error.into()))
+}
+
+/// The error of a cell that is wrong, with the places of its faults.
+pub fn located(document: &Document, cell: CellFaults) -> Failure {
+    let error = document.error_from(cell.faults.clone());
+    wrong_cell(&cell, error)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! Names and words come from fixed lists and field paths, which hold neither commas nor quotes, so
 //! nothing is ever quoted.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::ops::Range;
 
@@ -38,6 +39,53 @@ pub fn rows(table: &Table, range: Range<usize>) -> String {
     text
 }
 
+/// Reads rows back that [`header`] and [`rows`] wrote of a table with the columns of `empty`, in any order;
+/// the error is a clause.
+pub fn csv_table(text: &str, empty: &Table) -> Result<Table, String> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let names = reader.headers().map_err(|error| error.to_string())?.clone();
+    let rows: Vec<csv::StringRecord> =
+        reader.records().collect::<Result<_, _>>().map_err(|error| error.to_string())?;
+    let mut words = BTreeSet::new();
+    let mut table = Table::new();
+    for column in empty.columns() {
+        let name = &column.name;
+        let missing = || format!("there is no column {name}");
+        let place = names.iter().position(|own| own == name).ok_or_else(missing)?;
+        let cells = rows.iter().map(|row| row.get(place).unwrap_or_default());
+        let wrong = |cell: &str| format!("`{cell}` in the column {name} is no number");
+        let values = match &column.values {
+            Values::Numbers(_) => {
+                Values::Numbers(
+                    cells
+                        .map(|cell| {
+                            if cell.is_empty() { Ok(f64::NAN) } else { cell.parse().map_err(|_| wrong(cell)) }
+                        })
+                        .collect::<Result<_, _>>()?,
+                )
+            }
+            Values::Counts(_) => Values::Counts(
+                cells
+                    .map(|cell| (!cell.is_empty()).then(|| cell.parse().map_err(|_| wrong(cell))).transpose())
+                    .collect::<Result<_, _>>()?,
+            ),
+            Values::Words(_) => Values::Words(cells.map(|cell| lasting(cell, &mut words)).collect()),
+        };
+        table = table.with(name, values);
+    }
+    Ok(table)
+}
+
+/// A word of a table, which lasts as long as the program; there are few different ones.
+fn lasting(word: &str, known: &mut BTreeSet<&'static str>) -> &'static str {
+    if let Some(own) = known.get(word) {
+        return own;
+    }
+    let own: &'static str = Box::leak(word.into());
+    known.insert(own);
+    own
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,5 +100,10 @@ mod tests {
         assert_eq!(rows(&table, 0..usize::MAX), "0.5,,rest\n,3,\n");
         assert_eq!(rows(&table, 1..2), ",3,\n");
         assert_eq!(rows(&table, 5..9), "");
+        let text = header(&table) + &rows(&table, 0..2);
+        let read = csv_table(&text, &table).unwrap();
+        assert_eq!(header(&read) + &rows(&read, 0..2), text);
+        assert!(csv_table("x_m,period,regime\na,1,rest\n", &table).unwrap_err().contains("`a`"));
+        assert!(csv_table("x_m,regime\n1,rest\n", &table).unwrap_err().contains("period"));
     }
 }

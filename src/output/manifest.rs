@@ -1,12 +1,11 @@
 //! Manifests of a sweep, of exponents over a grid and of a map of basins, and the origin of a result.
 
-use std::collections::BTreeMap;
-
 use serde_json::{Map, Value, json};
 
 use super::json::pretty;
+use super::plan::plan_checksum;
 use crate::scene::{Document, PROGRAM, Scene};
-use crate::study::{Answer, Basins, ExponentTally, Grid, Tally};
+use crate::study::{Answer, Basins, ExponentTally, Grid, Shard, Tally};
 
 /// Where a result came from, besides its scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,29 +22,79 @@ pub struct Provenance {
     pub jobs: usize,
 }
 
+/// What a sweep made: the file of its rows, or of those of a shard.
+#[derive(Debug, Clone, Copy)]
+pub struct Made<'a> {
+    /// Its [plan](super::plan()).
+    pub plan: &'a Value,
+    /// Which of its rows are there.
+    pub shard: Shard,
+    /// The checksum of the file.
+    pub sha256: &'a str,
+}
+
 /// The manifest of what `command` swept as text: itself, or a scene file with `scene_ron` as its text beside
 /// the `files`, is swept to the same rows again. `scene_ron` has every argument applied, the swept fields at
 /// their unswept values, and the grid that ran as its `sweep`; `files` are the texts of the tables and
 /// records that the scene reads, by their paths in it.
 ///
-/// `document` has its files held; `data` is the name of the file with the rows.
+/// `document` has its files held; `data` is the name of the file with the rows, which `made` knows more of
+/// where a part of it may stand for itself.
 pub fn manifest(
     (command, document): (&str, &Document),
     grid: &Grid,
     tally: &Tally,
+    made: Option<Made>,
     origin: &Provenance,
     data: &str,
 ) -> String {
-    let counts = |counts: &BTreeMap<&'static str, u64>| -> Value {
-        counts.iter().map(|(word, n)| ((*word).to_owned(), json!(n))).collect::<Map<_, _>>().into()
-    };
-    let own = json!({
+    let mut own = json!({
         "cells": tally.cells,
-        "mechanisms": tally.mechanisms,
-        "outcomes": counts(&tally.outcomes),
-        "regimes": counts(&tally.regimes),
+        "mechanisms": made.map_or(tally.mechanisms, |_| grid.mechanisms()),
+        "outcomes": tally.outcomes,
+        "regimes": tally.regimes,
     });
+    if let Some(Made { plan, shard, sha256 }) = made {
+        own["shard"] = json!(shard.to_string());
+        own["sha256"] = json!(sha256);
+        own["plan_sha256"] = json!(plan_checksum(plan));
+        own["plan"] = plan.clone();
+    }
     swept((command, document), grid, own, origin, data)
+}
+
+/// The manifest of a whole sweep whose shards have these manifests, in a file `data` with this checksum, put
+/// together by a call of the program with these `arguments`. Counts and CPU times are added, the time on the
+/// wall is the longest.
+pub fn merged_manifest(shards: &[Value], data: &str, sha256: &str, arguments: &[String]) -> String {
+    let Some(mut own) = shards.first().cloned() else { return String::new() };
+    for other in &shards[1..] {
+        for key in ["cells", "outcomes", "regimes", "cpu_s"] {
+            add(&mut own[key], &other[key]);
+        }
+        if other["wall_s"].as_f64() > own["wall_s"].as_f64() {
+            own["wall_s"] = other["wall_s"].clone();
+        }
+    }
+    own["data"] = json!(data);
+    own["sha256"] = json!(sha256);
+    own["arguments"] = json!(arguments);
+    own["shard"] = json!(Shard::WHOLE.to_string());
+    pretty(&own)
+}
+
+/// Adds numbers, or the numbers of objects key by key.
+fn add(own: &mut Value, other: &Value) {
+    match (own, other) {
+        (Value::Object(own), Value::Object(other)) => {
+            other.iter().for_each(|(key, n)| add(own.entry(key).or_insert(json!(0)), n));
+        }
+        (own, other) => {
+            let whole = own.as_u64().zip(other.as_u64()).map(|(a, b)| json!(a + b));
+            let real = own.as_f64().zip(other.as_f64()).map(|(a, b)| json!(a + b));
+            *own = whole.or(real).unwrap_or(Value::Null);
+        }
+    }
 }
 
 /// The manifest of exponents over a grid as text: as that of a sweep, with how many cells rest on a stop and

@@ -7,13 +7,15 @@ mod csv;
 mod json;
 mod manifest;
 mod number;
+mod plan;
 mod plot;
 mod text;
 
-pub use csv::{header, rows};
+pub use csv::{csv_table, header, rows};
 pub use json::{identified, landscape, summary};
-pub use manifest::{Provenance, basins_manifest, exponents_manifest, manifest};
+pub use manifest::{Made, Provenance, basins_manifest, exponents_manifest, manifest, merged_manifest};
 pub use number::push_number;
+pub use plan::{plan, plan_checksum, plan_differences};
 pub use plot::{
     AXIS_EDGES, Argument, BACK_EDGES, BLACK, BoxPlace, Caption, Cut, ExponentPicture, Face, Figure, Format,
     Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, Panel, PlotAxis, Projection, RMS, Ranges, SIDES,

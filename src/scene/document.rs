@@ -10,7 +10,7 @@ use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 use super::fields::{Field, FieldPath, Slot, all_fields};
 use super::files::{Files, ReadError, read_from, read_text};
 use super::locate::Places;
-use super::manifest;
+use super::manifest::{self, Swept};
 use super::mechanism::Mechanism;
 use super::presets::{self, PRESETS};
 use super::ranges::number_text;
@@ -51,6 +51,8 @@ pub struct Document {
     pub text: String,
     /// Where the files that it names are.
     pub files: Files,
+    /// How its sweep was asked for, where it came from a manifest.
+    pub swept: Option<Swept>,
     /// Fields that an argument changed, with that argument; the last one counts.
     assigned: Vec<(String, String)>,
     /// What is wrong with the records that the excitation names.
@@ -110,7 +112,7 @@ impl Document {
         }
         let unread = record::attach(&mut scene.excitation, "excitation", &files);
         let (name, text) = (name.to_owned(), text.to_owned());
-        Ok(Self { scene, source: Source::Text, name, text, files, assigned: Vec::new(), unread })
+        Ok(Self { scene, source: Source::Text, name, text, files, swept: None, assigned: Vec::new(), unread })
     }
 
     /// Applies `FIELD=VALUE` as given to `--set`: a number, or any value in RON
@@ -187,7 +189,7 @@ impl Document {
     /// Reads the files that the scene names, so that they are at hand whatever becomes of them; none but
     /// those are held. One that cannot be read is left to whoever needs it, and has a better place to say so.
     pub fn hold_files(&mut self) {
-        let read = |path: String| Some((path.clone(), self.files.read(&path).ok()?));
+        let read = |path: String| self.files.read(&path).ok().map(|text| (path, text));
         self.files.held = self.paths().into_iter().filter_map(read).collect();
     }
 

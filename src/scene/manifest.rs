@@ -23,6 +23,35 @@ struct Manifest {
     scene_ron: String,
     #[serde(default)]
     files: BTreeMap<String, String>,
+    #[serde(default)]
+    plan: Swept,
+    #[serde(default)]
+    shard: Option<String>,
+    #[serde(default)]
+    data: String,
+    #[serde(default)]
+    version: String,
+}
+
+/// How a sweep was asked for, besides its scene; empty where nothing is known.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(default)]
+pub struct Swept {
+    /// The names of its columns, after those of its fields.
+    pub columns: Vec<String>,
+    /// Time in s up to which runs went on to settle.
+    pub until_settled: Option<f64>,
+    /// In which directions the last field was walked.
+    pub carry: Option<String>,
+    /// Which shard it was, where it was one of several.
+    #[serde(skip)]
+    pub shard: Option<String>,
+    /// The name of the file with its rows.
+    #[serde(skip)]
+    pub data: String,
+    /// The version of the program that made them.
+    #[serde(skip)]
+    pub version: String,
 }
 
 fn parse(text: &str) -> Result<Manifest, String> {
@@ -45,5 +74,9 @@ pub(super) fn read(name: &str, text: &str, files: Files) -> Result<Document, Sce
         SceneError::Unreadable { name: name.to_owned(), problem }
     })?;
     let files = Files { held: manifest.files, ..files };
-    Document::from_text(&format!("{name} (scene_ron)"), &manifest.scene_ron, files)
+    let Manifest { shard, data, version, .. } = manifest;
+    let swept = Swept { shard: shard.filter(|own| own != "1/1"), data, version, ..manifest.plan };
+    let mut document = Document::from_text(&format!("{name} (scene_ron)"), &manifest.scene_ron, files)?;
+    document.swept = Some(swept);
+    Ok(document)
 }

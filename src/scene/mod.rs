@@ -53,7 +53,7 @@ pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 pub use fields::{FieldPath, all_fields, numeric_fields};
 pub use files::{FileError, Files, LARGEST_TABLE};
 pub use locate::{Place, Places, has_comments};
-pub use manifest::{PROGRAM, is_manifest};
+pub use manifest::{PROGRAM, Swept, is_manifest};
 pub use measured::{
     Ask, Channel, ChosenColumn, LARGEST_MEASURED, MOST_MEASURED, Measured, MeasuredError, MeasuredText,
     read_measured,

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::dynamics::{Outcome, Summary};
 use crate::scene::Fault;
 
@@ -63,7 +65,7 @@ pub enum SweepEnd<E> {
 }
 
 /// What a sweep came to.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Tally {
     /// Cells run, those without a solved mechanism among them.
     pub cells: u64,
@@ -75,11 +77,20 @@ pub struct Tally {
     pub yielding: u64,
     /// Mechanisms built: one for each combination of the swept fields of the mechanism, however many cells
     /// share it.
+    #[serde(skip)]
     pub mechanisms: u64,
     /// Cells by outcome.
-    pub outcomes: BTreeMap<&'static str, u64>,
+    pub outcomes: BTreeMap<Box<str>, u64>,
     /// Cells by regime; those that ended before their settled window, and those of one well, have none.
-    pub regimes: BTreeMap<&'static str, u64>,
+    pub regimes: BTreeMap<Box<str>, u64>,
+}
+
+/// Adds `n` to the count of a word.
+fn add(counts: &mut BTreeMap<Box<str>, u64>, word: &str, n: u64) {
+    match counts.get_mut(word) {
+        Some(count) => *count += n,
+        None => drop(counts.insert(word.into(), n)),
+    }
 }
 
 impl Tally {
@@ -89,9 +100,19 @@ impl Tally {
         self.ended_early += u64::from(cell.summary().is_some_and(|row| row.outcome.ended_at().is_some()));
         self.not_converged += u64::from(*cell == Cell::Unsolved);
         self.yielding += u64::from(cell.summary().is_some_and(|row| row.contact_yields));
-        *self.outcomes.entry(cell.outcome()).or_default() += 1;
+        add(&mut self.outcomes, cell.outcome(), 1);
         if let Some(row) = cell.settled().filter(|row| !row.regime.name().is_empty()) {
-            *self.regimes.entry(row.regime.name()).or_default() += 1;
+            add(&mut self.regimes, row.regime.name(), 1);
         }
+    }
+
+    /// Counts the cells of `other` too; its mechanisms may be the same ones.
+    pub fn add(&mut self, other: &Self) {
+        self.cells += other.cells;
+        self.ended_early += other.ended_early;
+        self.not_converged += other.not_converged;
+        self.yielding += other.yielding;
+        other.outcomes.iter().for_each(|(word, n)| add(&mut self.outcomes, word, *n));
+        other.regimes.iter().for_each(|(word, n)| add(&mut self.regimes, word, *n));
     }
 }

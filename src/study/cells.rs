@@ -1,8 +1,8 @@
 //! Runs of the cells of a grid, in parallel, many at once where the processor can.
 //!
-//! Rows leave in chunks as soon as a chunk is whole, so memory does not grow with the cells already
-//! written, and what a cell gives depends on its own scene alone, so the bytes are the same for any
-//! number of threads.
+//! Rows leave in order as soon as those before them have left, and few cells are begun ahead of them, so
+//! memory does not grow with the number of cells. What a cell gives depends on its own scene alone, so the
+//! bytes are the same for any number of threads.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::Task;
 use super::cell::{Cell, CellFaults, SweepEnd, Tally};
 use super::grid::Grid;
+use super::slice::Slice;
 use super::table::Table;
 use crate::dynamics::{Model, Request, Run};
 use crate::mechanics::{BuildError, Mechanism};
@@ -89,24 +90,22 @@ pub(super) trait Question: Sync {
     }
 }
 
-/// Cells a thread gets of the first chunk, and the most of any. A chunk waits for its last cell: while chunks
-/// are over in less than [`SHORT`], the next is twice as large, so that the wait is a small part of it; where
-/// cells take long, rows come often.
-const CELLS_PER_THREAD: u64 = 512;
-const MOST_CELLS_PER_THREAD: u64 = 1 << 14;
-
-/// A short time for a chunk in s.
-const SHORT: f64 = 0.3;
-
 /// Cells that a thread runs together: several times the lanes of any processor, so that few of them fly alone
 /// at the end.
 const BATCH: usize = 128;
-/// The same where each cell is waited for.
+/// The same where each cell is waited for, and the fewest where cells take long.
 const SHOWN: usize = 16;
 
-/// Mechanisms kept for the whole sweep, up to some 50 kB each (flexures with their states); beyond that each
-/// cell builds its own.
+/// Batches that may be begun, for each thread, before the first of them is over.
+const AHEAD: usize = 32;
+
+/// The time in s that a batch may take where its cells allow: rows come that often.
+const OFTEN: f64 = 1.0;
+
+/// Mechanisms kept for the whole sweep; beyond that each cell builds its own.
 const KEPT_MECHANISMS: u64 = 4096;
+/// About the bytes of a large one (flexures with their states).
+const LARGEST_MECHANISM: u64 = 50_000;
 
 impl Cells {
     pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
@@ -126,57 +125,90 @@ impl Cells {
         built.unwrap_or_else(|| Mechanism::build(&scene.mechanism, &self.files).map(Arc::new))
     }
 
-    /// Builds every cell without running it; the first one that is wrong, with all its faults. A mechanism
-    /// that is not solved is no fault but an outcome. A cancelled check finds nothing.
-    pub fn validate(&self, question: &impl Question, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
-        let faults = |scene: &mut Scene, index: u64| {
+    /// Builds `count` cells without running them, each as `cell` numbers it; the first one that is wrong,
+    /// with all its faults. A mechanism that is not solved is no fault but an outcome. A cancelled check
+    /// finds nothing.
+    pub fn validate(
+        &self,
+        question: &impl Question,
+        (count, cell): (u64, impl Fn(u64) -> u64 + Sync),
+        pool: &Pool,
+        task: &Task,
+    ) -> Result<(), CellFaults> {
+        let faults = |scene: &mut Scene, place: u64| {
             if task.is_cancelled() {
                 return None;
             }
+            let index = cell(place);
             let faults = match self.model(index, scene, task)? {
                 Ok(model) => vec![question.fault(&question.model(model), scene)?],
                 Err(faults) => faults,
             };
             Some(CellFaults { cell: self.grid.describe(index), faults })
         };
-        pool.find_first(self.grid.cells(), || self.base.clone(), faults).map_or(Ok(()), Err)
+        pool.find_first(count, || self.base.clone(), faults).map_or(Ok(()), Err)
     }
 
-    /// Asks every cell on `pool` and hands the rows to `write`, chunk by chunk in order. `write` answers
-    /// whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
+    /// Asks the cells of a slice from its row `from` on and hands the rows to `write`, some at a time, in
+    /// order, with the tally of these alone. `write` answers whether more rows are wanted. Precondition:
+    /// [`validate`](Self::validate) found nothing.
     pub fn run<Q: Question, E>(
         &self,
         question: &Q,
+        (slice, from): (&Slice, u64),
         pool: &Pool,
         task: &Task,
-        mut write: impl FnMut(&Table) -> Result<bool, E>,
+        mut write: impl FnMut(&Table, &Tally) -> Result<bool, E>,
     ) -> Result<Tally, SweepEnd<E>> {
         let threads = pool.count() as u64;
-        let most = question.most_cells().min(MOST_CELLS_PER_THREAD * threads);
-        let mut chunk = (CELLS_PER_THREAD * threads).min(most);
-        let mut tally = Tally::default();
-        while tally.cells < self.grid.cells() {
-            let (begin, clock) = (tally.cells, WallClock::start());
-            let end = (begin + chunk).min(self.grid.cells());
-            let batches: Vec<u64> = (begin..end).step_by(BATCH).collect();
-            let run = |scene: &mut Scene, batch: usize| {
-                let cells: Vec<u64> = (batches[batch]..end).take(BATCH).collect();
-                let rows = self.ask(question, &cells, scene, task);
-                cells.iter().for_each(|_| (task.tick)());
-                if task.is_cancelled() { Err(()) } else { Ok(rows) }
-            };
-            let rows = pool.map(batches.len(), || self.base.clone(), run);
-            let rows: Vec<Ran<_>> = rows.map_err(|()| SweepEnd::Cancelled)?.into_iter().flatten().collect();
-            if clock.seconds() < SHORT {
-                chunk = (2 * chunk).min(most);
-            }
-            rows.iter().for_each(|row| tally.count(&row.cell));
-            tally.mechanisms = self.built.load(Ordering::Relaxed);
-            if !write(&question.table(&self.grid, &rows)).map_err(SweepEnd::Write)? {
-                break;
-            }
-        }
-        Ok(tally)
+        let largest = (question.most_cells() / (4 * threads)).clamp(1, BATCH as u64);
+        let ahead = (question.most_cells() / largest).clamp(threads, AHEAD as u64 * threads);
+        let size = AtomicU64::new(largest.min(SHOWN as u64));
+        let mut next = from;
+        let batches = std::iter::from_fn(|| {
+            let begin = next;
+            next = (begin + size.load(Ordering::Relaxed)).min(slice.rows());
+            (begin < next).then(|| (begin..next).map(|place| slice.row(place)).collect::<Vec<u64>>())
+        });
+        let run = |scene: &mut Scene, cells: Vec<u64>| {
+            let clock = WallClock::start();
+            let rows = self.ask(question, &cells, scene, task);
+            cells.iter().for_each(|_| (task.tick)());
+            let fitting = OFTEN * cells.len() as f64 / clock.seconds().max(f64::MIN_POSITIVE);
+            let fitting = (fitting as u64).max(SHOWN as u64).min(largest);
+            size.store(fitting, Ordering::Relaxed);
+            if task.is_cancelled() { None } else { Some(rows) }
+        };
+        let (mut tally, mut end) = (Tally::default(), None);
+        pool.in_order(
+            ahead as usize,
+            batches,
+            || self.base.clone(),
+            run,
+            |rows| {
+                let Some(rows) = rows else {
+                    end = Some(SweepEnd::Cancelled);
+                    return false;
+                };
+                let mut own = Tally::default();
+                rows.iter().for_each(|row| own.count(&row.cell));
+                tally.add(&own);
+                let wanted = write(&question.table(&self.grid, &rows), &own);
+                wanted.unwrap_or_else(|error| {
+                    end = Some(SweepEnd::Write(error));
+                    false
+                })
+            },
+        );
+        tally.mechanisms = self.built.load(Ordering::Relaxed);
+        end.map_or(Ok(tally), Err)
+    }
+
+    /// An upper bound of the bytes that [`run`](Self::run) keeps, however many cells there are.
+    pub fn memory<Q: Question>(&self, threads: u64) -> u64 {
+        let row = size_of::<Ran<Q::Answer>>() as u64;
+        let mechanisms = if self.grid.changes_mechanism() { self.mechanisms.len() as u64 } else { 1 };
+        (AHEAD * BATCH) as u64 * threads * row + mechanisms * LARGEST_MECHANISM
     }
 
     /// Runs these cells on `pool`, begun in their order, and hands each over from its thread as soon as it is

@@ -8,6 +8,7 @@ use super::Task;
 use super::cell::{CellFaults, SweepEnd, Tally};
 use super::cells::{Cells, Question, Ran};
 use super::grid::Grid;
+use super::slice::{Shard, Slice};
 use super::sweep::fields;
 use super::table::Table;
 use super::walk::{Carry, without_a_period};
@@ -267,20 +268,24 @@ impl Sections {
     /// Builds every cell without running it; the first one that is wrong, with all its faults. A cancelled
     /// check finds nothing.
     pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
-        self.cells.validate(&self.options, pool, task)
+        self.cells.validate(&self.options, (self.grid().cells(), |cell| cell), pool, task)
     }
 
-    /// Runs every cell on `pool` and hands the rows to `write`, chunk by chunk in order. `write` answers
+    /// Runs every cell on `pool` and hands the rows to `write`, some at a time, in order. `write` answers
     /// whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
     pub fn run<E>(
         &self,
         pool: &Pool,
         task: &Task,
-        write: impl FnMut(&Table) -> Result<bool, E>,
+        mut write: impl FnMut(&Table) -> Result<bool, E>,
     ) -> Result<Tally, SweepEnd<E>> {
+        let write = |table: &Table, _: &Tally| write(table);
+        let walk = self.grid().axes().last().map_or(1, |axis| axis.values.len() as u64);
+        let unit = self.options.carry.map_or(1, |_| walk);
+        let all = (&Slice::new(self.runs(), unit, Shard::WHOLE), 0);
         match self.options.carry {
-            Some(carry) => self.cells.walk(&self.options, carry, pool, task, write),
-            None => self.cells.run(&self.options, pool, task, write),
+            Some(carry) => self.cells.walk(&self.options, carry, all, pool, task, write),
+            None => self.cells.run(&self.options, all, pool, task, write),
         }
     }
 }

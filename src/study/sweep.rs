@@ -5,6 +5,7 @@ use super::cell::{Cell, CellFaults, SweepEnd, Tally};
 use super::cells::{Built, Cells, Question, Ran};
 use super::fields::SummaryField;
 use super::grid::Grid;
+use super::slice::{Shard, Slice};
 use super::table::{Table, Values};
 use super::walk::{Carry, without_a_period};
 use crate::dynamics::{Model, Request, Run};
@@ -114,6 +115,35 @@ impl Sweep {
         self.grid().cells() * walks
     }
 
+    /// Rows that are computed one after the other: those of a walk, else one.
+    fn unit(&self) -> u64 {
+        let walk = self.grid().axes().last().map_or(1, |axis| axis.values.len() as u64);
+        self.options.carry.map_or(1, |_| walk)
+    }
+
+    /// The rows of a shard.
+    pub fn slice(&self, shard: Shard) -> Slice {
+        Slice::new(self.rows(), self.unit(), shard)
+    }
+
+    /// The options.
+    pub fn options(&self) -> &SweepOptions {
+        &self.options
+    }
+
+    /// About the most bytes that a run of it keeps, however many cells there are. Walks are kept while they
+    /// are walked.
+    pub fn memory(&self, threads: usize) -> u64 {
+        self.cells.memory::<SweepOptions>(threads as u64)
+    }
+
+    /// The cell of a row.
+    pub fn cell(&self, row: u64) -> u64 {
+        let walks = self.options.carry.map_or(1, |carry| carry.directions().len() as u64);
+        let (walk, step) = (row / self.unit(), row % self.unit());
+        walk / walks * self.unit() + step
+    }
+
     /// The table without rows.
     pub fn empty_table(&self) -> Table {
         self.table(0, &[])
@@ -134,20 +164,45 @@ impl Sweep {
     /// walked, also one whose drive does not repeat. A mechanism that is not solved is no fault but an
     /// outcome. A cancelled check finds nothing.
     pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
-        self.cells.validate(&self.options, pool, task)
+        self.validate_rows(&self.slice(Shard::WHOLE), 0, pool, task)
     }
 
-    /// Runs every cell on `pool` and hands the rows to `write`, chunk by chunk in order. `write`
-    /// answers whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
+    /// The same for the cells of a slice from its row `from` on.
+    pub fn validate_rows(
+        &self,
+        slice: &Slice,
+        from: u64,
+        pool: &Pool,
+        task: &Task,
+    ) -> Result<(), CellFaults> {
+        let cell = |place: u64| self.cell(slice.row(from + place));
+        self.cells.validate(&self.options, (slice.rows() - from, cell), pool, task)
+    }
+
+    /// Runs every cell on `pool` and hands the rows to `write`, some at a time, in order. `write` answers
+    /// whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
     pub fn run<E>(
         &self,
         pool: &Pool,
         task: &Task,
-        write: impl FnMut(&Table) -> Result<bool, E>,
+        mut write: impl FnMut(&Table) -> Result<bool, E>,
+    ) -> Result<Tally, SweepEnd<E>> {
+        self.run_rows(&self.slice(Shard::WHOLE), 0, pool, task, |table, _| write(table))
+    }
+
+    /// The same for the rows of a slice from `from` on, the first row of a unit; `write` also gets the tally
+    /// of the rows that it gets.
+    pub fn run_rows<E>(
+        &self,
+        slice: &Slice,
+        from: u64,
+        pool: &Pool,
+        task: &Task,
+        write: impl FnMut(&Table, &Tally) -> Result<bool, E>,
     ) -> Result<Tally, SweepEnd<E>> {
         match self.options.carry {
-            Some(carry) => self.cells.walk(&self.options, carry, pool, task, write),
-            None => self.cells.run(&self.options, pool, task, write),
+            Some(carry) => self.cells.walk(&self.options, carry, (slice, from), pool, task, write),
+            None => self.cells.run(&self.options, (slice, from), pool, task, write),
         }
     }
 
@@ -201,7 +256,7 @@ mod tests {
         };
         let tally = sweep.run(&pool, &task, write).unwrap();
         assert_eq!((tally.cells, tally.ended_early, tally.not_converged, tally.mechanisms), (6, 0, 3, 1));
-        assert_eq!(tally.outcomes, BTreeMap::from([("done", 3), ("not_converged", 3)]));
+        assert_eq!(tally.outcomes, BTreeMap::from([("done".into(), 3), ("not_converged".into(), 3)]));
         let words = |name: &str| rows.column(name).unwrap().values.clone();
         let outcomes = [["done"; 3], ["not_converged"; 3]].concat();
         assert_eq!(words("outcome"), Values::Words(outcomes));

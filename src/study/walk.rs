@@ -6,6 +6,7 @@ use std::sync::atomic::Ordering;
 use super::Task;
 use super::cell::{Cell, SweepEnd, Tally};
 use super::cells::{Cells, Direction, Question, Ran};
+use super::slice::Slice;
 use super::table::Table;
 use crate::dynamics::{Model, Request};
 use crate::scene::{Fault, Scene};
@@ -25,11 +26,15 @@ pub enum Carry {
 impl Carry {
     /// What is called `up`, `down` or `both`.
     pub fn named(word: &str) -> Option<Self> {
-        match word {
-            "up" => Some(Self::Up),
-            "down" => Some(Self::Down),
-            "both" => Some(Self::Both),
-            _ => None,
+        [Self::Up, Self::Down, Self::Both].into_iter().find(|own| own.name() == word)
+    }
+
+    /// The word in an argument.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Up => "up",
+            Self::Down => "down",
+            Self::Both => "both",
         }
     }
 
@@ -88,31 +93,38 @@ pub(super) fn without_a_period(model: &Model, scene: &Scene, what: &str) -> Opti
 impl Cells {
     /// Walks the last field in these directions, for each combination of the others: the first cell of a walk
     /// begins at its scene's start, each further one in the state of the one before at the last instant of
-    /// its run that is a whole number of forcing periods after its start. Rows in the order of the walks.
-    /// Otherwise as [`run`](Self::run).
+    /// its run that is a whole number of forcing periods after its start. Rows in the order of the walks; a
+    /// walk is a unit of the slice. Otherwise as [`run`](Self::run).
     pub fn walk<Q: Question, E>(
         &self,
         question: &Q,
         carry: Carry,
+        (slice, from): (&Slice, u64),
         pool: &Pool,
         task: &Task,
-        mut write: impl FnMut(&Table) -> Result<bool, E>,
+        mut write: impl FnMut(&Table, &Tally) -> Result<bool, E>,
     ) -> Result<Tally, SweepEnd<E>> {
-        let length = self.grid.axes().last().map_or(1, |axis| axis.values.len() as u64);
-        let directions = carry.directions();
-        let starts = (0..self.grid.cells()).step_by(length as usize);
-        let mut walks = starts.flat_map(|begin| directions.iter().map(move |direction| (begin, *direction)));
+        let (length, directions) = (slice.unit(), carry.directions());
+        let walk = |place: u64| {
+            let number = slice.row(place) / length;
+            let (row, way) = (number / directions.len() as u64, number % directions.len() as u64);
+            Walk { begin: row * length, direction: directions[way as usize], done: 0, last: None }
+        };
+        let mut walks = (from..slice.rows()).step_by(length as usize).map(walk);
         let mut tally = Tally::default();
+        let mut put = |table: &Table, own: &Tally| {
+            tally.add(own);
+            tally.mechanisms = self.built.load(Ordering::Relaxed);
+            write(table, own).map_err(SweepEnd::Write)
+        };
         loop {
-            let group = walks.by_ref().take(TOGETHER * pool.count());
-            let walk = |(begin, direction): (u64, Direction)| Walk { begin, direction, done: 0, last: None };
-            let mut group: Vec<Walk> = group.map(walk).collect();
+            let mut group: Vec<Walk> = walks.by_ref().take(TOGETHER * pool.count()).collect();
             if group.is_empty() {
                 return Ok(tally);
             }
             let each = group.len().div_ceil(pool.count());
             let parts: Vec<Mutex<&mut [Walk]>> = group.chunks_mut(each).map(Mutex::new).collect();
-            let (mut done, mut tables) = (0, Vec::new());
+            let (mut done, mut tables) = (0, Vec::<(Table, Tally)>::new());
             while done < length {
                 let most = (question.most_cells() / (parts.len() * each) as u64).max(1);
                 let steps = ((CELLS_PER_THREAD / each) as u64).clamp(1, most).min(length - done);
@@ -127,22 +139,23 @@ impl Cells {
                 );
                 let ran = ran.map_err(|()| SweepEnd::Cancelled)?;
                 for (walk, rows) in ran.into_iter().flatten().enumerate() {
-                    rows.iter().for_each(|row: &Ran<_>| tally.count(&row.cell));
+                    let mut own = Tally::default();
+                    rows.iter().for_each(|row: &Ran<_>| own.count(&row.cell));
                     let table = question.table(&self.grid, &rows);
                     if walk == 0 {
-                        tally.mechanisms = self.built.load(Ordering::Relaxed);
-                        if !write(&table).map_err(SweepEnd::Write)? {
+                        if !put(&table, &own)? {
                             return Ok(tally);
                         }
                         continue;
                     }
-                    tables.resize_with(tables.len().max(walk), Table::new);
-                    tables[walk - 1].append(&table);
+                    tables.resize_with(tables.len().max(walk), Default::default);
+                    tables[walk - 1].0.append(&table);
+                    tables[walk - 1].1.add(&own);
                 }
                 done += steps;
             }
-            for table in &tables {
-                if !write(table).map_err(SweepEnd::Write)? {
+            for (table, own) in &tables {
+                if !put(table, own)? {
                     return Ok(tally);
                 }
             }

@@ -1,12 +1,19 @@
 //! Files to be read.
 
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// The file, device or pipe at `path`, opened.
-pub fn open(path: &Path) -> io::Result<impl Read> {
+pub fn open(path: &Path) -> io::Result<impl Read + use<>> {
     File::open(path)
+}
+
+/// The file at `path`, opened at this byte.
+pub fn open_at(path: &Path, offset: u64) -> io::Result<impl Read> {
+    let mut file = File::open(path)?;
+    file.seek(SeekFrom::Start(offset))?;
+    Ok(file)
 }
 
 /// All bytes of a file.

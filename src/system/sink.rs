@@ -220,7 +220,7 @@ pub fn same_target(a: &Sink, b: &Sink) -> bool {
 }
 
 /// The place that a chain of symbolic links ends at, whether something is there or not.
-fn follow_links(path: &Path) -> PathBuf {
+pub(super) fn follow_links(path: &Path) -> PathBuf {
     let mut place = path.to_owned();
     // Linux itself gives up after 40; a circle then shows as an error of the open.
     for _ in 0..40 {
@@ -256,7 +256,7 @@ fn without_path(error: io::Error) -> io::Error {
 }
 
 #[cfg(unix)]
-fn inode(metadata: &fs::Metadata) -> Option<(u64, u64)> {
+pub(super) fn inode(metadata: &fs::Metadata) -> Option<(u64, u64)> {
     use std::os::unix::fs::MetadataExt;
     Some((metadata.dev(), metadata.ino()))
 }
@@ -277,7 +277,7 @@ fn stdout_inode() -> Option<(u64, u64)> {
 }
 
 #[cfg(not(unix))]
-fn inode(_: &fs::Metadata) -> Option<(u64, u64)> {
+pub(super) fn inode(_: &fs::Metadata) -> Option<(u64, u64)> {
     None
 }
 

@@ -3,12 +3,14 @@
 mod accuracy;
 mod bad_input;
 mod basins;
+mod blocks;
 mod curve;
 mod flexure_numbers;
 mod flexures;
 mod options;
 mod outputs;
 mod section;
+mod shards;
 mod simulate;
 mod sweep;
 mod verdicts;
@@ -18,12 +20,13 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 14] = [
+const COMMANDS: [&str; 15] = [
     "presets",
     "check",
     "curve",
     "simulate",
     "sweep",
+    "merge",
     "section",
     "threshold",
     "spectrum",

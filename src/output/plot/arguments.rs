@@ -30,7 +30,7 @@ impl Argument {
 }
 
 /// Options that change nothing on a picture, such as the number of threads and the places of files.
-const IDLE: [&str; 12] = [
+const IDLE: [&str; 14] = [
     "out",
     "jobs",
     "quiet",
@@ -43,6 +43,8 @@ const IDLE: [&str; 12] = [
     "attractors",
     "comparison",
     "strict",
+    "resume",
+    "force",
 ];
 
 /// The words with which the program makes the same picture again, of those that `command` was given in the

@@ -151,8 +151,8 @@ fn ctrl_c_leaves_no_half_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.csv");
     // More cells than can be run before the signal.
-    let line =
-        "sweep --quiet --over stops.travel_limit_mm=1:7:0.001 --over excitation.amplitude_g=0:2:0.001 --out";
+    let over = "--over stops.travel_limit_mm=1:7:0.001 --over excitation.amplitude_g=0:2:0.001";
+    let line = format!("section --quiet {over} --out");
     let mut child = Process::new(assert_cmd::cargo::cargo_bin!("interwell"))
         .arg("--headless")
         .args(line.split_whitespace())

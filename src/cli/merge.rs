@@ -1,0 +1,217 @@
+//! `merge`: the shards of a sweep as one file, with the bytes that one process writes.
+
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use interwell::output::{Sink, merged_manifest, plan_differences};
+use interwell::scene::PROGRAM;
+use interwell::study::{Shard, Slice};
+use interwell::system::checksum::Checksum;
+use interwell::system::files;
+use serde_json::Value;
+
+use super::failure::Failure;
+use super::options::Common;
+use super::shard::{PLACE, command, other_name, value};
+use super::support::{MANIFEST, Watch, file_name, finish, manifest_path, open, write_text};
+use super::{interrupt, say};
+
+/// What it takes.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// The files that `sweep --shard` wrote, in any order; the manifest of each stands beside it
+    #[arg(value_name = "PART")]
+    pub parts: Vec<PathBuf>,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// A shard: its file, its manifest, and how far it has been read.
+struct Part {
+    path: PathBuf,
+    manifest: Value,
+    shard: Shard,
+    offset: u64,
+    read: Checksum,
+}
+
+/// Puts the shards together.
+pub fn run(options: &Arguments) -> Result<(), Failure> {
+    let common = &options.common;
+    if let Some(option) = common.given(true) {
+        return Err(Failure::argument(format!(
+            "{option} changes a run, and merge runs nothing: leave it out"
+        )));
+    }
+    let watch = Watch::start();
+    let mut parts = all(&options.parts)?;
+    let beside = manifest_path(common.out());
+    let outputs = [Some(("--out", common.out())), beside.as_deref().map(|path| (MANIFEST, path))];
+    let inputs: Vec<PathBuf> =
+        parts.iter().flat_map(|own| [Some(own.path.clone()), manifest_path(&own.path)]).flatten().collect();
+    let mut sinks = open(&inputs, outputs)?;
+    let plan = &parts[0].manifest["plan"];
+    let (rows, unit) = (plan["rows"].as_u64().unwrap_or(0), plan["unit"].as_u64().unwrap_or(0).max(1));
+    let slice = Slice::new(rows, unit, parts[0].shard);
+
+    let mut whole = Checksum::default();
+    let mut put = |sink: &mut Option<Sink>, text: &[u8]| {
+        whole.add(text);
+        let Some(sink) = sink else { return Ok(()) };
+        sink.put_bytes(text).map_err(|error| Failure::writing(sink.name(), error))
+    };
+    let headers: Vec<Vec<u8>> = parts.iter_mut().map(|own| own.lines(1)).collect::<Result<_, _>>()?;
+    put(&mut sinks[0], &headers[0])?;
+    for (number, rows) in slice.dealt() {
+        if interrupt::came() {
+            return Err(Failure::interrupted());
+        }
+        put(&mut sinks[0], &parts[number as usize - 1].lines(rows)?)?;
+    }
+    for part in &parts {
+        part.check()?;
+    }
+    let sum = whole.text();
+    let manifests: Vec<Value> = parts.into_iter().map(|own| own.manifest).collect();
+    let origin = watch.origin(1);
+    let text = merged_manifest(&manifests, &file_name(common.out()), &sum, &origin.arguments);
+    write_text(&mut sinks[1], &text)?;
+    finish(sinks)?;
+    if !common.quiet {
+        say(&format!("{rows} rows of {} shards in {:.2} s", manifests.len(), watch.wall_s()));
+    }
+    Ok(())
+}
+
+/// All shards of one sweep in their order; an error names what does not fit, and what is missing with the
+/// commands that compute it.
+fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
+    let (mut parts, mut unfinished): (Vec<Part>, Vec<String>) = (Vec::new(), Vec::new());
+    for path in paths {
+        match Part::open(path)? {
+            Some(part) => parts.push(part),
+            None => unfinished.push(path.display().to_string()),
+        }
+    }
+    let Some(first) = parts.first() else {
+        if paths.is_empty() {
+            let such = "such as merge map-*-of-5.csv --out map.csv";
+            return Err(Failure::argument(format!("merge: name the files of all shards, {such}")));
+        }
+        let names = unfinished.join(", ");
+        return Err(Failure::argument(format!(
+            "{names}: no manifest stands beside it, as beside the rows of every shard that is whole"
+        )));
+    };
+    for part in &parts[1..] {
+        let (own, other) = (part.path.display(), first.path.display());
+        let differences = plan_differences(&part.manifest["plan"], &first.manifest["plan"]);
+        let wrong = |how: String| Failure::argument(format!("{own} does not belong to {other}: {how}"));
+        if !differences.is_empty() {
+            // "there" is the file that is named first
+            return Err(wrong(differences));
+        } else if part.shard.count() != first.shard.count() {
+            return Err(wrong(format!("it is the shard {}, that one {}", part.shard, first.shard)));
+        }
+    }
+    parts.sort_by_key(|own| own.shard.number());
+    if let Some(same) = parts.windows(2).find(|own| own[0].shard == own[1].shard) {
+        let (a, b) = (same[0].path.display(), same[1].path.display());
+        return Err(Failure::argument(format!("{a} and {b} are both the shard {}", same[0].shard)));
+    }
+    let count = parts[0].shard.count();
+    let has = |number: u64| parts.iter().any(|own| own.shard.number() == number);
+    let missing: Vec<String> = (1..=count)
+        .filter(|number| !has(*number))
+        .map(|number| Ok(parts[0].command_of(Shard::new(number, count)?)))
+        .collect::<Result<_, String>>()
+        .map_err(Failure::argument)?;
+    if missing.is_empty() {
+        return Ok(parts);
+    }
+    let not = if unfinished.is_empty() { String::new() } else { format!("{}; ", unfinished.join(", ")) };
+    Err(Failure::Failed(anyhow::anyhow!(
+        "{not}{} of {count} shards are missing; these commands compute them:\n{}",
+        missing.len(),
+        missing.join("\n")
+    )))
+}
+
+impl Part {
+    /// The shard at `path`, or whose manifest is there; none where it has no manifest yet.
+    fn open(path: &Path) -> Result<Option<Self>, Failure> {
+        let ends = |ending: &str| path.to_string_lossy().strip_suffix(ending).map(PathBuf::from);
+        let path = ends(".json").or_else(|| ends(".part")).unwrap_or_else(|| path.to_owned());
+        let name = path.display();
+        let beside = manifest_path(&path).unwrap_or_default();
+        if !files::exists(&path) || !files::exists(&beside) {
+            return Ok(None);
+        }
+        let beside_name = beside.display();
+        let text = files::bytes(&beside)
+            .map_err(|error| Failure::argument(format!("cannot read {beside_name}: {error}")))?;
+        let manifest: Value = serde_json::from_slice(&text).unwrap_or(Value::Null);
+        let shard = manifest["shard"].as_str().and_then(|text| Shard::parse(text).ok());
+        let Some(shard) = shard.filter(|_| manifest["program"] == PROGRAM && manifest["plan"].is_object())
+        else {
+            return Err(Failure::argument(format!(
+                "{name}: {beside_name} is no manifest of a sweep or of a shard of one"
+            )));
+        };
+        let (path, read) = (path.clone(), Checksum::default());
+        Ok(Some(Self { path, manifest, shard, offset: 0, read }))
+    }
+
+    /// The next lines, so many.
+    fn lines(&mut self, count: u64) -> Result<Vec<u8>, Failure> {
+        let failed = |error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", self.path.display()));
+        let mut file = BufReader::new(files::open_at(&self.path, self.offset).map_err(failed)?);
+        let mut bytes = Vec::new();
+        for _ in 0..count {
+            if file.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut bytes).map_err(failed)? == 0 {
+                return Err(self.changed("it ends too early"));
+            }
+        }
+        self.offset += bytes.len() as u64;
+        self.read.add(&bytes);
+        Ok(bytes)
+    }
+
+    /// Whether all of it was read, and is as it was written.
+    fn check(&self) -> Result<(), Failure> {
+        let mut more = [0];
+        let read = files::open_at(&self.path, self.offset).and_then(|mut file| file.read(&mut more));
+        match read {
+            Ok(0) if self.manifest["sha256"].as_str() == Some(&self.read.text()) => Ok(()),
+            Ok(0) => Err(self.changed("its checksum is not that in its manifest")),
+            _ => Err(self.changed("it has more rows than its shard")),
+        }
+    }
+
+    fn changed(&self, how: &str) -> Failure {
+        Failure::Failed(anyhow::anyhow!(
+            "{} is changed since it was written: {how}; nothing was merged. This computes it again:\n{}",
+            self.path.display(),
+            self.command_of(self.shard)
+        ))
+    }
+
+    /// The command that computes another shard of the same sweep.
+    fn command_of(&self, shard: Shard) -> String {
+        let arguments = self.manifest["arguments"].as_array();
+        let arguments: Vec<String> =
+            arguments.into_iter().flatten().filter_map(|own| own.as_str().map(str::to_owned)).collect();
+        let own = self.path.to_string_lossy();
+        let out = match value(&arguments, "--out") {
+            Some(out) if out.contains(PLACE) => out.to_owned(),
+            _ => other_name(&own, self.shard, shard),
+        };
+        command(&arguments, &["--shard", &shard.to_string(), "--out", &out, "--resume"])
+    }
+}
+
+/// The longest line that is read.
+const LONGEST_LINE: u64 = 1 << 20;

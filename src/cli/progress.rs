@@ -1,0 +1,126 @@
+//! Progress of a long command on standard error: a bar on a terminal, elsewhere a line a minute.
+
+use std::io::IsTerminal;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressState, ProgressStyle};
+use interwell::system::clock::WallClock;
+
+use super::say;
+
+/// Seconds between two lines.
+const INTERVAL: f64 = 60.0;
+
+/// How far a command is, and how it is shown.
+pub struct Progress {
+    bar: ProgressBar,
+    lines: Option<Lines>,
+}
+
+/// A line a minute.
+struct Lines {
+    parts: u64,
+    unit: String,
+    clock: WallClock,
+    /// Parts done before the clock began, parts done, and lines printed.
+    before: AtomicU64,
+    done: AtomicU64,
+    printed: AtomicU64,
+}
+
+/// Progress over so many parts, called `unit`: on a terminal that the rows do not go to too a bar with rate
+/// and time left, where there is no terminal a line a minute.
+pub fn bar(parts: u64, unit: &str, quiet: bool, out: &Path) -> Progress {
+    let rows_on_terminal = out == Path::new("-") && std::io::stdout().is_terminal();
+    let terminal = std::io::stderr().is_terminal();
+    let lines = (!quiet && !terminal).then(|| Lines {
+        parts,
+        unit: unit.to_owned(),
+        clock: WallClock::start(),
+        before: AtomicU64::new(0),
+        done: AtomicU64::new(0),
+        printed: AtomicU64::new(0),
+    });
+    if quiet || rows_on_terminal || !terminal {
+        return Progress { bar: ProgressBar::hidden(), lines };
+    }
+    let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {unit}  {{rate}}  {{eta}} left");
+    let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
+        let _ = write!(text, "{:.0}/s", state.per_sec());
+    };
+    Progress { bar: ProgressBar::new(parts).with_style(style.with_key("rate", rate)), lines }
+}
+
+impl Progress {
+    /// So many parts were there before.
+    pub fn begin_at(&self, parts: u64) {
+        self.bar.set_position(parts);
+        self.bar.reset_eta();
+        if let Some(lines) = &self.lines {
+            lines.before.store(parts, Ordering::Relaxed);
+            lines.done.store(parts, Ordering::Relaxed);
+        }
+    }
+
+    /// So many more parts are done. From any thread.
+    pub fn inc(&self, parts: u64) {
+        match &self.lines {
+            Some(lines) => lines.inc(parts),
+            None => self.bar.inc(parts),
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish_and_clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Lines {
+    fn inc(&self, parts: u64) {
+        let done = self.done.fetch_add(parts, Ordering::Relaxed) + parts;
+        let (seconds, printed) = (self.clock.seconds(), self.printed.load(Ordering::Relaxed));
+        let due = (seconds / INTERVAL) as u64;
+        let free = || self.printed.compare_exchange(printed, due, Ordering::Relaxed, Ordering::Relaxed);
+        if due > printed && free().is_ok() {
+            say(&self.line(done, seconds));
+        }
+    }
+
+    fn line(&self, done: u64, seconds: f64) -> String {
+        let rate = (done - self.before.load(Ordering::Relaxed)) as f64 / seconds;
+        let left = self.parts.saturating_sub(done) as f64 / rate;
+        let (done, parts) = (HumanCount(done), HumanCount(self.parts));
+        format!("{done} of {parts} {}, {rate:.1}/s, {} left", self.unit, duration(left))
+    }
+}
+
+/// A time in words.
+pub fn duration(seconds: f64) -> String {
+    if seconds < 1.0 {
+        return "less than a second".to_owned();
+    }
+    let time = std::time::Duration::try_from_secs_f64(seconds.round());
+    time.map_or_else(|_| "a very long time".to_owned(), |time| HumanDuration(time).to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_has_cells_rate_and_time_left() {
+        let lines = Lines {
+            parts: 10_000,
+            unit: "cells".into(),
+            clock: WallClock::start(),
+            before: AtomicU64::new(1000),
+            done: AtomicU64::new(1000),
+            printed: AtomicU64::new(0),
+        };
+        assert_eq!(lines.line(4000, 60.0), "4,000 of 10,000 cells, 50.0/s, 2 minutes left");
+        assert!(lines.line(1000, 60.0).ends_with("a very long time left"));
+    }
+}

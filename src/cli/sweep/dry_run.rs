@@ -1,0 +1,116 @@
+//! What a sweep will cost, by a few of its cells, and the commands that run it.
+
+use std::sync::Mutex;
+use std::time::Duration;
+
+use interwell::output::rows;
+use interwell::scene::Document;
+use interwell::study::{Shard, Slice, Sweep, Task};
+use interwell::system::clock::WallClock;
+use interwell::system::threads::{Pool, within};
+
+use super::super::failure::Failure;
+use super::super::progress::duration;
+use super::super::shard::{command, value};
+use super::super::support::located;
+
+/// Cells that are run at first for each thread, after how many seconds it is enough of them, and for how long
+/// they are run at most.
+const CELLS: u64 = 64;
+const ENOUGH: f64 = 0.3;
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// A long time for one process in s, and a short one for each of many.
+const LONG: f64 = 3600.0;
+const SHORT: f64 = 1800.0;
+
+/// About the bytes of the program itself.
+const PROGRAM: u64 = 20_000_000;
+
+/// Prints cells, time, memory and commands.
+pub fn tell(
+    (document, sweep, slice): (&Document, &Sweep, &Slice),
+    columns: &[String],
+    (picture, sharded): (bool, bool),
+    pool: &Pool,
+) -> Result<(), Failure> {
+    let wrong =
+        within(PATIENCE, |cancel| sweep.validate_rows(slice, 0, pool, &Task { tick: &|| (), cancel }));
+    wrong.map_err(|cell| located(document, cell))?;
+    let (count, threads) = (slice.rows(), pool.count());
+    // Evenly spread and in no step with the axes: multiples of the golden section (Weyl 1916).
+    let place = |i: u64| ((i as f64 + 0.5) * 0.618_033_988_749_895).fract() * count as f64;
+    let mut sample = count.min(CELLS * threads as u64);
+    let (run, bytes, seconds) = loop {
+        let cells: Vec<u64> = (0..sample).map(|i| sweep.cell(slice.row(place(i) as u64))).collect();
+        let found = Mutex::new((0_u64, 0));
+        let clock = WallClock::start();
+        within(PATIENCE, |cancel| {
+            let each = |index, cell| {
+                let text = rows(&sweep.table(index, &[cell]), 0..1).len();
+                if let Ok(mut found) = found.lock() {
+                    *found = (found.0 + 1, found.1 + text);
+                }
+            };
+            sweep.run_cells(pool, &Task { tick: &|| (), cancel }, &cells, &each)
+        });
+        let (run, bytes) = found.into_inner().unwrap_or_default();
+        if clock.seconds() > ENOUGH || sample == count {
+            break (run, bytes, clock.seconds() / run.max(1) as f64 * count as f64);
+        }
+        sample = (4 * sample).min(count);
+    };
+
+    let axes = sweep.grid().axes().iter().zip(sweep.grid().columns());
+    let axes: Vec<String> = axes.map(|(axis, name)| format!("{} {name}", axis.values.len())).collect();
+    let of =
+        if sharded { format!(" of the shard {}, of {}", slice.shard(), sweep.rows()) } else { String::new() };
+    println!("{count} rows{of}: {}; {} columns", axes.join(" x "), columns.len());
+    let about = duration(seconds);
+    match run {
+        0 if count == 0 => println!("nothing to compute"),
+        0 => println!("more than {about} on {threads} threads: no cell came to its end in {PATIENCE:?}"),
+        _ => {
+            let size = bytes as f64 / run as f64 * count as f64 / 1e6;
+            println!(
+                "about {about} on {threads} threads, by {run} cells run now; about {size:.1} MB of rows"
+            );
+        }
+    }
+    let memory = PROGRAM + sweep.memory(threads) + if picture { picture_bytes(sweep) } else { 0 };
+    let kept = if picture { ", with the table that the picture needs" } else { "" };
+    println!("at most about {} MB of memory{kept}", memory.div_ceil(1_000_000));
+
+    let arguments: Vec<String> =
+        std::env::args_os().skip(1).map(|own| own.to_string_lossy().into()).collect();
+    let out = value(&arguments, "--out").unwrap_or("map.csv");
+    if sharded {
+        let shard = slice.shard().to_string();
+        println!("\n{}", command(&arguments, &["--shard", &shard, "--out", out, "--resume"]));
+        return Ok(());
+    }
+    println!("\nIn one process, again and again until it is whole:");
+    println!("  {}", command(&arguments, &["--out", out, "--resume"]));
+    if picture {
+        return Ok(());
+    }
+    let shards = if seconds > LONG { (seconds / SHORT).ceil().min(1000.0) as u64 } else { 4 };
+    let stem = out.strip_suffix(".csv").unwrap_or(out);
+    let name = format!("{stem}-{{shard}}.csv");
+    println!("In {shards} processes, on any machines:");
+    let listed = if shards <= 8 { shards } else { 2 };
+    for number in (1..=listed).chain((listed < shards).then_some(shards)) {
+        if number > listed + 1 {
+            println!("  ...");
+        }
+        let shard = Shard::new(number, shards).map_err(Failure::argument)?.to_string();
+        println!("  {}", command(&arguments, &["--shard", &shard, "--out", &name, "--resume"]));
+    }
+    println!("  interwell --headless merge {stem}-*-of-{shards}.csv --out {out}");
+    Ok(())
+}
+
+/// The bytes of the table that a picture needs.
+fn picture_bytes(sweep: &Sweep) -> u64 {
+    16 * sweep.rows() * sweep.empty_table().columns().len() as u64
+}

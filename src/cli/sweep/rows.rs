@@ -1,0 +1,295 @@
+//! Rows of a sweep on their way out: straight, into a file that is written in blocks, or compared with one.
+
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use interwell::output::{Sink, plan_differences};
+use interwell::study::{Shard, Tally};
+use interwell::system::checksum::Checksum;
+use interwell::system::clock::WallClock;
+use interwell::system::{Opened, Part, PartError, files};
+use serde_json::{Value, json};
+
+use super::super::failure::Failure;
+use super::super::support::manifest_path;
+
+/// The most rows of a block, where a walk is not longer, and the time in s after which it ends.
+const MOST_ROWS: u64 = 4096;
+const LONGEST: f64 = 5.0;
+
+/// Where the rows go.
+pub enum Rows {
+    /// To a pipe, a device or standard output.
+    Straight(Sink),
+    /// To a file that is written in blocks.
+    Blocks(Blocks),
+    /// Nowhere: they are compared with those of a file.
+    Compared(Compared),
+}
+
+impl Rows {
+    /// Takes some rows with their tally; whether more are wanted.
+    pub fn put(&mut self, text: String, own: &Tally) -> Result<bool, Failure> {
+        match self {
+            Self::Straight(sink) => {
+                let put = sink.put(&text).and_then(|()| sink.flush());
+                put.map_err(|error| Failure::writing(sink.name(), error))?;
+                Ok(!sink.is_closed())
+            }
+            Self::Blocks(blocks) => blocks.put(text, own).map(|()| true),
+            Self::Compared(compared) => compared.put(&text).map(|()| true),
+        }
+    }
+}
+
+/// A file in work, and its block in work.
+pub struct Blocks {
+    part: Part,
+    rows: u64,
+    unit: u64,
+    block: Tally,
+    clock: WallClock,
+}
+
+/// A sweep into a file: what is to be written, and what is to become of what an earlier process left.
+pub struct Begin<'a> {
+    /// The file.
+    pub out: &'a Path,
+    /// The plan of the sweep, which of its rows these are, how many, and how many are computed one after the
+    /// other.
+    pub plan: &'a Value,
+    pub shard: Shard,
+    pub rows: u64,
+    pub unit: u64,
+    /// The first line of the file.
+    pub header: &'a str,
+    /// Whether to go on with what is there, and whether to give it up.
+    pub resume: bool,
+    pub force: bool,
+    /// A column that a picture needs and the rows do not have.
+    pub lacking: Option<String>,
+}
+
+impl Begin<'_> {
+    /// Begins a file or goes on with it, and the tally of the rows that it has; none where it is whole.
+    pub fn begin(&self) -> Result<Option<(Blocks, Tally)>, Failure> {
+        let opened = Opened::new(self.out).map_err(refused)?;
+        let part = opened.part().display().to_string();
+        let head = json!({ "plan": self.plan, "shard": self.shard.to_string() });
+        if self.resume && !opened.has_rows() && self.is_whole() {
+            opened.leave();
+            return Ok(None);
+        }
+        if !opened.has_rows() || (self.force && !self.resume) {
+            let part = opened.begin(&head.to_string(), self.header).map_err(refused)?;
+            return Ok(Some((self.blocks(part), Tally::default())));
+        }
+        let there: Option<Value> = opened.head().and_then(|text| serde_json::from_str(text).ok());
+        let problem = match there {
+            None => {
+                let journal = format!("{part} stands there, and its journal is gone or cannot be read");
+                format!("{journal}: --force starts anew, or name another --out")
+            }
+            Some(_) if !self.resume => {
+                let (rows, all) = (opened.rows(), self.rows);
+                let left = format!("{part} has {rows} of {all} rows of a sweep that did not come to its end");
+                format!("{left}: go on with --resume, or start anew with --force")
+            }
+            Some(there) if there != head => format!(
+                "--resume: {part} is of another sweep: {}; give the arguments that it was begun with, name \
+                 another --out, or start anew with --force",
+                plan_differences(&flat(&there), &flat(&head))
+            ),
+            Some(_) if self.lacking.is_some() => format!(
+                "--resume: the rows in {part} have no column {}, which --plot needs: leave --plot out, or \
+                 start anew with --force and --columns all",
+                self.lacking.as_deref().unwrap_or_default()
+            ),
+            Some(_) => {
+                let (part, blocks) = opened.go_on(self.force).map_err(refused)?;
+                let mut tally = Tally::default();
+                let notes = blocks.iter().filter_map(|block| serde_json::from_str(&block.note).ok());
+                notes.for_each(|own| tally.add(&own));
+                return Ok(Some((self.blocks(part), tally)));
+            }
+        };
+        opened.leave();
+        Err(Failure::argument(problem))
+    }
+
+    fn blocks(&self, part: Part) -> Blocks {
+        let block = Tally::default();
+        Blocks { part, rows: self.rows, unit: self.unit, block, clock: WallClock::start() }
+    }
+
+    /// Whether the file is there with all its rows, as its manifest says.
+    fn is_whole(&self) -> bool {
+        let Some(beside) = manifest_path(self.out) else { return false };
+        let text = files::bytes(&beside).ok();
+        let manifest = text.and_then(|text| serde_json::from_slice::<Value>(&text).ok());
+        manifest.is_some_and(|own| {
+            own["plan"] == *self.plan
+                && own["shard"].as_str() == Some(&self.shard.to_string())
+                && own["sha256"].as_str() == file_checksum(self.out).as_deref()
+        })
+    }
+}
+
+/// The plan in a head with the shard in it.
+fn flat(head: &Value) -> Value {
+    let mut own = head["plan"].clone();
+    own["shard"] = head["shard"].clone();
+    own
+}
+
+/// The checksum of a file.
+fn file_checksum(path: &Path) -> Option<String> {
+    let (mut file, mut own, mut bytes) = (files::open(path).ok()?, Checksum::default(), vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut bytes).ok()? {
+            0 => return Some(own.text()),
+            n => own.add(&bytes[..n]),
+        }
+    }
+}
+
+fn refused(error: PartError) -> Failure {
+    let remedy = match &error {
+        PartError::Busy(_) => return Failure::Wrong(error.into()),
+        PartError::Refused { .. } => return Failure::Failed(error.into()),
+        PartError::Damaged { rows: 0, .. } => "--force starts anew".to_owned(),
+        PartError::Damaged { rows, .. } => format!(
+            "--resume --force keeps the {rows} rows before and computes the others again; --force alone \
+             starts anew"
+        ),
+    };
+    Failure::Failed(anyhow::anyhow!("{error}; nothing was changed: {remedy}"))
+}
+
+impl Blocks {
+    fn put(&mut self, text: String, own: &Tally) -> Result<(), Failure> {
+        self.part.put(text).map_err(|error| self.failed(&error))?;
+        self.block.add(own);
+        let whole = self.block.cells.is_multiple_of(self.unit);
+        if whole && (self.block.cells >= MOST_ROWS || self.clock.seconds() >= LONGEST) {
+            self.end_block().map_err(|error| self.failed(&error))?;
+        }
+        Ok(())
+    }
+
+    fn end_block(&mut self) -> std::io::Result<()> {
+        let own = std::mem::take(&mut self.block);
+        self.clock = WallClock::start();
+        self.part.end_block(own.cells, serde_json::to_string(&own)?)
+    }
+
+    /// Rows on the disk.
+    pub fn kept(&self) -> u64 {
+        self.part.kept()
+    }
+
+    /// What is said where the rows cannot be written.
+    fn failed(&self, error: &std::io::Error) -> Failure {
+        Failure::Failed(anyhow::anyhow!(
+            "cannot write {}: {error}; {} of {} rows are kept there: once there is room, the same command \
+             with --resume goes on",
+            self.part.path().display(),
+            self.kept(),
+            self.rows
+        ))
+    }
+
+    /// Ends where no more rows come; what is said of an interruption.
+    pub fn interrupted(mut self) -> Failure {
+        if self.block.cells.is_multiple_of(self.unit) && self.block.cells > 0 {
+            let _ = self.end_block();
+        }
+        let closed = self.part.close();
+        let kept = self.kept();
+        let part = self.part.path().display().to_string();
+        let failure = match closed {
+            Err(error) => self.failed(&error),
+            Ok(_) if kept == 0 => Failure::interrupted(),
+            Ok(_) => Failure::Failed(anyhow::anyhow!(
+                "interrupted: {part} has {kept} of {} rows; the same command with --resume goes on",
+                self.rows
+            )),
+        };
+        self.part.discard();
+        failure
+    }
+
+    /// Leaves it as it is: nothing is left of it where it has no rows.
+    pub fn leave(self) {
+        self.part.discard();
+    }
+
+    /// Waits until all rows are on the disk; the checksum of the file.
+    pub fn close(&mut self) -> Result<String, Failure> {
+        let ended = if self.block.cells > 0 { self.end_block() } else { Ok(()) };
+        ended.and_then(|()| self.part.close()).map_err(|error| self.failed(&error))
+    }
+
+    /// Gives the file its name.
+    pub fn finish(self) -> Result<(), Failure> {
+        let name = self.part.path().display().to_string();
+        self.part.finish().map_err(|error| Failure::writing(&name, error))
+    }
+
+    /// The text of the rows that are there.
+    pub fn text(&self) -> Result<String, Failure> {
+        let path = self.part.path();
+        let bytes = files::bytes(path).and_then(|own| String::from_utf8(own).map_err(std::io::Error::other));
+        bytes.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", path.display())))
+    }
+}
+
+/// A file that rows are compared with.
+pub struct Compared {
+    name: String,
+    file: Box<dyn Read>,
+    line: u64,
+}
+
+impl Compared {
+    /// Opens the file.
+    pub fn new(path: &Path) -> Result<Self, Failure> {
+        let name = path.display().to_string();
+        let file = files::open(path);
+        let file =
+            file.map_err(|error| Failure::argument(format!("--check: cannot read {name}: {error}")))?;
+        Ok(Self { name, file: Box::new(BufReader::new(file)), line: 1 })
+    }
+
+    /// Compares some lines with those that come next.
+    pub fn put(&mut self, text: &str) -> Result<(), Failure> {
+        let mut there = Vec::new();
+        let read = (&mut self.file).take(text.len() as u64).read_to_end(&mut there);
+        read.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", self.name)))?;
+        if there == text.as_bytes() {
+            self.line += text.matches('\n').count() as u64;
+            return Ok(());
+        }
+        let there = String::from_utf8_lossy(&there).into_owned();
+        let pairs = || text.lines().zip(there.lines().chain(std::iter::repeat("")));
+        let same = pairs().take_while(|(here, there)| here == there).count();
+        let (here, there) = pairs().nth(same).unwrap_or_default();
+        let line = self.line + same as u64;
+        Err(self.differs(format!("line {line} is `{there}` there and `{here}` now")))
+    }
+
+    fn differs(&self, how: String) -> Failure {
+        Failure::Failed(anyhow::anyhow!("{} differs: {how}", self.name))
+    }
+
+    /// Whether that was all of it.
+    pub fn end(&mut self) -> Result<(), Failure> {
+        let mut more = [0];
+        match self.file.read(&mut more) {
+            Ok(0) => Ok(()),
+            _ => {
+                Err(self.differs(format!("it goes on after line {}, where the rows end now", self.line - 1)))
+            }
+        }
+    }
+}

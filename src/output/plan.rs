@@ -1,0 +1,115 @@
+//! Plan of a sweep: all that decides the bytes of its rows.
+
+use serde_json::{Map, Value, json};
+
+use super::number::push_number;
+use crate::scene::{Axis, Document, PROGRAM};
+use crate::study::Sweep;
+use crate::system::checksum::checksum;
+
+/// The most differences that are listed.
+const MOST: usize = 4;
+
+/// The plan of `sweep`, whose rows have these `columns` after those of its fields, by this `version` of the
+/// program. Two sweeps with equal plans have the same rows, byte for byte. `document` is that of the sweep
+/// and has its files held: they are in it by their checksums.
+pub fn plan(document: &Document, sweep: &Sweep, columns: &[String], version: &str) -> Value {
+    let mut scene = document.scene.clone();
+    // What stands in the scene for a swept field is never run.
+    sweep.grid().apply(0, &mut scene);
+    let mut scene = serde_json::to_value(&scene).unwrap_or(Value::Null);
+    if let Value::Object(scene) = &mut scene {
+        ["title", "notes", "sweep", "app"].iter().for_each(|key| drop(scene.remove(*key)));
+    }
+    let files =
+        document.files.held.iter().map(|(path, text)| (path.clone(), json!(checksum(text.as_bytes()))));
+    let grid: Vec<String> = sweep.grid().axes().iter().map(axis).collect();
+    json!({
+        "program": PROGRAM,
+        "version": version,
+        "grid": grid,
+        "columns": columns,
+        "until_settled": sweep.options().until_settled,
+        "carry": sweep.options().carry.map(|carry| carry.name()),
+        "scene": scene,
+        "files": files.collect::<Map<_, _>>(),
+    })
+}
+
+/// An axis in a line, with the checksum of its values.
+fn axis(axis: &Axis) -> String {
+    let bits: Vec<u8> = axis.values.iter().flat_map(|value| value.to_le_bytes()).collect();
+    let mut text = format!("{}, {} values from ", axis.field, axis.values.len());
+    push_number(&mut text, axis.values.first().copied().unwrap_or(f64::NAN));
+    text += " to ";
+    push_number(&mut text, axis.values.last().copied().unwrap_or(f64::NAN));
+    text + &format!(" ({})", &checksum(&bits)[..12])
+}
+
+/// The checksum of a plan.
+pub fn plan_checksum(plan: &Value) -> String {
+    checksum(plan.to_string().as_bytes())
+}
+
+/// In what two plans differ, in words: what stands `there`, and what stands `here`; empty where they are
+/// equal.
+pub fn plan_differences(there: &Value, here: &Value) -> String {
+    let mut found = Vec::new();
+    differences("", there, here, &mut found);
+    let more = found.len().saturating_sub(MOST);
+    found.truncate(MOST);
+    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+    found.join("; ") + &more
+}
+
+fn differences(path: &str, there: &Value, here: &Value, found: &mut Vec<String>) {
+    let inner = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+    match (there, here) {
+        _ if there == here => {}
+        (Value::Object(a), Value::Object(b)) => {
+            let keys = a.keys().chain(b.keys().filter(|key| !a.contains_key(*key)));
+            for key in keys {
+                let of = |map: &Map<String, Value>| map.get(key).cloned().unwrap_or(Value::Null);
+                differences(&inner(key), &of(a), &of(b), found);
+            }
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            for (i, (a, b)) in a.iter().zip(b).enumerate() {
+                differences(&inner(&i.to_string()), a, b, found);
+            }
+        }
+        _ => found.push(format!("{path} is {} there and {} here", short(there), short(here))),
+    }
+}
+
+/// A value in few letters.
+fn short(value: &Value) -> String {
+    const LONGEST: usize = 100;
+    let text = match value {
+        Value::Null => "none".to_owned(),
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    };
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}..", &text[..end]),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_are_named_by_their_place() {
+        let a = json!({"version": "1", "scene": {"mass_g": 1, "stops": {"at": 1, "e": 0.3}}, "list": [1, 2]});
+        assert_eq!(plan_differences(&a, &a), "");
+        let b = json!({"version": "1", "scene": {"mass_g": 1, "stops": {"at": 1, "e": 0.4}}, "list": [1, 3]});
+        let expected = "scene.stops.e is 0.3 there and 0.4 here; list.1 is 2 there and 3 here";
+        assert_eq!(plan_differences(&a, &b), expected);
+        let c = json!({"version": "2", "scene": {"mass_g": 1, "stops": null}, "list": [1], "new": "x"});
+        let expected = "version is 1 there and 2 here; scene.stops is {\"at\":1,\"e\":0.3} there and none \
+            here; list is [1,2] there and [1] here; new is none there and x here";
+        assert_eq!(plan_differences(&a, &c), expected);
+    }
+}

@@ -1,0 +1,50 @@
+//! Checksums of bytes: SHA-256, as `sha256sum` prints it.
+
+use std::fmt;
+
+use sha2::{Digest, Sha256};
+
+/// A checksum that bytes are added to.
+#[derive(Clone, Default)]
+pub struct Checksum(Sha256);
+
+impl Checksum {
+    /// Adds bytes.
+    pub fn add(&mut self, bytes: &[u8]) {
+        self.0.update(bytes);
+    }
+
+    /// The checksum of all bytes so far, in hexadecimal digits.
+    pub fn text(&self) -> String {
+        self.0.clone().finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+impl fmt::Debug for Checksum {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text())
+    }
+}
+
+/// The checksum of these bytes, in hexadecimal digits.
+pub fn checksum(bytes: &[u8]) -> String {
+    let mut own = Checksum::default();
+    own.add(bytes);
+    own.text()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_that_of_the_standard() {
+        // FIPS 180-2, appendix B.1 and B.2
+        let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(checksum(b"abc"), abc);
+        let mut own = Checksum::default();
+        own.add(b"abcdbcdecdefdefgefghfghighij");
+        own.add(b"hijkijkljklmklmnlmnomnopnopq");
+        assert_eq!(own.text(), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+    }
+}
