@@ -1,7 +1,7 @@
 //! CSV: a header row, then a line for each row of a table, comma separated, `\n` ended.
 //!
-//! Names and words come from fixed lists and field paths, which hold neither commas nor quotes, so
-//! nothing is ever quoted.
+//! Words come from fixed lists and field paths, and names are given without them: nothing holds a comma or a
+//! quote, so nothing is ever quoted.
 
 use std::fmt::Write;
 use std::ops::Range;
@@ -31,6 +31,7 @@ pub fn rows(table: &Table, range: Range<usize>) -> String {
                     }
                 }
                 Values::Words(values) => text.push_str(values[row]),
+                Values::Names(values) => text.push_str(&values[row]),
             }
         }
         text.push('\n');

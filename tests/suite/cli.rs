@@ -18,7 +18,7 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 14] = [
+const COMMANDS: [&str; 16] = [
     "presets",
     "check",
     "curve",
@@ -26,6 +26,8 @@ const COMMANDS: [&str; 14] = [
     "sweep",
     "section",
     "threshold",
+    "compare",
+    "best",
     "spectrum",
     "basins",
     "orbit",
