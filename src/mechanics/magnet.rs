@@ -4,8 +4,8 @@
 //! apart; one moves with the mass, across that line. As point dipoles with parallel moments they have the
 //! energy U = K (1/r^3 - 3 g^2/r^5) with r^2 = x^2 + g^2 (Griffiths 1999, "Introduction to Electrodynamics",
 //! third edition, equation 6.35), where K = mu_0 m_1 m_2/(4 pi) is the strength. So the force dU/dx that
-//! holds the mass is F = 3 K x (4 g^2 - x^2)/r^7, with the stiffness 12 K/g^5 in the middle and zeros at x = +-2 g.
-//! K above 0 is attraction at the middle, below 0 (antiparallel moments) repulsion.
+//! holds the mass is F = 3 K x (4 g^2 - x^2)/r^7, with the stiffness 12 K/g^5 in the middle and zeros
+//! at x = +-2 g. K above 0 is attraction at the middle, below 0 (antiparallel moments) repulsion.
 //!
 //! Left out is the size of the magnets: those longer or wider than the gap are weaker than their dipoles.
 
