@@ -42,6 +42,9 @@ impl Judged {
 /// A design with fields that came out otherwise: fields' values, then those of what varies.
 pub(super) type Design = (Vec<f64>, Vec<f64>);
 
+/// The summary of a run, or what is wrong with its scene.
+type Ran = Result<Summary, Vec<Fault>>;
+
 /// What evaluates designs.
 pub(super) struct Evaluator<'a> {
     pub question: &'a BestQuestion,
@@ -99,16 +102,12 @@ impl<'a> Evaluator<'a> {
             let jobs = part * BATCH..((part + 1) * BATCH).min(runs);
             self.run(jobs.map(|job| (&designs[job / each], job % each)))
         };
-        let summaries: Result<Vec<Vec<Result<Summary, Vec<Fault>>>>, NoBest> =
-            self.pool.map(runs.div_ceil(BATCH), || (), part);
-        let summaries: Vec<Result<Summary, Vec<Fault>>> = summaries?.into_iter().flatten().collect();
+        let parts: Vec<Vec<Ran>> = self.pool.map(runs.div_ceil(BATCH), || (), part)?;
+        let summaries = parts.concat();
         Ok(summaries.chunks(each).map(|own| self.judged(own)).collect())
     }
 
-    fn run<'b>(
-        &self,
-        jobs: impl Iterator<Item = (&'b Design, usize)>,
-    ) -> Result<Vec<Result<Summary, Vec<Fault>>>, NoBest> {
+    fn run<'b>(&self, jobs: impl Iterator<Item = (&'b Design, usize)>) -> Result<Vec<Ran>, NoBest> {
         let mut models = Vec::new();
         let mut found: Vec<Result<usize, Vec<Fault>>> = Vec::new();
         for (design, environment) in jobs {
@@ -155,7 +154,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// One design from its runs in each environment.
-    fn judged(&self, runs: &[Result<Summary, Vec<Fault>>]) -> Judged {
+    fn judged(&self, runs: &[Ran]) -> Judged {
         let mut summaries = Vec::new();
         for own in runs {
             match own {
