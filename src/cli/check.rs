@@ -57,7 +57,7 @@ fn report(spec: &str, common: &Common) -> Result<String, Failure> {
     let lines = inspect(&document.scene, &mechanism).map_err(|faults| document.error_from(faults))?;
     let mut text = format!("{}: {}\n", document.name, document.scene.title);
     lines.iter().for_each(|line| text += &format!("  {line}\n"));
-    let fit = mechanism.curve.fit().into_iter().flat_map(|fit| &fit.warnings);
-    warnings.iter().chain(fit).for_each(|warning| text += &format!("  warning: {warning}\n"));
+    let warnings = warnings.iter().map(String::as_str).chain(mechanism.warnings());
+    warnings.for_each(|warning| text += &format!("  warning: {warning}\n"));
     Ok(text)
 }

@@ -2,8 +2,10 @@
 
 mod accuracy;
 mod basins;
+mod best;
 mod check;
 mod columns;
+mod compare;
 mod curve;
 mod exponents;
 mod failure;

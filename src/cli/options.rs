@@ -119,6 +119,10 @@ commands! {
     section Section " [SCENE]";
     /// The least value of a field from which on a motion from rest is released, crosses or is interwell
     threshold Threshold " [SCENE]";
+    /// Scenes side by side under one sine: least amplitudes, speed, reach, band of frequencies, sensitivity
+    compare Compare " SCENE..";
+    /// The place in some fields where a result is largest, for one environment or several, with its margins
+    best Best " [SCENE] --over FIELD=A:B";
     /// Amplitude and power spectral density of the settled motion over frequency: CSV
     spectrum Spectrum " [SCENE]";
     /// The attractor that each of many starts goes to: CSV with a row for each start

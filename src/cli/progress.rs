@@ -72,6 +72,14 @@ impl Progress {
         }
     }
 
+    /// One more part is done, of which there may be more than were known of.
+    pub fn inc_beyond(&self) {
+        self.inc(1);
+        if self.bar.length().is_some_and(|length| self.bar.position() >= length) {
+            self.bar.inc_length(1);
+        }
+    }
+
     /// Takes the bar away.
     pub fn finish_and_clear(&self) {
         self.bar.finish_and_clear();
@@ -92,7 +100,7 @@ impl Lines {
     fn line(&self, done: u64, seconds: f64) -> String {
         let rate = (done - self.before.load(Ordering::Relaxed)) as f64 / seconds;
         let left = self.parts.saturating_sub(done) as f64 / rate;
-        let (done, parts) = (HumanCount(done), HumanCount(self.parts));
+        let (done, parts) = (HumanCount(done), HumanCount(self.parts.max(done)));
         format!("{done} of {parts} {}, {rate:.1}/s, {} left", self.unit, duration(left))
     }
 }

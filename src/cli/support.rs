@@ -123,8 +123,8 @@ pub fn warn(document: &Document, common: &Common, warnings: &[String], mechanism
         return;
     }
     warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
-    let fit = mechanism.and_then(|own| own.curve.fit()).into_iter().flat_map(|fit| &fit.warnings);
-    fit.for_each(|warning| say(&format!("warning: {}: {warning}", document.name)));
+    let of_tables = mechanism.into_iter().flat_map(Mechanism::warnings);
+    of_tables.for_each(|warning| say(&format!("warning: {}: {warning}", document.name)));
 }
 
 /// The numbers of `A,B,C` as given to `option`; NaN and infinities pass, for their reader to judge.

@@ -6,6 +6,8 @@ pub mod flexure;
 mod hertz;
 mod landscape;
 mod local;
+mod magnet;
+mod sum;
 mod table;
 
 pub use curve::{FitReport, ForceCurve, Piece};
@@ -13,6 +15,7 @@ pub use fit::{fit, force_scale};
 pub use flexure::{FlexureError, Flexures};
 pub use hertz::{ContactMaterial, Hertz};
 pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Landscape};
+pub use magnet::{magnet_force, magnet_potential};
 pub use table::{FEWEST_POINTS, ForceTable, MOST_POINTS, TableError};
 
 use std::sync::Arc;
@@ -29,8 +32,10 @@ pub struct Mechanism {
     pub curve: ForceCurve,
     /// Its equilibria, barrier, extrema and kinks.
     pub landscape: Landscape,
-    /// The flexures behind the curve, where there are such.
+    /// The flexures behind the curve, where there are such; of a sum those of its only part with flexures.
     pub flexures: Option<Arc<Flexures>>,
+    /// The parts of a sum; of any other mechanism none.
+    pub parts: Vec<Self>,
 }
 
 /// Why a mechanism has no force curve.
@@ -140,6 +145,29 @@ impl Mechanism {
                 let table = ForceTable::parse(&text).map_err(|e| fault(e.to_string()))?;
                 Ok(Self::new(fit_unless(&table, *tolerance, cancel).map_err(fault)?))
             }
+            scene::Mechanism::Linear { n_per_m } => Ok(Self::new(ForceCurve::polynomial(&[0.0, *n_per_m]))),
+            scene::Mechanism::Magnet { strength_n_mm4, gap_mm } => {
+                let fault = |problem: String| Fault {
+                    field: "mechanism.strength_n_mm4".into(),
+                    value: strength_n_mm4.to_string(),
+                    problem,
+                };
+                let curve = magnet::magnet(strength_n_mm4 * 1e-12, gap_mm / 1e3).map_err(fault)?;
+                Ok(Self::new(curve))
+            }
+            scene::Mechanism::Sum(parts) => {
+                let part = |(index, part): (usize, &scene::Mechanism)| {
+                    let within =
+                        |field: &str| field.replacen("mechanism.", &format!("mechanism.{index}."), 1);
+                    Self::built(part, files, flexure_tolerance, cancel).map_err(|error| match error {
+                        BuildError::Wrong(fault) => {
+                            BuildError::Wrong(Fault { field: within(&fault.field), ..fault })
+                        }
+                        other => other,
+                    })
+                };
+                Self::sum(parts.iter().enumerate().map(part).collect::<Result<_, _>>()?)
+            }
         }
     }
 
@@ -167,7 +195,33 @@ impl Mechanism {
     /// A mechanism with this curve.
     pub fn new(curve: ForceCurve) -> Self {
         let landscape = Landscape::of(&curve);
-        Self { curve, landscape, flexures: None }
+        Self { curve, landscape, flexures: None, parts: Vec::new() }
+    }
+
+    /// These mechanisms side by side; at least one.
+    ///
+    /// Fails where their curves have no displacement in common.
+    fn sum(parts: Vec<Self>) -> Result<Self, BuildError> {
+        let curves: Vec<&ForceCurve> = parts.iter().map(|part| &part.curve).collect();
+        let curve = sum::sum(&curves)
+            .filter(|own| own.pieces().iter().all(|piece| piece.coefficients.iter().all(|c| c.is_finite())));
+        let curve = curve.ok_or_else(|| Fault {
+            field: "mechanism".into(),
+            value: "Sum([..])".into(),
+            problem:
+                "the parts have no displacement at which all of their forces are known and finite; take \
+                      tables that overlap"
+                    .into(),
+        })?;
+        let mut flexures = parts.iter().filter_map(|part| part.flexures.clone());
+        let only = flexures.next().filter(|_| flexures.next().is_none());
+        Ok(Self { flexures: only, parts, ..Self::new(curve) })
+    }
+
+    /// What a person should know of the tables behind the curve, each a sentence.
+    pub fn warnings(&self) -> impl Iterator<Item = &str> {
+        let all = std::iter::once(self).chain(&self.parts);
+        all.filter_map(|own| own.curve.fit()).flat_map(|fit| &fit.warnings).map(String::as_str)
     }
 
     /// The stiffness in N/m that a damping ratio refers to; see [`Landscape::damping_stiffness`].

@@ -1,7 +1,7 @@
 //! CSV: a header row, then a line for each row of a table, comma separated, `\n` ended.
 //!
-//! Names and words come from fixed lists and field paths, which hold neither commas nor quotes, so
-//! nothing is ever quoted.
+//! Words come from fixed lists and field paths, and names are given without them: nothing holds a comma or a
+//! quote, so nothing is ever quoted.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -32,6 +32,7 @@ pub fn rows(table: &Table, range: Range<usize>) -> String {
                     }
                 }
                 Values::Words(values) => text.push_str(values[row]),
+                Values::Names(values) => text.push_str(&values[row]),
             }
         }
         text.push('\n');
@@ -69,6 +70,7 @@ pub fn csv_table(text: &str, empty: &Table) -> Result<Table, String> {
                     .map(|cell| (!cell.is_empty()).then(|| cell.parse().map_err(|_| wrong(cell))).transpose())
                     .collect::<Result<_, _>>()?,
             ),
+            Values::Names(_) => Values::Names(cells.map(str::to_owned).collect()),
             Values::Words(_) => Values::Words(cells.map(|cell| lasting(cell, &mut words)).collect()),
         };
         table = table.with(name, values);

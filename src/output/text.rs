@@ -33,6 +33,7 @@ pub fn aligned(table: &Table) -> String {
                     (false, values.iter().map(text).collect())
                 }
                 Values::Words(values) => (true, values.iter().map(|word| (*word).to_owned()).collect()),
+                Values::Names(values) => (true, values.clone()),
             };
             (left, std::iter::once(column.label()).chain(own).collect())
         })

@@ -18,6 +18,9 @@ use super::transducer::Transducer;
 /// Each takes part in every step of a run.
 const MOST_SINES: u64 = 16_384;
 
+/// The most parts that the sum of a mechanism may have: flexures among them are solved one by one.
+const MAX_PARTS: usize = 16;
+
 /// What a check found.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Checked {
@@ -31,7 +34,7 @@ pub struct Checked {
 pub fn check(scene: &Scene) -> Checked {
     let mut checked = Checked::default();
     ranges(scene, &mut checked);
-    mechanism(&scene.mechanism, &mut checked);
+    mechanism("mechanism", &scene.mechanism, &mut checked);
     stops("stops", &scene.stops, &mut checked);
     if let Some(stops_when_on) = scene.app.as_ref().and_then(|app| app.stops_when_on.as_ref()) {
         stops("app.stops_when_on", stops_when_on, &mut checked);
@@ -67,8 +70,8 @@ fn ranges(scene: &Scene, checked: &mut Checked) {
     });
 }
 
-fn mechanism(mechanism: &Mechanism, checked: &mut Checked) {
-    match mechanism {
+fn mechanism(field: &str, own: &Mechanism, checked: &mut Checked) {
+    match own {
         Mechanism::Polynomial { coefficients_si } => {
             let count = coefficients_si.len();
             if !(1..=MAX_COEFFICIENTS).contains(&count) {
@@ -76,13 +79,27 @@ fn mechanism(mechanism: &Mechanism, checked: &mut Checked) {
                     "must have 1 to {MAX_COEFFICIENTS} coefficients; [0] is a free mass, a `Table` follows \
                      any curve"
                 );
-                checked.fault("mechanism.coefficients_si", format!("a list of {count}"), problem);
+                checked.fault(format!("{field}.coefficients_si"), format!("a list of {count}"), problem);
             }
         }
         Mechanism::Table { path, .. } if path.trim().is_empty() => {
-            checked.fault("mechanism.path", "\"\"", "name a CSV file with the columns x_m,force_n");
+            let problem = "name a CSV file with the columns x_m,force_n";
+            checked.fault(format!("{field}.path"), "\"\"", problem);
         }
-        _ => shape::check(mechanism, checked),
+        Mechanism::Sum(_) if field != "mechanism" => {
+            checked.fault(field, "Sum([..])", "a sum within a sum; give its parts to the outer one");
+        }
+        Mechanism::Sum(parts) if !(1..=MAX_PARTS).contains(&parts.len()) => {
+            let problem =
+                format!("must have 1 to {MAX_PARTS} parts; Polynomial(coefficients_si: [0]) is none");
+            checked.fault(field, format!("a sum of {}", parts.len()), problem);
+        }
+        Mechanism::Sum(parts) => {
+            for (i, part) in parts.iter().enumerate() {
+                mechanism(&format!("{field}.{i}"), part, checked);
+            }
+        }
+        _ => shape::check(field, own, checked),
     }
 }
 
@@ -265,7 +282,12 @@ fn hints(scene: &Scene, checked: &mut Checked) {
     if !checked.faults.is_empty() {
         return;
     }
-    shape::hints(&scene.mechanism, &mut checked.warnings);
+    match &scene.mechanism {
+        Mechanism::Sum(parts) => (0..).zip(parts).for_each(|(i, part)| {
+            shape::hints(&format!("mechanism.{i}"), part, &mut checked.warnings);
+        }),
+        only => shape::hints("mechanism", only, &mut checked.warnings),
+    }
     let RunSettings { duration_s, settle_s, .. } = scene.run;
     if let Damping::Ratio(xi) = scene.damping
         && xi > 1.0

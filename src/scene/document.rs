@@ -11,7 +11,6 @@ use super::fields::{Field, FieldPath, Slot, all_fields};
 use super::files::{Files, ReadError, read_from, read_text};
 use super::locate::Places;
 use super::manifest::{self, Swept};
-use super::mechanism::Mechanism;
 use super::presets::{self, PRESETS};
 use super::ranges::number_text;
 use super::record;
@@ -352,11 +351,7 @@ pub(super) fn unreadable(
 
 /// The paths of the files that a scene names, as written: its table and its records.
 pub fn named_paths(scene: &mut Scene) -> Vec<&mut String> {
-    let table = match &mut scene.mechanism {
-        Mechanism::Table { path, .. } => Some(path),
-        _ => None,
-    };
-    table.into_iter().chain(record::paths_mut(&mut scene.excitation)).collect()
+    scene.mechanism.paths_mut().into_iter().chain(record::paths_mut(&mut scene.excitation)).collect()
 }
 
 /// Replaces a field from its text; the error is a sentence.

@@ -66,6 +66,33 @@ pub enum Mechanism {
         #[serde(default = "default_table_tolerance")]
         tolerance: f64,
     },
+    /// F = stiffness x: a spring, such as one that balances part of a negative stiffness beside it.
+    Linear {
+        /// Stiffness in N/m, -1e200 to 1e200.
+        n_per_m: f64,
+    },
+    /// Two axially magnetised magnets that face each other across a gap at x = 0, one of them on the mass, as
+    /// dipoles.
+    Magnet {
+        /// mu_0 m_1 m_2/(4 pi) of the two moments in N mm^4, -1e60 to 1e60; above 0 they attract each other
+        /// at x = 0, below 0 they repel.
+        strength_n_mm4: f64,
+        /// Distance of the two dipoles at x = 0 in mm, 1e-15 to 1e15.
+        gap_mm: f64,
+    },
+    /// Forces side by side on the same mass: 1 to 16 parts, none of them a sum.
+    Sum(Vec<Mechanism>),
+}
+
+impl Mechanism {
+    /// The paths of the tables that it names.
+    pub(super) fn paths_mut(&mut self) -> Vec<&mut String> {
+        match self {
+            Self::Table { path, .. } => vec![path],
+            Self::Sum(parts) => parts.iter_mut().flat_map(Self::paths_mut).collect(),
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// Equal flexures side by side.

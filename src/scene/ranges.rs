@@ -99,6 +99,11 @@ specs! {
     COEFFICIENTS = "coefficients_si", COEFFICIENT.0, COEFFICIENT.1, "give finite coefficients in N/m^i; \
         zeros are fine";
     TABLE_TOLERANCE = "tolerance", 1e-10, 1e-1, "1e-4 of the force maximum suits measured data";
+    STIFFNESS = "n_per_m", COEFFICIENT.0, COEFFICIENT.1, "give a finite stiffness in N/m, such as 30";
+    STRENGTH = "strength_n_mm4", -1e60, 1e60, "give the strength in N mm^4, such as 2000; below 0 the \
+        magnets repel, 0 is no magnet";
+    GAP = "gap_mm", LENGTH.0, LENGTH.1, "give the distance of the magnets where they face each other in mm, \
+        such as 5";
     XI = "xi", 0.0, 1e6, "give a ratio, such as 0.023 for 2.3 %; `None` or 0 is no damping";
     C = "c_n_s_per_m", 0.0, 1e30, "give a damping coefficient in N s/m; `None` or 0 is no damping";
     TRAVEL_LIMIT = "travel_limit_mm", LENGTH.0, LENGTH.1,

@@ -25,12 +25,12 @@ const ROUNDING: f64 = 1.0 + 1e-12;
 
 /// The relations between the sizes of flexures, each a fault of the field that is most likely meant. Sizes
 /// outside their own range are not blamed twice.
-pub(super) fn check(mechanism: &Mechanism, checked: &mut Checked) {
+pub(super) fn check(at: &str, mechanism: &Mechanism, checked: &mut Checked) {
     let Mechanism::Flexures { preload_mm, thickness_mm, parallel, buckling, initial_bow_mm, .. } = mechanism
     else {
         return;
     };
-    let bad = |checked: &Checked, field: &str| known_bad(&format!("mechanism.{field}"), checked);
+    let bad = |checked: &Checked, field: &str| known_bad(&format!("{at}.{field}"), checked);
     let no_length = |checked: &Checked, group: &str| bad(checked, &format!("{group}.length_mm"));
     if no_length(checked, "buckling") {
         return;
@@ -38,17 +38,17 @@ pub(super) fn check(mechanism: &Mechanism, checked: &mut Checked) {
     let limit = buckling.length_mm / LENGTH_OVER_BOW;
     if *initial_bow_mm > limit * ROUNDING && !bad(checked, "initial_bow_mm") {
         let problem = format!(
-            "must be 0 to {}, a twentieth of mechanism.buckling.length_mm = {}; a stronger bow is an arch \
+            "must be 0 to {}, a twentieth of {at}.buckling.length_mm = {}; a stronger bow is an arch \
              and not a flexure",
             number_text(limit),
             number_text(buckling.length_mm)
         );
-        checked.fault("mechanism.initial_bow_mm", number_text(*initial_bow_mm), problem);
+        checked.fault(format!("{at}.initial_bow_mm"), number_text(*initial_bow_mm), problem);
     }
     if no_length(checked, "parallel") {
         return;
     }
-    let (shorter, field) = shorter(parallel, buckling);
+    let (shorter, field) = shorter(at, parallel, buckling);
     let limit = shorter / LENGTH_OVER_PRELOAD;
     if *preload_mm > limit * ROUNDING && !bad(checked, "preload_mm") {
         let problem = format!(
@@ -57,7 +57,7 @@ pub(super) fn check(mechanism: &Mechanism, checked: &mut Checked) {
             number_text(limit),
             number_text(shorter)
         );
-        checked.fault("mechanism.preload_mm", number_text(*preload_mm), problem);
+        checked.fault(format!("{at}.preload_mm"), number_text(*preload_mm), problem);
     }
     let limit = shorter / LENGTH_OVER_THICKNESS;
     if *thickness_mm > limit * ROUNDING && !bad(checked, "thickness_mm") {
@@ -66,18 +66,18 @@ pub(super) fn check(mechanism: &Mechanism, checked: &mut Checked) {
             number_text(limit),
             number_text(shorter)
         );
-        checked.fault("mechanism.thickness_mm", number_text(*thickness_mm), problem);
+        checked.fault(format!("{at}.thickness_mm"), number_text(*thickness_mm), problem);
     }
 }
 
 /// What is valid and hardly meant, or beyond what is sure to be solved; for sizes without a fault.
-pub(super) fn hints(mechanism: &Mechanism, warnings: &mut Vec<String>) {
+pub(super) fn hints(at: &str, mechanism: &Mechanism, warnings: &mut Vec<String>) {
     let Mechanism::Flexures { preload_mm, thickness_mm, parallel, buckling, .. } = mechanism else { return };
-    let (shorter, field) = shorter(parallel, buckling);
+    let (shorter, field) = shorter(at, parallel, buckling);
     let sure = shorter / LENGTH_OVER_SURE_PRELOAD;
     if *preload_mm > sure * ROUNDING {
         warnings.push(format!(
-            "mechanism.preload_mm = {}: beyond {} mm, a quarter of the shorter flexure ({field} = {}), the \
+            "{at}.preload_mm = {}: beyond {} mm, a quarter of the shorter flexure ({field} = {}), the \
              flexures may not be solved",
             number_text(*preload_mm),
             number_text(sure),
@@ -87,7 +87,7 @@ pub(super) fn hints(mechanism: &Mechanism, warnings: &mut Vec<String>) {
     for (name, group) in [("parallel", parallel), ("buckling", buckling)] {
         if group.width_mm < *thickness_mm {
             warnings.push(format!(
-                "mechanism.{name}.width_mm = {}: less than the thickness of {} mm; such a flexure bends \
+                "{at}.{name}.width_mm = {}: less than the thickness of {} mm; such a flexure bends \
                  sideways first, which the model does not follow",
                 number_text(group.width_mm),
                 number_text(*thickness_mm)
@@ -97,10 +97,10 @@ pub(super) fn hints(mechanism: &Mechanism, warnings: &mut Vec<String>) {
 }
 
 /// The length of the shorter flexure in mm, and its field.
-fn shorter(parallel: &FlexureGroup, buckling: &FlexureGroup) -> (f64, &'static str) {
+fn shorter(at: &str, parallel: &FlexureGroup, buckling: &FlexureGroup) -> (f64, String) {
     if buckling.length_mm < parallel.length_mm {
-        (buckling.length_mm, "mechanism.buckling.length_mm")
+        (buckling.length_mm, format!("{at}.buckling.length_mm"))
     } else {
-        (parallel.length_mm, "mechanism.parallel.length_mm")
+        (parallel.length_mm, format!("{at}.parallel.length_mm"))
     }
 }

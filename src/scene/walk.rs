@@ -223,6 +223,16 @@ fn walk_mechanism<V: Visitor>(mechanism: &mut Mechanism, v: &mut V) {
             v.field(Segment::Name("path"), false, Field::Text(path));
             number(v, &ranges::TABLE_TOLERANCE, tolerance);
         }
+        Mechanism::Linear { n_per_m } => number(v, &ranges::STIFFNESS, n_per_m),
+        Mechanism::Magnet { strength_n_mm4, gap_mm } => {
+            number(v, &ranges::STRENGTH, strength_n_mm4);
+            number(v, &ranges::GAP, gap_mm);
+        }
+        Mechanism::Sum(parts) => {
+            for (i, part) in parts.iter_mut().enumerate() {
+                within(v, Segment::Index(i), part, walk_mechanism);
+            }
+        }
     }
 }
 

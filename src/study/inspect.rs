@@ -17,16 +17,29 @@ use crate::scene::{Damping, Fault, Scene};
 pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>, Vec<Fault>> {
     let model = Model::build(scene, Arc::clone(mechanism))?;
     let mut lines = model.describe();
-    if let Some(own) = &mechanism.flexures {
-        lines.extend(flexures(own.geometry()));
-        lines.push(accuracy(mechanism, own.accuracy()));
+    if mechanism.parts.is_empty() {
+        lines.extend(force(mechanism));
     } else {
-        lines.push(force_curve(mechanism));
+        let (parts, pieces) = (mechanism.parts.len(), pieces_and_reach(mechanism));
+        lines.push(format!(
+            "force curve: {pieces}, the sum of {parts}, whose errors add; barrier and forces below are \
+             those of the sum"
+        ));
+    }
+    for (i, part) in (1..).zip(&mechanism.parts) {
+        lines.extend(force(part).into_iter().map(|line| format!("part {i}: {line}")));
     }
     lines.extend(damping(scene, &model));
     lines.extend(landscape(&mechanism.landscape, model.mass()));
     lines.extend(strikes_in_words(&model, &scene.stops));
     Ok(lines)
+}
+
+/// The flexures, where there are such, and the force curve.
+fn force(mechanism: &Mechanism) -> Vec<String> {
+    let Some(own) = &mechanism.flexures else { return vec![force_curve(mechanism)] };
+    let [shape, theory] = flexures(own.geometry());
+    vec![shape, theory, accuracy(mechanism, own.accuracy())]
 }
 
 /// What the flexures are and which beams model them.

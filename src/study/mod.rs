@@ -5,8 +5,10 @@
 //! the command line ask the same studies and show the same tables.
 
 pub mod accuracy;
+mod alternatives;
 mod amplitudes;
 mod basins;
+mod best;
 mod cell;
 mod cells;
 mod contact;
@@ -45,8 +47,13 @@ mod watch;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+pub use alternatives::{Alternative, Rated, SIZE_CHANGE, alternatives, comparison_parts, comparison_table};
 pub use amplitudes::{Thresholds, stops_that_cross, thresholds};
 pub use basins::{Answer, Attractor, Basins, EvenRange, MAX_STARTS, NoBasins, Shares, Starts, StartsError};
+pub use best::{
+    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Optimum,
+    SAMPLES, Spread, Variation, best, scan_runs,
+};
 pub use cell::{Cell, CellFaults, SweepEnd, Tally};
 pub use cells::Direction;
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};

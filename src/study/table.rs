@@ -12,6 +12,8 @@ pub enum Values {
     Counts(Vec<Option<u64>>),
     /// Words from a fixed list; an empty one is a missing value.
     Words(Vec<&'static str>),
+    /// Names that a person gave, without a comma, a quote or a line break; an empty one is a missing value.
+    Names(Vec<String>),
 }
 
 impl Values {
@@ -21,6 +23,7 @@ impl Values {
             Self::Numbers(values) => values.len(),
             Self::Counts(values) => values.len(),
             Self::Words(values) => values.len(),
+            Self::Names(values) => values.len(),
         }
     }
 
@@ -163,6 +166,7 @@ impl Table {
                 (Values::Numbers(own), Values::Numbers(more)) => own.extend_from_slice(more),
                 (Values::Counts(own), Values::Counts(more)) => own.extend_from_slice(more),
                 (Values::Words(own), Values::Words(more)) => own.extend_from_slice(more),
+                (Values::Names(own), Values::Names(more)) => own.extend_from_slice(more),
                 _ => debug_assert!(false, "tables of one study have the same columns"),
             }
         }

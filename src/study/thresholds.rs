@@ -42,7 +42,7 @@ impl Onset {
         }
     }
 
-    fn is_in(self, summary: &Summary) -> bool {
+    pub(super) fn is_in(self, summary: &Summary) -> bool {
         match self {
             Self::Release => summary.releases > 0,
             Self::Crossing => summary.crossings > 0 && summary.regime != Regime::OneWell,

@@ -20,7 +20,7 @@ use predicates::prelude::*;
 use predicates::str::contains;
 
 /// The words of all commands, in the order of `--help`.
-const COMMANDS: [&str; 15] = [
+const COMMANDS: [&str; 17] = [
     "presets",
     "check",
     "curve",
@@ -29,6 +29,8 @@ const COMMANDS: [&str; 15] = [
     "merge",
     "section",
     "threshold",
+    "compare",
+    "best",
     "spectrum",
     "basins",
     "orbit",

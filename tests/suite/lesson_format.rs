@@ -180,7 +180,7 @@ fn number(summary: &Summary, name: &str) -> f64 {
     match SummaryField::find(name).unwrap().column([Some(summary)].into_iter()) {
         Values::Numbers(values) => values[0],
         Values::Counts(values) => values[0].unwrap() as f64,
-        Values::Words(_) => panic!("{name} is a word"),
+        Values::Words(_) | Values::Names(_) => panic!("{name} is a word"),
     }
 }
 

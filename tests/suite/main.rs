@@ -4,6 +4,7 @@ mod absent;
 mod accuracy;
 mod accuracy_scene;
 mod basins;
+mod best;
 #[path = "../../benches/by_hand/mod.rs"]
 mod by_hand;
 mod cli;

@@ -6,6 +6,7 @@ mod kinks;
 mod polynomials;
 mod prototype_table;
 mod reading;
+mod sums;
 mod tables;
 
 use interwell::mechanics::{BuildError, ForceCurve, ForceTable, Mechanism, Piece, fit, force_scale};

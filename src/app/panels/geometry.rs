@@ -1,35 +1,41 @@
-//! Controls of the flexures: preload, thickness, lengths, widths.
+//! Controls of the mechanism: preload, sizes of flexures, springs and magnets beside them.
 
 use eframe::egui::Ui;
 
 use crate::app::session::Session;
-use crate::scene::Mechanism;
+use crate::app::words::fields::info;
+use crate::scene::{Mechanism, numeric_fields};
 
-use super::fields::{absent_ui, field_ui, fields_ui};
+use super::fields::{absent_ui, field_ui};
+
+/// The numbers of the mechanism that have a slider, those of the parts of a sum among them.
+fn sliders(session: &Session) -> Vec<String> {
+    let own = |path: &String| path.starts_with("mechanism.") && info(path).is_some();
+    numeric_fields(session.scene()).into_iter().filter(own).collect()
+}
+
+fn is_preload(path: &str) -> bool {
+    path.ends_with(".preload_mm")
+}
 
 /// The slider of the preload; for a mechanism without one greyed, with the reason.
 pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    match session.scene().mechanism {
-        Mechanism::Flexures { .. } => field_ui(ui, session, "mechanism.preload_mm", width),
-        Mechanism::Table { .. } => {
+    match sliders(session).into_iter().find(|path| is_preload(path)) {
+        Some(path) => field_ui(ui, session, &path, width),
+        None if matches!(session.scene().mechanism, Mechanism::Table { .. }) => {
             absent_ui(ui, "preload", "The force comes from a table, which was made at one preload.")
         }
-        _ => absent_ui(ui, "preload", "The force is given by a formula without a preload."),
+        None => absent_ui(ui, "preload", "The force is given by a formula without a preload."),
     }
 }
 
 /// The sliders of the other sizes.
 pub fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    if !matches!(session.scene().mechanism, Mechanism::Flexures { .. }) {
+    let mut sizes = sliders(session);
+    sizes.retain(|path| !is_preload(path));
+    if sizes.is_empty() {
         let why = "The mechanism of this scene is a force without flexures behind it.";
-        return absent_ui(ui, "sizes of flexures", why);
+        absent_ui(ui, "sizes of flexures", why);
     }
-    let sizes = [
-        "mechanism.thickness_mm",
-        "mechanism.parallel.length_mm",
-        "mechanism.parallel.width_mm",
-        "mechanism.buckling.length_mm",
-        "mechanism.buckling.width_mm",
-    ];
-    fields_ui(ui, session, &sizes, width)
+    sizes.iter().for_each(|path| field_ui(ui, session, path, width));
 }

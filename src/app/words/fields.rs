@@ -102,6 +102,14 @@ pub static FIELDS: &[FieldInfo] = &[
         "Increase: the buckling flexure bulges more easily and pushes less: the barrier gets lower."),
     field("mechanism.buckling.width_mm", "buckling flexure, width", "mm", WIDE, LENGTH,
         "Increase: the buckling flexure pushes harder: the barrier grows."),
+    field("mechanism.n_per_m", "spring", "N/m", ((-100.0, 100.0, 1.0), Scale::Value), (-1e6, 1e6),
+        "Increase: a stiffer spring draws the mass to the middle: the barrier is lower, the wells move in."),
+    field("mechanism.strength_n_mm4", "magnet", "N mm⁴", ((-2e3, 2e3, 1.0), Scale::Value), (-1e9, 1e9),
+        "Increase: the magnets attract each other more where they face each other: the barrier gets lower. \
+         Below 0 they repel each other, and it gets higher."),
+    field("mechanism.gap_mm", "gap of the magnets", "mm", ((0.5, 20.0, 0.1), Scale::Value), LENGTH,
+        "Increase: the magnets are further apart. Their force falls with the fourth power of it and reaches \
+         further to both sides."),
     field("damping.xi", "damping ratio", "", ((0.0, 0.2, 0.001), Scale::Value), (0.0, 100.0),
         "Increase: the motion dies away faster."),
     field("damping.c_n_s_per_m", "damping", "N s/m", ((0.0, 0.2, 0.001), Scale::Value), (0.0, 1e6),
@@ -164,6 +172,9 @@ pub fn mechanism_name(mechanism: &Mechanism) -> String {
         Mechanism::DoubleWell { .. } => "double well".to_owned(),
         Mechanism::Polynomial { coefficients_si } => format!("polynomial of {}", coefficients_si.len()),
         Mechanism::Table { path, .. } => path.clone(),
+        Mechanism::Linear { .. } => "spring".to_owned(),
+        Mechanism::Magnet { .. } => "magnet".to_owned(),
+        Mechanism::Sum(parts) => parts.iter().map(mechanism_name).collect::<Vec<_>>().join(" + "),
     }
 }
 

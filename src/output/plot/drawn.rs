@@ -44,6 +44,6 @@ pub(super) fn as_numbers(column: &Column) -> Option<Vec<f64>> {
     match &column.values {
         Values::Numbers(values) => Some(values.clone()),
         Values::Counts(values) => Some(values.iter().map(|n| n.map_or(f64::NAN, |n| n as f64)).collect()),
-        Values::Words(_) => None,
+        Values::Words(_) | Values::Names(_) => None,
     }
 }

@@ -50,7 +50,9 @@ pub(super) struct Quantity {
 /// The columns of `table` that can be shown, which are those of the summary and of thresholds, not the swept
 /// fields.
 pub fn quantities<'a>(table: &'a Table, grid: &'a Grid) -> impl Iterator<Item = &'a str> {
-    let shown = |name: &str, values: &Values| !matches!(values, Values::Words(_)) || words_of(name).is_some();
+    let shown = |name: &str, values: &Values| {
+        !matches!(values, Values::Words(_) | Values::Names(_)) || words_of(name).is_some()
+    };
     let columns = table.columns().iter().filter(move |own| shown(&own.name, &own.values));
     columns.map(|own| own.name.as_str()).filter(|name| !grid.columns().iter().any(|own| own == name))
 }
@@ -62,6 +64,7 @@ impl Quantity {
         let values: Vec<f64> = match column.map(|own| &own.values) {
             Some(Values::Numbers(values)) => values.clone(),
             Some(Values::Counts(values)) => values.iter().map(|n| n.map_or(f64::NAN, |n| n as f64)).collect(),
+            Some(Values::Names(_)) => Vec::new(),
             Some(Values::Words(words)) => {
                 let known = words_of(name).unwrap_or_default();
                 let place = |word: &&str| known.iter().position(|own| own == word);

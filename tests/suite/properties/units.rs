@@ -58,6 +58,12 @@ impl Units {
                     .map(|(i, c)| c * force / length.powi(i))
                     .collect(),
             },
+            Mechanism::Linear { n_per_m } => Mechanism::Linear { n_per_m: n_per_m * force / length },
+            Mechanism::Magnet { strength_n_mm4, gap_mm } => Mechanism::Magnet {
+                strength_n_mm4: strength_n_mm4 * force * length.powi(4),
+                gap_mm: gap_mm * length,
+            },
+            Mechanism::Sum(parts) => Mechanism::Sum(parts.iter().map(|part| self.mechanism(part)).collect()),
             Mechanism::Table { .. } | Mechanism::Flexures { .. } => natural.clone(),
         }
     }

@@ -40,6 +40,15 @@ fn every_mechanism_reads_and_writes() {
         ),
         ("Polynomial(coefficients_si: [0])", Mechanism::Polynomial { coefficients_si: vec![0.0] }),
         ("Table(path: \"a b.csv\")", table(1e-4)),
+        ("Linear(n_per_m: 30)", Mechanism::Linear { n_per_m: 30.0 }),
+        (
+            "Sum([Linear(n_per_m: -3), Magnet(strength_n_mm4: 20, gap_mm: 5), Table(path: \"a b.csv\")])",
+            Mechanism::Sum(vec![
+                Mechanism::Linear { n_per_m: -3.0 },
+                Mechanism::Magnet { strength_n_mm4: 20.0, gap_mm: 5.0 },
+                table(1e-4),
+            ]),
+        ),
         ("Table(path: \"a b.csv\", tolerance: 1e-6)", table(1e-6)),
     ] {
         let document = document(&[("mechanism", text)]);

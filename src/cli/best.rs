@@ -1,0 +1,350 @@
+//! `best`: the best design for an environment, one row, with its margins.
+
+use clap::Args;
+use interwell::numeric::short;
+use interwell::scene::{Axis, Document, FieldPath, RunSettings, column_names};
+use interwell::study::{
+    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Read,
+    SAMPLES, SUMMARY_FIELDS, SummaryField, Task, Variation, best, scan_runs,
+};
+use interwell::system::files::{canonical, is_file};
+
+use super::failure::Failure;
+use super::options::Common;
+use super::support::{finish, inputs, load, open, warn, write_table};
+use super::sweep::{bar, pool};
+use super::{interrupt, say};
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless best paper --over stops.travel_limit_mm=0.5:7
+  interwell --headless best paper --over stops.travel_limit_mm=0.5:7 --subject-to 'max_abs_x_m<=0.001'
+  interwell --headless best paper --over stops.travel_limit_mm=0.5:7 \\
+      --environment excitation.amplitude_g=0.8,1,1.2 --vary excitation.amplitude_g=+-2%
+  interwell --headless best paper --over stops.travel_limit_mm=0.2:2 --environment walking
+  interwell --headless best random-shaking --over stops.travel_limit_mm=0.2:3 \\
+      --environment excitation.seed=1,2,3,4,5
+  interwell --headless best paper --over mechanism.preload_mm=1:3 --over stops.travel_limit_mm=0.5:5";
+
+/// What it takes.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// A field of the design and its range (repeatable, at most four); a step is that of the first scan
+    /// [default: a 256th of the range; of two fields a 32nd, of three a 12th, of four an 8th]
+    #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true, required = true)]
+    pub over: Vec<String>,
+
+    /// What is to be largest: a number of the summary, such as mean_load_power_w of a scene with a transducer
+    #[arg(long, value_name = "COLUMN", default_value = "rms_velocity_m_per_s", visible_alias = "maximize")]
+    pub maximise: String,
+
+    /// What every environment must keep to, such as 'max_abs_x_m<=0.003' (repeatable)
+    #[arg(long, value_name = "COLUMN<=VALUE|COLUMN>=VALUE")]
+    pub subject_to: Vec<String>,
+
+    /// What the design is for, in place of the scene's own excitation: the excitation and run of another
+    /// scene, a record (CSV), or values of a field, each with *WEIGHT after it if it is to count otherwise
+    /// than once (repeatable; the mean is what is largest)
+    #[arg(long, value_name = "SCENE|FILE|FIELD=a,b,c", allow_hyphen_values = true)]
+    pub environment: Vec<String>,
+
+    /// A tolerance of a field: what the worst and the lowest twentieth of 200 samples give (repeatable)
+    #[arg(long, value_name = "FIELD=+-1%|+-0.05", allow_hyphen_values = true)]
+    pub vary: Vec<String>,
+
+    /// Seed of these samples
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub seed: u64,
+
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Searches and writes the row.
+pub fn run(options: &Arguments) -> Result<(), Failure> {
+    let common = &options.common;
+    let (document, warnings) = load(&options.scene, common, None)?;
+    let question = BestQuestion {
+        over: ranges(&options.over, &document)?,
+        maximise: number("--maximise", &options.maximise)?,
+        subject_to: options.subject_to.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?,
+        environments: environments(&options.environment, &document)?,
+        vary: options.vary.iter().map(|text| variation(text, &document)).collect::<Result<_, _>>()?,
+        seed: options.seed,
+    };
+    has_fields(&question)?;
+    warn(&document, common, &warnings, None);
+    let pool = pool(common)?;
+    let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", common.out()))])?;
+    let bar = bar(scan_runs(&question), "runs", common.quiet, common.out());
+    // how many runs follow the scan is not known before
+    let tick = || bar.inc_beyond();
+    let task = Task { tick: &tick, cancel: interrupt::listen() };
+    let found = best(&question, &pool, &task, &mut |_| ());
+    bar.finish_and_clear();
+    let design = found.map_err(|why| failure(why, options, &question, &document))?;
+    write_table(&mut sinks[0], &design.table(&question))?;
+    if !common.quiet {
+        words(&design, &question).iter().for_each(|line| say(&format!("{}: {line}", document.name)));
+    }
+    finish(sinks)
+}
+
+/// A field that is changed must be there in every environment: a record has no amplitude.
+fn has_fields(question: &BestQuestion) -> Result<(), Failure> {
+    let over = question.over.iter().map(|own| ("--over", &own.field));
+    let vary = question.vary.iter().map(|own| ("--vary", &own.field));
+    for (option, field) in over.chain(vary) {
+        let missing = |own: &&Environment| FieldPath::new(field).get(&own.scene).is_none();
+        if let Some(own) = question.environments.iter().find(missing) {
+            return Err(Failure::argument(format!(
+                "{option} {field}: the environment {} has no such number; change a field that all have",
+                own.name
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The answer in sentences.
+fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
+    let names = names(question);
+    let maximised = question.maximise.name;
+    let at: Vec<String> =
+        names.iter().zip(&design.optimum.at).map(|(name, value)| format!("{name} = {value}")).collect();
+    let mean = if question.environments.len() > 1 { "the mean of " } else { "" };
+    let mut lines =
+        vec![format!("{mean}{maximised} is largest at {}: {}", at.join(", "), short(design.optimum.value))];
+    if design.flat {
+        lines.push(format!("{maximised} is the same wherever it was looked, so that no place is better"));
+    }
+    for (i, name) in names.iter().enumerate() {
+        let (range, unit) = (&question.over[i], short(design.resolution[i]));
+        let side = |margin: Option<f64>, way: &str, end: f64| match margin {
+            Some(margin) => format!("{} {way}", short(margin)),
+            None => format!("nowhere {way}, as far as the range goes to {end}"),
+        };
+        let [low, high] = design.margins[i];
+        let (low, high) = (side(low, "below", range.low), side(high, "above", range.high));
+        lines.push(format!(
+            "{name}: a tenth of it is lost, or a constraint broken, {low}, and {high}; located to {unit}"
+        ));
+        if design.at_border[i] && !design.flat {
+            lines.push(format!("{name} is best at an end of its range: a wider range may hold better"));
+        }
+    }
+    if question.environments.len() > 1 {
+        for (own, value) in question.environments.iter().zip(&design.optimum.of_each) {
+            lines.push(format!("{}: {}", own.name, short(*value)));
+        }
+    }
+    if !question.vary.is_empty() {
+        let number = |value: f64| if value.is_nan() { "nothing".to_owned() } else { short(value) };
+        let spread = &design.spread;
+        lines.push(format!(
+            "of {SAMPLES} samples of what varies the worst gives {}, one in twenty less than {}",
+            number(spread.worst),
+            number(spread.quantile_5)
+        ));
+        lines.push(match &design.stepped_back {
+            None => {
+                "no place beside it along the first field, of those tried, has a better worst case".into()
+            }
+            Some((own, spread)) => format!(
+                "at {} = {} the worst gives {}, one in twenty less than {}; the value there is {}, {} % less",
+                names[0],
+                own.at[0],
+                number(spread.worst),
+                number(spread.quantile_5),
+                short(own.value),
+                short(100.0 * (1.0 - own.value / design.optimum.value))
+            ),
+        });
+    }
+    lines
+}
+
+fn names(question: &BestQuestion) -> Vec<String> {
+    let fields: Vec<&str> = question.over.iter().map(|range| range.field.as_str()).collect();
+    column_names(&fields)
+}
+
+fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: &Document) -> Failure {
+    match why {
+        NoBest::Cancelled => Failure::interrupted(),
+        NoBest::Invalid(faults) => document.error_from(faults).into(),
+        NoBest::NoValue => Failure::argument(format!(
+            "--maximise {}: no design of the range has this result, or one of --subject-to",
+            options.maximise
+        )),
+        NoBest::NoneMeets { nearest, results } => {
+            let at =
+                names(question).into_iter().zip(nearest).map(|(name, value)| format!("{name} = {value}"));
+            let results = question.subject_to.iter().zip(results);
+            let results = results.map(|(own, value)| format!("{} is {}", own.of.name, short(value)));
+            Failure::argument(format!(
+                "--subject-to {}: nothing that was tried in the range keeps to it; nearest is {}, where {}",
+                options.subject_to.join(", "),
+                at.collect::<Vec<_>>().join(", "),
+                results.collect::<Vec<_>>().join(", ")
+            ))
+        }
+    }
+}
+
+/// The ranges of `--over`.
+fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Failure> {
+    let mut ranges: Vec<DesignRange> = Vec::new();
+    for text in over {
+        let wrong = |problem: String| Failure::argument(format!("--over {text}: {problem}"));
+        let form = || wrong("write FIELD=A:B, such as stops.travel_limit_mm=0.5:7".into());
+        let (field, values) = text.split_once('=').ok_or_else(form)?;
+        let parts: Vec<&str> = values.split(':').collect();
+        let ends = match parts[..] {
+            [low, high] | [low, high, _] => format!("{field}={low},{high}"),
+            _ => return Err(form()),
+        };
+        let axis = Axis::parse(&ends, &document.scene).map_err(wrong)?;
+        let (low, high) = (axis.values[0], axis.values[1]);
+        if low >= high {
+            return Err(wrong(format!("the range must go upward: {low} is not below {high}")));
+        }
+        let intervals = match parts.get(2) {
+            None => INTERVALS[over.len().min(MOST_FIELDS) - 1],
+            Some(step) => {
+                let step = step.trim().parse().ok().filter(|own: &f64| *own > 0.0 && own.is_finite());
+                let step = step.ok_or_else(|| wrong("the step must be a number above 0".into()))?;
+                let intervals = ((high - low) / step).round();
+                if !(1.0..=1e5).contains(&intervals) {
+                    return Err(wrong(format!("takes {intervals} steps; give one with 1 to 100000")));
+                }
+                intervals as usize
+            }
+        };
+        if ranges.iter().any(|own| own.field == axis.field) {
+            return Err(wrong("is given twice; give each field one range".into()));
+        }
+        ranges.push(DesignRange { field: axis.field, low, high, intervals });
+    }
+    if ranges.len() > MOST_FIELDS {
+        return Err(Failure::argument(format!(
+            "--over: {} fields; at most {MOST_FIELDS} are searched together",
+            ranges.len()
+        )));
+    }
+    Ok(ranges)
+}
+
+/// The column called `name`, where it is a number.
+fn number(option: &str, name: &str) -> Result<&'static SummaryField, Failure> {
+    let is_number = |own: &&SummaryField| matches!(own.read, Read::Number(_) | Read::Count(_));
+    let found = SummaryField::find(name).filter(is_number);
+    found.ok_or_else(|| {
+        let known: Vec<&str> = SUMMARY_FIELDS.iter().filter(is_number).map(|own| own.name).collect();
+        Failure::argument(format!("{option} {name}: no such number; there are {}", known.join(", ")))
+    })
+}
+
+fn constraint(text: &str) -> Result<Constraint, Failure> {
+    let wrong = || {
+        let message = "write COLUMN<=VALUE or COLUMN>=VALUE, such as 'max_abs_x_m<=0.003'";
+        Failure::argument(format!("--subject-to {text}: {message}"))
+    };
+    let (name, limit, at_most) = match (text.split_once("<="), text.split_once(">=")) {
+        (Some((name, limit)), _) => (name, limit, true),
+        (None, Some((name, limit))) => (name, limit, false),
+        _ => return Err(wrong()),
+    };
+    let limit = limit.trim().parse().ok().filter(|own: &f64| own.is_finite()).ok_or_else(wrong)?;
+    Ok(Constraint { of: number(&format!("--subject-to {text}:"), name.trim())?, at_most, limit })
+}
+
+fn variation(text: &str, document: &Document) -> Result<Variation, Failure> {
+    let wrong = |problem: &str| Failure::argument(format!("--vary {text}: {problem}"));
+    let form = "write FIELD=+-1% or FIELD=+-0.05, such as stops.travel_limit_mm=+-1%";
+    let (field, by) = text.split_once('=').ok_or_else(|| wrong(form))?;
+    let field = field.trim();
+    let value = FieldPath::new(field).get(&document.scene);
+    let value = match value {
+        Some(value) => value,
+        // says which there are
+        None => Axis::parse(&format!("{field}=1"), &document.scene)
+            .map_err(|problem| wrong(&problem))
+            .and_then(|_| Err(wrong("the scene leaves this field out; give it a value with --set")))?,
+    };
+    let by = by.trim().trim_start_matches("+-").trim_start_matches('\u{b1}');
+    let (number, relative) = by.strip_suffix('%').map_or((by, false), |share| (share, true));
+    let number = number.trim().parse().ok().filter(|own: &f64| *own >= 0.0 && own.is_finite());
+    let number = number.ok_or_else(|| wrong(form))?;
+    if relative && value == 0.0 {
+        return Err(wrong("a share of 0 is nothing; give the tolerance in the unit of the field"));
+    }
+    let by = if relative { number / 100.0 } else { number };
+    Ok(Variation { field: field.to_owned(), by, relative })
+}
+
+/// A text and the weight after its last `*`.
+fn weighted<'a>(text: &'a str, option: &str) -> Result<(&'a str, f64), Failure> {
+    let Some((own, weight)) = text.rsplit_once('*') else { return Ok((text.trim(), 1.0)) };
+    let weight = weight.trim().parse().ok().filter(|own: &f64| *own > 0.0 && own.is_finite());
+    let wrong = || Failure::argument(format!("{option}: the weight after * must be a number above 0"));
+    Ok((own.trim(), weight.ok_or_else(wrong)?))
+}
+
+/// The most environments.
+const MOST_ENVIRONMENTS: usize = 1000;
+
+/// The environments of the design; without any given, the scene's own.
+fn environments(given: &[String], document: &Document) -> Result<Vec<Environment>, Failure> {
+    let of = |name: String, weight: f64, own: &Document| Environment {
+        name,
+        weight,
+        scene: own.scene.clone(),
+        files: own.files.clone(),
+    };
+    if given.is_empty() {
+        return Ok(vec![of(document.name.clone(), 1.0, document)]);
+    }
+    let mut all = Vec::new();
+    for text in given {
+        let option = format!("--environment {text}");
+        let mut own = document.clone();
+        own.scene.sweep.clear(); // its fields may not be those of another excitation
+        if let Some((field, values)) = text.split_once('=').filter(|_| !is_file(text.as_ref())) {
+            for value in values.split(',') {
+                let (value, weight) = weighted(value, &option)?;
+                let axis = Axis::parse(&format!("{field}={value}"), &document.scene);
+                let axis = axis.map_err(|problem| Failure::argument(format!("{option}: {problem}")))?;
+                axis.apply(&mut own.scene, 0);
+                own.check()?;
+                all.push(of(format!("{} = {value}", axis.field), weight, &own));
+            }
+        } else {
+            let (name, weight) = weighted(text, &option)?;
+            if name.to_ascii_lowercase().ends_with(".csv") {
+                let path = canonical(name.as_ref()).unwrap_or_else(|| name.into());
+                own.set(&format!("excitation=Recorded(path: {:?})", path.display().to_string()))?;
+            } else {
+                let other = Document::of_argument(name)?;
+                other.check()?;
+                let RunSettings { tolerance, recurrence, .. } = document.scene.run;
+                own.scene.excitation = other.scene.excitation;
+                own.scene.run = RunSettings { tolerance, recurrence, ..other.scene.run };
+            }
+            own.check()?;
+            all.push(of(name.to_owned(), weight, &own));
+        }
+    }
+    match all.len() {
+        0..=MOST_ENVIRONMENTS => Ok(all),
+        n => {
+            Err(Failure::argument(format!("--environment: {n} of them; at most {MOST_ENVIRONMENTS} are run")))
+        }
+    }
+}

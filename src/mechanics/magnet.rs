@@ -1,0 +1,122 @@
+//! Force between two magnets that pass each other, as dipoles in closed form and as a piecewise polynomial.
+//!
+//! Both magnets are magnetised along the line that joins them where they face each other, at x = 0, the gap g
+//! apart; one moves with the mass, across that line. As point dipoles with parallel moments they have the
+//! energy U = K (1/r^3 - 3 g^2/r^5) with r^2 = x^2 + g^2 (Griffiths 1999, "Introduction to Electrodynamics",
+//! third edition, equation 6.35), where K = mu_0 m_1 m_2/(4 pi) is the strength. So the force dU/dx that
+//! holds the mass is F = 3 K x (4 g^2 - x^2)/r^7, with the stiffness 12 K/g^5 in the middle and zeros
+//! at x = +-2 g. K above 0 is attraction at the middle, below 0 (antiparallel moments) repulsion.
+//!
+//! Left out is the size of the magnets: those longer or wider than the gap are weaker than their dipoles.
+
+use std::sync::OnceLock;
+
+use super::curve::{FitReport, ForceCurve, Piece};
+use super::fit::fit;
+use super::table::ForceTable;
+
+/// How far the pieces reach, in gaps: the force beyond is a hundred millionth of its maximum.
+const REACH: f64 = 100.0;
+
+/// Error allowed to the pieces, relative to the largest force.
+const TOLERANCE: f64 = 1e-8;
+
+/// Samples that the pieces are made from: enough for a local interpolant to know the force between them
+/// better than the tolerance.
+const SAMPLES: usize = 801;
+
+/// Places between two samples where the error is measured.
+const BETWEEN: usize = 16;
+
+/// How much larger than the largest measured error the true one may be: the error is a polynomial with some
+/// fifteen extrema a piece, each of which is met by tens of places.
+const BETWEEN_PLACES: f64 = 1.01;
+
+/// F in units of K/g^4 at x = u g.
+fn unit_force(u: f64) -> f64 {
+    let squared = u * u + 1.0;
+    3.0 * u * (4.0 - u * u) / (squared.powi(3) * squared.sqrt())
+}
+
+/// Force dU/dx in N at `x` in m of a magnet of `strength` in N m^4 at a `gap` in m.
+pub fn magnet_force(strength: f64, gap: f64, x: f64) -> f64 {
+    strength / gap.powi(4) * unit_force(x / gap)
+}
+
+/// Energy in J at `x` in m over that at x = 0, of a magnet of `strength` in N m^4 at a `gap` in m.
+pub fn magnet_potential(strength: f64, gap: f64, x: f64) -> f64 {
+    // 1/r^3 - 3/r^5 + 2 without the difference of numbers near each other: with s = r^2 - 1 and p = r^5 it
+    // is (s - 2 + 2 p)/p, and 2 p - 2 = 2 ((1 + s)^5 - 1)/(p + 1)
+    let s = (x / gap).powi(2);
+    let p = (1.0 + s).powi(2) * (1.0 + s).sqrt();
+    let grown = s * (5.0 + s * (10.0 + s * (10.0 + s * (5.0 + s))));
+    strength / gap.powi(3) * ((s + 2.0 * grown / (p + 1.0)) / p)
+}
+
+/// The curve of strength and gap 1, made once. Its report has the error in the same units.
+fn unit_curve() -> Result<&'static ForceCurve, String> {
+    static UNIT: OnceLock<Result<ForceCurve, String>> = OnceLock::new();
+    UNIT.get_or_init(|| {
+        let last = SAMPLES as f64 - 1.0;
+        let place = |i: f64| {
+            let s: f64 = (2.0 * i - last) / last;
+            s.signum() * (s.abs() * REACH.asinh()).sinh()
+        };
+        let x: Vec<f64> = (0..SAMPLES).map(|i| place(i as f64)).collect();
+        let force = x.iter().map(|u| unit_force(*u)).collect();
+        let curve = fit(&ForceTable { x, force }, TOLERANCE)?;
+        let places = BETWEEN * (SAMPLES - 1);
+        let reach = curve.domain().1;
+        let (mut worst_n, mut worst_at_m, mut scale_n) = (0.0_f64, 0.0, 0.0_f64);
+        for i in 0..=places {
+            let u = place(i as f64 / BETWEEN as f64).clamp(-reach, reach);
+            let error = BETWEEN_PLACES * (curve.force(u) - unit_force(u)).abs();
+            scale_n = scale_n.max(unit_force(u).abs());
+            if error > worst_n {
+                (worst_n, worst_at_m) = (error, u);
+            }
+        }
+        let warnings = Vec::new();
+        Ok(curve.with_fit(FitReport { worst_n, worst_at_m, scale_n, samples: places + 1, warnings }))
+    })
+    .as_ref()
+    .map_err(Clone::clone)
+}
+
+/// The curve of a magnet of `strength` in N m^4 at a `gap` in m above 0, up to 100 gaps to either side. Its
+/// report has the largest error against the closed form. A strength of 0 is no force anywhere.
+///
+/// Fails with a sentence where the numbers leave the range of double precision.
+pub fn magnet(strength: f64, gap: f64) -> Result<ForceCurve, String> {
+    if strength == 0.0 {
+        return Ok(ForceCurve::polynomial(&[0.0]));
+    }
+    let unit = unit_curve()?;
+    let scale = strength / gap.powi(4);
+    let scaled = |piece: &Piece| {
+        let mut factor = scale;
+        let coefficients = piece.coefficients.iter().map(|c| {
+            let own = c * factor;
+            factor /= gap;
+            own
+        });
+        Piece { origin: piece.origin * gap, coefficients: coefficients.collect(), potential_at_origin: 0.0 }
+    };
+    let pieces: Vec<Piece> = unit.pieces().iter().map(scaled).collect();
+    let breaks: Vec<f64> = unit.breaks().iter().map(|u| u * gap).collect();
+    let (low, high) = unit.domain();
+    let fit = unit.fit().map(|fit| FitReport {
+        worst_n: fit.worst_n * scale.abs(),
+        worst_at_m: fit.worst_at_m * gap,
+        scale_n: fit.scale_n * scale.abs(),
+        ..fit.clone()
+    });
+    let finite = pieces.iter().flat_map(|piece| &piece.coefficients).all(|c| c.is_finite());
+    let curve = ForceCurve::from_pieces(pieces, breaks, (low * gap, high * gap), true, fit);
+    if scale != 0.0 && finite && curve.pieces().iter().all(|piece| piece.potential_at_origin.is_finite()) {
+        return Ok(curve);
+    }
+    Err("has a force that leaves the range of double precision; take a gap and a strength nearer to each \
+         other's size"
+        .to_owned())
+}

@@ -1,0 +1,82 @@
+//! Sum of force curves: forces side by side on one mass.
+
+use super::curve::{ForceCurve, Piece};
+
+/// Breaks nearer to each other than this share of their distance from x = 0 are one.
+const SAME: f64 = 8.0 * f64::EPSILON;
+
+/// The sum of these curves where all of them are known: it breaks wherever one of them does, and between its
+/// breaks its polynomial is theirs together. None where they have no displacement in common.
+///
+/// Guarantee: exact but for rounding. Polynomials about the same origin are added coefficient by coefficient;
+/// others are written about a common origin first. Odd bit for bit where every part is.
+///
+/// Precondition: at least one curve.
+pub fn sum(parts: &[&ForceCurve]) -> Option<ForceCurve> {
+    let low = parts.iter().map(|own| own.domain().0).fold(f64::NEG_INFINITY, f64::max);
+    let high = parts.iter().map(|own| own.domain().1).fold(f64::INFINITY, f64::min);
+    if low >= high {
+        return None;
+    }
+    let odd = parts.iter().all(|own| own.is_odd());
+    let inside = |x: &f64| *x > low && *x < high;
+    let mut breaks: Vec<f64> = parts.iter().flat_map(|own| own.breaks()).copied().filter(inside).collect();
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup_by(|next, own| *next - *own <= SAME * own.abs());
+    if !odd {
+        let ends: Vec<f64> = [&[low], &breaks[..], &[high]].concat();
+        let pieces = ends.windows(2).map(|pair| piece(parts, pair[0], pair[1])).collect();
+        return Some(ForceCurve::from_pieces(pieces, breaks, (low, high), false, None));
+    }
+    let in_middle = breaks.contains(&0.0);
+    let right: Vec<f64> = breaks.into_iter().filter(|x| *x > 0.0).collect();
+    let first = if in_middle { 0.0 } else { -right.first().copied().unwrap_or(high) };
+    let ends: Vec<f64> = [&[first], &right[..], &[high]].concat();
+    let own: Vec<Piece> = ends.windows(2).map(|pair| piece(parts, pair[0], pair[1])).collect();
+    let mirrored = own.iter().skip(usize::from(!in_middle)).rev().map(Piece::mirrored);
+    let pieces: Vec<Piece> = mirrored.chain(own.iter().cloned()).collect();
+    let middle = if in_middle { &[0.0][..] } else { &[] };
+    let breaks = right.iter().rev().map(|x| -x).chain(middle.iter().copied()).chain(right.iter().copied());
+    Some(ForceCurve::from_pieces(pieces, breaks.collect(), (-high, high), true, None))
+}
+
+/// The sum from `left` to `right`, between which no part breaks.
+fn piece(parts: &[&ForceCurve], left: f64, right: f64) -> Piece {
+    let middle = match (left.is_finite(), right.is_finite()) {
+        (true, true) => 0.5 * left + 0.5 * right,
+        (true, false) => left + left.abs().max(1.0),
+        (false, true) => right - right.abs().max(1.0),
+        (false, false) => 0.0,
+    };
+    let own: Vec<&Piece> = parts.iter().map(|part| &part.pieces()[part.piece_index(middle)]).collect();
+    // A line is the same about any origin, to rounding; a curved piece, far from its own, is not.
+    let mut curved = own.iter().filter(|piece| piece.coefficients.len() > 2);
+    let origin = match curved.next() {
+        None => own[0].origin,
+        Some(first) if curved.all(|piece| piece.origin == first.origin) => first.origin,
+        Some(_) => middle,
+    };
+    let mut coefficients = vec![0.0];
+    for piece in own {
+        let moved = about(piece, origin);
+        coefficients.resize(coefficients.len().max(moved.len()), 0.0);
+        coefficients.iter_mut().zip(moved).for_each(|(sum, c)| *sum += c);
+    }
+    let keep = coefficients.iter().rposition(|c| *c != 0.0).map_or(1, |i| i + 1);
+    coefficients.truncate(keep);
+    Piece { origin, coefficients, potential_at_origin: 0.0 }
+}
+
+/// The coefficients of a piece about another origin, by synthetic division.
+fn about(piece: &Piece, origin: f64) -> Vec<f64> {
+    let mut own = piece.coefficients.clone();
+    let step = origin - piece.origin;
+    if step != 0.0 {
+        for i in 0..own.len().saturating_sub(1) {
+            for j in (i..own.len() - 1).rev() {
+                own[j] += step * own[j + 1];
+            }
+        }
+    }
+    own
+}

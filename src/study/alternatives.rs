@@ -1,0 +1,249 @@
+//! Scenes side by side under one sine: what frees them, what makes them cross, how fast and far they move, at
+//! which frequencies they cross, and how much the least amplitude hangs on their sizes.
+
+use std::sync::Arc;
+
+use super::Task;
+use super::amplitudes::thresholds;
+use super::family::Family;
+use super::fields::{Read, SummaryField};
+use super::settled::settled;
+use super::table::{Table, Values};
+use super::thresholds::{Onset, longest, multiple};
+use crate::dynamics::{Model, Summary};
+use crate::mechanics::{BuildError, Mechanism};
+use crate::numeric::round::decade;
+use crate::scene::{Excitation, FieldPath, Files, Scene, Start, numeric_fields};
+use crate::system::threads::Pool;
+
+/// A scene of a comparison, under the excitation that all of them have.
+#[derive(Debug, Clone)]
+pub struct Alternative {
+    /// What it is called.
+    pub name: String,
+    /// The scene; its excitation is a sine.
+    pub scene: Scene,
+    /// The files that it names.
+    pub files: Files,
+    /// Its mechanism.
+    pub mechanism: Arc<Mechanism>,
+}
+
+/// The share of itself by which each size is changed.
+pub const SIZE_CHANGE: f64 = 0.01;
+
+/// Frequencies that are tried to each side of the drive's own, in a decade.
+const STEPS: i32 = 40;
+
+/// How closely the ends of the band are located, as a share.
+const BAND_RESOLUTION: f64 = 1e-3;
+
+/// Names of sizes: lengths and thicknesses, the gap between magnets among them.
+const SIZES: [&str; 3] = ["length_mm", "thickness_mm", "gap_mm"];
+
+const FREQUENCY: &str = "excitation.frequency_hz";
+
+/// What one scene came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rated {
+    /// The scene.
+    pub name: String,
+    /// The least amplitude in g that frees the mass from the stop it rests on; none where it rests on none.
+    pub release_g: Option<f64>,
+    /// The least amplitude in g whose settled motion from rest crosses.
+    pub crossing_g: Option<f64>,
+    /// The settled motion of the scene itself.
+    pub summary: Summary,
+    /// Ends of the band of frequencies in Hz, at the scene's amplitude, whose settled motion from rest
+    /// crosses: the band that the drive's frequency is in, or if that crosses nothing the widest.
+    pub crosses_hz: Option<(f64, f64)>,
+    /// The largest change of the crossing threshold, as a share of it, when one size is 1 % larger or
+    /// smaller, and that size. Infinite where nothing is to be crossed then, or nothing crosses.
+    pub sensitivity: Option<(f64, String)>,
+}
+
+/// One part of the work.
+enum Part {
+    Own(usize),
+    Changed(usize, String, f64),
+}
+
+/// What a part came to.
+enum Done {
+    Own(Box<Rated>),
+    /// The crossing threshold.
+    Changed(Option<f64>),
+}
+
+/// How many parts the work has.
+pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
+    parts(scenes).len() as u64
+}
+
+fn parts(scenes: &[Alternative]) -> Vec<Part> {
+    let own = (0..scenes.len()).map(Part::Own);
+    let changed = scenes.iter().enumerate().flat_map(|(i, own)| {
+        let sizes = sizes(&own.scene).into_iter();
+        sizes.flat_map(move |field| [-1.0, 1.0].map(|way| Part::Changed(i, field.clone(), way * SIZE_CHANGE)))
+    });
+    own.chain(changed).collect()
+}
+
+/// The sizes of a scene's mechanism that are not 0.
+fn sizes(scene: &Scene) -> Vec<String> {
+    let is_size = |path: &String| {
+        path.starts_with("mechanism.") && SIZES.contains(&path.rsplit('.').next().unwrap_or_default())
+    };
+    numeric_fields(scene).into_iter().filter(is_size).collect()
+}
+
+/// Rates the scenes, on `pool`; each run from rest. None where it was cancelled. The same for any number of
+/// threads.
+pub fn alternatives(scenes: &[Alternative], pool: &Pool, task: &Task) -> Option<Vec<Rated>> {
+    let parts = parts(scenes);
+    let work = |_: &mut (), index: usize| {
+        let done = match &parts[index] {
+            Part::Own(i) => rate(&scenes[*i], task).map(|own| Done::Own(Box::new(own))),
+            Part::Changed(i, field, by) => changed(&scenes[*i], field, *by, task).map(Done::Changed),
+        };
+        (task.tick)();
+        done.filter(|_| !task.is_cancelled()).ok_or(())
+    };
+    let done = pool.map(parts.len(), || (), work).ok()?;
+    let mut rated: Vec<Rated> = Vec::new();
+    for (part, done) in parts.iter().zip(done) {
+        match (part, done) {
+            (Part::Changed(i, field, _), Done::Changed(threshold)) => {
+                let Some(before) = rated[*i].crossing_g else { continue };
+                let change = threshold.map_or(f64::INFINITY, |own| (own - before).abs() / before);
+                let own = &mut rated[*i].sensitivity;
+                if own.as_ref().is_none_or(|(most, _)| change > *most) {
+                    *own = Some((change, field.clone()));
+                }
+            }
+            (_, Done::Own(own)) => rated.push(*own),
+            _ => {}
+        }
+    }
+    Some(rated)
+}
+
+fn rate(own: &Alternative, task: &Task) -> Option<Rated> {
+    let trial = Scene { start: Start::Rest, ..own.scene.clone() };
+    let found = thresholds(&trial, &own.mechanism, task);
+    if task.is_cancelled() {
+        return None;
+    }
+    let model = Model::build(&trial, Arc::clone(&own.mechanism)).ok()?;
+    Some(Rated {
+        name: own.name.clone(),
+        release_g: found.and_then(|own| own.frees_at),
+        crossing_g: found.and_then(|own| own.crosses_from),
+        summary: settled(&model, task.cancel)?,
+        crosses_hz: band(own, &trial, task)?,
+        sensitivity: None,
+    })
+}
+
+/// The crossing threshold with one size changed.
+fn changed(own: &Alternative, field: &str, by: f64, task: &Task) -> Option<Option<f64>> {
+    let mut trial = Scene { start: Start::Rest, ..own.scene.clone() };
+    let path = FieldPath::new(field);
+    let value = path.get(&trial)?;
+    if !path.set(&mut trial, value * (1.0 + by)) {
+        return None;
+    }
+    let mechanism = match Mechanism::build_unless(&trial.mechanism, &own.files, task.cancel)? {
+        Ok(mechanism) => Arc::new(mechanism),
+        Err(BuildError::Wrong(_) | BuildError::Unsolved(_)) => return Some(None),
+    };
+    let found = thresholds(&trial, &mechanism, task);
+    (!task.is_cancelled()).then(|| found.and_then(|own| own.crosses_from))
+}
+
+/// The band of frequencies that cross. The steps of a scan are all run, and only the ends of the band are
+/// bisected: what is narrower than a step, a gap or a band, may be missed.
+fn band(own: &Alternative, trial: &Scene, task: &Task) -> Option<Option<(f64, f64)>> {
+    let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Some(None) };
+    let family = Family::new(trial, &own.files, &own.mechanism, FREQUENCY);
+    let ask = |values: &[f64]| -> Option<Vec<bool>> {
+        let models: Vec<Option<Model>> = values.iter().map(|value| family.model(*value).ok()).collect();
+        models
+            .iter()
+            .map(|model| {
+                let Some(model) = model else { return Some(false) };
+                let mut run =
+                    Model::run_all(std::slice::from_ref(model), Some(longest(model)), Some(task.cancel))
+                        .into_iter();
+                let crosses = run.next().is_some_and(|run| Onset::Crossing.is_in(&run.summary));
+                (!task.is_cancelled()).then_some(crosses)
+            })
+            .collect()
+    };
+    let values: Vec<f64> = (-STEPS..=STEPS)
+        .map(|i| decimal(frequency_hz * 10_f64.powf(f64::from(i) / f64::from(STEPS))))
+        .collect();
+    let does = ask(&values)?;
+    let mut bands: Vec<(usize, usize)> = Vec::new();
+    for i in (0..does.len()).filter(|i| does[*i]) {
+        match bands.last_mut() {
+            Some((_, last)) if *last + 1 == i => *last = i,
+            _ => bands.push((i, i)),
+        }
+    }
+    let middle = STEPS as usize;
+    let holds = |own: &&(usize, usize)| (own.0..=own.1).contains(&middle);
+    let widest = || bands.iter().rev().max_by_key(|own| own.1 - own.0);
+    let Some((first, last)) = bands.iter().find(holds).or_else(widest).copied() else { return Some(None) };
+    let edge = |inside: usize, outside: Option<usize>| -> Option<f64> {
+        let (mut inside, Some(outside)) = (values[inside], outside) else { return Some(values[inside]) };
+        let mut outside = values[outside];
+        while (outside / inside - 1.0).abs() > BAND_RESOLUTION {
+            let middle = decimal((inside * outside).sqrt());
+            match ask(&[middle])?[0] {
+                true => inside = middle,
+                false => outside = middle,
+            }
+        }
+        Some(inside)
+    };
+    let low = edge(first, first.checked_sub(1))?;
+    let high = edge(last, Some(last + 1).filter(|i| *i < values.len()))?;
+    Some(Some((low, high)))
+}
+
+/// A number to five digits, above 0.
+fn decimal(value: f64) -> f64 {
+    multiple(value, 10_f64.powi(decade(value) - 4))
+}
+
+/// A row a scene: `scene,release_g,crossing_g,rms_velocity_m_per_s,mean_load_power_w,max_abs_x_m,`
+/// `impact_speed_max_m_per_s,crosses_from_hz,crosses_to_hz,threshold_sensitivity,most_sensitive_to`.
+pub fn comparison_table(rated: &[Rated]) -> Table {
+    let number =
+        |of: fn(&Rated) -> Option<f64>| rated.iter().map(|own| of(own).unwrap_or(f64::NAN)).collect();
+    let summary = |name: &str| -> Values {
+        let read = SummaryField::find(name).map(|field| field.read);
+        let of = |own: &Rated| match read {
+            Some(Read::Number(of)) => of(&own.summary).unwrap_or(f64::NAN),
+            _ => f64::NAN,
+        };
+        rated.iter().map(of).collect()
+    };
+    let names = |of: fn(&Rated) -> String| Values::Names(rated.iter().map(of).collect());
+    let mut table = Table::new()
+        .with("scene", names(|own| own.name.clone()))
+        .with("release_g", number(|own| own.release_g))
+        .with("crossing_g", number(|own| own.crossing_g));
+    for name in ["rms_velocity_m_per_s", "mean_load_power_w", "max_abs_x_m", "impact_speed_max_m_per_s"] {
+        table = table.with(name, summary(name));
+    }
+    table
+        .with("crosses_from_hz", number(|own| own.crosses_hz.map(|band| band.0)))
+        .with("crosses_to_hz", number(|own| own.crosses_hz.map(|band| band.1)))
+        .with("threshold_sensitivity", number(|own| own.sensitivity.as_ref().map(|own| own.0)))
+        .with(
+            "most_sensitive_to",
+            names(|own| own.sensitivity.as_ref().map_or(String::new(), |own| own.1.clone())),
+        )
+}

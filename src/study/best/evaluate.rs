@@ -1,0 +1,201 @@
+//! Runs of designs in their environments, many at once.
+
+use std::sync::Arc;
+
+use super::design::{BestQuestion, NoBest, Optimum, apply};
+use crate::dynamics::{Model, Request, Summary};
+use crate::mechanics::{BuildError, Mechanism};
+use crate::scene::{Fault, FieldPath, Scene, check};
+use crate::study::Task;
+use crate::study::fields::{Read, SummaryField};
+use crate::system::threads::Pool;
+
+/// Runs that a thread makes together.
+const BATCH: usize = 16;
+
+/// What one design came to.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Judged {
+    /// It is no valid scene.
+    Invalid(Vec<Fault>),
+    /// A result is missing.
+    Missing,
+    /// Constraints are broken: by how much together, each relative to its limit, and the results.
+    Broken(f64, Vec<f64>),
+    /// It has a value.
+    Value(f64, Vec<f64>),
+}
+
+impl Judged {
+    /// The value, where there is one.
+    pub fn value(&self) -> Option<f64> {
+        if let Self::Value(value, _) = self { Some(*value) } else { None }
+    }
+
+    /// The place `at` as an optimum, where it has a value.
+    pub fn optimum(&self, at: &[f64]) -> Option<Optimum> {
+        let Self::Value(value, of_each) = self else { return None };
+        Some(Optimum { at: at.to_vec(), value: *value, of_each: of_each.clone() })
+    }
+}
+
+/// A design with fields that came out otherwise: fields' values, then those of what varies.
+pub(super) type Design = (Vec<f64>, Vec<f64>);
+
+/// The summary of a run, or what is wrong with its scene.
+type Ran = Result<Summary, Vec<Fault>>;
+
+/// What evaluates designs.
+pub(super) struct Evaluator<'a> {
+    pub question: &'a BestQuestion,
+    pool: &'a Pool,
+    task: &'a Task<'a>,
+    paths: Vec<FieldPath>,
+    varied: Vec<FieldPath>,
+    /// Of each environment the scene's own mechanism, where it has one.
+    mechanisms: Vec<Option<Arc<Mechanism>>>,
+}
+
+impl<'a> Evaluator<'a> {
+    pub fn new(question: &'a BestQuestion, pool: &'a Pool, task: &'a Task<'a>) -> Result<Self, NoBest> {
+        let mut mechanisms: Vec<Option<Arc<Mechanism>>> = Vec::new();
+        for (i, own) in question.environments.iter().enumerate() {
+            let same = |other: &usize| question.environments[*other].scene.mechanism == own.scene.mechanism;
+            let built = match (0..i).find(same) {
+                Some(other) => mechanisms[other].clone(),
+                None => {
+                    let built = Mechanism::build_unless(&own.scene.mechanism, &own.files, task.cancel);
+                    built.ok_or(NoBest::Cancelled)?.ok().map(Arc::new)
+                }
+            };
+            mechanisms.push(built);
+        }
+        let path = |field: &String| FieldPath::new(field);
+        Ok(Self {
+            question,
+            pool,
+            task,
+            paths: question.over.iter().map(|range| path(&range.field)).collect(),
+            varied: question.vary.iter().map(|own| path(&own.field)).collect(),
+            mechanisms,
+        })
+    }
+
+    /// The present value of what varies in a design.
+    pub fn values_of_varied(&self, at: &[f64]) -> Vec<f64> {
+        let mut scene = self.question.environments[0].scene.clone();
+        apply(&self.paths, at, &mut scene);
+        self.varied.iter().map(|path| path.get(&scene).unwrap_or(f64::NAN)).collect()
+    }
+
+    /// What these designs come to, in their order.
+    pub fn judge(&self, designs: &[Vec<f64>]) -> Result<Vec<Judged>, NoBest> {
+        let designs: Vec<Design> = designs.iter().map(|at| (at.clone(), Vec::new())).collect();
+        self.judge_varied(&designs)
+    }
+
+    /// The same of designs in which what varies has values of its own.
+    pub fn judge_varied(&self, designs: &[Design]) -> Result<Vec<Judged>, NoBest> {
+        let each = self.question.environments.len();
+        let runs = designs.len() * each;
+        let part = |_: &mut (), part: usize| {
+            let jobs = part * BATCH..((part + 1) * BATCH).min(runs);
+            self.run(jobs.map(|job| (&designs[job / each], job % each)))
+        };
+        let parts: Vec<Vec<Ran>> = self.pool.map(runs.div_ceil(BATCH), || (), part)?;
+        let summaries = parts.concat();
+        Ok(summaries.chunks(each).map(|own| self.judged(own)).collect())
+    }
+
+    fn run<'b>(&self, jobs: impl Iterator<Item = (&'b Design, usize)>) -> Result<Vec<Ran>, NoBest> {
+        let mut models = Vec::new();
+        let mut found: Vec<Result<usize, Vec<Fault>>> = Vec::new();
+        for (design, environment) in jobs {
+            if self.task.is_cancelled() {
+                return Err(NoBest::Cancelled);
+            }
+            found.push(self.model(design, environment).map(|model| {
+                models.push(model);
+                models.len() - 1
+            }));
+        }
+        let constraints = self.question.subject_to.iter().map(|own| own.of);
+        let ledger = constraints.chain([self.question.maximise]).any(|field| field.needs_ledger);
+        let request = Request { cancel: Some(self.task.cancel), ledger, ..Request::default() };
+        let runs = Model::run_together(&models, &request);
+        if self.task.is_cancelled() {
+            return Err(NoBest::Cancelled);
+        }
+        let ran = found.into_iter().map(|own| {
+            (self.task.tick)();
+            own.map(|place| runs[place].summary)
+        });
+        Ok(ran.collect())
+    }
+
+    fn model(&self, (at, varied): &Design, environment: usize) -> Result<Model, Vec<Fault>> {
+        let own = &self.question.environments[environment];
+        let mut scene = Scene { sweep: Vec::new(), app: None, notes: String::new(), ..own.scene.clone() };
+        apply(&self.paths, at, &mut scene);
+        apply(&self.varied, varied, &mut scene);
+        let faults = check(&scene).faults;
+        if !faults.is_empty() {
+            return Err(faults);
+        }
+        let mechanism = match &self.mechanisms[environment] {
+            Some(mechanism) if scene.mechanism == own.scene.mechanism => Arc::clone(mechanism),
+            _ => match Mechanism::build_unless(&scene.mechanism, &own.files, self.task.cancel) {
+                Some(Ok(mechanism)) => Arc::new(mechanism),
+                Some(Err(BuildError::Wrong(fault))) => return Err(vec![fault]),
+                Some(Err(BuildError::Unsolved(_))) | None => return Err(Vec::new()),
+            },
+        };
+        Model::build(&scene, mechanism)
+    }
+
+    /// One design from its runs in each environment.
+    fn judged(&self, runs: &[Ran]) -> Judged {
+        let mut summaries = Vec::new();
+        for own in runs {
+            match own {
+                Ok(summary) => summaries.push(summary),
+                Err(faults) => return Judged::Invalid(faults.clone()),
+            }
+        }
+        let (mut broken, mut results) = (0.0, Vec::new());
+        for constraint in &self.question.subject_to {
+            let mut furthest: Option<(f64, f64)> = None;
+            for summary in &summaries {
+                let Some(result) = number(constraint.of, summary) else { return Judged::Missing };
+                let over =
+                    if constraint.at_most { result - constraint.limit } else { constraint.limit - result };
+                if furthest.is_none_or(|(most, _)| over > most) {
+                    furthest = Some((over, result));
+                }
+            }
+            let (over, result) = furthest.unwrap_or((0.0, f64::NAN));
+            let unit = if constraint.limit == 0.0 { 1.0 } else { constraint.limit.abs() };
+            broken += over.max(0.0) / unit;
+            results.push(result);
+        }
+        let of_each: Option<Vec<f64>> =
+            summaries.iter().map(|summary| number(self.question.maximise, summary)).collect();
+        let Some(of_each) = of_each else { return Judged::Missing };
+        if broken > 0.0 {
+            return Judged::Broken(broken, results);
+        }
+        let weights = self.question.environments.iter().map(|own| own.weight);
+        let sum: f64 = of_each.iter().zip(weights.clone()).map(|(value, weight)| value * weight).sum();
+        Judged::Value(sum / weights.sum::<f64>(), of_each)
+    }
+}
+
+/// A result as a number.
+fn number(field: &SummaryField, summary: &Summary) -> Option<f64> {
+    match field.read {
+        Read::Number(of) => of(summary),
+        Read::Count(of) => of(summary).map(|count| count as f64),
+        Read::Word(_) | Read::Flag(_) => None,
+    }
+    .filter(|value| value.is_finite())
+}

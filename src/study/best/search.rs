@@ -1,0 +1,180 @@
+//! Scan of the whole range, and ever smaller scans around its best places.
+
+use super::design::{DesignRange, NoBest, Optimum};
+use super::evaluate::{Evaluator, Judged};
+use crate::numeric::round::{ONE_TWO_FIVE, round_down};
+use crate::study::thresholds::multiple;
+
+/// Places of the scan between two of the coarse one that goes before it.
+const COARSE: usize = 4;
+
+/// How many of the best places of the scan are looked at closer: beside the highest there may be a higher one
+/// in a window that the scan has only grazed.
+const REFINED: usize = 5;
+
+/// Intervals to each side of the middle in a closer look, for one field, two, three and four.
+const SIDES: [usize; 4] = [4, 2, 1, 1];
+
+/// Parts of a field's range that a place is located among.
+const PARTS: f64 = 5e3;
+
+/// What the search came to.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub optimum: Optimum,
+    /// Whether all places have the same value.
+    pub flat: bool,
+}
+
+/// How closely a field is located: 1, 2 or 5 of a decimal place.
+pub(super) fn resolution(range: &DesignRange) -> f64 {
+    round_down((range.high - range.low) / PARTS, &ONE_TWO_FIVE)
+}
+
+/// The place of the scan with these indices.
+fn place(over: &[DesignRange], indices: &[usize]) -> Vec<f64> {
+    let at = |(range, index): (&DesignRange, &usize)| match *index {
+        0 => range.low,
+        i if i == range.intervals => range.high,
+        i => rounded(range, range.low + range.step() * i as f64),
+    };
+    over.iter().zip(indices).map(at).collect()
+}
+
+/// A value as it is tried: within the range, and a multiple of the resolution unless at an end.
+pub(super) fn rounded(range: &DesignRange, value: f64) -> f64 {
+    multiple(value, resolution(range)).clamp(range.low, range.high)
+}
+
+/// All indices of the scan, the first field slowest.
+fn indices(over: &[DesignRange]) -> Vec<Vec<usize>> {
+    over.iter().fold(vec![Vec::new()], |before, range| {
+        let longer = |own: &Vec<usize>| {
+            (0..=range.intervals).map(|i| [own.as_slice(), &[i]].concat()).collect::<Vec<_>>()
+        };
+        before.iter().flat_map(longer).collect()
+    })
+}
+
+/// The best of some places that were judged, the first of equal ones.
+fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
+    let mut best: Option<Optimum> = None;
+    for (at, own) in places.iter().zip(judged) {
+        if let Some(own) = own.optimum(at)
+            && best.as_ref().is_none_or(|best| own.value > best.value)
+        {
+            best = Some(own);
+        }
+    }
+    best
+}
+
+pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -> Result<Found, NoBest> {
+    let over = &evaluator.question.over;
+    let all = indices(over);
+    let coarse = |own: &Vec<usize>| own.iter().all(|index| index.is_multiple_of(COARSE));
+    let (mut places, mut judged) = (Vec::new(), Vec::new());
+    for first in [true, false] {
+        let part: Vec<Vec<f64>> =
+            all.iter().filter(|own| coarse(own) == first).map(|own| place(over, own)).collect();
+        judged.extend(evaluator.judge(&part)?);
+        places.extend(part);
+        if let Some(best) = highest(&places, &judged).filter(|_| first) {
+            preview(&best);
+        }
+    }
+    let Some(mut best) = highest(&places, &judged) else { return Err(none(&places, &judged)) };
+    let all_equal = judged.iter().all(|own| own.value() == Some(best.value));
+    let mut order: Vec<usize> = (0..places.len()).filter(|i| judged[*i].value().is_some()).collect();
+    order.sort_by(|a, b| judged[*b].value().partial_cmp(&judged[*a].value()).unwrap_or(a.cmp(b)));
+    // of a plateau beside the highest place only its best: each begins a box of its own
+    let mut begins: Vec<usize> = Vec::new();
+    for i in order {
+        let apart = |other: &usize| {
+            over.iter()
+                .enumerate()
+                .any(|(field, range)| (places[i][field] - places[*other][field]).abs() > 2.5 * range.step())
+        };
+        if begins.iter().all(apart) {
+            begins.push(i);
+        }
+        if begins.len() == REFINED || all_equal {
+            break;
+        }
+    }
+    for i in begins {
+        let start = judged[i].optimum(&places[i]);
+        if let Some(own) = start.map(|start| refine(evaluator, start)).transpose()?
+            && own.value > best.value
+        {
+            best = own;
+        }
+    }
+    Ok(Found { optimum: best, flat: all_equal })
+}
+
+/// Scans a box around a place, moves to the best in it and halves it or less, until the resolution of every
+/// field is reached.
+fn refine(evaluator: &Evaluator, mut best: Optimum) -> Result<Optimum, NoBest> {
+    let over = &evaluator.question.over;
+    let sides = SIDES[over.len() - 1];
+    let mut half: Vec<f64> = over.iter().map(DesignRange::step).collect();
+    loop {
+        let box_: Vec<DesignRange> = over
+            .iter()
+            .map(|range| DesignRange { low: -1.0, high: 1.0, intervals: 2 * sides, ..range.clone() })
+            .collect();
+        let mut places: Vec<Vec<f64>> = indices(&box_)
+            .into_iter()
+            .map(|own| {
+                let at = |(field, index): (usize, &usize)| {
+                    let offset = half[field] * (*index as f64 / sides as f64 - 1.0);
+                    rounded(&over[field], best.at[field] + offset)
+                };
+                own.iter().enumerate().map(at).collect()
+            })
+            .collect();
+        places.sort_by(|a: &Vec<f64>, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        places.dedup();
+        let judged = evaluator.judge(&places)?;
+        if let Some(own) = highest(&places, &judged).filter(|own| own.value > best.value) {
+            best = own;
+        }
+        if half.iter().zip(over).all(|(half, range)| half / sides as f64 <= resolution(range)) {
+            return Ok(best);
+        }
+        // with one place to each side the best may lie anywhere in the box, so that it is only halved
+        let smaller = if sides == 1 { 0.5 } else { 1.0 / sides as f64 };
+        for (half, range) in half.iter_mut().zip(over) {
+            *half = (*half * smaller).max(resolution(range));
+        }
+        if sides == 1 && half.iter().zip(over).all(|(half, range)| *half <= resolution(range)) {
+            return Ok(best);
+        }
+    }
+}
+
+/// Why no place has a value.
+fn none(places: &[Vec<f64>], judged: &[Judged]) -> NoBest {
+    let mut nearest: Option<(f64, usize)> = None;
+    for (i, own) in judged.iter().enumerate() {
+        if let Judged::Broken(by, _) = own
+            && nearest.is_none_or(|(least, _)| *by < least)
+        {
+            nearest = Some((*by, i));
+        }
+    }
+    if let Some((_, i)) = nearest
+        && let Judged::Broken(_, results) = &judged[i]
+    {
+        return NoBest::NoneMeets { nearest: places[i].clone(), results: results.clone() };
+    }
+    let invalid = judged.iter().find_map(|own| match own {
+        Judged::Invalid(faults) if !faults.is_empty() => Some(faults.clone()),
+        _ => None,
+    });
+    match invalid {
+        Some(faults) if judged.iter().all(|own| matches!(own, Judged::Invalid(_))) => NoBest::Invalid(faults),
+        _ => NoBest::NoValue,
+    }
+}

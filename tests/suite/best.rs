@@ -1,0 +1,253 @@
+//! Best designs: closed-form optima, the prototype's limits, cliffs, constraints, borders, environments.
+
+use std::sync::atomic::AtomicBool;
+
+use interwell::dynamics::Request;
+use interwell::scene::{Document, Files};
+use interwell::study::{
+    BestDesign, BestQuestion, Constraint, DesignRange, Environment, NoBest, SummaryField, Task, Variation,
+    best,
+};
+use interwell::system::threads::Pool;
+
+use crate::cli::{headless, refused, stdout};
+use crate::support::*;
+
+fn environment(document: &Document) -> Environment {
+    Environment {
+        name: document.name.clone(),
+        weight: 1.0,
+        scene: document.scene.clone(),
+        files: document.files.clone(),
+    }
+}
+
+fn question(document: &Document, over: (&str, f64, f64), intervals: usize) -> BestQuestion {
+    let (field, low, high) = over;
+    BestQuestion {
+        over: vec![DesignRange { field: field.into(), low, high, intervals }],
+        maximise: SummaryField::find("rms_velocity_m_per_s").unwrap(),
+        subject_to: Vec::new(),
+        environments: vec![environment(document)],
+        vary: Vec::new(),
+        seed: 1,
+    }
+}
+
+fn found_by(question: &BestQuestion, threads: usize) -> Result<BestDesign, NoBest> {
+    let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+    best(question, &Pool::new(threads).unwrap(), &task, &mut |_| ())
+}
+
+/// A linear oscillator of 2 Hz with a quality of 5, shaken with 1 m/s^2; long enough to be steady.
+fn linear() -> Document {
+    let text = "(mass_g: 1000, mechanism: Linear(n_per_m: 157.91367041742973), damping: Ratio(0.1),
+        excitation: Sine(frequency_hz: 2, amplitude_g: 0.10197162129779283),
+        run: (duration_s: 60, settle_s: 40, tolerance: 1e-10))";
+    Document::from_text("linear", text, Files::default()).unwrap()
+}
+
+fn at_most(name: &str, limit: f64) -> Constraint {
+    Constraint { of: SummaryField::find(name).unwrap(), at_most: true, limit }
+}
+
+/// The velocity of a linear oscillator is largest at its natural frequency: A/(2 zeta w0). It falls as
+/// 1/sqrt(1 + Q^2 (r - 1/r)^2).
+#[test]
+fn a_linear_oscillator_is_fastest_at_its_own_frequency() {
+    let own = found_by(&question(&linear(), ("excitation.frequency_hz", 1.0, 4.0), 64), 2).unwrap();
+    assert_eq!(own.optimum.at, [2.0]);
+    let w0 = 4.0 * std::f64::consts::PI;
+    near_relative(own.optimum.value, 1.0 / (2.0 * 0.1 * w0) / 2.0_f64.sqrt(), 1e-8);
+    let half = 0.5 * (1.0 / 0.81 - 1.0_f64).sqrt() / 5.0;
+    let [low, high] = own.margins[0].map(Option::unwrap);
+    let resolution = own.resolution[0];
+    assert_eq!(resolution, 5e-4);
+    near(high, 2.0 * (half + (1.0 + half * half).sqrt()) - 2.0, 2.0 * resolution);
+    near(low, 2.0 - 2.0 * ((1.0 + half * half).sqrt() - half), 2.0 * resolution);
+    assert!(!own.at_border[0] && !own.flat);
+    assert_eq!((own.spread.worst, own.stepped_back.is_none()), (own.optimum.value, true));
+}
+
+/// Less damping is faster, down to the end of the range, or to where the displacement A m/(c w0) has its
+/// limit.
+#[test]
+fn a_border_and_a_constraint_end_the_search_where_they_are() {
+    let mut document = linear();
+    document.set("damping=Coefficient(c_n_s_per_m: 1)").unwrap();
+    let mut asked = question(&document, ("damping.c_n_s_per_m", 2.0, 12.0), 50);
+    let own = found_by(&asked, 2).unwrap();
+    assert_eq!((&own.optimum.at[..], own.at_border[0], own.margins[0][0]), (&[2.0][..], true, None));
+    // a tenth is lost where c is a ninth larger
+    near(own.margins[0][1].unwrap(), 2.0 / 9.0, 2.0 * own.resolution[0]);
+    let limit = 0.02;
+    asked.subject_to = vec![at_most("max_abs_x_m", limit)];
+    let own = found_by(&asked, 2).unwrap();
+    let exact = 1.0 / (limit * 4.0 * std::f64::consts::PI);
+    assert!(own.optimum.at[0] >= exact && own.optimum.at[0] - exact <= own.resolution[0], "{own:?}");
+    assert!(!own.at_border[0]);
+    assert!(own.margins[0][0].unwrap() <= 2.0 * own.resolution[0], "{own:?}");
+    asked.subject_to = vec![at_most("max_abs_x_m", 1e-3)];
+    let Err(NoBest::NoneMeets { nearest, results }) = found_by(&asked, 2) else { panic!() };
+    assert_eq!(nearest, [12.0]);
+    near_relative(results[0], 1.0 / (12.0 * 4.0 * std::f64::consts::PI), 1e-3);
+}
+
+/// From the prototype's maps: at 0.8 g 1.56 mm with 46 mm/s, at 1 g 2.02 mm with 58 mm/s, and at 1.2 g 2.55
+/// mm with 72 mm/s, which motions without stops exceed by far, at 266 mm/s.
+#[test]
+fn the_best_limits_of_the_prototype_are_those_of_its_maps() {
+    for (amplitude, limit, speed, to_cliff) in
+        [(0.8, 1.56, 46.0, 0.112), (1.0, 2.02, 58.0, 0.152), (1.2, 2.55, 72.0, 0.21)]
+    {
+        let document = changed("paper", &[&format!("excitation.amplitude_g={amplitude}")]);
+        let own = found_by(&question(&document, ("stops.travel_limit_mm", 0.5, 4.0), 128), 2).unwrap();
+        near(own.optimum.at[0], limit, 0.01);
+        near(1e3 * own.optimum.value, speed, 0.6);
+        near(own.margins[0][1].unwrap(), to_cliff, 2e-3);
+    }
+    let request = Request { until_settled: Some(600.0), ..Request::default() };
+    let open = preset("paper-unconstrained", &["excitation.amplitude_g=1.3"]).run(&request).summary;
+    near(1e3 * open.rms_velocity.unwrap(), 266.0, 1.0);
+}
+
+/// The same distance by a sweep of every place that can be said.
+#[test]
+fn the_distance_to_the_cliff_is_that_of_a_fine_sweep() {
+    let document = changed("paper", &[]);
+    let own = found_by(&question(&document, ("stops.travel_limit_mm", 0.5, 3.0), 100), 2).unwrap();
+    let unit = own.resolution[0];
+    let speed = |limit: f64| {
+        let change = format!("stops.travel_limit_mm={limit}");
+        preset("paper", &[&change]).run(&Request::default()).summary.rms_velocity.unwrap()
+    };
+    let place = |i: i32| ((own.optimum.at[0] / unit).round() + f64::from(i)) / (1.0 / unit).round();
+    assert_eq!(speed(place(0)), own.optimum.value);
+    let falls = (1..500).find(|i| speed(place(*i)) < 0.9 * own.optimum.value).unwrap();
+    near(own.margins[0][1].unwrap(), unit * f64::from(falls), 1e-9);
+    assert!((-20..falls).all(|i| speed(place(i)) <= own.optimum.value));
+}
+
+#[test]
+fn the_mean_over_environments_is_largest_and_each_ones_value_is_there() {
+    let document = changed("paper", &["run.duration_s=6"]);
+    let mut asked = question(&document, ("stops.travel_limit_mm", 0.5, 2.5), 40);
+    let shaken = |amplitude: f64, weight: f64| Environment {
+        weight,
+        ..environment(&changed(
+            "paper",
+            &["run.duration_s=6", &format!("excitation.amplitude_g={amplitude}")],
+        ))
+    };
+    asked.environments = vec![shaken(0.8, 1.0), shaken(1.0, 3.0)];
+    let own = found_by(&asked, 2).unwrap();
+    let [weak, strong] = own.optimum.of_each[..] else { panic!("{own:?}") };
+    near_relative(own.optimum.value, (weak + 3.0 * strong) / 4.0, 1e-15);
+    let speed = |limit: f64, amplitude: f64| {
+        let changes = [
+            "run.duration_s=6".to_owned(),
+            format!("stops.travel_limit_mm={limit}"),
+            format!("excitation.amplitude_g={amplitude}"),
+        ];
+        let model = preset("paper", &changes.each_ref().map(String::as_str));
+        model.run(&Request::default()).summary.rms_velocity.unwrap()
+    };
+    let mean = |limit: f64| (speed(limit, 0.8) + 3.0 * speed(limit, 1.0)) / 4.0;
+    near_relative(mean(own.optimum.at[0]), own.optimum.value, 1e-15);
+    for i in 0..=40 {
+        assert!(mean(0.5 + 0.05 * f64::from(i)) <= own.optimum.value, "{i}: {own:?}");
+    }
+    // where both cross
+    assert!(weak > 0.04 && strong > 0.04, "{own:?}");
+    // the weak one alone has no say beside a hundred times the strong one
+    asked.environments = vec![shaken(0.8, 1.0), shaken(1.0, 100.0)];
+    near(found_by(&asked, 2).unwrap().optimum.at[0], 2.02, 0.03);
+}
+
+#[test]
+fn stepping_back_from_a_cliff_costs_less_than_falling() {
+    let document = changed("paper", &["run.duration_s=6"]);
+    let mut asked = question(&document, ("stops.travel_limit_mm", 1.5, 2.5), 25);
+    asked.vary = vec![Variation { field: "excitation.amplitude_g".into(), by: 0.1, relative: true }];
+    let one = found_by(&asked, 1).unwrap();
+    assert_eq!(one, found_by(&asked, 3).unwrap());
+    let (back, spread) = one.stepped_back.clone().unwrap();
+    assert!(one.spread.worst < 0.5 * one.optimum.value, "{one:?}");
+    // further in even 0.9 g makes it cross
+    assert!(back.at[0] < one.optimum.at[0] - 0.05, "{one:?}");
+    assert!(spread.worst > 0.8 * one.optimum.value && spread.worst <= spread.quantile_5, "{one:?}");
+    asked.seed = 2;
+    assert_ne!(found_by(&asked, 2).unwrap().stepped_back.unwrap().1, spread);
+}
+
+#[test]
+fn two_fields_are_searched_together() {
+    // the velocity at resonance A/(2 zeta w0) is largest for the least stiffness and the frequency of it
+    let mut document = linear();
+    document.set("damping=Coefficient(c_n_s_per_m: 2.5)").unwrap();
+    let mut asked = question(&document, ("excitation.frequency_hz", 1.0, 4.0), 24);
+    let stiffness = DesignRange { field: "mechanism.n_per_m".into(), low: 100.0, high: 200.0, intervals: 8 };
+    asked.over.push(stiffness);
+    let own = found_by(&asked, 2).unwrap();
+    let natural = own.optimum.at[1].sqrt() / std::f64::consts::TAU;
+    near(own.optimum.at[0], natural, 2e-3);
+    near_relative(own.optimum.value, 1.0 / 2.5 / 2.0_f64.sqrt(), 1e-5);
+    assert_eq!(own.margins.len(), 2);
+    let table = own.table(&asked);
+    let columns: Vec<&str> = table.columns().iter().map(|own| own.name.as_str()).collect();
+    let all = "frequency_hz n_per_m maximised value margin_low margin_high worst quantile_5 \
+               margin_low.n_per_m margin_high.n_per_m back_to back_value back_worst back_quantile_5";
+    assert_eq!(columns, all.split(' ').collect::<Vec<_>>());
+}
+
+#[test]
+fn the_command_writes_one_row_the_same_for_any_jobs_and_says_what_it_found() {
+    let command = "best paper --over stops.travel_limit_mm=1.5:2.5:0.05 --set run.duration_s=6 \
+                   --environment excitation.amplitude_g=0.8*2,1 --vary mass_g=+-1%";
+    let row = stdout(&format!("{command} --quiet --jobs 1"));
+    assert_eq!(row, stdout(&format!("{command} --quiet --jobs 3")));
+    assert_eq!(row.lines().count(), 2);
+    assert!(
+        row.starts_with("travel_limit_mm,maximised,value,margin_low,margin_high,worst,quantile_5,back_to,")
+    );
+    assert!(row.lines().next().unwrap().ends_with(",value_1,value_2"), "{row}");
+    let said = headless(command).output().unwrap().stderr;
+    let said = String::from_utf8(said).unwrap();
+    for words in [
+        "the mean of rms_velocity_m_per_s is largest at travel_limit_mm = ",
+        "a tenth of it is lost",
+        "excitation.amplitude_g = 0.8: ",
+        "of 200 samples of what varies the worst gives",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+}
+
+#[test]
+fn what_cannot_be_searched_is_refused_with_what_would_be_right() {
+    let of =
+        |more: &str| headless(&format!("best paper --over stops.travel_limit_mm=1:2:0.5 --quiet {more}"));
+    refused(headless("best paper"), &["--over"]);
+    refused(headless("best paper --over stops.travel_limit_mm=2:1"), &["2 is not below 1"]);
+    refused(
+        headless("best paper --over stops.travel_limit_mm=0:1"),
+        &["travel_limit_mm takes 1e-15 to 1e15"],
+    );
+    refused(headless("best paper --over stops.bogus=0:1"), &["stops.bogus", "stops.travel_limit_mm"]);
+    refused(of("--over stops.travel_limit_mm=1:3"), &["is given twice"]);
+    refused(of("--maximise regime"), &["--maximise regime", "rms_velocity_m_per_s"]);
+    refused(of("--subject-to max_abs_x_m<0.1"), &["COLUMN<=VALUE"]);
+    refused(
+        of("--subject-to max_abs_x_m<=1e-6"),
+        &["nothing that was tried", "travel_limit_mm = 1,", "is 0.001"],
+    );
+    refused(of("--vary stops.bogus=+-1%"), &["--vary", "stops.restitution"]);
+    refused(of("--vary start.x_mm=+-1%"), &["--vary"]);
+    refused(of("--environment excitation.amplitude_g=1*0"), &["weight"]);
+    refused(of("--environment nowhere"), &["nowhere"]);
+    refused(
+        of("--environment walking --vary excitation.amplitude_g=+-1%"),
+        &["walking", "has no such number"],
+    );
+    refused(of("--maximise peak_contact_force_n"), &["no design of the range has this result"]);
+}
