@@ -8,6 +8,7 @@
 mod chirp;
 pub(crate) mod composite;
 pub(crate) mod form;
+mod lines;
 mod record;
 mod release;
 pub(crate) mod tone;
