@@ -162,7 +162,7 @@ fn total<T: Scalar>(mut columns: Columns<T>) -> T {
     let mut half = BESIDE / 2;
     while half > 0 {
         for i in 0..half {
-            columns[i] = columns[i] + columns[i + half];
+            columns[i] += columns[i + half];
         }
         half /= 2;
     }
