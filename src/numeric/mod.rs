@@ -20,6 +20,7 @@ pub mod round;
 mod scalar;
 mod short;
 mod sum;
+mod wide;
 
 pub use bisect::bisect;
 pub use correlation::{Alignment, alignment};
@@ -38,3 +39,4 @@ pub use roots::{MAX_DEGREE, PolynomialRoots};
 pub use scalar::Scalar;
 pub use short::{decimals, short};
 pub use sum::CompensatedSum;
+pub(crate) use wide::widest;

@@ -35,8 +35,12 @@ impl Ratio {
         if self.denominator == 1 {
             return 0.0;
         }
-        let d = u128::from(self.denominator);
-        let rest = u128::from(count) * u128::from(self.numerator) % d;
+        let d = self.denominator;
+        // below 2^53, so that only the quotient is rounded
+        let rest = match count.checked_mul(self.numerator) {
+            Some(product) => product % d,
+            None => (u128::from(count) * u128::from(self.numerator) % u128::from(d)) as u64,
+        };
         rest as f64 / d as f64
     }
 }

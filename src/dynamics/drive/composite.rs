@@ -1,6 +1,7 @@
 //! A sum of any number of tones, chirps and records.
 
 use super::chirp::{Chirp, ChirpState, next_chirp};
+use super::lines::{Lines, LinesCursor};
 use super::record::{Record, value_and_slope};
 use super::release::Search;
 use super::tone::Tone;
@@ -10,14 +11,16 @@ use crate::dynamics::series::{ROOM, SEEDED, Tail};
 use crate::numeric::Scalar;
 
 /// Up to so many tones the check of a step evaluates each anew; more of them cannot cancel in the series by
-/// chance.
-const FEW_TONES: usize = 8;
+/// chance. More steady ones than that are advanced side by side.
+pub(super) const FEW_TONES: usize = 8;
 
 /// A constant and any number of tones, chirps and records.
 #[derive(Debug, Clone)]
 pub(crate) struct Composite<T> {
     pub constant: T,
     pub tones: Vec<Tone<T>>,
+    /// Further tones, many.
+    pub lines: Lines<T>,
     pub chirps: Vec<Chirp<T>>,
     pub records: Vec<Record<T>>,
     /// Ends of ramps and chirps and the samples of records, ascending.
@@ -36,12 +39,13 @@ pub(crate) struct Composite<T> {
 pub(crate) struct Cursor<T> {
     /// For each tone the last two coefficients of its sine, its amplitude and growth.
     tones: Vec<[T; 4]>,
+    lines: LinesCursor<T>,
     chirps: Vec<ChirpState<T>>,
 }
 
 impl<T> Default for Cursor<T> {
     fn default() -> Self {
-        Self { tones: Vec::new(), chirps: Vec::new() }
+        Self { tones: Vec::new(), lines: LinesCursor::default(), chirps: Vec::new() }
     }
 }
 
@@ -49,7 +53,7 @@ impl<T: Scalar> Tail<T> for Composite<T> {
     type Cursor = Cursor<T>;
 
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], cursor: &mut Self::Cursor) {
-        let mut sum = T::zero();
+        let mut sum = self.lines.next(k, inverse, &mut cursor.lines);
         for (tone, [before, last, amplitude, growth]) in self.tones.iter().zip(&mut cursor.tones) {
             let next = tone.curvature() * *before * inverse[k];
             sum += *amplitude * next + *growth * *last;
@@ -92,6 +96,7 @@ impl<T: Scalar> Drive<T> for Composite<T> {
             }
             cursor.tones.push([unit[2], unit[3], amplitude, growth]);
         }
+        self.lines.seed(at, &mut sums, &mut cursor.lines);
         for chirp in &self.chirps {
             let (s, c, rate, growth) = chirp.state(clock, at, segment);
             let zero = T::zero();
@@ -118,14 +123,18 @@ impl<T: Scalar> Drive<T> for Composite<T> {
     fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
         let tones = self.tones.iter().map(|tone| tone.amplitude_at(clock, at, segment).0 * tone.unit(at).0);
         let chirps = self.chirps.iter().map(|chirp| chirp.amplitude * chirp.state(clock, at, segment).0);
-        tones.chain(chirps).fold(self.constant, |sum, a| sum + a)
-            + value_and_slope(&self.records, clock, at, segment).0
+        let tones = tones.fold(self.constant, |sum, a| sum + a) + self.lines.value(at);
+        chirps.fold(tones, |sum, a| sum + a) + value_and_slope(&self.records, clock, at, segment).0
     }
 
     fn cost(&self, order: usize) -> u64 {
         let (tones, chirps) = (self.tones.len() as u64, self.chirps.len() as u64);
         let order = order as u64;
-        tones * (15 + order) / 5 + chirps * (120 + order) / 4 + 20 * self.records.len() as u64
+        let lines = self.lines.count() as u64;
+        tones * (15 + order) / 5
+            + lines * (15 + order) / 30
+            + chirps * (120 + order) / 4
+            + 20 * self.records.len() as u64
     }
 
     fn value(
@@ -136,7 +145,7 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         by_series: impl Fn() -> T,
         _: &mut Self::Cursor,
     ) -> T {
-        if self.tones.len() > FEW_TONES || !self.chirps.is_empty() {
+        if self.lines.count() > 0 || self.tones.len() > FEW_TONES || !self.chirps.is_empty() {
             return by_series();
         }
         let tones = self.tones.iter().map(|tone| tone.amplitude_at(clock, at, segment).0 * tone.unit(at).0);
@@ -172,7 +181,7 @@ impl<T: Scalar> Composite<T> {
         let mut search = Search::new(self, clock, acceleration, segment);
         (search.fastest, search.reach) = (self.fastest, self.reach);
         search.common_cycles = self.common_cycles.filter(|_| segment >= self.segment_ends.len());
-        search.parts = self.tones.len() + 4 * self.chirps.len() + self.records.len();
+        search.parts = self.tones.len() + self.lines.count() / 8 + 4 * self.chirps.len() + self.records.len();
         search
     }
 }

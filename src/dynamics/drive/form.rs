@@ -4,8 +4,9 @@ use super::Still;
 use super::base_at;
 use super::chirp::Chirp;
 use super::circuit::Circuit;
-use super::composite::Composite;
+use super::composite::{Composite, FEW_TONES};
 use super::coupled::Coupled;
+use super::lines::Lines;
 use super::record::{Line, Record};
 use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
 use crate::dynamics::clock::{Clock, Instant};
@@ -124,6 +125,9 @@ fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite
         .iter()
         .map(|own| tone(own, clocked, unit, own.ramp.map_or(0, |r| holds_from(r.1))))
         .collect();
+    let is_line = |tone: &Tone<T>| !tone.quarter && tone.ramp.is_none();
+    let many = tones.iter().filter(|tone| is_line(tone)).count() > FEW_TONES;
+    let (steady, tones): (Vec<_>, Vec<_>) = tones.into_iter().partition(|tone| many && is_line(tone));
     let chirps = drive.chirps.iter().map(|chirp| Chirp {
         amplitude: T::of(chirp.amplitude * square),
         from: chirp.from,
@@ -142,6 +146,7 @@ fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite
     Composite {
         constant: T::of(drive.constant * square),
         tones,
+        lines: Lines::new(&steady),
         chirps: chirps.collect(),
         records: records.collect(),
         segment_ends: ends.iter().map(|e| clock.at(*e)).collect(),

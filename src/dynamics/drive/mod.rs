@@ -11,6 +11,7 @@ pub(crate) mod circuit;
 pub(crate) mod composite;
 pub(crate) mod coupled;
 pub(crate) mod form;
+mod lines;
 mod record;
 mod release;
 pub(crate) mod tone;

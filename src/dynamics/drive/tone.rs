@@ -45,7 +45,7 @@ pub(crate) enum TurnsPerCycle {
 impl TurnsPerCycle {
     /// The turn that a tone is in at the start of a cycle, less whole turns.
     #[inline]
-    fn fraction(self, cycle: i64) -> f64 {
+    pub fn fraction(self, cycle: i64) -> f64 {
         match self {
             Self::Exact(ratio) => ratio.fraction_of_multiple(cycle.unsigned_abs()),
             Self::Rounded(ratio) => {

@@ -1,0 +1,170 @@
+//! Steady tones side by side: the lines of a noise.
+//!
+//! Sixteen tones take each step by the same instructions, as wide as the processor has them. The sums run
+//! over sixteen columns, which are added at the end, so that they have the same bits for any width.
+
+use super::tone::{Tone, TurnsPerCycle};
+use crate::dynamics::clock::Instant;
+use crate::dynamics::series::{ROOM, SEEDED};
+use crate::numeric::{Scalar, widest};
+
+/// Tones that are advanced together.
+const BESIDE: usize = 16;
+
+type Columns<T> = [T; BESIDE];
+
+/// Sixteen tones; what is left over has no amplitude.
+#[derive(Debug, Clone)]
+struct Group<T> {
+    amplitude: Columns<T>,
+    frequency: Columns<T>,
+    /// Angular frequency.
+    omega: Columns<T>,
+    phase: Columns<T>,
+    ratio: [TurnsPerCycle; BESIDE],
+}
+
+/// Tones of constant amplitude.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Lines<T> {
+    groups: Vec<Group<T>>,
+    count: usize,
+}
+
+/// What continues the series of the tones.
+#[derive(Debug, Clone)]
+pub(crate) struct LinesCursor<T> {
+    /// The cycle of the clock for which `starts` holds, and the turns of the tones at its beginning.
+    cycle: Option<i64>,
+    starts: Vec<Columns<T>>,
+    /// The last coefficients of even and of odd order.
+    terms: [Vec<Columns<T>>; 2],
+}
+
+impl<T> Default for LinesCursor<T> {
+    fn default() -> Self {
+        Self { cycle: None, starts: Vec::new(), terms: [Vec::new(), Vec::new()] }
+    }
+}
+
+impl<T: Scalar> Lines<T> {
+    /// Of tones without a ramp, none a quarter turn ahead.
+    pub fn new(tones: &[Tone<T>]) -> Self {
+        let group = |tones: &[Tone<T>]| {
+            let of =
+                |value: fn(&Tone<T>) -> T| std::array::from_fn(|i| tones.get(i).map_or_else(T::zero, value));
+            Group {
+                amplitude: of(|tone| tone.amplitude),
+                frequency: of(|tone| tone.frequency),
+                omega: of(|tone| T::tau() * tone.frequency),
+                phase: of(|tone| tone.phase),
+                ratio: std::array::from_fn(|i| {
+                    tones.get(i).map_or(TurnsPerCycle::Rounded(0.0), |own| own.ratio)
+                }),
+            }
+        };
+        Self { groups: tones.chunks(BESIDE).map(group).collect(), count: tones.len() }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Adds their first coefficients at an instant.
+    pub fn seed(&self, at: &Instant<T>, sums: &mut [T; SEEDED], cursor: &mut LinesCursor<T>) {
+        if self.count == 0 {
+            return;
+        }
+        if cursor.cycle != Some(at.cycle) {
+            cursor.cycle = Some(at.cycle);
+            cursor.starts.clear();
+            cursor.starts.extend(self.groups.iter().map(|group| group.starts(at.cycle)));
+        }
+        let zero = [T::zero(); BESIDE];
+        cursor.terms.iter_mut().for_each(|own| own.resize(self.groups.len(), zero));
+        let [even, odd] = &mut cursor.terms;
+        let of_all = widest(
+            #[inline(always)]
+            || {
+                let mut columns = [zero; SEEDED];
+                let terms = even.iter_mut().zip(odd.iter_mut());
+                for ((group, start), (even, odd)) in self.groups.iter().zip(&cursor.starts).zip(terms) {
+                    let Group { amplitude, frequency, omega, phase, .. } = group;
+                    // column by column, so that each is one instruction
+                    let [mut value, mut slope, mut second, mut third] = [zero; SEEDED];
+                    for i in 0..BESIDE {
+                        let (s, c) = T::sin_cos_turns(at.phase * frequency[i] + (start[i] + phase[i]));
+                        value[i] = amplitude[i] * s;
+                        slope[i] = amplitude[i] * (c * omega[i]);
+                    }
+                    for i in 0..BESIDE {
+                        let curvature = -(omega[i] * omega[i]);
+                        second[i] = curvature * value[i] * T::of(0.5);
+                        third[i] = curvature * slope[i] * T::of(1.0 / 6.0);
+                    }
+                    (*even, *odd) = (second, third);
+                    for (column, own) in columns.iter_mut().zip([value, slope, second, third]) {
+                        for i in 0..BESIDE {
+                            column[i] += own[i];
+                        }
+                    }
+                }
+                columns
+            },
+        );
+        for (sum, columns) in sums.iter_mut().zip(of_all) {
+            *sum += total(columns);
+        }
+    }
+
+    /// Their coefficient of order `k`, after that of `k - 1`.
+    pub fn next(&self, k: usize, inverse: &[T; ROOM], cursor: &mut LinesCursor<T>) -> T {
+        if self.count == 0 {
+            return T::zero();
+        }
+        let (terms, share) = (&mut cursor.terms[k % 2], inverse[k]);
+        let of_all = widest(
+            #[inline(always)]
+            || {
+                let mut columns = [T::zero(); BESIDE];
+                for (group, term) in self.groups.iter().zip(terms.iter_mut()) {
+                    let mut own = *term;
+                    for i in 0..BESIDE {
+                        own[i] = -(group.omega[i] * group.omega[i]) * own[i] * share;
+                        columns[i] += own[i];
+                    }
+                    *term = own;
+                }
+                columns
+            },
+        );
+        total(of_all)
+    }
+
+    /// Their acceleration at an instant, the first coefficient bit for bit.
+    pub fn value(&self, at: &Instant<T>) -> T {
+        let mut sums = [T::zero(); SEEDED];
+        self.seed(at, &mut sums, &mut LinesCursor::default());
+        sums[0]
+    }
+}
+
+impl<T: Scalar> Group<T> {
+    /// The turns of the tones at the beginning of a cycle, less whole ones.
+    fn starts(&self, cycle: i64) -> Columns<T> {
+        self.ratio.map(|ratio| T::of(ratio.fraction(cycle)))
+    }
+}
+
+/// The sum of the columns, by halves.
+fn total<T: Scalar>(mut columns: Columns<T>) -> T {
+    let mut half = BESIDE / 2;
+    while half > 0 {
+        for i in 0..half {
+            columns[i] += columns[i + half];
+        }
+        half /= 2;
+    }
+    columns[0]
+}
