@@ -17,7 +17,8 @@ use super::labels::plated;
 use super::legend::Sign;
 use super::ranges::{axis_end, room_for_push};
 use super::stops::stops_ui;
-use super::{ViewContext, too_small_ui};
+use super::zoom::{Axis, hand};
+use super::{View, ViewContext, too_small_ui};
 
 /// Room above the largest force of the wells, as a factor.
 const ROOM: f64 = 1.3;
@@ -34,14 +35,16 @@ const LABEL: f32 = 110.0;
 
 /// Draws it.
 pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::DRAG);
     if area.width() < 60.0 || area.height() < 80.0 {
         return too_small_ui(ui, &context.style, area);
     }
     let style = context.style;
     let own = end_of_axis(context);
-    let (_, end) = context.memory.held.force.keep((-own, own), context.session.editor.in_gesture());
-    let chart = Chart::new(area, context.span, -end, end);
+    let own = context.memory.held.force.keep((-own, own), context.session.editor.in_gesture());
+    let (low, high) = context.memory.axes.ends(Axis::Up(View::ForceCurve), own);
+    let chart = Chart::new(area, context.span, low, high);
+    hand(ui, context.memory, View::ForceCurve, &response, (area, chart.rect));
     chart.axes(ui, context, 1.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
     curve(&painter, context, &chart);

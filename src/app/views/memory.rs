@@ -6,10 +6,12 @@ use crate::app::session::Session;
 use crate::app::session::pins::PinKind;
 use crate::mechanics::flexure::State;
 
+use super::cursors::Cursors;
 use super::map::MapQuantity;
 use super::ranges::Ranges;
 use super::span::Span;
 use super::view::View;
+use super::zoom::{Axes, Axis};
 
 /// What views keep between frames.
 #[derive(Debug, Clone, Default)]
@@ -30,6 +32,14 @@ pub struct Memory {
     pub hovered: Option<View>,
     /// What the traces share.
     pub timeline: Timeline,
+    /// Two cursors over time.
+    pub cursors: Cursors,
+    /// Ends of axes that a hand has chosen.
+    pub(super) axes: Axes,
+    /// Where a box begins and ends that is drawn, to be shown.
+    pub(super) corner: Option<(Pos2, Pos2)>,
+    /// The row of the list of events that was marked last.
+    pub(super) marked: Option<usize>,
     /// How far axes of velocity and power reach.
     pub(super) ranges: Ranges,
     /// The phase portrait shows a point a period and no path.
@@ -50,8 +60,14 @@ impl Memory {
         let x = session.player.state().x;
         let is_seen = self.held.span.0.is_none_or(|(low, high)| low < x && x < high);
         let held = session.editor.in_gesture() && is_seen;
-        let (low, high) = self.held.span.keep((own.low, own.high), held);
+        let own = self.held.span.keep((own.low, own.high), held);
+        let (low, high) = self.axes.ends(Axis::Place, own);
         Span { low, high }
+    }
+
+    /// What stays of it when another scene is opened.
+    pub fn for_another_scene(&self) -> Self {
+        Self { axes: self.axes.held(), ..Self::default() }
     }
 }
 
@@ -127,8 +143,8 @@ impl Page {
 pub struct Timeline {
     /// The stretch of time in s that a person has chosen.
     pub window: Option<f64>,
-    /// The ends of the vertical axes that a person has chosen, in the order of the quantities.
-    pub vertical: [Option<(f64, f64)>; 4],
+    /// The stretch of time in s that is shown otherwise.
+    pub(super) own: f64,
     /// The time in s under the pointer, and the pass in which it was there.
     pub(super) cursor: Option<(f64, u64)>,
 }

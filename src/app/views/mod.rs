@@ -11,8 +11,10 @@ mod before_now;
 mod chart;
 mod compare;
 mod context;
+mod cursors;
 mod distance;
 pub mod energy;
+mod events;
 mod flexures;
 mod force;
 mod ghosts;
@@ -29,11 +31,11 @@ mod schematic;
 mod span;
 mod spectrum;
 mod stops;
-mod timeline;
 mod trace;
 mod up_and_down;
 mod view;
 mod well;
+mod zoom;
 
 use eframe::egui::{Ui, UiBuilder};
 
@@ -41,6 +43,7 @@ use crate::app::ui::style::Style;
 
 pub(super) use context::too_small_ui;
 pub use context::{Cover, ViewContext};
+pub use cursors::Cursors;
 pub use map::MapQuantity;
 pub use memory::{Memory, Timeline};
 pub use span::Span;
@@ -90,6 +93,7 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
         View::Velocity => trace::trace_ui(ui, TraceQuantity::Velocity, context),
         View::BaseAcceleration => trace::trace_ui(ui, TraceQuantity::BaseAcceleration, context),
         View::Power => trace::trace_ui(ui, TraceQuantity::Power, context),
+        View::Events => events::events_ui(ui, context),
         View::Map => map::map_ui(ui, context),
         View::UpAndDown => up_and_down::up_and_down_ui(ui, context),
         View::Basins => basins::basins_ui(ui, context),

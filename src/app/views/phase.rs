@@ -20,7 +20,8 @@ use super::ghosts::{dashed, ghosts};
 use super::labels::rests;
 use super::legend::{LEGEND, Sign};
 use super::stops::stops_ui;
-use super::{ViewContext, too_small_ui};
+use super::zoom::{Axis, hand};
+use super::{View, ViewContext, too_small_ui};
 
 /// Length of the trail in forcing periods; without a period, in swings of the scene's own time scale.
 const TRAIL_PERIODS: f64 = 4.0;
@@ -61,14 +62,16 @@ pub fn section_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 }
 
 fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
-    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click() | Sense::DRAG);
     if area.width() < 60.0 || area.height() < 80.0 {
         return too_small_ui(ui, &context.style, area);
     }
     let style = context.style;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "states of the mass"));
     let speed = context.memory.ranges.follow(context.session).speed();
-    let chart = Chart::new(area, context.span, -speed, speed);
+    let view = if is_section { View::Section } else { View::PhasePortrait };
+    let (low, high) = context.memory.axes.ends(Axis::Up(view), (-speed, speed));
+    let chart = Chart::new(area, context.span, low, high);
     chart.axes(ui, context, 1e-3);
     let painter = ui.painter().with_clip_rect(chart.rect);
     let mut legend = Vec::new();
@@ -111,6 +114,7 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         false => area.right(),
     };
     chart.legend(ui, &style, right, &legend);
+    hand(ui, context.memory, view, &response, (area, chart.rect));
     start_ui(ui, &response, context, &chart);
 }
 

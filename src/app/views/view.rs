@@ -86,6 +86,10 @@ views! {
     Power "Power"
         "Work of the base on the mass in a second. Below zero the mass gives energy back to the base. The \
          wheel zooms in time, a double click is back.";
+    /// What happened when, as a table.
+    Events "Events"
+        "What happened when: impacts, rests, releases and crossings, with phase of the shaking, velocity \
+         before and after, and energy lost. Click a row to look at that instant.";
     /// What every combination of two fields comes to.
     Map "Map"
         "What every combination of two settings comes to, each in a run of its own. Click to take the \
@@ -138,6 +142,17 @@ impl View {
     /// Whether it shows what other settings or starts than the present ones come to.
     pub fn is_survey(self) -> bool {
         matches!(self, Self::Map | Self::UpAndDown | Self::Basins)
+    }
+
+    /// Whether time runs along it, so that it shows the cursors.
+    pub fn is_over_time(self) -> bool {
+        use View::{BaseAcceleration, Displacement, Distance, Power, Velocity};
+        matches!(self, Displacement | Velocity | BaseAcceleration | Power | Distance)
+    }
+
+    /// Whether its axes can be zoomed and held.
+    pub fn has_axes(self) -> bool {
+        self.axes().is_some()
     }
 
     /// Whether the displacement runs along it.

@@ -16,11 +16,12 @@ use super::legend::{LEGEND, Sign};
 use super::mass::mass_ui;
 use super::ranges::room_for_push;
 use super::stops::{WALL, stops_ui};
-use super::{ViewContext, too_small_ui};
+use super::zoom::{Axis, hand};
+use super::{View, ViewContext, too_small_ui};
 
 /// Draws it.
 pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let (area, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::DRAG);
     if area.width() < 60.0 || area.height() < 60.0 {
         return too_small_ui(ui, &context.style, area);
     }
@@ -29,6 +30,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let painter = ui.painter().with_clip_rect(area);
     painter.rect_filled(area, 0.0, style.ground());
     let axis = Heights::of(ui, context, rect);
+    hand(ui, context.memory, View::Well, &response, (area, rect));
     x_axis(&painter, context, rect);
 
     let state = context.session.player.state();
@@ -150,7 +152,8 @@ impl Heights {
         let room = 0.22 * (high - low);
         let in_gesture = context.session.editor.in_gesture();
         let own = (low - 0.5 * room, high + room);
-        let (low, high) = context.memory.held.heights.keep(own, in_gesture);
+        let own = context.memory.held.heights.keep(own, in_gesture);
+        let (low, high) = context.memory.axes.ends(Axis::Up(View::Well), own);
         let id = ui.scope_id();
         let ease = |name: &str, value: f64| {
             let target = (value * 1e6) as f32;

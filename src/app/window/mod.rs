@@ -239,6 +239,7 @@ impl Window {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 close = icon_button_ui(ui, Icon::Restore, 24.0, "all views", "All views again (Z or Esc)")
                     .clicked();
+                layouts::hold_ui(ui, view, context.memory);
             });
         });
         views::view_ui(ui, view, &mut context);
