@@ -131,7 +131,7 @@ pub(super) fn readout_ui(
     let place = area.with_min_y(area.top() + LEGEND).shrink2(vec2(8.0, 0.0));
     let inner = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
         ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing = vec2(14.0, 0.0);
+            (ui.spacing_mut().item_spacing, ui.spacing_mut().interact_size.y) = (vec2(14.0, 0.0), 0.0);
             for part in parts {
                 ui.add(Label::new(RichText::new(part).font(style.small()).color(style.ink())).extend());
             }
@@ -212,7 +212,8 @@ pub(super) fn cursors_ui(
             (false, false) => (Align2::RIGHT_TOP, format!("{number} >")),
         };
         let down = if seen { 2.0 } else { 2.0 + 16.0 * which as f32 };
-        let beside = if align == Align2::LEFT_TOP { 4.0 } else { -4.0 };
+        let beside = if seen { 0.5 * GRAB + 3.0 } else { 4.0 };
+        let beside = if align == Align2::LEFT_TOP { beside } else { -beside };
         let place = (pos2(at + beside, frame.top() + down), align);
         plated(&painter, &style, place, &text, (style.body(), style.ink()));
     }

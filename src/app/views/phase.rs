@@ -251,21 +251,23 @@ fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     finish(&mut line, drawn.min(FADES - 1));
 }
 
-/// The last of the paths of the pinned motions, dashed.
+/// The last of the paths of the pinned motions, dashed: a period of each, which is what is told apart.
 fn ghost_trails(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let session = &context.session;
     let model = session.shown();
-    let length =
-        model.forcing_period().map_or(TRAIL_SWINGS * model.natural_time(), |period| TRAIL_PERIODS * period);
+    let length = model.forcing_period().unwrap_or(TRAIL_SWINGS / TRAIL_PERIODS * model.natural_time());
     let now = session.player.time();
     let stroke = context.style.ghost_motion_stroke();
     for pin in session.pins.all() {
         let watch = pin.watch();
         let path = recent(watch.samples(), pin.state_at(now), length.min(now - pin.since()));
+        let mut spare = MOST_BETWEEN;
         let mut points: Vec<Pos2> = Vec::with_capacity(2 * path.len());
         for pair in path.windows(2) {
             let (a, b) = (pair[0], pair[1]);
             let count = if a.t == b.t { 1 } else { pieces(chart, watch.model_at(a.t), (&a, &b)) };
+            let count = count.min(spare);
+            spare -= count;
             let between = between(watch.model_at(a.t), &a, &b, count);
             points.push(chart.screen_from_world(a.x, a.v));
             points.extend(between.iter().map(|(x, v)| chart.screen_from_world(*x, *v)));
@@ -319,7 +321,8 @@ fn strobes(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let stroke = context.style.base_stroke();
     for i in 0..count {
         let state = watch.state_at((first + f64::from(i)) * period);
-        painter.circle(chart.screen_from_world(state.x, state.v), STROBE, context.style.ground(), stroke);
+        let at = chart.screen_from_world(state.x, state.v);
+        painter.circle(at, context.style.dot(STROBE), context.style.ground(), stroke);
     }
 }
 

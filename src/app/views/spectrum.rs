@@ -129,7 +129,7 @@ fn picture_ui(
                     plot.line(Line::new("line", ends).stroke(style.motion_stroke()));
                 }
                 let tips: Vec<[f64; 2]> = seen().copied().collect();
-                plot.points(Points::new("tips", tips).radius(2.5).color(style.motion()));
+                plot.points(Points::new("tips", tips).radius(style.dot(2.5)).color(style.motion()));
             } else {
                 let line = Line::new("amplitude", PlotPoints::from(largest(&lines)));
                 plot.line(line.stroke(style.motion_stroke()));

@@ -189,6 +189,11 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let between = |a: f64, b: f64| format!("{:+.digits$} {unit}", read(b) - read(a));
     let readout = readout_ui(ui, context, (area, window), at_each, between);
     let plot = area.with_min_x(area.left() + MARGIN).with_min_y(area.top() + LEGEND + readout);
+    // points on the screen between two of the plot
+    let way = |a: &PlotPoint, b: &PlotPoint| {
+        let (x, y) = ((b.x - a.x) / window, (b.y - a.y) / (high - low));
+        (x as f32 * plot.width()).hypot(y as f32 * plot.height())
+    };
     let mut ui = plot_place(ui, &style, plot);
     let response = still_plot(quantity.name())
         .x_grid_spacer(|_| marks(from.max(0.0), to - NO_NUMBER * window, columns))
@@ -215,8 +220,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
                 plot.line(Line::new("impact", ends).stroke(style.impact_stroke()));
             }
             for (place, path) in ghosts {
+                let length = path.windows(2).map(|pair| way(&pair[0], &pair[1])).sum();
                 let own = Line::new("ghost", PlotPoints::Owned(path)).stroke(style.ghost_motion_stroke());
-                let own = own.style(LineStyle::Dashed { length: dash(place) });
+                let own = own.style(LineStyle::Dashed { length: dash(place, length) });
                 plot.line(own.allow_band(!is_displacement));
             }
             for path in paths {

@@ -202,7 +202,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
                     .flat_map(|visit| strobes(visit).iter().map(|x| PlotPoint::new(visit.value, x * 1e3)))
                     .collect();
                 let points = Points::new(way.direction.name(), PlotPoints::Owned(points));
-                plot.points(points.radius(radius).shape(shape).color(color));
+                plot.points(points.radius(style.dot(radius)).shape(shape).color(color));
             }
             if let (Some(here), Some(x)) = (here, live) {
                 let ball = Points::new("now", vec![[here, x]]);
