@@ -277,3 +277,37 @@ fn the_table_of_three_pins_needs_no_scrolling_sideways() {
         }
     }
 }
+
+#[test]
+fn two_motions_stand_side_by_side_and_a_hand_moves_the_present_one_alone() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    for view in View::ALL {
+        command(&mut harness, Command::Show(view, view == View::SideBySide));
+    }
+    harness.get_by_label("Beside it with stops").click();
+    harness.run_steps(3);
+    command(&mut harness, Command::Show(View::Compare, false));
+    harness.get_by_label("0.90 g, 3.0 Hz, no stops");
+    harness.get_by_label("0.90 g, 3.0 Hz, ±1.50 mm");
+    harness.state_mut().session.player.speed = 1.0;
+    harness.run_steps(60);
+    let session = &harness.state().session;
+    let (own, pin) = (session.player.state(), pinned(session, 'A').state_at(session.player.time()));
+    assert!(own.t == pin.t && own.base_accel == pin.base_accel && (own.x - pin.x).abs() > 1e-3);
+    // two drawings and two wells, and one motion that can be taken hold of in each of them
+    assert_eq!(harness.query_all_by_label("proof mass").count(), 2);
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    let place = harness.state().tiling().place_of(View::SideBySide).unwrap();
+    let masses: Vec<f32> =
+        harness.query_all_by_label("proof mass").map(|own| own.rect().center().x).collect();
+    assert!(masses.iter().all(|x| *x < place.center().x), "{masses:?}");
+    // the stops of the pinned one are no sliders
+    assert_eq!(harness.query_all_by_label("right stop").count(), 0);
+    command(&mut harness, Command::Pin(PinKind::Motion));
+    command(&mut harness, Command::Show(View::Compare, false));
+    harness.get_by_label("B").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("0.90 g, 3.0 Hz, ±1.50 mm").is_none());
+    assert!(!harness.state().session.editor.can_undo());
+}

@@ -71,7 +71,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         painter.extend(Shape::dashed_line(&[from, at], style.base_stroke(), 4.0, 3.0));
     }
     releases(&painter, context, &chart);
-    for ghost in ghosts(context.session) {
+    for ghost in ghosts(context) {
         let curve = &ghost.model.mechanism().curve;
         ghost.stops(&painter, context, chart.rect, 0.0);
         let at = chart.screen_from_world(ghost.state.x, curve.force(ghost.state.x));

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use eframe::egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 
-use crate::app::session::Session;
 use crate::app::session::pins::Pin;
 use crate::app::ui::style::Style;
 use crate::dynamics::{Model, Sample};
 
 use super::ViewContext;
+use super::context::Drawn;
 use super::labels::haloed;
 
 /// Lengths in points of a dash and of the gap after it, of each pin.
@@ -37,8 +37,12 @@ pub(super) struct Ghost {
     pub model: Arc<Model>,
 }
 
-/// The pinned motions at the time that is shown.
-pub(super) fn ghosts(session: &Session) -> Vec<Ghost> {
+/// The pinned motions at the time that is shown, where they are drawn over the present one.
+pub(super) fn ghosts(context: &ViewContext<'_>) -> Vec<Ghost> {
+    let session = &context.session;
+    if context.drawn != Drawn::WithGhosts {
+        return Vec::new();
+    }
     let t = session.player.time();
     let ghost = |pin: &Pin| Ghost {
         place: pin.place(),

@@ -18,12 +18,8 @@ use super::zoom::{Axes, Axis};
 pub struct Memory {
     /// Axes that stand still during a gesture.
     pub(super) held: HeldAxes,
-    /// The last impact on the left and the right that is drawn as a ring.
-    pub(super) rings: [Option<Ring>; 2],
-    /// The flexures as they were drawn last.
-    pub(super) bent: Option<State>,
-    /// The time up to which impacts have been looked at.
-    pub(super) seen_to: f64,
+    /// The drawing of the mechanism.
+    pub(super) drawing: Drawing,
     /// The mass is to be taken hold of by the first view that has it.
     pub grab: bool,
     /// What is to be pinned.
@@ -38,6 +34,9 @@ pub struct Memory {
     pub(super) axes: Axes,
     /// Where a box begins and ends that is drawn, to be shown.
     pub(super) corner: Option<(Pos2, Pos2)>,
+    /// The same of the pinned motion that is drawn beside the present one, and which of the pins it is.
+    pub(super) beside: Drawing,
+    pub(super) beside_place: usize,
     /// The row of the list of events that was marked last.
     pub(super) marked: Option<usize>,
     /// How far axes of velocity and power reach.
@@ -108,6 +107,17 @@ pub(super) struct Ring {
     pub began: f64,
     /// Share of the energy scale.
     pub size: f64,
+}
+
+/// What the drawing of a mechanism keeps.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Drawing {
+    /// The last impact on the left and the right that is drawn as a ring.
+    pub rings: [Option<Ring>; 2],
+    /// The flexures as they were drawn last.
+    pub bent: Option<State>,
+    /// The time up to which impacts have been looked at.
+    pub seen_to: f64,
 }
 
 /// State of the pointer on the map.

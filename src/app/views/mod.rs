@@ -28,6 +28,7 @@ mod phase;
 mod plot;
 mod ranges;
 mod schematic;
+mod side_by_side;
 mod span;
 mod spectrum;
 mod stops;
@@ -42,7 +43,7 @@ use eframe::egui::{Ui, UiBuilder};
 use crate::app::ui::style::Style;
 
 pub(super) use context::too_small_ui;
-pub use context::{Cover, ViewContext};
+pub use context::{Cover, Drawn, ViewContext};
 pub use cursors::Cursors;
 pub use map::MapQuantity;
 pub use memory::{Memory, Timeline};
@@ -85,6 +86,7 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
         View::Displacement => trace::trace_ui(ui, TraceQuantity::Displacement, context),
         View::BeforeNow => before_now::before_now_ui(ui, context),
         View::Compare => compare::compare_ui(ui, context),
+        View::SideBySide => side_by_side::side_by_side_ui(ui, context),
         View::Distance => distance::distance_ui(ui, context),
         View::PhasePortrait => phase::phase_ui(ui, context),
         View::Section => phase::section_ui(ui, context),

@@ -95,7 +95,7 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         legend.push((Sign::Dashed(style.impact_stroke()), "impact"));
     }
     strobes(&painter, context, &chart);
-    for ghost in ghosts(context.session) {
+    for ghost in ghosts(context) {
         ghost.stops(&painter, context, chart.rect, 0.0);
         let at = chart.screen_from_world(ghost.state.x, ghost.state.v);
         ghost.ball(&painter, &style, at, STATE);

@@ -52,6 +52,10 @@ views! {
     Compare "Compare"
         "The present motion beside those that are pinned: what each settles to, and by how much it differs. \
          A pin goes on with the drive in step; take its scene back by a click.";
+    /// The present motion and a pinned one, each with its mechanism and its well.
+    SideBySide "Side by side"
+        "The present motion beside a pinned one, each in its own drawing and on its own well, at the same time \
+         of the same shaking. The pinned one is not moved by hand.";
     /// Distance of the pinned motions from the present one over time.
     Distance "Distance"
         "How far each pinned motion is from the present one, over time. A twin begins a micrometre beside \

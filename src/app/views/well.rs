@@ -33,8 +33,8 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     hand(ui, context.memory, View::Well, &response, (area, rect));
     x_axis(&painter, context, rect);
 
-    let state = context.session.player.state();
-    let model = context.session.shown();
+    let state = context.drawn.state(context.session);
+    let model = context.drawn.model(context.session);
     let (curve, mass) = (&model.mechanism().curve, model.mass());
     let tilt = mass * state.base_accel;
     let (left, right) = model.stop_positions();
@@ -59,7 +59,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     clipped.extend(Shape::dashed_line(&line(tilt), style.ghost_stroke(), 5.0, 5.0));
     clipped.add(Shape::line(reachable, style.tray_stroke()));
 
-    for ghost in ghosts(context.session) {
+    for ghost in ghosts(context) {
         let (state, tilted) = (ghost.state, ghost.model.mass() * ghost.state.base_accel);
         let curve = &ghost.model.mechanism().curve;
         let height = |x: f64| {
@@ -87,7 +87,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 /// Names of the wells and the barrier in a row below the curve, each at its place along x; what has no room
 /// beside a stop is left out.
 fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
-    let (style, model) = (context.style, context.session.shown());
+    let (style, model) = (context.style, context.drawn.model(context.session));
     let Some(barrier) = model.mechanism().landscape.barrier else { return };
     let (left, right) = model.stop_positions();
     let screen = |x: f64| context.span.screen_from_world(x, rect);
@@ -121,7 +121,7 @@ struct Heights {
 impl Heights {
     /// From a little below the deepest to a little above the highest place that the mass gets to.
     fn of(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect) -> Self {
-        let model = context.session.shown();
+        let model = context.drawn.model(context.session);
         let room = room_for_push(model.largest_base_acceleration());
         let curve = &model.mechanism().curve;
         let landscape = &model.mechanism().landscape;

@@ -45,6 +45,7 @@ impl View {
             Self::Displacement | Self::Velocity | Self::BaseAcceleration | Self::Power => Axis::Time,
             Self::Well | Self::PhasePortrait | Self::Section | Self::ForceCurve | Self::Basins => Axis::Place,
             Self::Distance | Self::UpAndDown | Self::Spectrum => Axis::Across(self),
+            Self::SideBySide => return Self::Well.axes(),
             _ => return None,
         };
         Some([across, Axis::Up(self)])
