@@ -141,7 +141,7 @@ fn the_table_has_room_on_a_projector() {
     let apart = |own: &&String| own.contains('(');
     let heads: Vec<String> = sliced(&harness).iter().filter(apart).cloned().collect();
     assert_eq!(heads, Vec::<String>::new());
-    for head in ["time (s)", "phase (°)", "v before (mm/s)", "v after (mm/s)", "lost (µJ)"] {
+    for head in ["time (s)", "phase (°)", "v in (mm/s)", "v out (mm/s)", "lost (µJ)"] {
         assert!(is_painted(&harness, head), "{head}");
     }
 }

@@ -11,10 +11,11 @@ use crate::numeric::short;
 use crate::study::{Attractor, Edges};
 
 use super::chart::Chart;
+use super::hand::hand;
 use super::labels::{haloed, rests};
 use super::legend::{LEGEND, Sign};
 use super::stops::stops_ui;
-use super::zoom::{Axis, hand};
+use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
 /// Radius in points of the mark of an attractor.

@@ -9,10 +9,11 @@ use crate::study::distances;
 
 use super::cursors::{cursors_ui, readout_ui};
 use super::ghosts::PINNED;
+use super::hand::hand;
 use super::labels::haloed;
 use super::legend::LEGEND;
 use super::plot::{MARGIN, decades, marks, plot_place, power, still_plot};
-use super::zoom::{Axis, hand};
+use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
 /// The most points of a line.

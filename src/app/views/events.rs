@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, FontId, Rect, RichText, Role, ScrollArea, Sense
 use crate::app::export::events_seen_csv;
 use crate::app::session::Session;
 use crate::app::ui::style::Style;
-use crate::app::words::numbers::{decimals_for, three};
+use crate::app::words::numbers::three;
 use crate::study::{Table, Values, watched_events};
 
 use super::energy::unit_of;
@@ -18,13 +18,13 @@ const ROW: f32 = 18.0;
 type Column = (&'static str, &'static str, f32, &'static str);
 
 const COLUMNS: [Column; 7] = [
-    ("time (s)", "t_s", 1.3, "Time."),
-    ("phase (°)", "phase_deg", 0.9, "Phase of the shaking, where it repeats."),
-    ("event", "kind", 1.0, "What happened."),
-    ("side", "side", 0.7, "The stop, or the well that is entered."),
-    ("v before", "v_in_m_per_s", 1.0, "Velocity before it in mm/s, to the right positive."),
-    ("v after", "v_out_m_per_s", 1.0, "Velocity after it in mm/s, to the right positive."),
-    ("lost", "lost_j", 0.9, "Kinetic energy that it took; on a compliant stop it goes bit by bit."),
+    ("time (s)", "t_s", 1.1, "Time."),
+    ("phase (°)", "phase_deg", 0.85, "Phase of the shaking, where it repeats."),
+    ("event", "kind", 0.95, "What happened."),
+    ("side", "side", 0.65, "The stop, or the well that is entered."),
+    ("v in", "v_in_m_per_s", 1.15, "Velocity before it in mm/s, to the right positive."),
+    ("v out", "v_out_m_per_s", 1.2, "Velocity after it in mm/s, to the right positive."),
+    ("lost", "lost_j", 1.0, "Kinetic energy that it took; on a compliant stop it goes bit by bit."),
 ];
 
 /// Draws it.
@@ -80,17 +80,22 @@ fn list_ui(ui: &mut Ui, context: &mut ViewContext<'_>, count: usize, unit: (f64,
     let (style, now) = (context.style, context.session.player.time());
     let marked = context.session.player.watch().events().partition_point(|own| own.t <= now).checked_sub(1);
     let moved = context.memory.marked != marked && marked.is_some();
-    context.memory.marked = marked;
     let mut list = ScrollArea::vertical().auto_shrink(false).id_salt("events");
     let (height, in_list) =
         (ui.available_height(), ui.rect_contains_pointer(ui.available_rect_before_wrap()));
     // the present stays in sight, unless a hand is on the list while it plays
-    if let Some(row) = marked.filter(|_| moved && !(in_list && context.session.player.is_playing())) {
+    let follows = moved && !(in_list && context.session.player.is_playing());
+    if let Some(row) = marked.filter(|_| follows) {
         list = list.vertical_scroll_offset(((row as f32 - (0.6 * height / ROW).round()) * ROW).max(0.0));
     }
     let mut wanted = None;
     list.show_rows(ui, ROW, count, |ui, rows| {
         let first = rows.start;
+        // how long a list is that has just grown the next frame knows
+        match follows && !marked.is_some_and(|row| rows.contains(&row)) {
+            true => ui.ctx().request_repaint(),
+            false => context.memory.marked = marked,
+        }
         let table = watched_events(context.session.player.watch(), rows.clone());
         for row in rows {
             let (place, response) =
@@ -157,12 +162,16 @@ fn cell(table: &Table, column: &str, row: usize, unit: (f64, &str)) -> String {
         Some(Values::Numbers(numbers)) => match column {
             "t_s" => format!("{:.5}", numbers[row]),
             "phase_deg" => format!("{:.1}", numbers[row]),
-            "lost_j" if numbers[row] == 0.0 => "0".to_owned(),
-            "lost_j" => three(numbers[row] / unit.0),
-            _ => format!("{:.*}", decimals_for(numbers[row].abs() * 1e3).min(3), numbers[row] * 1e3 + 0.0),
+            "lost_j" => brief(numbers[row] / unit.0),
+            _ => brief(numbers[row] * 1e3),
         },
         _ => String::new(),
     }
+}
+
+/// Three digits, of a small number with its power of ten.
+fn brief(value: f64) -> String {
+    if value != 0.0 && value.abs() < 0.01 { format!("{value:.1e}") } else { three(value) }
 }
 
 /// A row as it is spoken.

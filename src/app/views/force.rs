@@ -13,11 +13,12 @@ use crate::dynamics::STANDARD_GRAVITY;
 
 use super::chart::Chart;
 use super::ghosts::ghosts;
+use super::hand::hand;
 use super::labels::plated;
 use super::legend::Sign;
 use super::ranges::{axis_end, room_for_push};
 use super::stops::stops_ui;
-use super::zoom::{Axis, hand};
+use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
 /// Room above the largest force of the wells, as a factor.

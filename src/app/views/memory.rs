@@ -6,12 +6,12 @@ use crate::app::session::Session;
 use crate::app::session::pins::PinKind;
 use crate::mechanics::flexure::State;
 
-use super::cursors::Cursors;
+use super::cursor_times::Cursors;
 use super::map::MapQuantity;
 use super::ranges::Ranges;
 use super::span::Span;
-use super::view::View;
-use super::zoom::{Axes, Axis};
+use super::view::{Axis, View};
+use super::zoom::Axes;
 
 /// What views keep between frames.
 #[derive(Debug, Clone, Default)]

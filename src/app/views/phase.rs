@@ -17,10 +17,11 @@ use crate::study::between;
 
 use super::chart::Chart;
 use super::ghosts::{dashed, ghosts};
+use super::hand::hand;
 use super::labels::rests;
 use super::legend::{LEGEND, Sign};
 use super::stops::stops_ui;
-use super::zoom::{Axis, hand};
+use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
 /// Length of the trail in forcing periods; without a period, in swings of the scene's own time scale.

@@ -7,9 +7,10 @@ use crate::app::ui::style::Style;
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::study::{Signal, Spectrum};
 
+use super::hand::hand;
 use super::legend::{LEGEND, Sign, legend};
 use super::plot::{MARGIN, decades, marks, plot_place, power, still_plot};
-use super::zoom::{Axis, hand};
+use super::view::Axis;
 use super::{Memory, View, ViewContext, too_small_ui};
 
 /// Height in points of the row of choices.

@@ -15,11 +15,12 @@ use crate::study::Watch;
 
 use super::cursors::{cursors_ui, readout_ui};
 use super::ghosts::{PINNED, dash};
+use super::hand::hand;
 use super::labels::haloed;
 use super::legend::{LEGEND, Sign, legend};
 use super::plot::{MARGIN, marks, plot_place, still_plot};
 use super::ranges::room_for_push;
-use super::zoom::{Axis, hand};
+use super::view::Axis;
 use super::{View, ViewContext};
 
 /// Forcing periods that are shown; without a period multiples of the motion's characteristic time. No more

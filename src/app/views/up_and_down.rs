@@ -16,10 +16,11 @@ use crate::scene::{FieldPath, SweepAxis, column_names};
 use crate::study::{Direction, Visit};
 
 use super::axes::{field_name, field_ui, range_row_ui};
+use super::hand::hand;
 use super::labels::haloed;
 use super::legend::{LEGEND, Sign, legend};
 use super::plot::{MARGIN, marks, plot_place, still_plot};
-use super::zoom::{Axis, hand};
+use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
 /// Height in points of the row of choices.

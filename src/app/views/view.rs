@@ -54,8 +54,8 @@ views! {
          A pin goes on with the drive in step; take its scene back by a click.";
     /// The present motion and a pinned one, each with its mechanism and its well.
     SideBySide "Side by side"
-        "The present motion beside a pinned one, each in its own drawing and on its own well, at the same time \
-         of the same shaking. The pinned one is not moved by hand.";
+        "The present motion beside a pinned one, each in its own drawing and on its own well, at the same \
+         time of the same shaking. The pinned one is not moved by hand.";
     /// Distance of the pinned motions from the present one over time.
     Distance "Distance"
         "How far each pinned motion is from the present one, over time. A twin begins a micrometre beside \
@@ -117,6 +117,19 @@ views! {
          scene in fixed steps, as a game or a small applet takes them. From the scene's start.";
 }
 
+/// An axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Axis {
+    /// The time of the traces.
+    Time,
+    /// The displacement, in m.
+    Place,
+    /// That of one view, to the right.
+    Across(View),
+    /// That of one view, upwards.
+    Up(View),
+}
+
 impl From<LessonView> for View {
     fn from(view: LessonView) -> Self {
         match view {
@@ -162,5 +175,17 @@ impl View {
     /// Whether the displacement runs along it.
     pub fn is_along_x(self) -> bool {
         matches!(self, Self::Mechanism | Self::Well | Self::PhasePortrait | Self::Section | Self::ForceCurve)
+    }
+
+    /// Its axes to the right and upwards, where a hand can choose their ends.
+    pub(super) fn axes(self) -> Option<[Axis; 2]> {
+        let across = match self {
+            Self::Displacement | Self::Velocity | Self::BaseAcceleration | Self::Power => Axis::Time,
+            Self::Well | Self::PhasePortrait | Self::Section | Self::ForceCurve | Self::Basins => Axis::Place,
+            Self::Distance | Self::UpAndDown | Self::Spectrum => Axis::Across(self),
+            Self::SideBySide => return Self::Well.axes(),
+            _ => return None,
+        };
+        Some([across, Axis::Up(self)])
     }
 }

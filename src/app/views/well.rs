@@ -11,12 +11,13 @@ use crate::app::ui::style::BALL;
 
 use super::chart::{CURVE_STEP, x_axis};
 use super::ghosts::{dashed, ghosts};
+use super::hand::hand;
 use super::labels::{ago, free_place, haloed};
 use super::legend::{LEGEND, Sign};
 use super::mass::mass_ui;
 use super::ranges::room_for_push;
 use super::stops::{WALL, stops_ui};
-use super::zoom::{Axis, hand};
+use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
 /// Draws it.
