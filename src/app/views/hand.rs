@@ -78,18 +78,17 @@ pub(super) fn hand(
         let across = f64::from((at.x - frame.left()) / frame.width());
         (across.clamp(0.0, 1.0), f64::from((frame.bottom() - at.y) / frame.height()).clamp(0.0, 1.0))
     };
-    let (turned, pinched, shift) = ui.input(|input| {
-        let turned = input.smooth_scroll_delta();
-        // with Shift a wheel goes sideways
-        (f64::from(turned.x + turned.y), f64::from(input.zoom_delta()), input.modifiers.shift)
-    });
-    let (x, y) = share(at);
-    let by = (-turned / WHEEL).exp();
+    let (turned, pinched, shift) =
+        ui.input(|input| (input.smooth_scroll_delta(), f64::from(input.zoom_delta()), input.modifiers.shift));
+    let ((x, y), upwards) = (share(at), shift || at.x < frame.left());
+    // with Shift a wheel goes sideways
+    let turned = if upwards { turned.x + turned.y } else { turned.y };
+    let by = (-f64::from(turned) / WHEEL).exp();
     if pinched != 1.0 {
         memory.zoom(across, 1.0 / pinched, x);
         memory.zoom(up, 1.0 / pinched, y);
     } else if by != 1.0 {
-        let (axis, about) = if shift || at.x < frame.left() { (up, y) } else { (across, x) };
+        let (axis, about) = if upwards { (up, y) } else { (across, x) };
         memory.zoom(axis, by, about);
     }
     if shift && response.dragged_by(PointerButton::Primary) {
