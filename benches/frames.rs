@@ -1,14 +1,16 @@
 //! Cost of a frame of the window: `cargo bench --bench frames`. The interface is stepped without a window,
 //! 1400 by 900 points, playing in real time at 60 frames a second, with everything that the program itself
 //! does for a frame: the motion, the layout, the shapes, and their triangles. What the graphics do with
-//! these is not in it.
+//! these is not in it, but their number is told.
 
 mod shared;
 
 use std::sync::Arc;
 use std::time::Duration;
 
+use eframe::egui::epaint::Primitive;
 use eframe::egui::{Context, Pos2, RawInput, Rect, vec2};
+use interwell::app::session::pins::PinKind;
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::Command;
@@ -18,6 +20,9 @@ use interwell::scene::{Excitation, Layout, Mechanism, SweepAxis};
 /// Frames that are measured, after some in which windows find their sizes and glyphs their places.
 const FRAMES: usize = 400;
 const SETTLING: usize = 30;
+
+/// Frames that are played after motions are pinned: until their trails are as long as they get.
+const PINNED: usize = 200;
 
 /// What a frame may take in ms: in the layout that the program opens with, and with every view open.
 const LOOK_MS: f64 = 8.0;
@@ -64,6 +69,8 @@ struct Screen {
     ctx: Context,
     window: Window,
     frame: u32,
+    /// Shapes and corners of triangles of the last frame.
+    drawn: (usize, usize),
 }
 
 impl Screen {
@@ -71,16 +78,10 @@ impl Screen {
         let window = Window::open(Some(preset), Settings::default(), Arc::new(|| ())).unwrap();
         let ctx = Context::default();
         prepare(&ctx);
-        let mut own = Self { ctx, window, frame: 0 };
+        let mut own = Self { ctx, window, frame: 0, drawn: (0, 0) };
         first(&mut own.window);
         own.window.session.player.speed = 1.0;
-        match open {
-            Open::Layout(layout) => own.ask(Command::Arrange(layout)),
-            Open::All => View::ALL.into_iter().for_each(|view| own.ask(Command::Show(view, true))),
-            Open::Only(only) => {
-                View::ALL.into_iter().for_each(|view| own.ask(Command::Show(view, only == Some(view))));
-            }
-        }
+        own.open(open);
         if matches!(open, Open::All | Open::Only(Some(View::Map)) | Open::Layout(Layout::Map)) {
             own.fill_map();
         }
@@ -88,7 +89,47 @@ impl Screen {
             own.step();
         }
         own.window.session.wait(LONG);
+        own.fill_explored();
         own
+    }
+
+    /// Waits for what views of the layout Explore work out, where any is open.
+    fn fill_explored(&mut self) {
+        let is_running = |window: &Window| {
+            let explore = &window.session.explore;
+            explore.walks.found.is_running()
+                || explore.basins.is_running()
+                || explore.spectra.found.is_running()
+        };
+        while shared::is_measured() && is_running(&self.window) {
+            std::thread::sleep(Duration::from_millis(20));
+            self.step();
+        }
+    }
+
+    /// Pins three motions that differ, and has them go on for a while; the views that come with them go.
+    fn pin(&mut self, open: Open) {
+        for (kind, amplitude) in [(PinKind::Twin, 1.1), (PinKind::Motion, 1.3), (PinKind::OtherStops, 0.9)] {
+            self.ask(Command::Pin(kind));
+            shake(&mut self.window, amplitude);
+            (0..PINNED / 4).for_each(|_| self.step());
+        }
+        self.window.session.end_gesture();
+        self.open(open);
+        (0..PINNED).for_each(|_| self.step());
+        self.window.session.wait(LONG);
+        self.fill_explored();
+        assert_eq!(self.window.session.pins.all().len(), 3);
+    }
+
+    fn open(&mut self, open: Open) {
+        match open {
+            Open::Layout(layout) => self.ask(Command::Arrange(layout)),
+            Open::All => View::ALL.into_iter().for_each(|view| self.ask(Command::Show(view, true))),
+            Open::Only(only) => {
+                View::ALL.into_iter().for_each(|view| self.ask(Command::Show(view, only == Some(view))));
+            }
+        }
     }
 
     fn ask(&mut self, command: Command) {
@@ -128,15 +169,21 @@ impl Screen {
         });
         // no graphics want them
         output.textures_delta.clear();
-        std::hint::black_box(self.ctx.tessellate(output.shapes, output.pixels_per_point));
+        let shapes = output.shapes.len();
+        let meshes = std::hint::black_box(self.ctx.tessellate(output.shapes, output.pixels_per_point));
+        let corners = meshes.iter().map(|own| match &own.primitive {
+            Primitive::Mesh(mesh) => mesh.vertices.len(),
+            Primitive::Callback(_) => 0,
+        });
+        self.drawn = (shapes, corners.sum());
         assert!(window.session.player.is_playing(), "it plays");
     }
 }
 
 fn main() {
     println!("CPU time of the window's own thread for a frame, in ms; 1400 x 900, playing in real time.\n");
-    println!("| scene | open | median | 95 % | worst | allowed |");
-    println!("| --- | --- | --- | --- | --- | --- |");
+    println!("| scene | open | median | 95 % | worst | allowed | shapes | corners |");
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
     let layouts = [
         ("Look", Open::Layout(Layout::Look), Some(LOOK_MS)),
         ("Study", Open::Layout(Layout::Study), Some(ALL_MS)),
@@ -156,13 +203,20 @@ fn main() {
         let mut screen = Screen::new(preset, stops_on, Open::Only(Some(view)));
         row((SCENES[1].0, &format!("only {}", view.name()), None), &mut screen, |_, _| ());
     }
-    let shaken = |window: &mut Window, frame: usize| {
-        window.session.edit(|scene| {
-            if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
-                *amplitude_g = 0.6 + 1e-3 * (frame % 500) as f64;
-            }
-        });
-    };
+    for (what, open, allowed) in [
+        ("Study, three pins", Open::Layout(Layout::Study), Some(LOOK_MS)),
+        ("Explore, three pins", Open::Layout(Layout::Explore), Some(LOOK_MS)),
+        ("all views, three pins", Open::All, Some(ALL_MS)),
+        ("only Compare, three pins", Open::Only(Some(View::Compare)), None),
+        ("only Distance, three pins", Open::Only(Some(View::Distance)), None),
+        ("only Displacement, three pins", Open::Only(Some(View::Displacement)), None),
+        ("only Phase portrait, three pins", Open::Only(Some(View::PhasePortrait)), None),
+    ] {
+        let mut screen = Screen::new(preset, stops_on, open);
+        screen.pin(open);
+        row((SCENES[1].0, what, allowed), &mut screen, |_, _| ());
+    }
+    let shaken = |window: &mut Window, frame: usize| shake(window, 0.6 + 1e-3 * (frame % 500) as f64);
     let preloaded = |window: &mut Window, frame: usize| {
         window.session.edit_mechanism(|mechanism| {
             if let Mechanism::Flexures { preload_mm, .. } = mechanism {
@@ -182,6 +236,15 @@ fn main() {
     }
 }
 
+/// Turns the shaking of a sine, as a drag does.
+fn shake(window: &mut Window, amplitude: f64) {
+    window.session.edit(|scene| {
+        if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
+            *amplitude_g = amplitude;
+        }
+    });
+}
+
 /// Measures frames, before each of which something is done that belongs to it, and writes a row.
 fn row(
     (scene, what, allowed): (&str, &str, Option<f64>),
@@ -199,5 +262,8 @@ fn row(
     let [median, most, worst] = [0.5, 0.95, 1.0].map(|share| shared::quantile(&mut times, share));
     let allowed =
         allowed.map_or_else(String::new, |ms| format!("{ms:.0}{}", if most > ms { ", over" } else { "" }));
-    println!("| {scene} | {what} | {median:.2} | {most:.2} | {worst:.2} | {allowed} |");
+    let (shapes, corners) = screen.drawn;
+    println!(
+        "| {scene} | {what} | {median:.2} | {most:.2} | {worst:.2} | {allowed} | {shapes} | {corners} |"
+    );
 }

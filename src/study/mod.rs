@@ -44,6 +44,7 @@ mod trace;
 mod up_and_down;
 mod walk;
 mod watch;
+mod watched_events;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -101,6 +102,7 @@ pub use trace::{Trace, simulate_with_trace};
 pub use up_and_down::{Visit, up_and_down};
 pub use walk::Carry;
 pub use watch::Watch;
+pub use watched_events::watched_events;
 
 /// How a study that takes long is watched and stopped.
 #[derive(Clone, Copy)]

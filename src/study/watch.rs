@@ -33,6 +33,8 @@ pub struct Watch {
     models: Models,
     samples: VecDeque<Sample>,
     events: VecDeque<Event>,
+    /// How many events were there that are no longer remembered.
+    forgotten: usize,
     /// Ledgers at the start and at multiples of the forcing period.
     ledgers: VecDeque<(f64, LiveLedger)>,
     keeps_ledgers: bool,
@@ -52,6 +54,7 @@ impl Watch {
             models: Models::new(Arc::new(model.clone())),
             samples: VecDeque::new(),
             events: VecDeque::new(),
+            forgotten: 0,
             ledgers: VecDeque::from([(0.0, LiveLedger::default())]),
             keeps_ledgers: false,
             now,
@@ -201,6 +204,11 @@ impl Watch {
         &self.events
     }
 
+    /// How many events came before these and are no longer remembered.
+    pub fn forgotten_events(&self) -> usize {
+        self.forgotten
+    }
+
     /// The model that held at a time in s, as far back as there are samples.
     pub fn model_at(&self, t: f64) -> &Arc<Model> {
         self.models.at(t)
@@ -295,6 +303,7 @@ impl Watch {
         self.samples.drain(..spare);
         let spare = self.events.len().saturating_sub(MOST_EVENTS);
         self.events.drain(..spare);
+        self.forgotten += spare;
         let spare = self.ledgers.len().saturating_sub(MOST_LEDGERS);
         self.ledgers.drain(..spare);
         self.models.forget(self.begin());

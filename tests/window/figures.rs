@@ -170,7 +170,7 @@ fn of_the_basins_the_copied_command_makes_the_same_bytes() {
     open(&mut harness, View::Basins, &folder.path().join("a.svg"));
     harness.get_by_label_contains("Show this view first");
     press(&mut harness, "Cancel");
-    harness.state_mut().session.want_basins((-1e-3, 1e-3), 0.2);
+    harness.state_mut().session.want_basins((-1e-3, 1e-3), (-0.2, 0.2));
     let line = same_bytes(&mut harness, View::Basins, "svg");
     assert!(line.contains("--x-mm -1:1:81 --v -0.2:0.2:81"), "{line}");
 }

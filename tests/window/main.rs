@@ -4,7 +4,9 @@
 mod accuracy;
 mod advanced;
 mod compare;
+mod cursors;
 mod documents;
+mod events;
 mod explore;
 mod figures;
 mod first_minute;

@@ -231,9 +231,9 @@ fn a_displacement_is_zoomed_with_shift_and_back() {
     });
     harness.event(eframe::egui::Event::ModifiersChanged(Modifiers::SHIFT));
     harness.run_steps(6);
-    let timeline = harness.state().timeline();
-    let (low, high) = timeline.vertical[0].unwrap();
-    assert!(timeline.window.is_none() && high - low < 17.5 && high > low, "{timeline:?}");
+    let [time, ends] = harness.state().chosen_axes(View::Displacement);
+    let ((low, high), window) = (ends.unwrap(), harness.state().timeline().window);
+    assert!(time.is_none() && window.is_none() && high - low < 17.5 && high > low, "{low} {high}");
     harness.event(eframe::egui::Event::ModifiersChanged(Modifiers::NONE));
     harness.ctx.options_mut(|options| options.input_options.max_double_click_delay = 5.0);
     for _ in 0..2 {
@@ -241,7 +241,7 @@ fn a_displacement_is_zoomed_with_shift_and_back() {
         harness.drop_at(at);
     }
     harness.run_steps(4);
-    assert_eq!(harness.state().timeline().vertical[0], None);
+    assert_eq!(harness.state().chosen_axes(View::Displacement), [None; 2]);
 }
 
 #[test]

@@ -16,7 +16,7 @@ use crate::output::{header, rows};
 use crate::scene::{FieldPath, Scene, arguments};
 use crate::study::{
     CURVE_POINTS, Keep, OutsideCurve, Sampling, Table, continued_scene, curve, default_positions,
-    events_table, sample_times, samples_table, simulate,
+    events_table, sample_times, samples_table, simulate, watched_events,
 };
 
 /// The motion that is remembered, in the columns of the command line's `simulate`.
@@ -40,6 +40,11 @@ pub fn run_csv(scene: &Scene, model: &Model, cancel: &AtomicBool) -> Option<Resu
 pub fn events_csv(player: &Player) -> String {
     let events: Vec<_> = player.watch().events().iter().copied().collect();
     csv(&events_table(&events))
+}
+
+/// The same with the phase of the drive and the energy that each event took.
+pub fn events_seen_csv(player: &Player) -> String {
+    csv(&watched_events(player.watch(), 0..usize::MAX))
 }
 
 /// Force, potential and stiffness of the mechanism in the columns and at the positions of the command line's

@@ -155,6 +155,16 @@ impl Style {
         if self.projector { points.max(3.0 / PROJECTOR_ZOOM) } else { points }
     }
 
+    /// The radius of a point in a picture.
+    pub fn dot(&self, points: f32) -> f32 {
+        if self.projector { 1.4 * points } else { points }
+    }
+
+    /// A cursor over time.
+    pub fn cursor_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.3), self.kind(Kind::Irregular))
+    }
+
     /// The potential with the base's push, on which the mass rides.
     pub fn tray_stroke(&self) -> Stroke {
         Stroke::new(3.0, self.curve())

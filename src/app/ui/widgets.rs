@@ -82,6 +82,10 @@ pub enum Icon {
     Restore,
     /// Two axes and a line: a figure of a view.
     Figure,
+    /// A lock that is closed, and one that is open.
+    Held,
+    /// See [`Self::Held`].
+    Free,
 }
 
 /// A button with an icon; `name` is what a screen reader and the tests call it.
@@ -142,6 +146,22 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
             };
             let axes = line(&[(0.0, 0.0), (0.0, 1.0), (1.0, 1.0)]);
             vec![axes, line(&[(0.2, 0.75), (0.45, 0.3), (0.65, 0.6), (1.0, 0.1)])]
+        }
+        Icon::Held | Icon::Free => {
+            let body = rect.with_min_y(rect.top() + 0.45 * rect.height()).shrink2(vec2(1.0, 0.0));
+            let (middle, radius) = (body.center_top(), 0.3 * rect.width());
+            let lift = if icon == Icon::Free { 0.2 * rect.height() } else { 0.0 };
+            let arc = |i: i32| {
+                let turn = std::f32::consts::PI * (1.0 + i as f32 / 8.0);
+                middle + radius * Vec2::angled(turn) - vec2(0.0, 1.0 + lift)
+            };
+            let feet = [(-radius, 0.0), (radius, -lift)].map(|(x, y)| middle + vec2(x, y));
+            let shackle = [feet[0]].into_iter().chain((0..=8).map(arc)).chain([feet[1]]).collect();
+            let body = match icon {
+                Icon::Held => Shape::rect_filled(body, 1.0, color),
+                _ => Shape::rect_stroke(body, 1.0, Stroke::new(1.3, color), egui::StrokeKind::Inside),
+            };
+            vec![Shape::line(shackle, Stroke::new(1.3, color)), body]
         }
         Icon::Fill => {
             vec![Shape::rect_stroke(rect, 0.0, Stroke::new(1.5, color), egui::StrokeKind::Inside)]

@@ -11,10 +11,12 @@ use crate::numeric::short;
 use crate::study::{Attractor, Edges};
 
 use super::chart::Chart;
+use super::hand::hand;
 use super::labels::{haloed, rests};
 use super::legend::{LEGEND, Sign};
 use super::stops::stops_ui;
-use super::{ViewContext, too_small_ui};
+use super::view::Axis;
+use super::{View, ViewContext, too_small_ui};
 
 /// Radius in points of the mark of an attractor.
 const MARK: f32 = 5.0;
@@ -24,7 +26,7 @@ const MOST_NAMED: usize = 6;
 
 /// Draws it.
 pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click() | Sense::DRAG);
     if area.width() < 100.0 || area.height() < 100.0 {
         return too_small_ui(ui, &context.style, area);
     }
@@ -32,8 +34,11 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "basins of attraction"));
     let speed = context.memory.ranges.follow(context.session).speed();
     let span = context.span;
-    context.session.want_basins((span.low, span.high), speed);
-    let chart = Chart::new(area, span, -speed, speed);
+    // what is zoomed into is worked out anew, as finely
+    let (low, high) = context.memory.axes.ends(Axis::Up(View::Basins), (-speed, speed));
+    context.session.want_basins((span.low, span.high), (low, high));
+    let chart = Chart::new(area, span, low, high);
+    hand(ui, context.memory, View::Basins, &response, (area, chart.rect));
     chart.axes(ui, context, 1e-3);
     let (parts, current) = context.session.explore.basins.parts();
     let level = parts.last().cloned();

@@ -74,7 +74,7 @@ fn card_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         rows.iter().for_each(|row| row_ui(ui, row));
         ui.label(RichText::new("motion").color(style.faint()));
         for card in [before, Some(&now)] {
-            regime_ui(ui, context, card.and_then(|card| card.settled.as_ref()));
+            regime_ui(ui, context, card.and_then(|card| card.settled.as_ref()), false);
         }
         ui.end_row();
         let both = |name: &str, text: fn(&Card) -> String| Row {
@@ -251,13 +251,15 @@ fn start(scene: &Scene) -> String {
     }
 }
 
-pub(super) fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>) {
+/// What kind of motion it is: its sign and its name, where the name has little room a `small` one below.
+pub(super) fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>, small: bool) {
     let Some(settled) = settled else {
         ui.label("-");
         return;
     };
     if settled.outcome != Outcome::Done {
-        ui.label("the run ended early");
+        let text = RichText::new("the run ended early");
+        ui.add(egui::Label::new(if small { text.font(context.style.small()) } else { text }).wrap());
         return;
     }
     let kind = Kind::from(settled.regime);
@@ -269,8 +271,13 @@ pub(super) fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(16.0), Sense::hover());
         ui.painter().extend(kind_shapes(kind, rect.center(), 5.0, context.style.kind(kind)));
-        explained(ui.label(name), name);
+        if !small {
+            explained(ui.label(name), name);
+        }
     });
+    if small {
+        explained(ui.label(RichText::new(name).font(context.style.small())), name);
+    }
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! Table of the present motion and the pinned ones, with differences.
 
-use eframe::egui::{self, Button, Grid, RichText, ScrollArea, Ui};
+use eframe::egui::TextWrapMode::Extend;
+use eframe::egui::{self, Button, FontId, Grid, Label, RichText, ScrollArea, TextStyle, Ui};
 
 use crate::app::session::Card;
 use crate::app::session::pins::{Pin, PinKind};
-use crate::app::ui::style::Style;
+use crate::app::ui::style::{SMALL, Style, strong_family};
 use crate::app::words::meanings::explained;
 use crate::app::words::status::seconds;
 use crate::dynamics::Summary;
@@ -13,14 +14,24 @@ use crate::scene::Stops;
 use super::ViewContext;
 use super::before_now::{reach, regime_ui, rms, shaking, stops, value};
 
-/// A number of the table: its name, what it is of a card, in words and as a number with its decimals.
-type Row = (&'static str, fn(&Card) -> String, fn(&Summary) -> Option<f64>, fn(f64) -> usize);
+/// A number of the table: its name, its unit, what it is of a card, in words and as a number with its
+/// decimals.
+type Row = (&'static str, &'static str, fn(&Card) -> String, fn(&Summary) -> Option<f64>, fn(f64) -> usize);
 
 const NUMBERS: [Row; 3] = [
-    ("RMS velocity", rms, |own| own.rms_velocity.map(|v| v * 1e3), |most| usize::from(most < 9.95)),
-    ("reach", reach, |own| own.max_abs_x.map(|x| x * 1e3), |most| if most < 0.95 { 2 } else { 1 }),
-    ("impacts take", impacts, |own| own.impact_share.map(|share| share * 100.0), |_| 0),
+    ("RMS velocity", "mm/s", rms, |own| own.rms_velocity.map(|v| v * 1e3), |most| usize::from(most < 9.95)),
+    ("reach", "mm", reach, |own| own.max_abs_x.map(|x| x * 1e3), |most| if most < 0.95 { 2 } else { 1 }),
+    ("impacts take", "%", impacts, |own| own.impact_share.map(|share| share * 100.0), |_| 0),
 ];
+
+/// Widths in points: of the names, the least of a column, and of one in which words have their room beside
+/// their signs.
+const NAMES: f32 = 92.0;
+const LEAST: f32 = 44.0;
+const ROOMY: f32 = 96.0;
+
+/// Room in points between columns.
+const APART: f32 = 8.0;
 
 /// What a person asked of a pin.
 enum Asked {
@@ -34,12 +45,12 @@ pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
     ground.show(ui, |ui| {
         ui.set_min_size(ui.available_size());
-        ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             buttons_ui(ui, context);
             if context.session.pins.all().is_empty() {
                 let text = "Nothing is pinned. A pinned motion goes on beside the present one, dashed, with \
                             the drive in step.";
-                ui.add(egui::Label::new(RichText::new(text).color(style.faint())).wrap());
+                ui.add(Label::new(RichText::new(text).color(style.faint())).wrap());
                 return;
             }
             match table_ui(ui, context) {
@@ -68,7 +79,7 @@ fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             PinKind::Twin,
         ),
     ];
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         for (name, hover, kind) in all {
             let button = ui.add_enabled(!full, Button::new(name));
             let button = button.on_hover_text(hover).on_disabled_hover_text("Unpin one first.");
@@ -83,43 +94,62 @@ fn table_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<Asked> {
     let style = context.style;
     let now = context.session.now_card();
     let pins: Vec<(&Pin, Card)> = context.session.pins.all().iter().map(|pin| (pin, card(pin))).collect();
+    let columns = (1 + pins.len()) as f32;
+    let width = ((ui.available_width() - NAMES) / columns - APART).max(LEAST);
+    let small = width < ROOMY;
+    if small {
+        let styles = &mut ui.style_mut().text_styles;
+        styles.insert(TextStyle::Body, style.small());
+        styles.insert(TextStyle::Heading, FontId::new(SMALL, strong_family()));
+        (ui.spacing_mut().button_padding.x, ui.spacing_mut().interact_size.y) = (2.0, 0.0);
+    }
     let mut asked = None;
-    let name_ui = |ui: &mut Ui, name: &str| {
-        explained(ui.label(RichText::new(name).color(style.faint())), name);
+    let name_ui = |ui: &mut Ui, name: &str, unit: &str| {
+        let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
+        let text = RichText::new(format!("{name}{unit}")).color(style.faint());
+        explained(cell_ui(ui, NAMES, |ui| ui.add(Label::new(text).wrap())), name);
     };
-    Grid::new("compare").num_columns(2 + pins.len()).spacing([14.0, 2.0]).show(ui, |ui| {
+    Grid::new("compare").num_columns(2 + pins.len()).spacing([APART, 2.0]).show(ui, |ui| {
         ui.label("");
-        ui.label(RichText::new("now").heading());
+        cell_ui(ui, width, |ui| ui.label(RichText::new("now").heading()));
         for (pin, _) in &pins {
-            asked = asked.take().or(heading_ui(ui, context, pin));
+            let own = cell_ui(ui, width, |ui| heading_ui(ui, context, (pin, width)));
+            asked = asked.take().or(own);
         }
         ui.end_row();
-        for (name, text) in [("shaking", shaking as fn(&_) -> String), ("stops", stops)] {
-            name_ui(ui, name);
+        for (name, unit, text) in [("shaking", "", shaking as fn(&_) -> String), ("stops", "mm", stops)] {
+            name_ui(ui, name, unit);
             let own = text(&now.scene);
-            ui.label(RichText::new(&own).heading());
+            let write = |ui: &mut Ui, text: RichText| {
+                cell_ui(ui, width, |ui| ui.add(Label::new(text).wrap()));
+            };
+            write(ui, RichText::new(bare(&own, unit)).heading());
             for (_, card) in &pins {
                 let text = text(&card.scene);
-                let same = text == own;
-                ui.label(if same { RichText::new(text).color(style.faint()) } else { RichText::new(text) });
+                let shown = RichText::new(bare(&text, unit));
+                write(ui, if text == own { shown.color(style.faint()) } else { shown });
             }
             ui.end_row();
         }
-        name_ui(ui, "motion");
-        regime_ui(ui, context, now.settled.as_ref());
+        name_ui(ui, "motion", "");
+        cell_ui(ui, width, |ui| regime_ui(ui, context, now.settled.as_ref(), small));
         for (pin, card) in &pins {
-            match pin.ended().and_then(|outcome| outcome.ended_at()) {
-                Some(at) => _ = ui.label(format!("ended at {}, stays there", seconds(at))),
-                None => regime_ui(ui, context, card.settled.as_ref()),
-            }
+            cell_ui(ui, width, |ui| match pin.ended().and_then(|outcome| outcome.ended_at()) {
+                Some(at) => {
+                    let text = format!("ended at {}, stays there", seconds(at));
+                    ui.add(Label::new(RichText::new(text).font(style.small())).wrap());
+                }
+                None => regime_ui(ui, context, card.settled.as_ref(), small),
+            });
         }
         ui.end_row();
-        for (name, text, number, decimals) in NUMBERS {
-            name_ui(ui, name);
-            ui.label(RichText::new(text(&now)).heading());
+        for (name, unit, text, number, decimals) in NUMBERS {
+            name_ui(ui, name, unit);
+            let own = RichText::new(bare(&text(&now), unit)).heading();
+            cell_ui(ui, width, |ui| ui.label(own));
             for (_, card) in &pins {
                 let apart = difference(card, &now, number, decimals);
-                number_ui(ui, &style, &text(card), apart.as_deref());
+                cell_ui(ui, width, |ui| number_ui(ui, &style, &bare(&text(card), unit), apart.as_deref()));
             }
             ui.end_row();
         }
@@ -127,10 +157,24 @@ fn table_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<Asked> {
     asked
 }
 
+/// A cell of a width.
+fn cell_ui<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let cell = ui.vertical(|ui| {
+        ui.set_width(width);
+        contents(ui)
+    });
+    cell.inner
+}
+
+/// A text without the unit that stands in the heading of its row.
+fn bare(text: &str, unit: &str) -> String {
+    if unit.is_empty() { text.to_owned() } else { text.replace(&format!(" {unit}"), "") }
+}
+
 /// What a pin is called, and what can be done with it.
-fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin) -> Option<Asked> {
+fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, (pin, width): (&Pin, f32)) -> Option<Asked> {
     let (letter, mut asked) = (pin.letter(), None);
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let kind = match (pin.kind(), pin.scene().stops) {
             (PinKind::Motion, _) => "pinned as it was",
@@ -144,7 +188,8 @@ fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin) -> Option<Asked
         let hover = "The scene as it is in this pin: one step that can be undone. The motion goes on from \
                      where it is.";
         let other = pin.scene() != context.session.scene();
-        let back = ui.add_enabled(other, Button::new(RichText::new("Take back").small()).small());
+        let text = RichText::new(if width < ROOMY { "Back" } else { "Take back" }).small();
+        let back = ui.add_enabled(other, Button::new(text).small().wrap_mode(Extend));
         if named(back, other, format!("Take {letter} back"))
             .on_hover_text(hover)
             .on_disabled_hover_text("It is the present scene.")
@@ -152,7 +197,7 @@ fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin) -> Option<Asked
         {
             asked = Some(Asked::TakeBack(letter));
         }
-        let gone = ui.add(Button::new(RichText::new("Unpin").small()).small());
+        let gone = ui.add(Button::new(RichText::new("Unpin").small()).small().wrap_mode(Extend));
         if named(gone, true, format!("Unpin {letter}")).clicked() {
             asked = Some(Asked::Unpin(letter));
         }
@@ -168,11 +213,11 @@ fn named(button: egui::Response, enabled: bool, name: String) -> egui::Response 
 
 /// A number, and by how much it differs from that of the present motion.
 fn number_ui(ui: &mut Ui, style: &Style, text: &str, apart: Option<&str>) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.label(text);
         if let Some(apart) = apart {
-            ui.label(RichText::new(format!("({apart})")).color(style.faint()));
+            ui.label(RichText::new(format!("({apart})")).font(style.small()).color(style.faint()));
         }
     });
 }

@@ -3,7 +3,10 @@
 use eframe::egui::{Align, Label, Layout, Rect, RichText, Ui, UiBuilder};
 
 use crate::app::session::Session;
+use crate::app::session::pins::Pin;
 use crate::app::ui::style::Style;
+use crate::dynamics::{Model, Sample};
+use crate::study::Watch;
 
 use super::memory::Memory;
 use super::span::Span;
@@ -22,6 +25,43 @@ pub enum Cover {
     All,
 }
 
+/// Which motion a drawing shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drawn {
+    /// The present one, and the pinned ones as ghosts.
+    WithGhosts,
+    /// The present one.
+    Alone,
+    /// The pinned one at this place; no hand moves it.
+    Pinned(usize),
+}
+
+impl Drawn {
+    /// The pinned motion that is drawn.
+    pub(super) fn pin(self, session: &Session) -> Option<&Pin> {
+        match self {
+            Self::Pinned(place) => session.pins.all().get(place),
+            Self::WithGhosts | Self::Alone => None,
+        }
+    }
+
+    /// Its past.
+    pub(super) fn watch(self, session: &Session) -> &Watch {
+        self.pin(session).map_or(session.player.watch(), Pin::watch)
+    }
+
+    /// Its state at the time that is shown.
+    pub(super) fn state(self, session: &Session) -> Sample {
+        self.pin(session).map_or_else(|| session.player.state(), |pin| pin.state_at(session.player.time()))
+    }
+
+    /// The model by which it moves then.
+    pub(super) fn model(self, session: &Session) -> &Model {
+        let of_pin = |pin| Pin::watch(pin).model_at(session.player.time());
+        self.pin(session).map_or(session.shown(), |pin| of_pin(pin))
+    }
+}
+
 /// What a view looks at and acts on.
 pub struct ViewContext<'a> {
     /// The open scene: document, model, motion, results.
@@ -38,6 +78,8 @@ pub struct ViewContext<'a> {
     pub cover: Cover,
     /// One view fills the window, and shares its axes with none.
     pub filled: bool,
+    /// Which motion is drawn.
+    pub drawn: Drawn,
 }
 
 /// In place of a view that has no room: a word, where there is room for one.

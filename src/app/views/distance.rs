@@ -3,14 +3,18 @@
 use eframe::egui::{self, Align2, RichText, Ui, UiBuilder, vec2};
 use egui_plot::{HLine, Line, PlotBounds, PlotPoint, Text, VLine};
 
-use crate::app::session::pins::PinKind;
+use crate::app::session::pins::{Pin, PinKind};
+use crate::app::words::numbers::three;
 use crate::study::distances;
 
+use super::cursors::{cursors_ui, readout_ui};
 use super::ghosts::PINNED;
+use super::hand::hand;
 use super::labels::haloed;
 use super::legend::LEGEND;
 use super::plot::{MARGIN, decades, marks, plot_place, power, still_plot};
-use super::{ViewContext, too_small_ui};
+use super::view::Axis;
+use super::{View, ViewContext, too_small_ui};
 
 /// The most points of a line.
 const MOST_POINTS: usize = 2000;
@@ -51,10 +55,24 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let model = session.shown();
     let own = PERIODS * model.forcing_period().unwrap_or(model.characteristic_time());
     let to = from + ((now - from) / PRESENT).max(own);
+    let [across, up] = [Axis::Across(View::Distance), Axis::Up(View::Distance)];
+    let (from, to) = context.memory.axes.ends(across, (from, to));
+    let (least, most) = context.memory.axes.ends(up, (least, most));
     let stroke = style.motion_stroke();
     let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
     let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
-    let plot = egui::Rect::from_min_max(area.min + vec2(MARGIN, LEGEND), area.max - vec2(MARGIN, 0.0));
+    let apart = |pin: &Pin, t: f64| (session.player.watch().state_at(t).x - pin.state_at(t).x).abs();
+    let of_all = |word: &dyn Fn(&Pin) -> String| {
+        pins.iter().map(|pin| format!("{} {}", pin.letter(), word(pin))).collect::<Vec<_>>().join(", ")
+    };
+    let at_each = |t: f64| of_all(&|pin| format!("{:.1e} mm", 1e3 * apart(pin, t)));
+    let between = |a: f64, b: f64| {
+        let rate = |pin: &Pin| (apart(pin, b) / apart(pin, a)).ln() / (b - a);
+        let said = |rate: f64| if rate.is_finite() { format!("{} /s", three(rate)) } else { "-".to_owned() };
+        format!("exponential rate {}", of_all(&|pin| said(rate(pin))))
+    };
+    let readout = readout_ui(ui, context, (area, to - from), at_each, between);
+    let plot = area.with_min_y(area.top() + LEGEND + readout).shrink2(vec2(MARGIN, 0.0));
     let mut child = plot_place(ui, &style, plot);
     let shown = still_plot("distance")
         .x_grid_spacer(|_| marks(from, to - 0.05 * (to - from), columns))
@@ -94,6 +112,9 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
     let painter = ui.painter().with_clip_rect(area);
     haloed(&painter, &style, at, &said.join("   "), (style.small(), style.ink()));
+    let frame = *shown.transform.frame();
+    hand(&child, context.memory, View::Distance, &shown.response, (area, frame));
+    cursors_ui(&mut child, context, &shown.response, (frame, (from, to)), "distance");
 }
 
 /// What stands there while nothing is pinned.

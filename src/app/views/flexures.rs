@@ -127,13 +127,13 @@ impl DrawingScale {
 
 /// The flexures held where the mass is; the last ones that were known, should these not be.
 pub(super) fn state_at(context: &mut ViewContext<'_>, x: f64) -> Option<State> {
-    let mechanism = &context.session.shown().mechanism();
+    let mechanism = &context.drawn.model(context.session).mechanism();
     let flexures = mechanism.flexures.as_ref()?;
     let (low, high) = mechanism.curve.domain();
     if let Ok(state) = flexures.state(x.clamp(low, high)) {
-        context.memory.bent = Some(state);
+        context.memory.drawing.bent = Some(state);
     }
-    context.memory.bent.clone()
+    context.memory.drawing.bent.clone()
 }
 
 /// What the buckling flexures do, in words.

@@ -13,12 +13,14 @@ use crate::dynamics::STANDARD_GRAVITY;
 
 use super::chart::Chart;
 use super::ghosts::ghosts;
+use super::hand::hand;
 use super::labels::plated;
 use super::legend::Sign;
 use super::overlay::measured_force;
 use super::ranges::{axis_end, room_for_push};
 use super::stops::stops_ui;
-use super::{ViewContext, too_small_ui};
+use super::view::Axis;
+use super::{View, ViewContext, too_small_ui};
 
 /// Room above the largest force of the wells, as a factor.
 const ROOM: f64 = 1.3;
@@ -35,14 +37,16 @@ const LABEL: f32 = 110.0;
 
 /// Draws it.
 pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::DRAG);
     if area.width() < 60.0 || area.height() < 80.0 {
         return too_small_ui(ui, &context.style, area);
     }
     let style = context.style;
     let own = end_of_axis(context);
-    let (_, end) = context.memory.held.force.keep((-own, own), context.session.editor.in_gesture());
-    let chart = Chart::new(area, context.span, -end, end);
+    let own = context.memory.held.force.keep((-own, own), context.session.editor.in_gesture());
+    let (low, high) = context.memory.axes.ends(Axis::Up(View::ForceCurve), own);
+    let chart = Chart::new(area, context.span, low, high);
+    hand(ui, context.memory, View::ForceCurve, &response, (area, chart.rect));
     chart.axes(ui, context, 1.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
     let measured = measured_force(&painter, context, &chart);
@@ -71,7 +75,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     legend.extend(measured);
     releases(&painter, context, &chart);
-    for ghost in ghosts(context.session) {
+    for ghost in ghosts(context) {
         let curve = &ghost.model.mechanism().curve;
         ghost.stops(&painter, context, chart.rect, 0.0);
         let at = chart.screen_from_world(ghost.state.x, curve.force(ghost.state.x));

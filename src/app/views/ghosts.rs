@@ -4,16 +4,20 @@ use std::sync::Arc;
 
 use eframe::egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 
-use crate::app::session::Session;
 use crate::app::session::pins::Pin;
 use crate::app::ui::style::Style;
 use crate::dynamics::{Model, Sample};
 
 use super::ViewContext;
+use super::context::Drawn;
 use super::labels::haloed;
 
 /// Lengths in points of a dash and of the gap after it, of each pin.
 const DASHES: [(f32, f32); 3] = [(7.0, 4.0), (3.0, 3.0), (11.0, 3.0)];
+
+/// The most dashes of a path, and the distance in points of two of its points that are told apart.
+const MOST_DASHES: usize = 300;
+const NEAR: f32 = 1.0;
 
 /// What the lines of the pins are called.
 pub(super) const PINNED: [&str; 3] = ["A", "B", "C"];
@@ -33,8 +37,12 @@ pub(super) struct Ghost {
     pub model: Arc<Model>,
 }
 
-/// The pinned motions at the time that is shown.
-pub(super) fn ghosts(session: &Session) -> Vec<Ghost> {
+/// The pinned motions at the time that is shown, where they are drawn over the present one.
+pub(super) fn ghosts(context: &ViewContext<'_>) -> Vec<Ghost> {
+    let session = &context.session;
+    if context.drawn != Drawn::WithGhosts {
+        return Vec::new();
+    }
     let t = session.player.time();
     let ghost = |pin: &Pin| Ghost {
         place: pin.place(),
@@ -45,15 +53,31 @@ pub(super) fn ghosts(session: &Session) -> Vec<Ghost> {
     session.pins.all().iter().map(ghost).collect()
 }
 
-/// A path with the dashes of a pin.
+/// A path with the dashes of a pin; what turns within a point is drawn straight.
 pub(super) fn dashed(path: &[Pos2], place: usize, stroke: Stroke) -> Vec<Shape> {
+    let mut few: Vec<Pos2> = Vec::with_capacity(path.len().min(MOST_DASHES * 8));
+    for at in path {
+        if few.last().is_none_or(|last| last.distance_sq(*at) > NEAR * NEAR) {
+            few.push(*at);
+        }
+    }
+    few.extend(path.last());
+    let length: f32 = few.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    let longer = longer(length, place);
     let (dash, gap) = DASHES[place % DASHES.len()];
-    Shape::dashed_line(path, stroke, dash, gap)
+    Shape::dashed_line(&few, stroke, dash * longer, gap * longer)
 }
 
-/// The length in points of a dash of a pin.
-pub(super) fn dash(place: usize) -> f32 {
-    DASHES[place % DASHES.len()].0
+/// By which factor the dashes of a pin are longer on a path of that many points: so that they are not too
+/// many to be drawn.
+fn longer(length: f32, place: usize) -> f32 {
+    let (dash, gap) = DASHES[place % DASHES.len()];
+    (length / ((dash + gap) * MOST_DASHES as f32)).max(1.0)
+}
+
+/// The length in points of a dash of a pin, on a path of that many points.
+pub(super) fn dash(place: usize, length: f32) -> f32 {
+    DASHES[place % DASHES.len()].0 * longer(length, place)
 }
 
 impl Ghost {
@@ -88,5 +112,24 @@ impl Ghost {
             let ends = [pos2(x, rect.top()), pos2(x, rect.bottom())];
             painter.extend(dashed(&ends, self.place, context.style.stop_stroke()));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_path_has_few_dashes_that_reach_to_its_end() {
+        let zigzag: Vec<Pos2> =
+            (0..20_000).map(|i| pos2(0.01 * i as f32, if i / 25 % 2 == 0 { 0.0 } else { 300.0 })).collect();
+        for place in 0..3 {
+            let shapes = dashed(&zigzag, place, Stroke::new(1.0, eframe::egui::Color32::RED));
+            // a dash around a corner is two
+            assert!(shapes.len() > MOST_DASHES / 2 && shapes.len() < 5 * MOST_DASHES, "{}", shapes.len());
+            let right = shapes.iter().map(|own| own.visual_bounding_rect().right()).fold(0.0, f32::max);
+            assert!(right > 190.0, "{right}");
+        }
+        assert_eq!(dash(0, 100.0), DASHES[0].0);
     }
 }

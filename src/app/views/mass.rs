@@ -6,6 +6,7 @@ use crate::app::ui::style::{BALL, GRAB};
 use crate::app::ui::widgets::arrows;
 
 use super::ViewContext;
+use super::context::Drawn;
 use super::stops::key_step;
 
 /// Steps of a stop's slider that an arrow key moves the mass by; with Shift ten times as many.
@@ -14,6 +15,9 @@ const KEY_STEPS: f64 = 2.0;
 /// Lets the mass be grabbed: it is held where the hand is, and the clock stands. With the keyboard's focus on
 /// it the arrow keys take hold of it and move it, and Enter lets go.
 pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect) {
+    if matches!(context.drawn, Drawn::Pinned(_)) {
+        return;
+    }
     let grab = Rect::from_center_size(at, egui::Vec2::splat(2.0 * GRAB));
     let response = ui
         .interact(grab.intersect(rect.expand(GRAB)), ui.scope_id().with("mass"), Sense::drag())

@@ -49,7 +49,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let style = context.style;
     let painter = ui.painter().with_clip_rect(rect);
     painter.rect_filled(rect, 0.0, style.ground());
-    let state = context.session.player.state();
+    let state = context.drawn.state(context.session);
     let (top, bottom) = (rect.top() + 28.0, rect.bottom() - 12.0);
     // as wide as the ball on the well, so that it touches the stops when it should
     let half = vec2(BALL, ((bottom - top) * 0.13).clamp(14.0, 30.0));
@@ -67,7 +67,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let edge = Stroke::new(1.5, style.mass_edge());
     painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     let heights = (middle - half.y - 4.0, middle + half.y + 4.0);
-    for ghost in ghosts(context.session) {
+    for ghost in ghosts(context) {
         let walls = rect.with_min_y(heights.0).with_max_y(heights.1);
         ghost.stops(&painter, context, walls, BALL);
         let x = context.span.screen_from_world(ghost.state.x, rect);
@@ -94,7 +94,7 @@ fn names(
     if rect.width() < NAMED.x || rect.height() < NAMED.y {
         return;
     }
-    let (style, model) = (context.style, context.session.shown());
+    let (style, model) = (context.style, context.drawn.model(context.session));
     let width = |name: &str| painter.layout_no_wrap(name.to_owned(), style.small(), style.faint()).size().x;
     // to the right of a place, or to the left of another
     let put = |right: bool, (x_right, x_left): (f32, f32), y: f32, below: bool, name: &str| {
@@ -138,11 +138,11 @@ fn names(
 /// Whether the flexure over the mass goes to the right from its clamp, and from the mass. A spring leaves the
 /// mass to the side of the barrier.
 fn leaves_right(context: &ViewContext<'_>) -> (bool, bool) {
-    let model = context.session.shown();
-    let bent = context.memory.bent.as_ref().filter(|_| model.mechanism().flexures.is_some());
+    let model = context.drawn.model(context.session);
+    let bent = context.memory.drawing.bent.as_ref().filter(|_| model.mechanism().flexures.is_some());
     let Some(line) = bent.and_then(|bent| bent.lines.get(1)).filter(|line| line.points.len() > 8) else {
         let barrier = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
-        let left_of_it = context.session.player.state().x < barrier;
+        let left_of_it = context.drawn.state(context.session).x < barrier;
         return (!left_of_it, left_of_it);
     };
     let near = line.points.len() / 6;
@@ -170,7 +170,7 @@ fn bent_ui(
 ) -> Option<(f32, String)> {
     let bent = state_at(context, x)?;
     let style = context.style;
-    let mechanism = &context.session.shown().mechanism();
+    let mechanism = &context.drawn.model(context.session).mechanism();
     let geometry = mechanism.flexures.as_ref()?.geometry();
     let scale = DrawingScale::of(geometry, place);
     let reach = mechanism.landscape.right_stable().map_or(0.0, |well| well.x.abs());
@@ -197,12 +197,12 @@ fn bent_ui(
 /// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g). It lies at the mass's
 /// height on the inner side of the body, where neither flexures nor stops are.
 fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, base_accel: f64, rect: Rect) {
-    if !context.session.shown().is_shaken() {
+    if !context.drawn.model(context.session).is_shaken() {
         return;
     }
     let style = context.style;
     let full = f64::from(rect.width()) * 0.16;
-    let room = context.session.shown().largest_base_acceleration().max(1e-9);
+    let room = context.drawn.model(context.session).largest_base_acceleration().max(1e-9);
     let push = (-base_accel / room * full) as f32;
     let inner = if body.center().x > rect.center().x { -1.0 } else { 1.0 };
     let near = body.center().x + inner * (body.width() * 0.5 + 6.0);
@@ -234,9 +234,9 @@ fn words_ui(
     if let Some(ago) = ago(context.session) {
         all.insert(0, (ago, style.ink(), 2));
     }
-    if context.session.shown().is_shaken() {
+    if context.drawn.model(context.session).is_shaken() {
         // hundredths, and more only where these say nothing
-        let most = context.session.shown().largest_base_acceleration() / STANDARD_GRAVITY;
+        let most = context.drawn.model(context.session).largest_base_acceleration() / STANDARD_GRAVITY;
         let decimals = if most < 0.1 { decimals_for(most) } else { 2 };
         let push = (base_accel / STANDARD_GRAVITY).abs();
         all.push((format!("push {push:.decimals$} g"), style.base(), 3));
@@ -259,7 +259,7 @@ fn words_ui(
 
 /// The base's own motion at its own scale, for a sine, whose displacement is -a/(2 pi f)^2.
 fn inset(ui: &Ui, painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, base_accel: f64) {
-    let Some((amplitude, rate)) = context.session.shown().single_sine() else { return };
+    let Some((amplitude, rate)) = context.drawn.model(context.session).single_sine() else { return };
     let (swing, place) = (amplitude / (rate * rate), -base_accel / (rate * rate));
     if !(swing > 0.0 && swing.is_finite()) || rect.width() < INSET {
         return;
@@ -280,17 +280,17 @@ fn inset(ui: &Ui, painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect
 /// Impacts since the last frame begin a ring, one at a time a side; rings under way are drawn.
 fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
     let now = ui.input(|input| input.time);
-    let (from, to) = (context.memory.seen_to, context.session.player.time());
-    context.memory.seen_to = to;
-    let model = context.session.shown();
+    let (from, to) = (context.memory.drawing.seen_to, context.session.player.time());
+    context.memory.drawing.seen_to = to;
+    let model = context.drawn.model(context.session);
     let (left, right) = model.stop_positions();
     if to > from && !context.reduce_motion {
-        let watch = context.session.player.watch();
+        let watch = context.drawn.watch(context.session);
         let first = watch.events().partition_point(|event| event.t <= from);
         let scale = model.scales().speed * model.scales().speed;
         for event in watch.events().range(first..).take_while(|event| event.t <= to) {
             let side = usize::from(event.side == Side::Right);
-            let busy = context.memory.rings[side].is_some_and(|ring| now - ring.began < RING_SECONDS);
+            let busy = context.memory.drawing.rings[side].is_some_and(|ring| now - ring.began < RING_SECONDS);
             // A compliant stop takes its share over the contact that begins here.
             let kept = match &model.compliant() {
                 Some(stop) => stop.restitution(event.v_in.abs()) * event.v_in,
@@ -298,17 +298,17 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
             };
             let taken = (event.v_in * event.v_in - kept * kept) / scale;
             if matches!(event.kind, EventKind::Impact | EventKind::Contact) && !busy && taken > 1e-4 {
-                context.memory.rings[side] = Some(Ring { began: now, size: taken.min(1.0) });
+                context.memory.drawing.rings[side] = Some(Ring { began: now, size: taken.min(1.0) });
             }
         }
     }
     let style = context.style;
     let painter = ui.painter().with_clip_rect(rect);
     for (side, stop) in [left, right].into_iter().enumerate() {
-        let (Some(ring), Some(stop)) = (context.memory.rings[side], stop) else { continue };
+        let (Some(ring), Some(stop)) = (context.memory.drawing.rings[side], stop) else { continue };
         let age = (now - ring.began) / RING_SECONDS;
         if !(0.0..1.0).contains(&age) {
-            context.memory.rings[side] = None;
+            context.memory.drawing.rings[side] = None;
             continue;
         }
         let way = if side == 0 { -BALL } else { BALL };

@@ -6,21 +6,19 @@ use crate::app::session::Session;
 use crate::app::session::pins::PinKind;
 use crate::mechanics::flexure::State;
 
+use super::cursor_times::Cursors;
 use super::ranges::Ranges;
 use super::span::Span;
-use super::view::View;
+use super::view::{Axis, View};
+use super::zoom::Axes;
 
 /// What views keep between frames.
 #[derive(Debug, Clone, Default)]
 pub struct Memory {
     /// Axes that stand still during a gesture.
     pub(super) held: HeldAxes,
-    /// The last impact on the left and the right that is drawn as a ring.
-    pub(super) rings: [Option<Ring>; 2],
-    /// The flexures as they were drawn last.
-    pub(super) bent: Option<State>,
-    /// The time up to which impacts have been looked at.
-    pub(super) seen_to: f64,
+    /// The drawing of the mechanism.
+    pub(super) drawing: Drawing,
     /// The mass is to be taken hold of by the first view that has it.
     pub grab: bool,
     /// What is to be pinned.
@@ -33,6 +31,17 @@ pub struct Memory {
     pub hovered: Option<View>,
     /// What the traces share.
     pub timeline: Timeline,
+    /// Two cursors over time.
+    pub cursors: Cursors,
+    /// Ends of axes that a hand has chosen.
+    pub(super) axes: Axes,
+    /// Where a box begins and ends that is drawn, to be shown.
+    pub(super) corner: Option<(Pos2, Pos2)>,
+    /// The same of the pinned motion that is drawn beside the present one, and which of the pins it is.
+    pub(super) beside: Drawing,
+    pub(super) beside_place: usize,
+    /// The row of the list of events that was marked last.
+    pub(super) marked: Option<usize>,
     /// How far axes of velocity and power reach.
     pub(super) ranges: Ranges,
     /// The phase portrait shows a point a period and no path.
@@ -53,8 +62,14 @@ impl Memory {
         let x = session.player.state().x;
         let is_seen = self.held.span.0.is_none_or(|(low, high)| low < x && x < high);
         let held = session.editor.in_gesture() && is_seen;
-        let (low, high) = self.held.span.keep((own.low, own.high), held);
+        let own = self.held.span.keep((own.low, own.high), held);
+        let (low, high) = self.axes.ends(Axis::Place, own);
         Span { low, high }
+    }
+
+    /// What stays of it when another scene is opened.
+    pub fn for_another_scene(&self) -> Self {
+        Self { axes: self.axes.held(), ..Self::default() }
     }
 }
 
@@ -114,6 +129,17 @@ impl Default for MapLook {
     }
 }
 
+/// What the drawing of a mechanism keeps.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Drawing {
+    /// The last impact on the left and the right that is drawn as a ring.
+    pub rings: [Option<Ring>; 2],
+    /// The flexures as they were drawn last.
+    pub bent: Option<State>,
+    /// The time up to which impacts have been looked at.
+    pub seen_to: f64,
+}
+
 /// State of the pointer on the map.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PointerState {
@@ -147,8 +173,8 @@ impl Page {
 pub struct Timeline {
     /// The stretch of time in s that a person has chosen.
     pub window: Option<f64>,
-    /// The ends of the vertical axes that a person has chosen, in the order of the quantities.
-    pub vertical: [Option<(f64, f64)>; 4],
+    /// The stretch of time in s that is shown otherwise.
+    pub(super) own: f64,
     /// The time in s under the pointer, and the pass in which it was there.
     pub(super) cursor: Option<(f64, u64)>,
 }

@@ -11,11 +11,15 @@ mod before_now;
 mod chart;
 mod compare;
 mod context;
+mod cursor_times;
+mod cursors;
 mod distance;
 pub mod energy;
+mod events;
 mod flexures;
 mod force;
 mod ghosts;
+mod hand;
 mod labels;
 mod legend;
 mod map;
@@ -28,21 +32,23 @@ mod phase;
 mod plot;
 mod ranges;
 mod schematic;
+mod side_by_side;
 mod span;
 mod spectrum;
 mod stops;
-mod timeline;
 mod trace;
 mod up_and_down;
 mod view;
 mod well;
+mod zoom;
 
 use eframe::egui::{Ui, UiBuilder};
 
 use crate::app::ui::style::Style;
 
 pub(super) use context::too_small_ui;
-pub use context::{Cover, ViewContext};
+pub use context::{Cover, Drawn, ViewContext};
+pub use cursor_times::Cursors;
 pub use memory::{MapLook, Memory, Timeline};
 pub use span::Span;
 pub use trace::TraceQuantity;
@@ -85,6 +91,7 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
         View::BeforeNow => before_now::before_now_ui(ui, context),
         View::Compare => compare::compare_ui(ui, context),
         View::Measured => measured::measured_ui(ui, context),
+        View::SideBySide => side_by_side::side_by_side_ui(ui, context),
         View::Distance => distance::distance_ui(ui, context),
         View::PhasePortrait => phase::phase_ui(ui, context),
         View::Section => phase::section_ui(ui, context),
@@ -93,6 +100,7 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
         View::Velocity => trace::trace_ui(ui, TraceQuantity::Velocity, context),
         View::BaseAcceleration => trace::trace_ui(ui, TraceQuantity::BaseAcceleration, context),
         View::Power => trace::trace_ui(ui, TraceQuantity::Power, context),
+        View::Events => events::events_ui(ui, context),
         View::Map => map::map_ui(ui, context),
         View::UpAndDown => up_and_down::up_and_down_ui(ui, context),
         View::Basins => basins::basins_ui(ui, context),

@@ -17,10 +17,12 @@ use crate::study::between;
 
 use super::chart::Chart;
 use super::ghosts::{dashed, ghosts};
+use super::hand::hand;
 use super::labels::rests;
 use super::legend::{LEGEND, Sign};
 use super::stops::stops_ui;
-use super::{ViewContext, too_small_ui};
+use super::view::Axis;
+use super::{View, ViewContext, too_small_ui};
 
 /// Length of the trail in forcing periods; without a period, in swings of the scene's own time scale.
 const TRAIL_PERIODS: f64 = 4.0;
@@ -61,14 +63,16 @@ pub fn section_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 }
 
 fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
-    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click() | Sense::DRAG);
     if area.width() < 60.0 || area.height() < 80.0 {
         return too_small_ui(ui, &context.style, area);
     }
     let style = context.style;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "states of the mass"));
     let speed = context.memory.ranges.follow(context.session).speed();
-    let chart = Chart::new(area, context.span, -speed, speed);
+    let view = if is_section { View::Section } else { View::PhasePortrait };
+    let (low, high) = context.memory.axes.ends(Axis::Up(view), (-speed, speed));
+    let chart = Chart::new(area, context.span, low, high);
     chart.axes(ui, context, 1e-3);
     let painter = ui.painter().with_clip_rect(chart.rect);
     let mut legend = Vec::new();
@@ -92,7 +96,7 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         legend.push((Sign::Dashed(style.impact_stroke()), "impact"));
     }
     strobes(&painter, context, &chart);
-    for ghost in ghosts(context.session) {
+    for ghost in ghosts(context) {
         ghost.stops(&painter, context, chart.rect, 0.0);
         let at = chart.screen_from_world(ghost.state.x, ghost.state.v);
         ghost.ball(&painter, &style, at, STATE);
@@ -111,6 +115,7 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         false => area.right(),
     };
     chart.legend(ui, &style, right, &legend);
+    hand(ui, context.memory, view, &response, (area, chart.rect));
     start_ui(ui, &response, context, &chart);
 }
 
@@ -247,21 +252,23 @@ fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     finish(&mut line, drawn.min(FADES - 1));
 }
 
-/// The last of the paths of the pinned motions, dashed.
+/// The last of the paths of the pinned motions, dashed: a period of each, which is what is told apart.
 fn ghost_trails(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let session = &context.session;
     let model = session.shown();
-    let length =
-        model.forcing_period().map_or(TRAIL_SWINGS * model.natural_time(), |period| TRAIL_PERIODS * period);
+    let length = model.forcing_period().unwrap_or(TRAIL_SWINGS / TRAIL_PERIODS * model.natural_time());
     let now = session.player.time();
     let stroke = context.style.ghost_motion_stroke();
     for pin in session.pins.all() {
         let watch = pin.watch();
         let path = recent(watch.samples(), pin.state_at(now), length.min(now - pin.since()));
+        let mut spare = MOST_BETWEEN;
         let mut points: Vec<Pos2> = Vec::with_capacity(2 * path.len());
         for pair in path.windows(2) {
             let (a, b) = (pair[0], pair[1]);
             let count = if a.t == b.t { 1 } else { pieces(chart, watch.model_at(a.t), (&a, &b)) };
+            let count = count.min(spare);
+            spare -= count;
             let between = between(watch.model_at(a.t), &a, &b, count);
             points.push(chart.screen_from_world(a.x, a.v));
             points.extend(between.iter().map(|(x, v)| chart.screen_from_world(*x, *v)));
@@ -315,7 +322,8 @@ fn strobes(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let stroke = context.style.base_stroke();
     for i in 0..count {
         let state = watch.state_at((first + f64::from(i)) * period);
-        painter.circle(chart.screen_from_world(state.x, state.v), STROBE, context.style.ground(), stroke);
+        let at = chart.screen_from_world(state.x, state.v);
+        painter.circle(at, context.style.dot(STROBE), context.style.ground(), stroke);
     }
 }
 

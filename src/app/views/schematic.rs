@@ -52,13 +52,13 @@ pub(super) fn schematic(
     top: f32,
 ) -> String {
     let style = context.style;
-    let curve = &context.session.shown().mechanism().curve;
+    let curve = &context.drawn.model(context.session).mechanism().curve;
     let own = Schematic::of(curve, context.span);
     painter.hline(rect.x_range().shrink(6.0), middle + half.y + 3.0, Stroke::new(2.0, style.faint()));
     if own == Schematic::Spring {
         let clamp_at = Rect::from_x_y_ranges(rect.x_range().shrink(6.0), top - CLAMP..=top);
         clamp(painter, &style, clamp_at, true);
-        let barrier = context.session.shown().mechanism().landscape.barrier;
+        let barrier = context.drawn.model(context.session).mechanism().landscape.barrier;
         let foot = context.span.screen_from_world(barrier.map_or(0.0, |barrier| barrier.x), rect);
         let (from, to) = (pos2(foot, top), pos2(x, middle - half.y));
         painter.add(Shape::line(coil(from, to), style.flexure_stroke()));

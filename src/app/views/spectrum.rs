@@ -7,9 +7,11 @@ use crate::app::ui::style::Style;
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::study::{Signal, Spectrum};
 
+use super::hand::hand;
 use super::legend::{LEGEND, Sign, legend};
 use super::plot::{MARGIN, decades, marks, plot_place, power, still_plot};
-use super::{ViewContext, too_small_ui};
+use super::view::Axis;
+use super::{Memory, View, ViewContext, too_small_ui};
 
 /// Height in points of the row of choices.
 const TOOLS: f32 = 30.0;
@@ -50,7 +52,7 @@ pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     match parts.last() {
         Some(Ok(spectrum)) => {
             let forcing = context.session.model().forcing_period().map(|period| 1.0 / period);
-            picture_ui(ui, &style, below, (spectrum, current, forcing));
+            picture_ui(ui, context.memory, &style, below, (spectrum, current, forcing));
         }
         Some(Err(problem)) => said_ui(ui, &style, below, problem),
         None => said_ui(ui, &style, below, "Working it out."),
@@ -65,6 +67,7 @@ fn said_ui(ui: &mut Ui, style: &Style, area: Rect, text: &str) {
 
 fn picture_ui(
     ui: &mut Ui,
+    memory: &mut Memory,
     style: &Style,
     area: Rect,
     (spectrum, current, forcing): (&Spectrum, bool, Option<f64>),
@@ -81,12 +84,14 @@ fn picture_ui(
     let end = forcing.map_or(last, |forcing| last.min((MULTIPLES + 0.5) * forcing));
     let most = amplitude.iter().fold(0.0, |most: f64, own| most.max(own * scale));
     let top = if most > 0.0 { most.log10() + 0.3 } else { 0.0 };
-    let floor = top - DECADES;
+    let [across, up] = [Axis::Across(View::Spectrum), Axis::Up(View::Spectrum)];
+    let (begin, end) = memory.axes.ends(across, (0.0, end));
+    let (floor, top) = memory.axes.ends(up, (top - DECADES, top));
     let height = |own: f64| (own * scale).log10().max(floor);
     let lines: Vec<[f64; 2]> = frequency
         .iter()
         .zip(amplitude)
-        .take_while(|own| *own.0 <= end)
+        .filter(|own| (begin..=end).contains(own.0))
         .map(|(frequency, amplitude)| [*frequency, height(*amplitude)])
         .collect();
     let is_lines = spectrum.period.is_some();
@@ -105,13 +110,13 @@ fn picture_ui(
         child.set_opacity(0.4);
     }
     let shown = still_plot("spectrum")
-        .x_grid_spacer(|_| marks(0.0, 0.98 * end, columns))
+        .x_grid_spacer(|_| marks(begin, end - 0.02 * (end - begin), columns))
         .y_grid_spacer(|_| decades(floor, top, rows))
         .x_axis_label("frequency (Hz)")
         .y_axis_label(format!("amplitude ({unit})"))
         .y_axis_formatter(|mark, _| power(mark.value))
         .show(&mut child, |plot| {
-            plot.set_plot_bounds(PlotBounds::from_min_max([0.0, floor], [end, top]));
+            plot.set_plot_bounds(PlotBounds::from_min_max([begin, floor], [end, top]));
             for mark in decades(floor, top, rows) {
                 plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
             }
@@ -125,7 +130,7 @@ fn picture_ui(
                     plot.line(Line::new("line", ends).stroke(style.motion_stroke()));
                 }
                 let tips: Vec<[f64; 2]> = seen().copied().collect();
-                plot.points(Points::new("tips", tips).radius(2.5).color(style.motion()));
+                plot.points(Points::new("tips", tips).radius(style.dot(2.5)).color(style.motion()));
             } else {
                 let line = Line::new("amplitude", PlotPoints::from(largest(&lines)));
                 plot.line(line.stroke(style.motion_stroke()));
@@ -134,6 +139,7 @@ fn picture_ui(
     let spoken = format!("spectrum of {}", name.to_lowercase());
     shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken.clone()));
     legend(ui, style, area, area.right(), &entries);
+    hand(ui, memory, View::Spectrum, &shown.response, (area, *shown.transform.frame()));
 }
 
 /// A line with so few points that the eye misses none: the largest of each stretch.

@@ -9,6 +9,7 @@ use crate::app::words::fields::info;
 use crate::app::words::numbers::{decimal, decimals, shown};
 
 use super::ViewContext;
+use super::context::Drawn;
 
 /// Steps of the slider of a stop that a drag tells apart.
 const FINE: f64 = 0.2;
@@ -22,8 +23,12 @@ pub(super) fn key_step(session: &Session) -> f64 {
 pub(super) const WALL: f32 = 10.0;
 
 /// The stops of what is shown in mm, and whether a hand can move them: those of the past, where they were
-/// others, it cannot.
-fn shown_stops(session: &Session) -> ([Option<f64>; 2], bool) {
+/// others, it cannot, nor those of a pinned motion.
+fn shown_stops(session: &Session, drawn: Drawn) -> ([Option<f64>; 2], bool) {
+    if drawn.pin(session).is_some() {
+        let (left, right) = drawn.model(session).stop_positions();
+        return ([left, right].map(|stop| stop.map(|stop| stop * 1e3)), false);
+    }
     let [left, right] = session.scene().stops.limits_mm();
     let present = [left.map(|mm| -mm), right];
     if !session.player.is_past() {
@@ -48,7 +53,7 @@ pub fn stops_ui(
     (top, bottom): (f32, f32),
     radius: f32,
 ) {
-    let (stops, movable) = shown_stops(context.session);
+    let (stops, movable) = shown_stops(context.session, context.drawn);
     let step = key_step(context.session);
     let fine = FINE * step;
     let words = |mm: f64| format!("{} mm", shown(mm, decimals(fine)));
@@ -67,7 +72,10 @@ pub fn stops_ui(
         painter.rect_filled(wall, 0.0, style.stop());
         painter.extend(hatching(wall, way, Stroke::new(1.0, style.ground())));
         if !movable {
-            let then = format!("Then the stop was at {}. The controls change what is now.", words(mm));
+            let then = match context.drawn {
+                Drawn::Pinned(_) => format!("The stop of the pinned motion, at {}.", words(mm)),
+                _ => format!("Then the stop was at {}. The controls change what is now.", words(mm)),
+            };
             ui.interact(grab, id, Sense::hover()).on_hover_text(then);
             continue;
         }

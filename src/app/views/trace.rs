@@ -14,14 +14,16 @@ use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
 use crate::scene::Quantity;
 use crate::study::Watch;
 
-use super::ViewContext;
+use super::cursors::{cursors_ui, readout_ui};
 use super::ghosts::{PINNED, dash};
+use super::hand::hand;
 use super::labels::haloed;
 use super::legend::{LEGEND, Sign, legend};
 use super::overlay::{MeasuredTrace, with_room};
 use super::plot::{MARGIN, marks, plot_place, still_plot};
 use super::ranges::room_for_push;
-use super::timeline::{zoom, zoom_up};
+use super::view::Axis;
+use super::{View, ViewContext};
 
 /// Forcing periods that are shown; without a period multiples of the motion's characteristic time. No more
 /// swings of the mechanism than are told apart.
@@ -96,6 +98,15 @@ impl TraceQuantity {
         }
     }
 
+    fn view(self) -> View {
+        match self {
+            Self::Displacement => View::Displacement,
+            Self::Velocity => View::Velocity,
+            Self::BaseAcceleration => View::BaseAcceleration,
+            Self::Power => View::Power,
+        }
+    }
+
     fn unit(self) -> &'static str {
         match self {
             Self::Displacement => "mm",
@@ -124,17 +135,18 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let style = context.style;
     let ends = quantity.ends(context);
     let ends = with_room(context.session, quantity.measured(), ends);
-    let (low, high) = context.memory.timeline.vertical[quantity as usize].unwrap_or(ends);
+    let (low, high) = context.memory.axes.ends(Axis::Up(quantity.view()), ends);
     let (now, model) = (context.session.player.time(), context.session.shown());
-    let own = stretch(model);
-    let window = context.memory.timeline.window.unwrap_or(own);
+    context.memory.timeline.own = stretch(model);
+    let window = context.memory.timeline.window.unwrap_or(context.memory.timeline.own);
     let from = (now - PRESENT * window).max(-0.02 * window);
-    let to = from + window;
+    let (from, to) = context.memory.axes.ends(Axis::Time, (from, from + window));
+    let (window, end) = (to - from, now.min(to));
     let watch = context.session.player.watch();
     let shown = watch.samples();
     let first = shown.partition_point(|sample| sample.t < from).saturating_sub(1);
-    let last = shown.partition_point(|sample| sample.t <= now);
-    let state = context.session.player.state();
+    let last = shown.partition_point(|sample| sample.t <= end);
+    let state = if now <= to { context.session.player.state() } else { watch.state_at(end) };
     let stride = ((last.max(first) - first) / MOST_POINTS).max(1);
     let samples: Vec<Sample> =
         shown.range(first..last.max(first)).step_by(stride).copied().chain([state]).collect();
@@ -143,7 +155,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         paths(&samples, is_displacement, |sample| PlotPoint::new(sample.t, quantity.seen(watch, sample)));
     let has_ghosts = matches!(quantity, TraceQuantity::Displacement | TraceQuantity::Velocity);
     let ghosts: Vec<(usize, Vec<PlotPoint>)> = match has_ghosts {
-        true => ghost_paths(context.session, (from, now), |watch, own| quantity.seen(watch, own)),
+        true => ghost_paths(context.session, (from, end), |watch, own| quantity.seen(watch, own)),
         false => Vec::new(),
     };
     let measured = MeasuredTrace::of(context.session, quantity.measured(), (from, to));
@@ -152,7 +164,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         .events()
         .iter()
         .skip(watch.events().partition_point(|event| event.t < from))
-        .take_while(|event| event.t <= now)
+        .take_while(|event| event.t <= end)
         .filter(|event| matches!(event.kind, EventKind::Impact | EventKind::Contact))
         .map(|event| event.t)
         .collect();
@@ -187,7 +199,17 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let edge = 0.02 * (high - low);
     let is_low = ui.available_height() < LOW;
     let (time_label, axis) = if is_low { ("", quantity.unit().to_owned()) } else { ("time (s)", axis) };
-    let plot = area.with_min_x(area.left() + MARGIN).with_min_y(area.top() + LEGEND);
+    let digits = 1 + decimals_for(high - low);
+    let (read, unit) = (|t: f64| quantity.seen(watch, &watch.state_at(t)), quantity.unit());
+    let at_each = |t: f64| format!("{:.digits$} {unit}", read(t));
+    let between = |a: f64, b: f64| format!("{:+.digits$} {unit}", read(b) - read(a));
+    let readout = readout_ui(ui, context, (area, window), at_each, between);
+    let plot = area.with_min_x(area.left() + MARGIN).with_min_y(area.top() + LEGEND + readout);
+    // points on the screen between two of the plot
+    let way = |a: &PlotPoint, b: &PlotPoint| {
+        let (x, y) = ((b.x - a.x) / window, (b.y - a.y) / (high - low));
+        (x as f32 * plot.width()).hypot(y as f32 * plot.height())
+    };
     let mut ui = plot_place(ui, &style, plot);
     let response = still_plot(quantity.name())
         .x_grid_spacer(|_| marks(from.max(0.0), to - NO_NUMBER * window, columns))
@@ -217,8 +239,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
                 own.draw(plot, &style);
             }
             for (place, path) in ghosts {
+                let length = path.windows(2).map(|pair| way(&pair[0], &pair[1])).sum();
                 let own = Line::new("ghost", PlotPoints::Owned(path)).stroke(style.ghost_motion_stroke());
-                let own = own.style(LineStyle::Dashed { length: dash(place) });
+                let own = own.style(LineStyle::Dashed { length: dash(place, length) });
                 plot.line(own.allow_band(!is_displacement));
             }
             for path in paths {
@@ -232,8 +255,8 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
             }
         });
     let (transform, response) = (response.transform, response.response);
-    zoom(&ui, &response, context, own);
-    zoom_up(&ui, &transform, area, context, (quantity, ends));
+    hand(&ui, context.memory, quantity.view(), &response, (area, *transform.frame()));
+    cursors_ui(&mut ui, context, &response, (*transform.frame(), (from, to)), quantity.name());
     let painter = ui.painter().with_clip_rect(area);
     let mut right = area.right();
     if let Some(at) = response.hover_pos() {
@@ -243,11 +266,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         context.memory.timeline.cursor = Some((t, pass));
         let value = quantity.seen(watch, &watch.state_at(t));
         let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
-        let text = format!(
-            "{value:.digits$} {} at {t:.3} s",
-            quantity.unit(),
-            digits = 1 + decimals_for(high - low)
-        );
+        let text = format!("{value:.digits$} {} at {t:.3} s", quantity.unit());
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }
     legend(&ui, &style, area, right, &entries);

@@ -16,10 +16,12 @@ use crate::scene::{FieldPath, SweepAxis, column_names};
 use crate::study::{Direction, Visit};
 
 use super::axes::{field_name, field_ui, range_row_ui};
+use super::hand::hand;
 use super::labels::haloed;
 use super::legend::{LEGEND, Sign, legend};
 use super::plot::{MARGIN, marks, plot_place, still_plot};
-use super::{ViewContext, too_small_ui};
+use super::view::Axis;
+use super::{View, ViewContext, too_small_ui};
 
 /// Height in points of the row of choices.
 const TOOLS: f32 = 30.0;
@@ -149,6 +151,9 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
     let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
     let (from, to) = (axis.from - 0.01 * (axis.to - axis.from), axis.to + 0.01 * (axis.to - axis.from));
+    let [across_axis, up_axis] = [Axis::Across(View::UpAndDown), Axis::Up(View::UpAndDown)];
+    let (from, to) = context.memory.axes.ends(across_axis, (from, to));
+    let (low, high) = context.memory.axes.ends(up_axis, (low, high));
     let edge = 0.02 * (high - low);
     let here = FieldPath::new(&axis.field).get(session.scene());
     let state = session.player.state();
@@ -198,7 +203,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
                     .flat_map(|visit| strobes(visit).iter().map(|x| PlotPoint::new(visit.value, x * 1e3)))
                     .collect();
                 let points = Points::new(way.direction.name(), PlotPoints::Owned(points));
-                plot.points(points.radius(radius).shape(shape).color(color));
+                plot.points(points.radius(style.dot(radius)).shape(shape).color(color));
             }
             if let (Some(here), Some(x)) = (here, live) {
                 let ball = Points::new("now", vec![[here, x]]);
@@ -218,17 +223,22 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }
     legend(ui, &style, area, right, &entries);
-    hand(session, &response, |at| transform.value_from_position(at).x);
+    let shift = ui.input(|input| input.modifiers.shift);
+    if !shift {
+        drag(session, &response, |at| transform.value_from_position(at).x);
+    }
     let said = if is_whole { "" } else { "not all of it is known yet" };
     if !said.is_empty() && area.height() > 220.0 {
         let at = (area.right_bottom() - vec2(8.0, 3.0), Align2::RIGHT_BOTTOM);
         haloed(ui.painter(), &style, at, said, (style.small(), style.faint()));
     }
+    hand(ui, context.memory, View::UpAndDown, &response, (area, *transform.frame()));
 }
 
 /// A click or a drag takes the scene to the value under the pointer.
-fn hand(session: &mut Session, response: &egui::Response, value: impl Fn(egui::Pos2) -> f64) {
-    if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {
+fn drag(session: &mut Session, response: &egui::Response, value: impl Fn(egui::Pos2) -> f64) {
+    let own = response.dragged_by(egui::PointerButton::Primary) || response.clicked();
+    if let Some(at) = response.interact_pointer_pos().filter(|_| own) {
         session.drag_along_walk(value(at));
     }
     if response.drag_stopped() || response.clicked() {

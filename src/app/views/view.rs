@@ -56,6 +56,10 @@ views! {
     Measured "Measured"
         "Measured data that lie over the computed: shift and stretch them in time, and read by how much the \
          two differ.";
+    /// The present motion and a pinned one, each with its mechanism and its well.
+    SideBySide "Side by side"
+        "The present motion beside a pinned one, each in its own drawing and on its own well, at the same \
+         time of the same shaking. The pinned one is not moved by hand.";
     /// Distance of the pinned motions from the present one over time.
     Distance "Distance"
         "How far each pinned motion is from the present one, over time. A twin begins a micrometre beside \
@@ -90,6 +94,10 @@ views! {
     Power "Power"
         "Work of the base on the mass in a second. Below zero the mass gives energy back to the base. The \
          wheel zooms in time, a double click is back.";
+    /// What happened when, as a table.
+    Events "Events"
+        "What happened when: impacts, rests, releases and crossings, with phase of the shaking, velocity \
+         before and after, and energy lost. Click a row to look at that instant.";
     /// What every combination of two fields comes to.
     Map "Map"
         "What every combination of two settings comes to, each in a run of its own. Click to take the \
@@ -111,6 +119,19 @@ views! {
     Accuracy "Accuracy"
         "How far the computed motion is from the true one: what each digit costs, and what becomes of the \
          scene in fixed steps, as a game or a small applet takes them. From the scene's start.";
+}
+
+/// An axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Axis {
+    /// The time of the traces.
+    Time,
+    /// The displacement, in m.
+    Place,
+    /// That of one view, to the right.
+    Across(View),
+    /// That of one view, upwards.
+    Up(View),
 }
 
 impl From<LessonView> for View {
@@ -144,8 +165,31 @@ impl View {
         matches!(self, Self::Map | Self::UpAndDown | Self::Basins)
     }
 
+    /// Whether time runs along it, so that it shows the cursors.
+    pub fn is_over_time(self) -> bool {
+        use View::{BaseAcceleration, Displacement, Distance, Power, Velocity};
+        matches!(self, Displacement | Velocity | BaseAcceleration | Power | Distance)
+    }
+
+    /// Whether its axes can be zoomed and held.
+    pub fn has_axes(self) -> bool {
+        self.axes().is_some()
+    }
+
     /// Whether the displacement runs along it.
     pub fn is_along_x(self) -> bool {
         matches!(self, Self::Mechanism | Self::Well | Self::PhasePortrait | Self::Section | Self::ForceCurve)
+    }
+
+    /// Its axes to the right and upwards, where a hand can choose their ends.
+    pub(super) fn axes(self) -> Option<[Axis; 2]> {
+        let across = match self {
+            Self::Displacement | Self::Velocity | Self::BaseAcceleration | Self::Power => Axis::Time,
+            Self::Well | Self::PhasePortrait | Self::Section | Self::ForceCurve | Self::Basins => Axis::Place,
+            Self::Distance | Self::UpAndDown | Self::Spectrum => Axis::Across(self),
+            Self::SideBySide => return Self::Well.axes(),
+            _ => return None,
+        };
+        Some([across, Axis::Up(self)])
     }
 }

@@ -11,16 +11,18 @@ use crate::app::ui::style::BALL;
 
 use super::chart::{CURVE_STEP, x_axis};
 use super::ghosts::{dashed, ghosts};
+use super::hand::hand;
 use super::labels::{ago, free_place, haloed};
 use super::legend::{LEGEND, Sign};
 use super::mass::mass_ui;
 use super::ranges::room_for_push;
 use super::stops::{WALL, stops_ui};
-use super::{ViewContext, too_small_ui};
+use super::view::Axis;
+use super::{View, ViewContext, too_small_ui};
 
 /// Draws it.
 pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let (area, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::DRAG);
     if area.width() < 60.0 || area.height() < 60.0 {
         return too_small_ui(ui, &context.style, area);
     }
@@ -29,10 +31,11 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let painter = ui.painter().with_clip_rect(area);
     painter.rect_filled(area, 0.0, style.ground());
     let axis = Heights::of(ui, context, rect);
+    hand(ui, context.memory, View::Well, &response, (area, rect));
     x_axis(&painter, context, rect);
 
-    let state = context.session.player.state();
-    let model = context.session.shown();
+    let state = context.drawn.state(context.session);
+    let model = context.drawn.model(context.session);
     let (curve, mass) = (&model.mechanism().curve, model.mass());
     let tilt = mass * state.base_accel;
     let (left, right) = model.stop_positions();
@@ -57,7 +60,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     clipped.extend(Shape::dashed_line(&line(tilt), style.ghost_stroke(), 5.0, 5.0));
     clipped.add(Shape::line(reachable, style.tray_stroke()));
 
-    for ghost in ghosts(context.session) {
+    for ghost in ghosts(context) {
         let (state, tilted) = (ghost.state, ghost.model.mass() * ghost.state.base_accel);
         let curve = &ghost.model.mechanism().curve;
         let height = |x: f64| {
@@ -85,7 +88,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 /// Names of the wells and the barrier in a row below the curve, each at its place along x; what has no room
 /// beside a stop is left out.
 fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
-    let (style, model) = (context.style, context.session.shown());
+    let (style, model) = (context.style, context.drawn.model(context.session));
     let Some(barrier) = model.mechanism().landscape.barrier else { return };
     let (left, right) = model.stop_positions();
     let screen = |x: f64| context.span.screen_from_world(x, rect);
@@ -119,7 +122,7 @@ struct Heights {
 impl Heights {
     /// From a little below the deepest to a little above the highest place that the mass gets to.
     fn of(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect) -> Self {
-        let model = context.session.shown();
+        let model = context.drawn.model(context.session);
         let room = room_for_push(model.largest_base_acceleration());
         let curve = &model.mechanism().curve;
         let landscape = &model.mechanism().landscape;
@@ -150,7 +153,8 @@ impl Heights {
         let room = 0.22 * (high - low);
         let in_gesture = context.session.editor.in_gesture();
         let own = (low - 0.5 * room, high + room);
-        let (low, high) = context.memory.held.heights.keep(own, in_gesture);
+        let own = context.memory.held.heights.keep(own, in_gesture);
+        let (low, high) = context.memory.axes.ends(Axis::Up(View::Well), own);
         let id = ui.scope_id();
         let ease = |name: &str, value: f64| {
             let target = (value * 1e6) as f32;

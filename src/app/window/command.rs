@@ -48,6 +48,16 @@ pub enum Command {
     /// One view over the whole window, or all again.
     Fill,
     Cover,
+    /// Two cursors over time.
+    Cursors,
+    /// Hold the axes of the view that is meant, or let go of them.
+    HoldAxes,
+    FreeAxes,
+    /// Zoom them: upwards or to the right, closer or not.
+    Zoom {
+        upwards: bool,
+        closer: bool,
+    },
     FullScreen,
     Toggle(Setting),
     Grab,
@@ -131,6 +141,10 @@ const fn plain(key: Key) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(Modifiers::NONE, key))
 }
 
+const fn shift(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::SHIFT, key))
+}
+
 const fn control(key: Key) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(Modifiers::COMMAND, key))
 }
@@ -210,6 +224,17 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
             As("Views", "the view under the pointer over the whole window")),
         Item("", plain(Key::Escape), C::Fill, No),
         Row("Views", "Esc", "all views again"),
+        Item("Two cursors over time", plain(Key::T), C::Cursors,
+            As("Views", "two cursors over time: by hand or arrows, up and down to events")),
+        Item("Hold the axes", plain(Key::L), C::HoldAxes,
+            As("Views", "hold the axes of the view under the pointer, or let go of them")),
+        Item("Axes by themselves", plain(Key::Num0), C::FreeAxes, As("Views", "its axes by themselves")),
+        Item("", plain(Key::I), C::Zoom { upwards: false, closer: true },
+            As("Views", "its axis to the right closer, wider; with Shift the other one")),
+        Item("", plain(Key::O), C::Zoom { upwards: false, closer: false }, Joined),
+        Item("", shift(Key::I), C::Zoom { upwards: true, closer: true }, No),
+        Item("", shift(Key::O), C::Zoom { upwards: true, closer: false }, No),
+        Row("Views", "wheel, drag", "zoom (Shift up, Ctrl both); Shift and drag moves, right drag is a box"),
         Item("Cover the results", plain(Key::C), C::Cover,
             As("Views", "cover the motion and all results, until C again: predict first")),
         Item("What it would take", plain(Key::H), C::Ways, As("Views", "what it would take to cross")),

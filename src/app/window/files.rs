@@ -52,6 +52,7 @@ impl Window {
                     lessons: std::mem::take(&mut self.lessons),
                     messages: self.messages.short_only(),
                     applied: self.applied,
+                    memory: self.memory.for_another_scene(),
                     ..window
                 };
                 self.session.measured = measured;

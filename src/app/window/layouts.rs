@@ -5,7 +5,7 @@ use egui_tiles::{Container, SimplificationOptions, Tile, TileId, Tiles, Tree, Ui
 
 use crate::app::ui::style::{BODY, COMPACT_BELOW, LARGE_FROM};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
-use crate::app::views::{View, ViewContext, view_ui};
+use crate::app::views::{Memory, View, ViewContext, view_ui};
 use crate::scene::Layout;
 
 use trees::{compact_tree, tabs_tree, views_of, wide_tree};
@@ -13,9 +13,9 @@ use trees::{compact_tree, tabs_tree, views_of, wide_tree};
 mod lesson;
 mod trees;
 
-/// Room in points beside a title, for the button beside the titles, and the least size of a title.
+/// Room in points beside a title, for the buttons beside the titles, and the least size of a title.
 const TITLE_MARGIN: f32 = 6.0;
-const BUTTON: f32 = 34.0;
+const BUTTON: f32 = 58.0;
 const LEAST_TITLE: f32 = 9.5;
 
 /// How much room there is.
@@ -215,6 +215,20 @@ struct Behavior<'a, 'b> {
     room: Room,
 }
 
+/// The button that holds the axes of a view, where it has such.
+pub(super) fn hold_ui(ui: &mut Ui, view: View, memory: &mut Memory) -> Option<egui::Response> {
+    let held = memory.are_axes_held(view)?;
+    let (icon, name, hover) = match held {
+        true => (Icon::Held, "let go of the axes of", "The axes are held. A click lets go of them (L)."),
+        false => (Icon::Free, "hold the axes of", "Hold the axes as they are, whatever comes (L)."),
+    };
+    let response = icon_button_ui(ui, icon, 22.0, &format!("{name} {}", view.name()), hover);
+    if response.clicked() {
+        memory.hold_axes(view);
+    }
+    Some(response)
+}
+
 impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
     fn tab_title_for_pane(&mut self, view: &View) -> WidgetText {
         egui::RichText::new(view.name()).size(self.title).into()
@@ -256,13 +270,19 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
         let Some(view) = tabs.active.and_then(|id| tiles.get_pane(&id)) else { return };
         let name = format!("fill the window with {}", view.name());
         let hover = "This view over the whole window (Z)";
-        if icon_button_ui(ui, Icon::Fill, 22.0, &name, hover).clicked() {
+        let fill = icon_button_ui(ui, Icon::Fill, 22.0, &name, hover);
+        if fill.clicked() {
             *self.fill = Some(*view);
         }
         let name = format!("figure of {}", view.name());
         let hover = "Save a figure of this view (Ctrl+E)";
         if self.room != Room::Compact && icon_button_ui(ui, Icon::Figure, 22.0, &name, hover).clicked() {
             self.context.memory.figure = Some(*view);
+        }
+        let hold = hold_ui(ui, *view, self.context.memory);
+        // keys mean the view whose buttons have the focus
+        if fill.has_focus() || hold.is_some_and(|own| own.has_focus()) {
+            self.context.memory.hovered = Some(*view);
         }
     }
 

@@ -10,7 +10,7 @@ use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
 use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
-use crate::app::views::{self, ViewContext};
+use crate::app::views::{self, Drawn, ViewContext};
 use crate::app::words::lesson::numbered;
 use crate::scene::lesson::LESSONS;
 
@@ -228,6 +228,7 @@ impl Window {
             reduce_motion: self.settings.reduce_motion,
             cover,
             filled: self.filled.is_some(),
+            drawn: Drawn::WithGhosts,
         };
         ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
         let Some(view) = self.filled else {
@@ -249,6 +250,7 @@ impl Window {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 close = icon_button_ui(ui, Icon::Restore, 24.0, "all views", "All views again (Z or Esc)")
                     .clicked();
+                layouts::hold_ui(ui, view, context.memory);
             });
         });
         views::view_ui(ui, view, &mut context);

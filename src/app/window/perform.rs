@@ -140,6 +140,25 @@ impl Window {
             Command::Show(view, shown) => self.tiling.show(view, shown),
             Command::NextTab => self.tiling.next_tab(self.memory.hovered),
             // the view under the pointer
+            Command::Cursors => {
+                self.memory.switch_cursors(&self.session);
+                let over_time = |view: &View| view.is_over_time() && self.tiling.place_of(*view).is_some();
+                if self.memory.cursors.on && self.filled.is_none() && !View::ALL.iter().any(over_time) {
+                    self.tiling.show(View::Displacement, true);
+                }
+            }
+            Command::HoldAxes => {
+                let view = self.view_meant();
+                if view.has_axes() {
+                    let held = self.memory.hold_axes(view);
+                    let what = if held { "held: L again lets go of them" } else { "by themselves again" };
+                    self.messages.tell(format!("{}: its axes are {what}", view.name()));
+                }
+            }
+            Command::FreeAxes => self.memory.free_axes(self.view_meant()),
+            Command::Zoom { upwards, closer } => {
+                self.memory.zoom_by_key(self.view_meant(), upwards, closer);
+            }
             Command::Fill => {
                 let wanted = self.memory.hovered.unwrap_or(View::Well);
                 self.filled = if self.filled.is_some() { None } else { Some(wanted) };
@@ -170,6 +189,12 @@ impl Window {
             Command::Shortcuts => self.shortcuts = Some(ctx.input(|input| input.time)),
             Command::About => self.messages.say("interwell", ABOUT),
         }
+    }
+
+    /// The view that keys mean: the one that fills the window, or the one under the pointer or with the
+    /// keyboard's focus.
+    fn view_meant(&self) -> View {
+        self.filled.or(self.memory.hovered).unwrap_or(View::Displacement)
     }
 
     /// Pins a motion, and shows how it compares.

@@ -11,7 +11,7 @@ use crate::app::session::editor::Editor;
 use crate::app::session::{CannotRun, Session};
 use crate::app::task::{Latest, Wake};
 use crate::app::ui::settings::Settings;
-use crate::app::views::{Memory, Timeline, View};
+use crate::app::views::{Cursors, Memory, Timeline, View};
 use crate::app::words::announce::Announcer;
 use crate::scene::{Layout, PRESETS};
 use crate::system::files;
@@ -204,6 +204,16 @@ impl Window {
     /// What the traces share.
     pub fn timeline(&self) -> &Timeline {
         &self.memory.timeline
+    }
+
+    /// The cursors over time.
+    pub fn cursors(&self) -> &Cursors {
+        &self.memory.cursors
+    }
+
+    /// The ends that a hand has chosen for the axes of a view, to the right and upwards.
+    pub fn chosen_axes(&self, view: View) -> [Option<(f64, f64)>; 2] {
+        self.memory.chosen_axes(view)
     }
 
     /// Whether the phase portrait shows a point a period and no path.

@@ -11,7 +11,7 @@ pub(crate) mod circuit;
 pub(crate) mod composite;
 pub(crate) mod coupled;
 pub(crate) mod form;
-mod lines;
+pub(crate) mod lines;
 mod record;
 mod release;
 pub(crate) mod tone;

@@ -135,6 +135,7 @@ mod tests {
     use super::*;
     use crate::dynamics::drive::Still;
     use crate::dynamics::drive::composite::Composite;
+    use crate::dynamics::drive::lines::Lines;
 
     #[test]
     fn a_simple_scene_may_take_twenty_million_steps_at_any_tolerance() {
@@ -174,6 +175,7 @@ mod tests {
             Composite {
                 constant: 0.0,
                 tones: vec![tone; lines],
+                lines: Lines::default(),
                 chirps: vec![],
                 records: vec![],
                 segment_ends: vec![],

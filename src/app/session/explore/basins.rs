@@ -43,8 +43,8 @@ pub type BasinsFound = Explored<BasinsQuestion, Result<Level, String>>;
 
 impl Session {
     /// Asks for the basins of the scene as it stands, in a frame that shows them over these displacements in
-    /// m and velocities up to `speed` in m/s.
-    pub fn want_basins(&mut self, (low, high): (f64, f64), speed: f64) {
+    /// m and velocities `v` in m/s.
+    pub fn want_basins(&mut self, (low, high): (f64, f64), v: (f64, f64)) {
         let still = self.stands_still();
         let scene = Scene {
             start: Start::Rest,
@@ -54,7 +54,7 @@ impl Session {
             app: None,
             ..self.scene().clone()
         };
-        let question = BasinsQuestion { scene, x_mm: (low * 1e3, high * 1e3), v: (-speed, speed) };
+        let question = BasinsQuestion { scene, x_mm: (low * 1e3, high * 1e3), v };
         let (mechanism, wake) = (Arc::clone(&self.mechanism), Arc::clone(&self.wake));
         self.explore.basins.want(&question, still, &wake, move |question, cancel, each| {
             if let Err(problem) = find(question, mechanism, cancel, &|level| each(Ok(level))) {

@@ -1,0 +1,225 @@
+//! Two cursors over time, in all views over time at once, with what is read off at them.
+
+use eframe::egui::{
+    Align2, CursorIcon, EventFilter, Key, Label, PointerButton, Rect, Response, RichText, Role, Sense, Shape,
+    Ui, UiBuilder, WidgetInfo, pos2, vec2,
+};
+
+use crate::app::session::Session;
+use crate::app::ui::style::GRAB;
+use crate::app::ui::widgets::arrows;
+use crate::app::words::numbers::{below, decimals_for, three};
+
+use super::ViewContext;
+use super::cursor_times::{Cursors, remembered};
+use super::labels::plated;
+use super::legend::LEGEND;
+use super::view::Axis;
+use super::zoom::Ends;
+
+/// Steps of an arrow key in the stretch of time that is shown, at least.
+const STEPS: f64 = 500.0;
+
+/// Digits of a time that are told apart below three of the stretch that is shown.
+const DIGITS: usize = 2;
+
+/// The time of the event before or after a time in s, or the nearest one.
+fn event(session: &Session, t: f64, way: Option<bool>) -> Option<f64> {
+    let events = session.player.watch().events();
+    let before = events.partition_point(|event| event.t < t).checked_sub(1);
+    let before = before.and_then(|i| events.get(i)).map(|event| event.t);
+    let from = if way.is_some() { events.partition_point(|event| event.t <= t) } else { 0 };
+    let after = events.range(from..).find(|event| event.t >= t).map(|event| event.t);
+    match (way, before, after) {
+        (Some(true), _, after) => after,
+        (Some(false), before, _) => before,
+        (None, Some(a), Some(b)) => Some(if t - a < b - t { a } else { b }),
+        (None, a, b) => a.or(b),
+    }
+}
+
+/// What is read off at the cursors: time, phase and what a view says of each, and what lies between them.
+fn reading(
+    context: &ViewContext<'_>,
+    window: f64,
+    at_each: impl Fn(f64) -> String,
+    between: impl Fn(f64, f64) -> String,
+) -> [String; 3] {
+    let (session, at) = (&context.session, context.memory.cursors.at);
+    let (begin, end) = remembered(session);
+    let decimals = decimals_for(window) + DIGITS;
+    let model_at = |t: f64| session.player.watch().model_at(t);
+    let is_known = |t: f64| (begin..=end).contains(&t);
+    let each = |i: usize| {
+        let phase = model_at(at[i]).drive_phase(at[i]);
+        let phase = phase.map_or_else(String::new, |turns| format!(", {:.1}°", 360.0 * turns));
+        let value = if is_known(at[i]) { at_each(at[i]) } else { "not remembered".to_owned() };
+        format!("{}: {:.decimals$} s{phase}, {value}", i + 1, at[i])
+    };
+    let apart = at[1] - at[0];
+    let rate = if apart == 0.0 { String::new() } else { format!(" = 1 / {} Hz", three(1.0 / apart.abs())) };
+    let mut last = format!("2 - 1: {apart:.decimals$} s{rate}");
+    if let Some(period) = model_at(at[1]).forcing_period() {
+        last += &format!(" = {} periods", three(apart / period));
+    }
+    if at.into_iter().all(is_known) {
+        last += &format!(", {}", between(at[0], at[1]));
+    }
+    [each(0), each(1), last]
+}
+
+/// What is read off, below the row of the legend: what a view says `at_each` of the times, and `between` the
+/// two. How much of the view's height that takes, in points.
+pub(super) fn readout_ui(
+    ui: &mut Ui,
+    context: &ViewContext<'_>,
+    (area, window): (Rect, f64),
+    at_each: impl Fn(f64) -> String,
+    between: impl Fn(f64, f64) -> String,
+) -> f32 {
+    if !context.memory.cursors.on {
+        return 0.0;
+    }
+    let style = context.style;
+    let parts = reading(context, window, at_each, between);
+    let place = area.with_min_y(area.top() + LEGEND).shrink2(vec2(8.0, 0.0));
+    let inner = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+        ui.horizontal_wrapped(|ui| {
+            (ui.spacing_mut().item_spacing, ui.spacing_mut().interact_size.y) = (vec2(14.0, 0.0), 0.0);
+            for part in parts {
+                ui.add(Label::new(RichText::new(part).font(style.small()).color(style.ink())).extend());
+            }
+        });
+    });
+    inner.response.rect.height()
+}
+
+/// Draws the cursors over `frame`, which shows the times `ends`, and lets them be moved: by a click or a drag
+/// anywhere in it, with Ctrl to the nearest event; with the keyboard's focus by the arrow keys, up and down
+/// from event to event.
+pub(super) fn cursors_ui(
+    ui: &mut Ui,
+    context: &mut ViewContext<'_>,
+    response: &Response,
+    (frame, ends): (Rect, Ends),
+    name: &str,
+) {
+    if !context.memory.cursors.on {
+        return;
+    }
+    let length = ends.1 - ends.0;
+    let screen = |t: f64| frame.left() + ((t - ends.0) / length * f64::from(frame.width())) as f32;
+    let time = |x: f32| ends.0 + f64::from((x - frame.left()) / frame.width()) * length;
+    let (snaps, shift) = ui.input(|input| (input.modifiers.command, input.modifiers.shift));
+    let session = &*context.session;
+    let snapped = |t: f64| event(session, t, None).filter(|_| snaps).unwrap_or(t);
+    let cursors = &mut context.memory.cursors;
+    pointed(cursors, session, response, shift, |x| snapped(time(x)));
+    for which in 0..2 {
+        let x = screen(cursors.at[which]);
+        let seen = frame.x_range().contains(x);
+        let at = x.clamp(frame.left(), frame.right());
+        let strip = Rect::from_x_y_ranges(at - 0.5 * GRAB..=at + 0.5 * GRAB, frame.y_range());
+        let id = ui.scope_id().with(("cursor", which));
+        let grip = ui.interact(strip.intersect(frame), id, Sense::drag());
+        let grip = grip.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
+        let (spoken, t) = (format!("cursor {}, {name}", which + 1), cursors.at[which]);
+        grip.widget_info(|| WidgetInfo {
+            value: Some(t),
+            ..WidgetInfo::labeled(Role::Slider, true, &spoken)
+        });
+        if which == 0 && std::mem::take(&mut cursors.focus) {
+            grip.request_focus();
+        }
+        if let Some(pointer) = grip.interact_pointer_pos().filter(|_| grip.dragged() && !shift) {
+            cursors.put(which, snapped(time(pointer.x)), session);
+        } else if grip.has_focus() {
+            let step = below(length / STEPS);
+            let moved = arrows(ui, grip.id);
+            let filter =
+                EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
+            ui.memory_mut(|memory| memory.set_focus_lock_filter(grip.id, filter));
+            if moved != 0.0 {
+                cursors.put(which, ((t / step).round() + moved) * step, session);
+            }
+            for (key, later) in [(Key::ArrowUp, true), (Key::ArrowDown, false)] {
+                if ui.input(|input| input.key_pressed(key))
+                    && let Some(t) = event(session, t, Some(later))
+                {
+                    cursors.put(which, t, session);
+                }
+            }
+        }
+        let (style, painter) = (context.style, ui.painter().with_clip_rect(frame));
+        let stroke = if grip.has_focus() { style.focus_stroke() } else { style.cursor_stroke() };
+        let line = [pos2(at, frame.top()), pos2(at, frame.bottom())];
+        match (seen, which) {
+            (false, _) => {}
+            (true, 0) => _ = painter.line_segment(line, stroke),
+            (true, _) => painter.extend(Shape::dashed_line(&line, stroke, 6.0, 4.0)),
+        }
+        // one that is out of sight says on which side
+        let number = ["1", "2"][which];
+        let (align, text) = match (seen, x < frame.left()) {
+            (true, _) => (Align2::LEFT_TOP, number.to_owned()),
+            (false, true) => (Align2::LEFT_TOP, format!("< {number}")),
+            (false, false) => (Align2::RIGHT_TOP, format!("{number} >")),
+        };
+        let down = if seen { 2.0 } else { 2.0 + 16.0 * which as f32 };
+        let beside = if seen { 0.5 * GRAB + 3.0 } else { 4.0 };
+        let beside = if align == Align2::LEFT_TOP { beside } else { -beside };
+        let place = (pos2(at + beside, frame.top() + down), align);
+        plated(&painter, &style, place, &text, (style.body(), style.ink()));
+    }
+}
+
+/// A click or a drag anywhere else moves the cursor that is nearer.
+fn pointed(
+    cursors: &mut Cursors,
+    session: &Session,
+    response: &Response,
+    shift: bool,
+    time: impl Fn(f32) -> f64,
+) {
+    let Some(pointer) = response.interact_pointer_pos().filter(|_| !shift) else { return };
+    if response.double_clicked() {
+        cursors.at = cursors.before;
+        return;
+    }
+    let t = time(pointer.x);
+    if response.drag_started_by(PointerButton::Primary) || response.clicked() {
+        cursors.before = cursors.at;
+        cursors.moved = cursors.nearer(t);
+    }
+    if response.dragged_by(PointerButton::Primary) || response.clicked() {
+        cursors.put(cursors.moved, t, session);
+    }
+}
+
+impl super::Memory {
+    /// Shows the cursors, or hides them.
+    pub fn switch_cursors(&mut self, session: &Session) {
+        self.cursors.switch(session, self.axes.shown(Axis::Time));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::session::editor::Editor;
+
+    #[test]
+    fn events_are_found_on_both_sides() {
+        let mut session = Session::new(Editor::open("paper").unwrap(), std::sync::Arc::new(|| ())).unwrap();
+        session.player.speed = 100.0;
+        session.player.tick(0.1);
+        let times: Vec<f64> = session.player.watch().events().iter().map(|own| own.t).collect();
+        let i = (1..times.len() - 1).find(|i| times[i - 1] < times[*i] && times[*i] < times[i + 1]).unwrap();
+        let (before, own, after) = (times[i - 1], times[i], times[i + 1]);
+        assert_eq!(event(&session, own, Some(true)), Some(after));
+        assert_eq!(event(&session, own, Some(false)), Some(before));
+        assert_eq!(event(&session, own, None), Some(own));
+        assert_eq!(event(&session, 0.4 * own + 0.6 * after, None), Some(after));
+        assert_eq!(event(&session, 1e9, Some(true)), None);
+    }
+}

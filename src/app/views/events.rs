@@ -1,0 +1,181 @@
+//! Events of the motion as a table: what happened when, how fast, and what it took.
+
+use eframe::egui::{self, Align2, FontId, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2};
+
+use crate::app::export::events_seen_csv;
+use crate::app::session::Session;
+use crate::app::ui::style::Style;
+use crate::app::words::numbers::three;
+use crate::study::{Table, Values, watched_events};
+
+use super::energy::unit_of;
+use super::{ViewContext, too_small_ui};
+
+/// Height in points of a row.
+const ROW: f32 = 18.0;
+
+/// A column: its heading, its name in the table, its share of the width, what it says.
+type Column = (&'static str, &'static str, f32, &'static str);
+
+const COLUMNS: [Column; 7] = [
+    ("time (s)", "t_s", 1.1, "Time."),
+    ("phase (°)", "phase_deg", 0.85, "Phase of the shaking, where it repeats."),
+    ("event", "kind", 0.95, "What happened."),
+    ("side", "side", 0.65, "The stop, or the well that is entered."),
+    ("v in", "v_in_m_per_s", 1.15, "Velocity before it in mm/s, to the right positive."),
+    ("v out", "v_out_m_per_s", 1.2, "Velocity after it in mm/s, to the right positive."),
+    ("lost", "lost_j", 1.0, "Kinetic energy that it took; on a compliant stop it goes bit by bit."),
+];
+
+/// Draws it.
+pub fn events_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let (area, style) = (ui.max_rect(), context.style);
+    if area.width() < 160.0 || area.height() < 90.0 {
+        return too_small_ui(ui, &style, area);
+    }
+    ui.painter().rect_filled(area, 0.0, style.ground());
+    let (count, forgotten) = {
+        let watch = context.session.player.watch();
+        (watch.events().len(), watch.forgotten_events())
+    };
+    ui.spacing_mut().item_spacing.y = 0.0;
+    ui.horizontal(|ui| {
+        ui.add_space(8.0);
+        let gone = match forgotten {
+            0 => String::new(),
+            gone => format!("; {gone} earlier ones are no longer remembered"),
+        };
+        ui.label(RichText::new(format!("{count} events{gone}")).font(style.small()).color(style.faint()));
+        let hover = "The rows that are remembered, as the command line writes them, with two more columns.";
+        let button = ui.add_enabled(count > 0, egui::Button::new("Copy as CSV").small());
+        if button.on_hover_text(hover).clicked() {
+            ui.copy_text(events_seen_csv(&context.session.player));
+        }
+    });
+    if count == 0 {
+        ui.label(RichText::new("Nothing has happened yet.").color(style.faint()));
+        return;
+    }
+    let unit = unit_of(context.session.model().mass() * context.session.model().scales().speed.powi(2));
+    let (heading, _) = ui.allocate_exact_size(egui::vec2(ui.available_width(), ROW), Sense::hover());
+    for (place, (name, column, _, about)) in cells(heading).into_iter().zip(COLUMNS) {
+        let name = match column {
+            "v_in_m_per_s" | "v_out_m_per_s" => format!("{name} (mm/s)"),
+            "lost_j" => format!("{name} ({})", smaller(unit).1),
+            _ => name.to_owned(),
+        };
+        write(ui, &style, place, column, &name, false);
+        let hover = format!("{about} In the CSV it is {column}.");
+        ui.interact(place, ui.scope_id().with(column), Sense::hover()).on_hover_text(hover);
+    }
+    list_ui(ui, context, count, smaller(unit));
+}
+
+/// The unit a thousand times smaller: an impact takes little of what moves.
+fn smaller((joule, _): (f64, &'static str)) -> (f64, &'static str) {
+    unit_of(1.001e-3 * joule)
+}
+
+fn list_ui(ui: &mut Ui, context: &mut ViewContext<'_>, count: usize, unit: (f64, &str)) {
+    let (style, now) = (context.style, context.session.player.time());
+    let marked = context.session.player.watch().events().partition_point(|own| own.t <= now).checked_sub(1);
+    let moved = context.memory.marked != marked && marked.is_some();
+    let mut list = ScrollArea::vertical().auto_shrink(false).id_salt("events");
+    let (height, in_list) =
+        (ui.available_height(), ui.rect_contains_pointer(ui.available_rect_before_wrap()));
+    // the present stays in sight, unless a hand is on the list while it plays
+    let follows = moved && !(in_list && context.session.player.is_playing());
+    if let Some(row) = marked.filter(|_| follows) {
+        list = list.vertical_scroll_offset(((row as f32 - (0.6 * height / ROW).round()) * ROW).max(0.0));
+    }
+    let mut wanted = None;
+    list.show_rows(ui, ROW, count, |ui, rows| {
+        let first = rows.start;
+        // how long a list is that has just grown the next frame knows
+        match follows && !marked.is_some_and(|row| rows.contains(&row)) {
+            true => ui.ctx().request_repaint(),
+            false => context.memory.marked = marked,
+        }
+        let table = watched_events(context.session.player.watch(), rows.clone());
+        for row in rows {
+            let (place, response) =
+                ui.allocate_exact_size(egui::vec2(ui.available_width(), ROW), Sense::click());
+            let texts = COLUMNS.map(|own| cell(&table, own.1, row - first, unit));
+            let is_marked = marked == Some(row);
+            let spoken = spoken(&texts, unit.1);
+            response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_marked, spoken.as_str()));
+            if is_marked {
+                ui.painter().rect_filled(place, 0.0, style.rest_shade());
+                let edge = place.with_max_x(place.left() + 3.0);
+                ui.painter().rect_filled(edge, 0.0, style.mass());
+            } else if response.hovered() {
+                ui.painter().rect_filled(place, 0.0, style.panel());
+            }
+            for ((place, column), text) in cells(place).into_iter().zip(COLUMNS).zip(&texts) {
+                write(ui, &style, place, column.1, text, true);
+            }
+            if response.clicked() {
+                wanted = Some(row);
+            }
+        }
+    });
+    if let Some(row) = wanted {
+        look_at(context.session, row);
+    }
+}
+
+/// Looks at the instant of an event, by its place.
+fn look_at(session: &mut Session, row: usize) {
+    let Some(t) = session.player.watch().events().get(row).map(|own| own.t) else { return };
+    session.player.set_playing(false);
+    session.player.seek(t);
+}
+
+/// The places of a row's columns.
+fn cells(row: Rect) -> [Rect; COLUMNS.len()] {
+    let all: f32 = COLUMNS.iter().map(|own| own.2).sum();
+    let (mut x, width) = (row.left() + 6.0, row.width() - 16.0);
+    COLUMNS.map(|own| {
+        let from = x;
+        x += width * own.2 / all;
+        Rect::from_min_max(pos2(from, row.top()), pos2(x, row.bottom()))
+    })
+}
+
+/// A text in its place: words at the left, numbers at the right.
+fn write(ui: &Ui, style: &Style, place: Rect, column: &str, text: &str, strong: bool) {
+    let color = if strong { style.ink() } else { style.faint() };
+    let is_word = matches!(column, "kind" | "side");
+    let (at, align) = match is_word {
+        true => (place.left_center() + egui::vec2(10.0, 0.0), Align2::LEFT_CENTER),
+        false => (place.right_center(), Align2::RIGHT_CENTER),
+    };
+    let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
+    painter.text(at, align, text, FontId::proportional(style.small().size), color);
+}
+
+/// What stands in a row and column.
+fn cell(table: &Table, column: &str, row: usize, unit: (f64, &str)) -> String {
+    match table.column(column).map(|own| &own.values) {
+        Some(Values::Words(words)) => words[row].to_owned(),
+        Some(Values::Numbers(numbers)) if numbers[row].is_nan() => "-".to_owned(),
+        Some(Values::Numbers(numbers)) => match column {
+            "t_s" => format!("{:.5}", numbers[row]),
+            "phase_deg" => format!("{:.1}", numbers[row]),
+            "lost_j" => brief(numbers[row] / unit.0),
+            _ => brief(numbers[row] * 1e3),
+        },
+        _ => String::new(),
+    }
+}
+
+/// Three digits, of a small number with its power of ten.
+fn brief(value: f64) -> String {
+    if value != 0.0 && value.abs() < 0.01 { format!("{value:.1e}") } else { three(value) }
+}
+
+/// A row as it is spoken.
+fn spoken([t, phase, kind, side, before, after, lost]: &[String; COLUMNS.len()], unit: &str) -> String {
+    let energy = if lost == "0" || lost == "-" { String::new() } else { format!(", {lost} {unit} lost") };
+    format!("{kind}, {side}, at {t} s, phase {phase}°, {before} to {after} mm/s{energy}")
+}

@@ -1,0 +1,144 @@
+//! Ends of axes: as the scene and the motion give them, or as a hand has chosen them.
+//!
+//! An axis that a hand has chosen stands still until a double click. One that is held stays even when another
+//! scene is opened, so that two scenes can be compared. The views over time share their time axis and those
+//! along the displacement share that.
+
+use std::collections::HashMap;
+
+use super::view::{Axis, View};
+
+/// How much longer than its own an axis may be chosen, and how much shorter.
+pub(super) const LONGEST: f64 = 10.0;
+pub(super) const SHORTEST: f64 = 1e-3;
+
+/// The ends of an axis in its unit; of the displacement in m, of time in s.
+pub type Ends = (f64, f64);
+
+#[derive(Debug, Clone, Copy)]
+struct Chosen {
+    ends: Ends,
+    held: bool,
+}
+
+/// The ends of all axes.
+#[derive(Debug, Clone, Default)]
+pub struct Axes {
+    chosen: HashMap<Axis, Chosen>,
+    /// As they would be by themselves and as they are, when they were shown last.
+    shown: HashMap<Axis, (Ends, Ends)>,
+}
+
+impl Axes {
+    /// The ends of an axis that would by itself have its `own`.
+    pub(super) fn ends(&mut self, axis: Axis, own: Ends) -> Ends {
+        let ends = self.chosen(axis).unwrap_or(own);
+        self.shown.insert(axis, (own, ends));
+        ends
+    }
+
+    /// The ends that a hand has chosen.
+    pub(super) fn chosen(&self, axis: Axis) -> Option<Ends> {
+        self.chosen.get(&axis).map(|own| own.ends)
+    }
+
+    /// As it was shown last.
+    pub(super) fn shown(&self, axis: Axis) -> Option<Ends> {
+        self.shown.get(&axis).map(|own| own.1)
+    }
+
+    /// Whether a view keeps its axes whatever the motion and the scene do.
+    pub(super) fn is_held(&self, view: View) -> bool {
+        let held = |axis: &Axis| self.chosen.get(axis).is_some_and(|own| own.held);
+        view.axes().is_some_and(|axes| axes.iter().all(held))
+    }
+
+    /// Holds the axes of a view as they are, or lets go of them.
+    pub(super) fn hold(&mut self, view: View) {
+        if self.is_held(view) {
+            return self.free(view);
+        }
+        for axis in view.axes().into_iter().flatten() {
+            if let Some(ends) = self.shown(axis) {
+                self.chosen.insert(axis, Chosen { ends, held: true });
+            }
+        }
+    }
+
+    /// Leaves the axes of a view to the scene and the motion.
+    pub(super) fn free(&mut self, view: View) {
+        view.axes().into_iter().flatten().for_each(|axis| _ = self.chosen.remove(&axis));
+    }
+
+    /// What stays when another scene is opened.
+    pub(super) fn held(&self) -> Self {
+        let held = self.chosen.iter().filter(|own| own.1.held).map(|own| (*own.0, *own.1));
+        Self { chosen: held.collect(), shown: HashMap::new() }
+    }
+
+    pub(super) fn choose(&mut self, axis: Axis, ends: Ends) {
+        let Some((own, _)) = self.shown.get(&axis) else { return };
+        let held = self.chosen.get(&axis).is_some_and(|chosen| chosen.held);
+        let whole = ends.0 <= own.0 && ends.1 >= own.1;
+        let (length, least) = (ends.1 - ends.0, SHORTEST * (own.1 - own.0));
+        if whole && !held && axis != Axis::Time {
+            // all that there is, is as good as nothing chosen
+            self.chosen.remove(&axis);
+        } else if length >= least && length <= LONGEST * (own.1 - own.0) {
+            self.chosen.insert(axis, Chosen { ends, held });
+        }
+    }
+
+    /// Makes an axis longer by a factor about a share of it from its lower end.
+    pub(super) fn zoom(&mut self, axis: Axis, by: f64, about: f64) {
+        let Some((low, high)) = self.shown(axis).filter(|_| by > 0.0 && by.is_finite()) else { return };
+        let middle = low + about * (high - low);
+        self.choose(axis, (middle - (middle - low) * by, middle + (high - middle) * by));
+    }
+
+    /// Moves what is shown by a share of the axis.
+    pub(super) fn pan(&mut self, axis: Axis, share: f64) {
+        let Some((low, high)) = self.shown(axis) else { return };
+        let by = share * (high - low);
+        let held = self.chosen.get(&axis).is_some_and(|chosen| chosen.held);
+        self.chosen.insert(axis, Chosen { ends: (low + by, high + by), held });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UP: Axis = Axis::Up(View::Velocity);
+
+    #[test]
+    fn a_zoom_keeps_what_is_under_the_pointer_and_ends_at_the_whole() {
+        let mut axes = Axes::default();
+        assert_eq!(axes.ends(UP, (-4.0, 4.0)), (-4.0, 4.0));
+        axes.zoom(UP, 0.5, 0.25);
+        assert_eq!(axes.ends(UP, (-4.0, 4.0)), (-3.0, 1.0));
+        // it stands still while the motion takes more room
+        assert_eq!(axes.ends(UP, (-8.0, 8.0)), (-3.0, 1.0));
+        axes.zoom(UP, 1e-9, 0.5);
+        assert_eq!(axes.chosen(UP), Some((-3.0, 1.0)));
+        axes.zoom(UP, 6.0, 0.5);
+        assert_eq!(axes.chosen(UP), None);
+    }
+
+    #[test]
+    fn what_is_held_stays_and_what_is_chosen_does_not() {
+        let mut axes = Axes::default();
+        axes.ends(Axis::Time, (0.0, 2.0));
+        axes.ends(UP, (-1.0, 1.0));
+        axes.hold(View::Velocity);
+        assert!(axes.is_held(View::Velocity) && !axes.is_held(View::Power));
+        axes.ends(Axis::Up(View::Power), (0.0, 1.0));
+        axes.pan(Axis::Up(View::Power), 0.5);
+        let mut other = axes.held();
+        assert_eq!(other.ends(UP, (-9.0, 9.0)), (-1.0, 1.0));
+        assert_eq!(other.ends(Axis::Time, (5.0, 6.0)), (0.0, 2.0));
+        assert_eq!(other.ends(Axis::Up(View::Power), (0.0, 1.0)), (0.0, 1.0));
+        other.hold(View::Velocity);
+        assert_eq!(other.ends(UP, (-9.0, 9.0)), (-9.0, 9.0));
+    }
+}

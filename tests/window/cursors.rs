@@ -1,0 +1,328 @@
+//! Two cursors over time, and axes that a hand zooms, moves and holds.
+
+use eframe::egui::{
+    Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Rect, TouchPhase,
+    accesskit::Role, pos2, vec2,
+};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use interwell::app::session::pins::PinKind;
+use interwell::app::ui::settings::Settings;
+use interwell::app::views::View;
+use interwell::app::window::{Command, Window};
+use interwell::scene::Layout;
+
+use crate::support::{PROJECTED, WIDE, command, is_painted, window};
+
+const TRACES: [View; 4] = [View::Displacement, View::Velocity, View::BaseAcceleration, View::Power];
+
+/// The preset `paper` after ten periods, standing.
+fn played(size: [f32; 2]) -> Harness<'static, Window> {
+    let mut harness = window("paper", size, Settings::default());
+    let player = &mut harness.state_mut().session.player;
+    player.speed = 10.0;
+    (0..4).for_each(|_| player.tick(0.1));
+    player.set_playing(false);
+    harness.run_steps(3);
+    harness
+}
+
+fn place(harness: &Harness<'static, Window>, view: View) -> Rect {
+    harness.state().tiling().place_of(view).unwrap()
+}
+
+fn wheel(harness: &mut Harness<'static, Window>, at: Pos2, modifiers: Modifiers, up: f32) {
+    harness.hover_at(at);
+    harness.run_steps(2);
+    harness.event(Event::ModifiersChanged(modifiers));
+    harness.event(Event::MouseWheel {
+        unit: MouseWheelUnit::Point,
+        delta: vec2(0.0, up),
+        phase: TouchPhase::Move,
+        source: MouseWheelSource::Wheel,
+        modifiers,
+    });
+    harness.run_steps(8);
+    harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.run_steps(1);
+}
+
+fn drag(harness: &mut Harness<'static, Window>, from: Pos2, to: Pos2, how: (PointerButton, Modifiers)) {
+    let (button, modifiers) = how;
+    harness.event(Event::ModifiersChanged(modifiers));
+    harness.hover_at(from);
+    harness.run_steps(1);
+    for (pos, pressed) in [(from, true), (to, false)] {
+        harness.hover_at(0.5 * (from + to.to_vec2()));
+        harness.hover_at(pos);
+        harness.run_steps(1);
+        harness.event(Event::PointerButton { pos, button, pressed, modifiers });
+        harness.run_steps(2);
+    }
+    harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.run_steps(2);
+}
+
+fn click(harness: &mut Harness<'static, Window>, pos: Pos2, modifiers: Modifiers) {
+    harness.event(Event::ModifiersChanged(modifiers));
+    harness.hover_at(pos);
+    harness.run_steps(1);
+    for pressed in [true, false] {
+        harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers });
+        harness.run_steps(1);
+    }
+    harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.run_steps(2);
+}
+
+#[test]
+fn cursors_are_off_at_first_and_on_in_all_views_over_time() {
+    let mut harness = played(WIDE);
+    assert!(!harness.state().cursors().on);
+    assert!(harness.query_by_label("cursor 1, displacement").is_none());
+    for view in TRACES {
+        command(&mut harness, Command::Show(view, true));
+    }
+    harness.key_press(Key::T);
+    harness.run_steps(3);
+    for name in ["displacement", "velocity", "base", "power"] {
+        for which in [1, 2] {
+            harness.get_by_role_and_label(Role::Slider, &format!("cursor {which}, {name}"));
+        }
+    }
+    // within what is shown, in their order
+    let [a, b] = harness.state().cursors().at;
+    let now = harness.state().session.player.time();
+    assert!(now - 2.2 < a && a < b && b < now, "{a} {b} {now}");
+    harness.key_press(Key::T);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("cursor 1, displacement").is_none());
+    // where no view over time is seen, one comes
+    for view in TRACES {
+        command(&mut harness, Command::Show(view, false));
+    }
+    harness.key_press(Key::T);
+    harness.run_steps(3);
+    harness.get_by_label("cursor 2, displacement");
+}
+
+#[test]
+fn a_period_is_read_off_between_them() {
+    let mut harness = played(WIDE);
+    harness.key_press(Key::T);
+    harness.run_steps(3);
+    let watch = harness.state().session.player.watch().clone();
+    // a third of a second apart, by the keyboard: the grid of the keys is 5 ms or less
+    let slider = |which: u32| format!("cursor {which}, displacement");
+    harness.get_by_label(&slider(1)).focus();
+    harness.run_steps(2);
+    let before = harness.state().cursors().at;
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    let step = harness.state().cursors().at[0] - before[0];
+    assert!(step > 0.0 && step <= 0.01, "{step}");
+    let first = harness.state().cursors().at[0];
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::ArrowLeft);
+    harness.run_steps(2);
+    let moved = first - harness.state().cursors().at[0];
+    // ten steps of the grid, which is 2 ms in a stretch of 2 s
+    assert!((moved - 0.02).abs() < 1e-9, "{moved}");
+    // from event to event
+    let [a, _] = harness.state().cursors().at;
+    let next = watch.events().iter().find(|own| own.t > a).unwrap().t;
+    harness.key_press(Key::ArrowUp);
+    harness.run_steps(2);
+    assert_eq!(harness.state().cursors().at[0], next);
+    // the same event a period later: interwell motion of period 1
+    let period = watch.model_at(next).forcing_period().unwrap();
+    let later = watch
+        .events()
+        .iter()
+        .min_by(|a, b| (a.t - next - period).abs().total_cmp(&(b.t - next - period).abs()))
+        .unwrap()
+        .t;
+    assert!((later - next - period).abs() < 1e-6, "{}", later - next - period);
+    harness.get_by_label(&slider(2)).focus();
+    harness.run_steps(2);
+    for _ in 0..500 {
+        match harness.state().cursors().at[1] {
+            own if own == later => break,
+            own => harness.key_press(if own < later { Key::ArrowUp } else { Key::ArrowDown }),
+        }
+        harness.run_steps(2);
+    }
+    assert_eq!(harness.state().cursors().at, [next, later]);
+    harness.run_steps(2);
+    let text = "2 - 1: 0.3333 s = 1 / 3.00 Hz = 1.00 periods";
+    harness.get_by_label_contains(text);
+    let phase = 360.0 * watch.model_at(next).drive_phase(next).unwrap();
+    let x = watch.state_at(next).x * 1e3;
+    let first = harness.query_all_by_label_contains("1: ").next().unwrap();
+    let first = first.accesskit_node().value().unwrap();
+    assert!(first.contains(&format!("{next:.4} s, {phase:.1}°, {x:.2}")), "{first}");
+}
+
+#[test]
+fn a_click_moves_the_nearer_one_and_ctrl_goes_to_an_event() {
+    let mut harness = played(WIDE);
+    harness.key_press(Key::T);
+    harness.run_steps(3);
+    let rect = place(&harness, View::Displacement);
+    let before = harness.state().cursors().at;
+    let at = pos2(rect.left() + 90.0, rect.center().y);
+    click(&mut harness, at, Modifiers::NONE);
+    let after = harness.state().cursors().at;
+    assert!(after[0] < before[0] - 0.1 && after[1] == before[1], "{before:?} {after:?}");
+    // dragged on its line
+    let grip = harness.get_by_label("cursor 2, displacement").rect().center();
+    drag(&mut harness, grip, grip + vec2(20.0, 0.0), (PointerButton::Primary, Modifiers::NONE));
+    let dragged = harness.state().cursors().at;
+    assert!(dragged[0] == after[0] && dragged[1] > after[1] + 0.03, "{after:?} {dragged:?}");
+    click(&mut harness, at, Modifiers::COMMAND);
+    let snapped = harness.state().cursors().at[0];
+    assert!(harness.state().session.player.watch().events().iter().any(|own| own.t == snapped));
+    assert_ne!(snapped, after[0]);
+    // and nothing of it moves the scene or the motion
+    assert!(!harness.state().session.editor.can_undo() && !harness.state().session.player.is_past());
+}
+
+#[test]
+fn distances_are_read_off_with_their_rate() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    command(&mut harness, Command::Pin(PinKind::Twin));
+    let session = &mut harness.state_mut().session;
+    session.player.speed = 10.0;
+    (0..3).for_each(|_| session.player.tick(0.1));
+    while session.pins.are_behind(session.player.time()) {
+        session.follow_pins();
+    }
+    session.player.set_playing(false);
+    command(&mut harness, Command::Cursors);
+    let at = harness.state().cursors().at;
+    let session = &harness.state().session;
+    let pin = session.pins.get('A').unwrap();
+    let [first, second] = at.map(|t| (session.player.watch().state_at(t).x - pin.state_at(t).x).abs());
+    let rate = (second / first).ln() / (at[1] - at[0]);
+    let parts = harness.query_all_by_label_contains("exponential rate A ");
+    let text = parts.last().unwrap().accesskit_node().value().unwrap();
+    let said: f64 = text.split("rate A ").nth(1).unwrap().trim_end_matches(" /s").parse().unwrap();
+    assert!((said - rate).abs() < 6e-3 * rate.abs(), "{said} {rate}");
+    harness.get_by_label_contains(&format!("A {:.1e} mm", 1e3 * first));
+}
+
+#[test]
+fn held_axes_stay_through_motion_and_scenes() {
+    let mut harness = played(WIDE);
+    command(&mut harness, Command::Arrange(Layout::Study));
+    let views = [View::Displacement, View::PhasePortrait, View::ForceCurve, View::Well];
+    assert!(views.iter().all(|view| harness.state().chosen_axes(*view) == [None; 2]));
+    for view in views {
+        harness.get_by_label(&format!("hold the axes of {}", view.name())).click();
+        harness.run_steps(2);
+    }
+    let held = views.map(|view| harness.state().chosen_axes(view));
+    assert!(held.iter().flatten().all(Option::is_some), "{held:?}");
+    // along the displacement they share an axis
+    assert!(held[1][0] == held[2][0] && held[2][0] == held[3][0]);
+    harness.state_mut().session.play_or_pause();
+    harness.run_steps(60);
+    harness.state_mut().open_another("first-look");
+    harness.run_steps(60);
+    assert_eq!(views.map(|view| harness.state().chosen_axes(view)), held);
+    // what is not held goes with its scene
+    command(&mut harness, Command::Show(View::Velocity, true));
+    let at = place(&harness, View::Velocity).center();
+    wheel(&mut harness, at, Modifiers::SHIFT, 100.0);
+    assert!(harness.state().chosen_axes(View::Velocity)[1].is_some());
+    harness.state_mut().open_another("paper");
+    harness.run_steps(3);
+    assert_eq!(harness.state().chosen_axes(View::Velocity)[1], None);
+    // and what is let go of is by itself again
+    harness.hover_at(place(&harness, View::Well).center());
+    harness.run_steps(2);
+    harness.key_press(Key::L);
+    harness.run_steps(2);
+    assert_eq!(harness.state().chosen_axes(View::Well), [None; 2]);
+    assert_eq!(harness.state().chosen_axes(View::Displacement), held[0]);
+}
+
+#[test]
+fn wheel_keys_box_and_drag_choose_both_axes() {
+    let mut harness = played(WIDE);
+    for view in TRACES {
+        command(&mut harness, Command::Show(view, false));
+    }
+    command(&mut harness, Command::Show(View::ForceCurve, true));
+    command(&mut harness, Command::HoldAxes);
+    command(&mut harness, Command::FreeAxes);
+    let ends = |harness: &Harness<'static, Window>| harness.state().chosen_axes(View::ForceCurve);
+    let rect = place(&harness, View::ForceCurve);
+    let at = pos2(rect.left() + 0.3 * rect.width(), rect.center().y);
+    let length = |own: Option<(f64, f64)>| own.map(|own| own.1 - own.0).unwrap();
+    wheel(&mut harness, at, Modifiers::NONE, 60.0);
+    let [across, up] = ends(&harness);
+    assert!(across.is_some() && up.is_none());
+    wheel(&mut harness, at, Modifiers::SHIFT, 60.0);
+    assert!(ends(&harness)[0] == across && ends(&harness)[1].is_some());
+    // keys, at the pointer's view
+    let before = ends(&harness);
+    for (modifiers, place) in [(Modifiers::NONE, 0), (Modifiers::SHIFT, 1)] {
+        harness.key_press_modifiers(modifiers, Key::I);
+        harness.run_steps(2);
+        let ratio = length(ends(&harness)[place]) / length(before[place]);
+        assert!((ratio - 0.8).abs() < 1e-9, "{place} {ratio}");
+    }
+    // what is shown goes with the hand
+    let before = ends(&harness);
+    let to = at + vec2(40.0, 30.0);
+    drag(&mut harness, at, to, (PointerButton::Primary, Modifiers::SHIFT));
+    let after = ends(&harness);
+    assert!(after[0].unwrap().0 < before[0].unwrap().0 && after[1].unwrap().0 > before[1].unwrap().0);
+    assert!((length(after[0]) / length(before[0]) - 1.0).abs() < 1e-9);
+    // a box
+    drag(&mut harness, at, at + vec2(60.0, 50.0), (PointerButton::Secondary, Modifiers::NONE));
+    let boxed = ends(&harness);
+    let share = length(boxed[0]) / length(after[0]);
+    assert!((share - 60.0 / f64::from(rect.width())).abs() < 0.01, "{share}");
+    assert!(length(boxed[1]) < 0.5 * length(after[1]));
+    harness.key_press(Key::Num0);
+    harness.run_steps(2);
+    assert_eq!(ends(&harness), [None; 2]);
+    // the scene and the motion are as they were
+    assert!(!harness.state().session.editor.can_undo());
+}
+
+#[test]
+fn time_that_is_held_lets_the_motion_leave() {
+    let mut harness = played(WIDE);
+    harness.hover_at(place(&harness, View::Displacement).center());
+    harness.run_steps(2);
+    harness.key_press(Key::L);
+    harness.run_steps(2);
+    let [time, _] = harness.state().chosen_axes(View::Displacement);
+    let end = time.unwrap().1;
+    let player = &mut harness.state_mut().session.player;
+    (0..5).for_each(|_| {
+        player.set_playing(true);
+        player.tick(0.1);
+    });
+    player.set_playing(false);
+    harness.run_steps(3);
+    assert!(harness.state().session.player.time() > end);
+    assert_eq!(harness.state().chosen_axes(View::Velocity)[0], time);
+    // cursors that are switched on stand where they are seen
+    command(&mut harness, Command::Cursors);
+    assert!(harness.state().cursors().at.iter().all(|t| (time.unwrap().0..=end).contains(t)));
+}
+
+#[test]
+fn cursors_have_room_where_it_is_short() {
+    let mut harness = played(PROJECTED);
+    command(&mut harness, Command::Cursors);
+    command(&mut harness, Command::Show(View::Displacement, true));
+    assert!(is_painted(&harness, "2 - 1: "));
+    let part = harness.get_by_label_contains("2 - 1: ").rect();
+    assert!(place(&harness, View::Displacement).contains_rect(part), "{part:?}");
+}
