@@ -43,6 +43,7 @@ presets! {
     "uneven-stops": "the prototype between unequal stops: two different rebounds, and two thresholds";
     "walking": "the prototype carried by a walking person: crosses in every step with stops at 0.6 mm";
     "random-shaking": "the prototype under noise: crosses with stops at 1 mm, and not without stops";
+    "harvester": "the prototype with a coil and a load: the power, and the load that takes most of it";
     "nominal-cubic": "a textbook double well with the prototype's mass; its map has 41 x 101 cells";
     "monostable": "one well for comparison: nothing to cross, and no least shaking";
     "bouncing-ball": "a ball that comes to rest after infinitely many bounces, at an exactly known time";
