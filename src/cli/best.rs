@@ -36,7 +36,7 @@ pub struct Arguments {
 
     /// A field of the design and its range (repeatable, at most four); a step is that of the first scan
     /// [default: a 256th of the range; of two fields a 32nd, of three a 12th, of four an 8th]
-    #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true, required = true)]
+    #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
     /// What is to be largest: a number of the summary, such as mean_load_power_w of a scene with a transducer
@@ -201,6 +201,11 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
 /// The ranges of `--over`.
 fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Failure> {
     let mut ranges: Vec<DesignRange> = Vec::new();
+    if over.is_empty() {
+        return Err(Failure::argument(
+            "--over is missing: name a field of the design, such as --over stops.travel_limit_mm=0.5:7",
+        ));
+    }
     for text in over {
         let wrong = |problem: String| Failure::argument(format!("--over {text}: {problem}"));
         let form = || wrong("write FIELD=A:B, such as stops.travel_limit_mm=0.5:7".into());
