@@ -220,7 +220,6 @@ impl Window {
                 Answer::Cancel => self.after_save = None,
             }
         }
-        self.measured_ui(ui);
         if let Some(typed) = &mut self.typed
             && let Some(ended) = typed.ui(ui)
         {
@@ -230,7 +229,6 @@ impl Window {
                 self.take_file(ctx, wanted, path);
             }
         }
-        self.figure_ui(ui);
         if ui.input(|input| !input.raw.hovered_files.is_empty()) {
             let painter =
                 ctx.layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));
