@@ -46,7 +46,8 @@ fn a_mirrored_scene_has_the_mirrored_run() {
         let Some(image) = image(scene) else { return Ok(false) };
         let (Some(own), Some(other)) = (model(scene), model(&image)) else { return Ok(false) };
         // of two equal barriers, between three wells, the left one is taken, in a mirror too
-        let barrier = |model: &Model| model.mechanism().landscape.barrier.map(|barrier| barrier.x);
+        let barrier =
+            |model: &interwell::dynamics::Model| model.mechanism().landscape.barrier.map(|barrier| barrier.x);
         if barrier(&own) != barrier(&other).map(|x| -x) {
             return Ok(false);
         }
