@@ -39,7 +39,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// What is to be largest: a number of the summary, such as mean_load_power_w of a scene with a transducer
+    /// What is to be largest: a number of the summary, such as mean_power_w, into the load, of a scene
+    /// with a transducer
     #[arg(long, value_name = "COLUMN", default_value = "rms_velocity_m_per_s", visible_alias = "maximize")]
     pub maximise: String,
 
@@ -246,9 +247,13 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
     Ok(ranges)
 }
 
+/// A shorter name of the power into the load.
+const POWER: (&str, &str) = ("mean_power_w", "mean_load_power_w");
+
 /// The column called `name`, where it is a number.
 fn number(option: &str, name: &str) -> Result<&'static SummaryField, Failure> {
     let is_number = |own: &&SummaryField| matches!(own.read, Read::Number(_) | Read::Count(_));
+    let name = if name == POWER.0 { POWER.1 } else { name };
     let found = SummaryField::find(name).filter(is_number);
     found.ok_or_else(|| {
         let known: Vec<&str> = SUMMARY_FIELDS.iter().filter(is_number).map(|own| own.name).collect();

@@ -5,6 +5,7 @@
 //! as the text has. Numbers that depend on rounding, those of irregular motion, are held within what the
 //! words allow.
 
+mod alternatives;
 mod impact_oscillator;
 mod prototype;
 mod textbook;
@@ -82,6 +83,8 @@ texts! {
     "uneven-stops": prototype::uneven_stops;
     "walking": prototype::walking;
     "random-shaking": prototype::random_shaking;
+    "balanced": alternatives::balanced;
+    "magnet": alternatives::magnet;
     "nominal-cubic": textbook::nominal_cubic;
     "monostable": textbook::monostable;
     "bouncing-ball": textbook::bouncing_ball;
