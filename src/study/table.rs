@@ -61,14 +61,21 @@ pub struct Column {
 }
 
 /// Endings of names with their units, the longest first: `_m_per_s2` also ends like a name in seconds.
-const UNITS: [(&str, &str); 18] = [
+const UNITS: [(&str, &str); 27] = [
     ("_m_per_s2", "m/s\u{b2}"),
     ("_m_per_s", "m/s"),
     ("_n_per_m3", "N/m\u{b3}"),
     ("_n_per_m", "N/m"),
     ("_n_per_m1_5", "N/m^1.5"),
     ("_n_s_per_m", "N s/m"),
+    ("_v_s_per_m", "V s/m"),
     ("_s_per_m", "s/m"),
+    ("_n_per_v", "N/V"),
+    ("_n_mm4", "N mm\u{2074}"),
+    ("_kohm", "kohm"),
+    ("_ohm", "ohm"),
+    ("_mh", "mH"),
+    ("_nf", "nF"),
     ("_gpa", "GPa"),
     ("_pa", "Pa"),
     ("_deg", "\u{b0}"),
@@ -79,6 +86,8 @@ const UNITS: [(&str, &str); 18] = [
     ("_j", "J"),
     ("_m", "m"),
     ("_n", "N"),
+    ("_v", "V"),
+    ("_w", "W"),
     ("_s", "s"),
 ];
 

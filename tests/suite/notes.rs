@@ -6,6 +6,7 @@
 //! words allow.
 
 mod alternatives;
+mod harvester;
 mod impact_oscillator;
 mod prototype;
 mod textbook;
@@ -85,6 +86,7 @@ texts! {
     "random-shaking": prototype::random_shaking;
     "balanced": alternatives::balanced;
     "magnet": alternatives::magnet;
+    "harvester": harvester::harvester;
     "nominal-cubic": textbook::nominal_cubic;
     "monostable": textbook::monostable;
     "bouncing-ball": textbook::bouncing_ball;

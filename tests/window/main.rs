@@ -22,6 +22,7 @@ mod measured;
 mod memory;
 mod newcomer;
 mod past;
+mod power;
 mod quiet;
 mod random;
 mod screen;

@@ -82,7 +82,10 @@ impl Subject {
         let axis = session.walk_axis().filter(|_| walks.problem.is_none()).ok_or_else(problem)?;
         Ok(match walks.quantity {
             WalkQuantity::Strobes => Self::Diagram(axis),
-            WalkQuantity::RmsVelocity => Self::Sweep(vec![axis], RMS, false),
+            WalkQuantity::LoadPower if session.model().has_transducer() => {
+                Self::Sweep(vec![axis], "mean_load_power_w", false)
+            }
+            WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => Self::Sweep(vec![axis], RMS, false),
         })
     }
 

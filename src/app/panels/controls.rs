@@ -8,7 +8,7 @@ use crate::app::words::fields::name_and_unit;
 use crate::scene::{Damping, Excitation, Stops};
 
 use super::fields::{absent_ui, field_ui, fields_ui};
-use super::{advanced, geometry};
+use super::{advanced, best_stops, geometry};
 
 /// Width in points of a row of controls that has no room for a heading.
 const NARROW: f32 = 640.0;
@@ -23,7 +23,17 @@ const LEAST_SLIDER: f32 = 60.0;
 const WIDEST_SLIDER: f32 = 280.0;
 
 /// What stands under More.
-const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass.";
+const MORE_HOVER: &str =
+    "Restitution, preload, frequency, damping and mass; a transducer, where there is one.";
+
+/// The numbers of a transducer that stand first, and those under Advanced.
+const LOAD: [&str; 4] = [
+    "transducer.load_ohm",
+    "transducer.load_kohm",
+    "transducer.coupling_v_s_per_m",
+    "transducer.coupling_n_per_v",
+];
+const CIRCUIT: [&str; 3] = ["transducer.coil_ohm", "transducer.inductance_mh", "transducer.capacitance_nf"];
 
 /// The controls as a column.
 pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
@@ -33,6 +43,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     ui.add_space(14.0);
     stops_switch_ui(ui, session);
     limit_ui(ui, session, width);
+    best_stops::button_ui(ui, session, "Find the best stops");
     ui.add_space(14.0);
     let name = RichText::new(if *more { "Less" } else { "More" }).strong();
     if ui.selectable_label(*more, name).on_hover_text(MORE_HOVER).clicked() {
@@ -160,6 +171,7 @@ fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) {
 }
 
 fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    fields_ui(ui, session, &LOAD, width);
     restitution_ui(ui, session, width);
     geometry::preload_ui(ui, session, width);
     if matches!(session.scene().excitation, Excitation::Sine { .. }) {
@@ -171,6 +183,7 @@ fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let hover = "What is changed seldom: sizes of the flexures, kind of shaking, uneven stops, run.";
     let heading = RichText::new("Advanced").strong();
     let advanced = egui::CollapsingHeader::new(heading).id_salt("advanced").show_unindented(ui, |ui| {
+        fields_ui(ui, session, &CIRCUIT, width);
         geometry::sizes_ui(ui, session, width);
         ui.separator();
         advanced::advanced_ui(ui, session, width);

@@ -44,7 +44,7 @@ fn around(session: &Session, path: &str, value: f64) -> Reach {
     let opened = FieldPath::new(path).get(session.editor.saved()).unwrap_or(value);
     let size = if opened == 0.0 { 1.0 } else { opened.abs() };
     let high = round_up(2.0 * size);
-    Reach { low: if opened < 0.0 { -high } else { 0.0 }, high, step: below(high / 200.0) }
+    Reach::even(if opened < 0.0 { -high } else { 0.0 }, high, below(high / 200.0))
 }
 
 /// The same for several numbers below each other.

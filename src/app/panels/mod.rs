@@ -1,6 +1,7 @@
 //! Panels around the views: controls, status line, transport, notes, the hints of the first minute, lessons.
 
 mod advanced;
+pub mod best_stops;
 pub mod controls;
 mod fields;
 mod geometry;

@@ -4,6 +4,7 @@
 
 pub mod accuracy;
 mod ask;
+pub mod best;
 mod build;
 mod companions;
 mod edit;
@@ -28,6 +29,7 @@ use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
 use crate::study;
 
 use accuracy::Accuracy;
+use best::BestStops;
 pub use build::CannotRun;
 use build::{differ_in_amplitude_alone, solved, unbuilt, why};
 use editor::Editor;
@@ -87,6 +89,7 @@ impl Session {
             remembered_stops,
             presses: None,
             keeps_remedy: false,
+            best: BestStops::default(),
             wake,
         };
         session.map.trail.note(&session.built);
@@ -105,6 +108,7 @@ impl Session {
         self.pins.poll();
         self.measured.poll();
         self.apply();
+        self.follow_best();
         self.follow_accuracy();
     }
 

@@ -1,7 +1,7 @@
 //! Ranges of the sliders, from the scales of the scene.
 
 use crate::app::words::fields::{FieldInfo, Reach, Scale};
-use crate::app::words::numbers::{below, round_up};
+use crate::app::words::numbers::{below, decimal, round_up};
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::scene::{FieldPath, Mechanism, Stops};
 
@@ -21,7 +21,10 @@ impl FieldInfo {
             Scale::Push => Some(0.15 * high * scales.length / scales.time.powi(2) / STANDARD_GRAVITY),
             Scale::Rate => Some(0.065 * high / (std::f64::consts::TAU * scales.time)),
             Scale::Travel => return travel(session),
-            Scale::Preload => return preload(session).unwrap_or(Reach { low, high, step }),
+            Scale::Preload => return preload(session).unwrap_or(Reach::even(low, high, step)),
+            Scale::Ratio => {
+                return decades(saved).unwrap_or(Reach { ratios: true, ..Reach::even(low, high, step) });
+            }
         };
         let fits = saved.is_none_or(|value| (low..=high).contains(&value))
             && match self.scale {
@@ -30,12 +33,12 @@ impl FieldInfo {
                 _ => true,
             };
         let Some(own) = own.filter(|own| !fits && *own > 0.0 && own.is_finite()) else {
-            return Reach { low, high, step };
+            return Reach::even(low, high, step);
         };
         let high_own = round_up(own.max(1.25 * saved.map_or(0.0, f64::abs)));
         let low_own = if low < 0.0 { -high_own } else { low / high * high_own };
         let step = below(high_own / 200.0);
-        Reach { low: (low_own / step).round() * step, high: high_own, step }
+        Reach::even((low_own / step).round() * step, high_own, step)
     }
 }
 
@@ -47,7 +50,16 @@ fn travel(session: &Session) -> Reach {
     let stops = || furthest(&saved.stops).or_else(|| limits.iter().find_map(furthest));
     let size = well.filter(|mm| *mm > 0.0).or_else(stops).unwrap_or(10.0);
     let step = below(size / 130.0);
-    Reach { low: 2.0 * step, high: (0.6 * size / step).round() * 2.0 * step, step }
+    Reach::even(2.0 * step, (0.6 * size / step).round() * 2.0 * step, step)
+}
+
+/// Five powers of ten around a value; none around 0 and infinity.
+fn decades(value: Option<f64>) -> Option<Reach> {
+    let size = value.filter(|value| *value > 0.0 && value.is_finite())?.log10().floor() as i32;
+    let power = |of: i32| decimal(10.0_f64.powi(of));
+    (-100..100)
+        .contains(&size)
+        .then(|| Reach { ratios: true, ..Reach::even(power(size - 2), power(size + 3), power(size - 2)) })
 }
 
 /// The preload that the slider reaches, as a share of the shorter flexure.
@@ -59,7 +71,7 @@ fn preload(session: &Session) -> Option<Reach> {
     };
     let most = MOST_PRELOAD * parallel.length_mm.min(buckling.length_mm);
     let step = below(most / 80.0);
-    Some(Reach { low: 0.0, high: (most / step).round() * step, step })
+    Some(Reach::even(0.0, (most / step).round() * step, step))
 }
 
 #[cfg(test)]
@@ -77,11 +89,11 @@ mod tests {
     #[test]
     fn sliders_follow_the_scales_of_the_scene() {
         let reach = |preset: &str, path: &str| info(path).unwrap().reach(&session(preset));
-        assert_eq!(reach("first-look", "excitation.amplitude_g"), Reach { low: 0.0, high: 2.0, step: 0.01 });
-        assert_eq!(reach("paper", "stops.travel_limit_mm"), Reach { low: 0.1, high: 8.6, step: 0.05 });
-        assert_eq!(reach("first-look", "excitation.frequency_hz"), Reach { low: 0.5, high: 20.0, step: 0.1 });
-        assert_eq!(reach("duffing", "excitation.amplitude_g"), Reach { low: 0.0, high: 0.07, step: 2e-4 });
-        assert_eq!(reach("duffing", "stops.travel_limit_mm"), Reach { low: 10.0, high: 1200.0, step: 5.0 });
+        assert_eq!(reach("first-look", "excitation.amplitude_g"), Reach::even(0.0, 2.0, 0.01));
+        assert_eq!(reach("paper", "stops.travel_limit_mm"), Reach::even(0.1, 8.6, 0.05));
+        assert_eq!(reach("first-look", "excitation.frequency_hz"), Reach::even(0.5, 20.0, 0.1));
+        assert_eq!(reach("duffing", "excitation.amplitude_g"), Reach::even(0.0, 0.07, 2e-4));
+        assert_eq!(reach("duffing", "stops.travel_limit_mm"), Reach::even(10.0, 1200.0, 5.0));
         assert_eq!(reach("duffing", "mass_g").high, 3000.0);
         assert_eq!(reach("duffing", "run.duration_s").high, 4000.0);
         // on its slider every number is at a place that a hand can reach
@@ -91,6 +103,10 @@ mod tests {
                 let (own, value) = (field.reach(&session), FieldPath::new(field.path).get(session.scene()));
                 assert!(own.low < own.high && own.step > 0.0, "{}: {own:?}", field.path);
                 let Some(value) = value else { continue };
+                if own.ratios {
+                    assert!((own.low..=own.high).contains(&value), "{} {}", preset.name, field.path);
+                    continue;
+                }
                 assert!(
                     value <= 1.3 * own.high && (value == 0.0 || value.abs() > own.high / 250.0),
                     "{} {}: {value} {own:?}",

@@ -9,6 +9,7 @@ use crate::scene::{self, Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
 use super::accuracy::Accuracy;
+use super::best::BestStops;
 use super::editor::Editor;
 use super::explore::Explore;
 use super::map::Mapping;
@@ -98,6 +99,8 @@ pub struct Session {
     pub(super) presses: Option<(String, f64)>,
     /// What it would take to cross is not to be said: it is the answer of a lesson.
     pub keeps_remedy: bool,
+    /// The search for the best stops.
+    pub best: BestStops,
     pub(super) wake: Wake,
 }
 
@@ -141,6 +144,11 @@ impl Session {
     pub fn crosses(&self) -> Option<bool> {
         let summary = self.settled.current()?;
         (self.fault.is_none() && summary.outcome == Outcome::Done).then_some(summary.crossings > 0)
+    }
+
+    /// What the present scene settles to, once that is known.
+    pub fn settled_now(&self) -> Option<&Summary> {
+        self.settled.current().filter(|_| self.fault.is_none())
     }
 
     /// What the motion settles to; of an earlier scene while the answer is still to come.

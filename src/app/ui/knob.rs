@@ -87,7 +87,7 @@ impl Knob<'_> {
         };
         let ended = slider.drag_stopped() || field.drag_stopped();
         let response = hover_beside(slider.union(field), self.hover);
-        let changed = turned != value && turned.is_finite();
+        let changed = turned != value && !turned.is_nan();
         if changed {
             forget(ui);
         }
@@ -101,7 +101,7 @@ impl Knob<'_> {
         let (field, _) = self.number_ui(ui, &mut turned, 0, true);
         ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(self.name));
         said_ui(ui, self.name, &field);
-        let changed = turned != value && turned.is_finite();
+        let changed = turned != value && !turned.is_nan();
         if changed {
             forget(ui);
         }
@@ -109,8 +109,11 @@ impl Knob<'_> {
     }
 
     fn slider_ui(&self, ui: &mut Ui, value: &mut f64, least: usize) -> Response {
-        let (present, Reach { low, high, step }) = (*value, self.reach);
+        let (present, Reach { low, high, step, ratios }) = (*value, self.reach);
         ui.spacing_mut().slider_width = self.slider_width(ui, present, least);
+        if ratios {
+            return ratios_ui(ui, value, (low, high));
+        }
         let slider = Slider::new(value, low.min(present)..=high.max(present))
             .show_value(false)
             .clamping(egui::SliderClamping::Never)
@@ -177,7 +180,8 @@ impl Knob<'_> {
         if number.is_empty() {
             return Err(format!("No number was typed: {stays}"));
         }
-        let read = |text: &str| text.parse::<f64>().ok().filter(|value| value.is_finite());
+        let is_number = |value: &f64| value.is_finite() || *value == self.typed.1;
+        let read = |text: &str| text.parse::<f64>().ok().filter(is_number);
         let Some(value) = read(&with_point(&number)) else {
             let point = match read(&number.replace(',', "")) {
                 Some(_) if number.contains(',') => " Write it with a point or without a comma.",
@@ -207,6 +211,27 @@ impl Knob<'_> {
         let number = text + 2.0 * ui.spacing().button_padding.x;
         (self.width - (number - NUMBER).max(0.0)).max(LEAST_SLIDER)
     }
+}
+
+/// A slider on which equal ways are equal ratios; what lies beyond its ends stands at them.
+fn ratios_ui(ui: &mut Ui, value: &mut f64, (low, high): (f64, f64)) -> Response {
+    let present = *value;
+    let slider = Slider::new(value, low..=high).show_value(false).logarithmic(true);
+    let slider = ui.add(slider.clamping(egui::SliderClamping::Never));
+    if *value == present {
+        return slider;
+    }
+    if !slider.dragged() && slider.has_focus() && ui.input(|input| input.modifiers.shift) {
+        let from = present.clamp(low, high);
+        *value = from * (*value / from).powi(10);
+    }
+    *value = three_digits(value.clamp(low, high));
+    slider
+}
+
+/// The number of three significant digits nearest to one.
+fn three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// A number with a point where a single comma can only be that: not one before three digits, which may stand
@@ -282,7 +307,7 @@ mod tests {
     use super::*;
 
     fn knob() -> Knob<'static> {
-        let reach = Reach { low: 0.0, high: 2.0, step: 0.01 };
+        let reach = Reach::even(0.0, 2.0, 0.01);
         Knob { name: "amplitude", unit: "g", reach, typed: (-10.0, 10.0), hover: "", width: 100.0 }
     }
 
@@ -314,6 +339,11 @@ mod tests {
         ] {
             assert_eq!(parsed(text), Err(why.to_owned()));
         }
+        // infinity where it is a value
+        assert!(parsed("inf").is_err());
+        let load = Knob { typed: (0.0, f64::INFINITY), ..knob() };
+        assert_eq!((load.parsed("inf", 60.0), load.parsed("0", 60.0)), (Ok(f64::INFINITY), Ok(0.0)));
+        assert!(load.parsed("-inf", 60.0).is_err() && load.parsed("nan", 60.0).is_err());
         // what is there already may be typed again
         assert_eq!(knob().parsed("50", 50.0), Ok(50.0));
     }

@@ -195,6 +195,11 @@ impl Style {
         Stroke::new(self.width(4.5), self.measured().lerp_to_gamma(self.ground(), 0.25))
     }
 
+    /// What a transducer takes, over time.
+    pub fn power_stroke(&self) -> Stroke {
+        Stroke::new(self.width(1.6), self.curve())
+    }
+
     /// What the base does, over time and as a push.
     pub fn base_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.6), self.base())

@@ -39,7 +39,7 @@ pub fn field_ui(ui: &mut Ui, axis: &SweepAxis, role: &str, known: &[String]) -> 
 pub fn range_row_ui(ui: &mut Ui, axis: &mut SweepAxis, role: &str) {
     ui.label(field_name(&axis.field));
     let (_, unit) = crate::app::words::fields::name_and_unit(&axis.field);
-    let reach = Reach { low: axis.from, high: axis.to, step: axis.step };
+    let reach = Reach::even(axis.from, axis.to, axis.step);
     for (part, value) in [("from", &mut axis.from), ("to", &mut axis.to), ("step", &mut axis.step)] {
         ui.label(part);
         let name = format!("{role}, {part}");

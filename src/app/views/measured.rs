@@ -98,7 +98,7 @@ fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     let knob = Knob {
         name: "shift",
         unit: "s",
-        reach: Reach { low, high, step: below(period / 200.0) },
+        reach: Reach::even(low, high, below(period / 200.0)),
         typed: (-FARTHEST, FARTHEST),
         hover: "What is added to the times of the record. Type a number to go farther than the slider.",
         width: SLIDER,
@@ -112,7 +112,7 @@ fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     let knob = Knob {
         name: "time scale",
         unit: "",
-        reach: Reach { low: 0.9, high: 1.1, step: 1e-4 },
+        reach: Reach::even(0.9, 1.1, 1e-4),
         typed: (1.0 / FARTHEST, FARTHEST),
         hover,
         width: SLIDER,
@@ -136,7 +136,7 @@ fn zero_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     let knob = Knob {
         name: "add",
         unit: "mm",
-        reach: Reach { low: -10.0, high: 10.0, step: 0.01 },
+        reach: Reach::even(-10.0, 10.0, 0.01),
         typed: (-FARTHEST, FARTHEST),
         hover,
         width: SLIDER,

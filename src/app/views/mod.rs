@@ -30,6 +30,7 @@ mod memory;
 mod overlay;
 mod phase;
 mod plot;
+mod power;
 mod ranges;
 mod schematic;
 mod side_by_side;
@@ -99,7 +100,7 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
         View::Energy => energy::energy_ui(ui, context),
         View::Velocity => trace::trace_ui(ui, TraceQuantity::Velocity, context),
         View::BaseAcceleration => trace::trace_ui(ui, TraceQuantity::BaseAcceleration, context),
-        View::Power => trace::trace_ui(ui, TraceQuantity::Power, context),
+        View::Power => power::power_ui(ui, context),
         View::Events => events::events_ui(ui, context),
         View::Map => map::map_ui(ui, context),
         View::UpAndDown => up_and_down::up_and_down_ui(ui, context),

@@ -41,12 +41,13 @@ pub fn floor(model: &Model) -> Option<f64> {
     places.map(|x| model.mechanism().curve.potential(x)).reduce(f64::min)
 }
 
-/// The largest speed in m/s, power in W and energy in J that have been seen since the last change, and the
+/// The largest speed in m/s, powers in W and energy in J that have been seen since the last change, and the
 /// way out from the middle in m.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Extremes {
     speed: f64,
     power: f64,
+    load: f64,
     kinetic: f64,
     low: f64,
     high: f64,
@@ -57,12 +58,16 @@ impl Extremes {
         Self {
             speed: self.speed.max(other.speed),
             power: self.power.max(other.power),
+            load: self.load.max(other.load),
             kinetic: self.kinetic.max(other.kinetic),
             low: self.low.min(other.low),
             high: self.high.max(other.high),
         }
     }
 }
+
+/// How many means of the power into a load its axis has room for at least.
+const MEANS: f64 = 3.0;
 
 /// What the axes have to hold; kept between frames.
 #[derive(Debug, Clone, Copy, Default)]
@@ -103,6 +108,7 @@ impl Ranges {
                 self.seen = self.seen.or(Extremes {
                     speed: sample.v.abs(),
                     power: sample.work_rate(model.mass()).abs(),
+                    load: watch.model_at(sample.t).output(sample).map_or(0.0, |own| own.power),
                     kinetic: model.energies(sample.x, sample.v).0,
                     low: sample.x,
                     high: sample.x,
@@ -124,7 +130,9 @@ impl Ranges {
         };
         let power = SHARE * speed * model.mass() * room_for_push(model.largest_base_acceleration());
         let kinetic = 0.5 * model.mass() * speed * speed;
-        self.expected = Extremes { speed, power, kinetic, ..Extremes::default() };
+        let mean = session.settled_now().and_then(|own| own.harvest?.mean_load_power);
+        let load = MEANS * mean.unwrap_or(0.0);
+        self.expected = Extremes { speed, power, load, kinetic, ..Extremes::default() };
         self.ever = self.ever.or(self.seen);
         self
     }
@@ -148,6 +156,11 @@ impl Ranges {
     /// The end of an axis of power in W.
     pub fn power(&self) -> f64 {
         axis_end(ROOM * self.whole().power)
+    }
+
+    /// The end of an axis of power into a load in W.
+    pub fn load_power(&self) -> f64 {
+        axis_end(ROOM * self.whole().load)
     }
 
     /// The largest kinetic energy in J to be shown.

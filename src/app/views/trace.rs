@@ -60,23 +60,32 @@ pub enum TraceQuantity {
     BaseAcceleration,
     /// Work of the base on the mass in a second.
     Power,
+    /// Power into the load of a transducer.
+    LoadPower {
+        /// How many of the unit of the axis a watt is.
+        per_watt: u32,
+        /// That unit.
+        unit: &'static str,
+    },
 }
 
 impl TraceQuantity {
-    /// Its value in the unit of its axis.
-    pub fn value(self, sample: &Sample, mass: f64) -> f64 {
+    /// Its value in the unit of its axis; NaN where it is not known.
+    pub fn value(self, sample: &Sample, model: &Model) -> f64 {
         match self {
             Self::Displacement => sample.x * 1e3,
             Self::Velocity => sample.v * 1e3,
             Self::BaseAcceleration => sample.base_accel / STANDARD_GRAVITY,
-            Self::Power => sample.work_rate(mass) * 1e3,
+            Self::Power => sample.work_rate(model.mass()) * 1e3,
+            Self::LoadPower { per_watt, .. } => {
+                model.output(sample).map_or(f64::NAN, |own| own.power * f64::from(per_watt))
+            }
         }
     }
 
-    /// Its value in a motion that was seen, with the mass of then.
+    /// Its value in a motion that was seen, by the model of then.
     fn seen(self, watch: &Watch, sample: &Sample) -> f64 {
-        let mass = if self == Self::Power { watch.model_at(sample.t).mass() } else { 0.0 };
-        self.value(sample, mass)
+        self.value(sample, watch.model_at(sample.t))
     }
 
     /// What can have been measured of it, and its unit in SI.
@@ -85,7 +94,7 @@ impl TraceQuantity {
             Self::Displacement => Some((Quantity::Displacement, 1e-3)),
             Self::Velocity => Some((Quantity::Velocity, 1e-3)),
             Self::BaseAcceleration => Some((Quantity::Acceleration, STANDARD_GRAVITY)),
-            Self::Power => None,
+            Self::Power | Self::LoadPower { .. } => None,
         }
     }
 
@@ -95,6 +104,7 @@ impl TraceQuantity {
             Self::Velocity => "velocity",
             Self::BaseAcceleration => "base",
             Self::Power => "power",
+            Self::LoadPower { .. } => "power into the load",
         }
     }
 
@@ -103,7 +113,7 @@ impl TraceQuantity {
             Self::Displacement => View::Displacement,
             Self::Velocity => View::Velocity,
             Self::BaseAcceleration => View::BaseAcceleration,
-            Self::Power => View::Power,
+            Self::Power | Self::LoadPower { .. } => View::Power,
         }
     }
 
@@ -113,6 +123,7 @@ impl TraceQuantity {
             Self::Velocity => "mm/s",
             Self::BaseAcceleration => "g",
             Self::Power => "mW",
+            Self::LoadPower { unit, .. } => unit,
         }
     }
 
@@ -126,6 +137,10 @@ impl TraceQuantity {
                 1.12 * room_for_push(context.session.shown().largest_base_acceleration()) / STANDARD_GRAVITY,
             ),
             Self::Power => both(context.memory.ranges.follow(context.session).power() * 1e3),
+            Self::LoadPower { per_watt, .. } => {
+                let most = context.memory.ranges.follow(context.session).load_power() * f64::from(per_watt);
+                (-0.04 * most, most)
+            }
         }
     }
 }
@@ -175,6 +190,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let line = match quantity {
         TraceQuantity::Displacement | TraceQuantity::Velocity => style.motion_stroke(),
         TraceQuantity::BaseAcceleration | TraceQuantity::Power => style.base_stroke(),
+        TraceQuantity::LoadPower { .. } => style.power_stroke(),
     };
     let rows = f64::from((ui.available_height() / 40.0).clamp(2.0, 6.0));
     let columns = f64::from((ui.available_width() / 80.0).clamp(2.0, 8.0));

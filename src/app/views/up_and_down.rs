@@ -9,7 +9,7 @@ use egui_plot::{
 use crate::app::session::Session;
 use crate::app::session::explore::WalkQuantity;
 use crate::app::session::map::label;
-use crate::app::words::numbers::three;
+use crate::app::words::numbers::{power, power_unit, three};
 use crate::dynamics::Regime;
 use crate::numeric::short;
 use crate::scene::{FieldPath, SweepAxis, column_names};
@@ -64,11 +64,20 @@ fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
     let known = context.session.map_fields();
     ui.horizontal_centered(|ui| {
         ui.add_space(8.0);
+        let has_load = context.session.model().has_transducer();
         let quantity = &mut context.session.explore.walks.quantity;
+        let load = (
+            WalkQuantity::LoadPower,
+            "Power",
+            "Mean power into the load of the transducer, over the settled window.",
+        );
         for (own, name, hover) in [
             (WalkQuantity::Strobes, "Once a period", "Where the mass is once in every forcing period."),
             (WalkQuantity::RmsVelocity, "RMS velocity", "Root of the mean square of the velocity."),
-        ] {
+        ]
+        .into_iter()
+        .chain(has_load.then_some(load))
+        {
             ui.selectable_value(quantity, own, name).on_hover_text(hover);
         }
         ui.label("over");
@@ -116,15 +125,34 @@ fn rms(visit: &Visit) -> f64 {
     visit.summary.rms_velocity.map_or(f64::NAN, |rms| rms * 1e3)
 }
 
+/// What is drawn of a run as one number, in the unit of the axis; NaN where there is none.
+fn number(visit: &Visit, quantity: WalkQuantity, per_watt: f64) -> f64 {
+    match quantity {
+        WalkQuantity::LoadPower => load_power(visit) * per_watt,
+        WalkQuantity::Strobes | WalkQuantity::RmsVelocity => rms(visit),
+    }
+}
+
+/// Mean power into the load in W; NaN where there is none.
+fn load_power(visit: &Visit) -> f64 {
+    visit.summary.harvest.and_then(|own| own.mean_load_power).unwrap_or(f64::NAN)
+}
+
 fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area: Rect) {
     let style = context.style;
     let session = &mut *context.session;
     let walks = &session.explore.walks;
-    let (quantity, is_whole) = (walks.quantity, walks.found.is_whole());
+    let quantity = match walks.quantity {
+        WalkQuantity::LoadPower if !session.model().has_transducer() => WalkQuantity::RmsVelocity,
+        own => own,
+    };
+    let is_whole = walks.found.is_whole();
     let (parts, current) = walks.found.parts();
     let of_field = walks.found.question().is_some_and(|own| own.axis.field == axis.field);
     let ways = ways(if of_field { parts } else { &[] });
     let span = &context.span;
+    let powers = ways.iter().flat_map(|way| way.visits.iter().map(|visit| load_power(visit)));
+    let (per_watt, unit) = power_unit(powers.filter(|power| power.is_finite()).fold(0.0, f64::max));
     let (low, high) = match quantity {
         WalkQuantity::Strobes => {
             let all = ways.iter().flat_map(|way| way.visits.iter().flat_map(|visit| &visit.strobes));
@@ -132,9 +160,10 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
                 (low.min(1.05e3 * x), high.max(1.05e3 * x))
             })
         }
-        WalkQuantity::RmsVelocity => {
-            let all = ways.iter().flat_map(|way| way.visits.iter().map(|visit| rms(visit)));
-            (0.0, 1.08 * all.filter(|rms| rms.is_finite()).fold(1e-3, f64::max))
+        WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => {
+            let all = ways.iter().flat_map(|way| &way.visits);
+            let all = all.map(|visit| number(visit, quantity, per_watt));
+            (0.0, 1.08 * all.filter(|own| own.is_finite()).fold(1e-3, f64::max))
         }
     };
     let (up, down) = (style.motion(), style.base());
@@ -144,8 +173,9 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         (Sign::Shade(style.rest_shade()), "the two differ"),
     ];
     let vertical = match quantity {
-        WalkQuantity::Strobes => "displacement once a period (mm)",
-        WalkQuantity::RmsVelocity => "RMS velocity (mm/s)",
+        WalkQuantity::Strobes => "displacement once a period (mm)".to_owned(),
+        WalkQuantity::RmsVelocity => "RMS velocity (mm/s)".to_owned(),
+        WalkQuantity::LoadPower => format!("mean power into the load ({unit})"),
     };
     let across = label(&column_names(&[axis.field.as_str()]).pop().unwrap_or_default());
     let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
@@ -168,7 +198,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         .x_grid_spacer(|_| marks(from, to, columns))
         .y_grid_spacer(|_| marks(low + edge, high - edge, rows))
         .x_axis_label(across)
-        .y_axis_label(vertical)
+        .y_axis_label(vertical.as_str())
         .show(&mut child, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
             for mark in marks(low, high, rows) {
@@ -187,9 +217,10 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
                     Direction::Up => (up, 1.6, MarkerShape::Circle),
                     Direction::Down => (down, 2.4, MarkerShape::Plus),
                 };
-                if quantity == WalkQuantity::RmsVelocity {
-                    let line: Vec<PlotPoint> =
-                        way.visits.iter().map(|visit| PlotPoint::new(visit.value, rms(visit))).collect();
+                if quantity != WalkQuantity::Strobes {
+                    let point =
+                        |visit: &&Visit| PlotPoint::new(visit.value, number(visit, quantity, per_watt));
+                    let line: Vec<PlotPoint> = way.visits.iter().map(point).collect();
                     let line = Line::new(way.direction.name(), PlotPoints::Owned(line));
                     plot.line(match way.direction {
                         Direction::Up => line.stroke(style.motion_stroke()),
@@ -219,7 +250,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         let value = transform.value_from_position(at).x.clamp(axis.from, axis.to);
         let painter = ui.painter().with_clip_rect(area);
         let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
-        let text = reading(&ways, value);
+        let text = reading(&ways, value, quantity);
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }
     legend(ui, &style, area, right, &entries);
@@ -290,18 +321,21 @@ fn strobes(visit: &Visit) -> &[f64] {
 }
 
 /// What the walks say at the value nearest to one.
-fn reading(ways: &[Way<'_>; 2], value: f64) -> String {
+fn reading(ways: &[Way<'_>; 2], value: f64, quantity: WalkQuantity) -> String {
+    let number = |visit: &Visit| match quantity {
+        WalkQuantity::LoadPower => power(load_power(visit)),
+        WalkQuantity::Strobes | WalkQuantity::RmsVelocity => format!("{} mm/s", three(rms(visit))),
+    };
     let nearest = |way: &Way<'_>| {
         way.visits
             .iter()
             .min_by(|a, b| (a.value - value).abs().total_cmp(&(b.value - value).abs()))
-            .map(|visit| (visit.value, visit.summary.regime.name(), rms(visit)))
+            .map(|visit| (visit.value, visit.summary.regime.name(), number(visit)))
     };
-    let said =
-        |word: &str, (_, regime, rms): (f64, &str, f64)| format!("{word}: {regime}, {} mm/s", three(rms));
+    let said = |word: &str, regime: &str, number: &str| format!("{word}: {regime}, {number}");
     match (nearest(&ways[0]), nearest(&ways[1])) {
         (Some(up), Some(down)) if up.0 == down.0 => {
-            format!("{}   {}   {}", short(up.0), said("up", up), said("down", down))
+            format!("{}   {}   {}", short(up.0), said("up", up.1, &up.2), said("down", down.1, &down.2))
         }
         _ => three(value),
     }

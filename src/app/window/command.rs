@@ -63,6 +63,7 @@ pub enum Command {
     Grab,
     Pin(PinKind),
     Ways,
+    BestStops,
     /// A built-in lesson.
     OpenLesson(&'static str),
     OpenLessonFile,
@@ -99,6 +100,7 @@ impl Command {
                 | Self::RunToEnd
                 | Self::Grab
                 | Self::Ways
+                | Self::BestStops
         )
     }
 }
@@ -238,6 +240,8 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("Cover the results", plain(Key::C), C::Cover,
             As("Views", "cover the motion and all results, until C again: predict first")),
         Item("What it would take", plain(Key::H), C::Ways, As("Views", "what it would take to cross")),
+        Item("Find the best stops", plain(Key::B), C::BestStops,
+            As("Views", "search for the stops with which the mass moves fastest, or gives most power")),
         Item("Full screen", plain(Key::F11), C::FullScreen, As("Views", "full screen")),
     ]),
     ("Motion", &[

@@ -136,6 +136,8 @@ impl Window {
         session.player.set_playing(plays);
         session.explore.walks.chosen.clone_from(&lesson.lesson().walk);
         session.keeps_remedy = !lesson.tells_remedy();
+        // it may be the answer to a lesson's question
+        session.best.is_off = true;
         Ok(session)
     }
 

@@ -6,7 +6,7 @@ use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
 
 use crate::app::panels::glossary::glossary_ui;
 use crate::app::panels::status_line::{self, covered_ui, status_ui};
-use crate::app::panels::{controls, notes, transport};
+use crate::app::panels::{best_stops, controls, notes, transport};
 use crate::app::session::lesson::Records;
 use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
@@ -193,6 +193,10 @@ impl Window {
                     ui.label(RichText::new(text).color(style.faint()));
                 }
             });
+        }
+        if self.session.best.is_shown() && !self.covered {
+            let panel = Panel::top("best stops").frame(line);
+            panel.show(ui, |ui| best_stops::answer_ui(ui, &mut self.session));
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.pointing_ui(&ctx, &style);

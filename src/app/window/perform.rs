@@ -178,6 +178,8 @@ impl Window {
             Command::Pin(kind) => self.pin(kind),
             // in a lesson it is the answer
             Command::Ways => self.ways = !self.ways && self.lesson().is_none(),
+            Command::BestStops if self.lesson().is_some() => self.messages.tell("Leave the lesson first"),
+            Command::BestStops => self.session.find_best_stops(),
             Command::OpenLesson(name) => self.open_lesson(name),
             Command::OpenLessonFile => self.choose(Wanted::Lesson),
             Command::LeaveLesson => self.leave_lesson(),

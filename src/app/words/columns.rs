@@ -1,5 +1,6 @@
 //! Table of the columns of a summary: what each is called on the screen, and what it says, in groups.
 
+use crate::app::words::numbers::power_unit;
 use crate::output::{RMS, speed_unit, words_of};
 use crate::study::{Column, Read, SummaryField, Values};
 
@@ -20,7 +21,7 @@ const fn own(column: &'static str, name: &'static str, about: &'static str) -> C
 
 /// All of them in their groups.
 #[rustfmt::skip]
-pub static COLUMNS: [(&str, &[ColumnInfo]); 6] = [
+pub static COLUMNS: [(&str, &[ColumnInfo]); 7] = [
     ("Motion", &[
         own(RMS, "RMS velocity", "Root of the mean square of the velocity, once the motion has settled."),
         own("regime", "regime", "What kind of motion it is."),
@@ -58,10 +59,17 @@ pub static COLUMNS: [(&str, &[ColumnInfo]); 6] = [
             "The time from which on it crossed in every forcing period."),
         own("crosses_always_from_g", "crosses always from, shaking", "The amplitude of a ramp at that time."),
     ]),
+    ("Power", &[
+        own("mean_load_power_w", "mean power into the load", "Of the transducer, over the settled window."),
+        own("mean_coil_power_w", "mean power lost in the coil", "Of the transducer, over the settled window."),
+        own("voltage_rms_v", "RMS voltage", "Over the load of the transducer, in the settled window."),
+    ]),
     ("Energy", &[
         own("work_j", "work of the base", "What the base did on the mass in the whole run."),
         own("damping_j", "lost to damping", "In the whole run."),
         own("impact_j", "lost in impacts", "In the whole run."),
+        own("harvested_j", "into the load", "Of the transducer, in the whole run."),
+        own("coil_j", "lost in the coil", "Of the transducer, in the whole run."),
         own("stored_j", "stored", "Energy at the end less that at the start."),
         own("impact_share", "share of the work lost in impacts", "In the settled window."),
         own("energy_residual", "energy residual", "What of the energy is not accounted for, as a share."),
@@ -113,6 +121,7 @@ impl ColumnInfo {
             "m/s" => speed_unit(values),
             "J" => (1e3, "mJ"),
             "Pa" => (1e-6, "MPa"),
+            "W" => power_unit(values.fold(0.0, |most, own| own.abs().max(most))),
             own => (1.0, own),
         }
     }

@@ -17,6 +17,8 @@ pub enum Scale {
     Travel,
     /// The length of the shorter flexure; beyond a quarter of it the stable branch may end.
     Preload,
+    /// Powers of ten around the value that the scene was opened with, in equal ratios.
+    Ratio,
 }
 
 /// A number of a scene and its control.
@@ -45,8 +47,17 @@ pub struct Reach {
     pub low: f64,
     /// The right end.
     pub high: f64,
-    /// The step of the arrow keys.
+    /// The step of the arrow keys; of a slider in equal ratios that of its number.
     pub step: f64,
+    /// Whether equal ways on the slider are equal ratios; then `low` is above 0.
+    pub ratios: bool,
+}
+
+impl Reach {
+    /// A slider on which equal ways are equal differences.
+    pub const fn even(low: f64, high: f64, step: f64) -> Self {
+        Self { low, high, step, ratios: false }
+    }
 }
 
 const fn field(
@@ -74,6 +85,8 @@ const STOP: ((f64, f64, f64), Scale) = ((0.1, 8.0, 0.05), Scale::Travel);
 const UNIT: ((f64, f64, f64), Scale) = ((0.0, 1.0, 0.01), Scale::Fixed);
 const LONG: ((f64, f64, f64), Scale) = ((10.0, 60.0, 0.1), Scale::Value);
 const WIDE: ((f64, f64, f64), Scale) = ((1.0, 60.0, 0.1), Scale::Value);
+const LOAD: ((f64, f64, f64), Scale) = ((1.0, 1e4, 0.1), Scale::Ratio);
+const ANY_LOAD: (f64, f64) = (0.0, f64::INFINITY);
 const RAMP: ((f64, f64, f64), Scale) = ((1.0, 600.0, 1.0), Scale::Value);
 
 const LIMIT_HOVER: &str = "Increase: the stops move outward. Inside the wells the mass then rests lower on \
@@ -82,6 +95,11 @@ const REBOUND_HOVER: &str =
     "Increase: a rebound keeps more of the speed, so that the mass chatters for longer before it rests.";
 const SHAKING_HOVER: &str =
     "Increase: the base pushes the mass harder. Beyond some amplitude it crosses to the other well.";
+const LOAD_HOVER: &str = "Increase: more voltage over the load and less current through it. The power into it is \
+                          largest somewhere between a short circuit (0) and an open one (inf), which both take \
+                          none. Either may be typed.";
+const COUPLING_HOVER: &str = "Increase: the same speed gives more voltage, and the load brakes the mass harder: \
+                              more power at first, and less once the mass crosses no longer.";
 const FASTER_HOVER: &str = "Increase: the pushes follow each other faster and last less long.";
 
 /// All of them, in the order of a scene.
@@ -114,6 +132,19 @@ pub static FIELDS: &[FieldInfo] = &[
         "Increase: the motion dies away faster."),
     field("damping.c_n_s_per_m", "damping", "N s/m", ((0.0, 0.2, 0.001), Scale::Value), (0.0, 1e6),
         "Increase: the motion dies away faster."),
+    field("transducer.load_ohm", "load", "ohm", LOAD, ANY_LOAD, LOAD_HOVER),
+    field("transducer.load_kohm", "load", "kohm", LOAD, ANY_LOAD, LOAD_HOVER),
+    field("transducer.coupling_v_s_per_m", "coupling", "V s/m", ((0.0, 10.0, 0.05), Scale::Value), (-1e6, 1e6),
+        COUPLING_HOVER),
+    field("transducer.coupling_n_per_v", "coupling", "N/V", ((0.0, 5e-3, 1e-5), Scale::Value), (-1e6, 1e6),
+        COUPLING_HOVER),
+    field("transducer.coil_ohm", "coil", "ohm", ((0.0, 200.0, 1.0), Scale::Value), SIZE,
+        "Increase: the coil turns a larger part of the electrical power into heat, and brakes the mass less."),
+    field("transducer.inductance_mh", "inductance", "mH", ((0.0, 200.0, 1.0), Scale::Value), (0.0, 1e9),
+        "Increase: the current follows the velocity more slowly, and fast motion gives less of it."),
+    field("transducer.capacitance_nf", "capacitance", "nF", ((1.0, 200.0, 1.0), Scale::Value), (1e-6, 1e9),
+        "Increase: the same motion charges the layer to a lower voltage, and slow motion loses less of it \
+         through the load."),
     field("stops.travel_limit_mm", "travel limit ±", "mm", STOP, LIMIT, LIMIT_HOVER),
     field("stops.restitution", "restitution", "", UNIT, SHARE, REBOUND_HOVER),
     field("stops.left_mm", "left", "mm", STOP, LIMIT, LIMIT_HOVER),

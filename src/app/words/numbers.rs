@@ -52,6 +52,22 @@ pub fn three(value: f64) -> String {
     format!("{value:.0$}", numeric::decimals(size, 3))
 }
 
+/// The unit in which powers up to `most` in W are short, and how many of it a watt is.
+pub fn power_unit(most: f64) -> (f64, &'static str) {
+    match most {
+        _ if most >= 1.0 => (1.0, "W"),
+        _ if most >= 1e-3 || most == 0.0 => (1e3, "mW"),
+        _ if most >= 1e-6 => (1e6, "µW"),
+        _ => (1e9, "nW"),
+    }
+}
+
+/// A power in W in words.
+pub fn power(watt: f64) -> String {
+    let (factor, unit) = power_unit(watt.abs());
+    format!("{} {unit}", three(watt * factor))
+}
+
 /// Decimals with which numbers up to `most` have three significant digits.
 pub fn decimals_for(most: f64) -> usize {
     if most > 0.0 && most.is_finite() { numeric::decimals(most, 3) } else { 2 }
@@ -76,6 +92,8 @@ mod tests {
         assert_eq!(texts, ["0.90", "1.137", "0.0377295", "1047.198", "15.0", "0.00", "1e-9"]);
         assert_eq!(exact(0.037_729_499_880_183_35, 2), "0.03772949988018335");
         assert_eq!([0.05, 0.01, 15.0, 2e-4].map(decimals), [2, 2, 0, 4]);
+        let powers = [0.0, 1.234, 0.012_34, 5e-6, -2e-9].map(power);
+        assert_eq!(powers, ["0 mW", "1.23 W", "12.3 mW", "5.00 µW", "-2.00 nW"]);
         assert_eq!([0.0384, 1.25, 1000.0].map(three), ["0.0384", "1.25", "1000"]);
     }
 }

@@ -78,13 +78,17 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             Ledger { work_j, damping_j, impact_j, harvested_j, coil_j, stored_j, residual_j, energy_residual }
         });
         let rms = (value(&self.settled.squared_velocity) / covered).sqrt() / self.unit;
+        let work = value(&self.settled.work);
         let harvest = transducer.map(|own| {
+            let load = own.energies(self.squared_signal(&self.settled)).0;
+            let load_share = (LEDGER && seen && work.abs() > 0.0).then(|| load / (work * energy));
             let squared = Some(self.squared_signal(&self.settled) / (covered * self.unit));
             let squared = squared.filter(|squared| seen && squared.is_finite());
             Harvest {
                 mean_load_power: squared.map(|squared| own.energies(squared).0),
                 mean_coil_power: squared.map(|squared| own.energies(squared).1),
                 voltage_rms: squared.map(|squared| own.voltage_rms(squared.sqrt())),
+                load_share,
             }
         });
         let travel = (self.high - self.low).to_f64();
@@ -100,7 +104,6 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         let pressure = force.and_then(pressed_by);
         let material = compliant.and_then(|own| own.material);
         let yields = pressure.zip(material).is_some_and(|(own, of)| own > of.yield_pressure());
-        let work = value(&self.settled.work);
         let impact_share = (LEDGER && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
         let regime = if self.model.one_well {
             Regime::OneWell

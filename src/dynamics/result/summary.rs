@@ -34,6 +34,8 @@ pub struct Harvest {
     pub mean_coil_power: Option<f64>,
     /// Root mean square of the voltage over the load in V.
     pub voltage_rms: Option<f64>,
+    /// Share of the work of the base that the load takes; none without work or ledger.
+    pub load_share: Option<f64>,
 }
 
 /// When something happened first.

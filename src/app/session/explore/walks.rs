@@ -22,6 +22,8 @@ pub enum WalkQuantity {
     Strobes,
     /// RMS velocity.
     RmsVelocity,
+    /// Mean power into the load of a transducer.
+    LoadPower,
 }
 
 /// A scene without its own value of the field, and the axis over it.

@@ -5,7 +5,7 @@ use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};
 use crate::study::{Column, Values};
 
 /// The fields that make a map worth looking at, by the ends of their paths.
-const FIELDS: [&str; 31] = [
+const FIELDS: [&str; 41] = [
     "travel_limit_mm",
     "amplitude_g",
     "frequency_hz",
@@ -36,6 +36,16 @@ const FIELDS: [&str; 31] = [
     "to_g",
     "over_s",
     "to_hz",
+    "load_ohm",
+    "load_kohm",
+    "coupling_v_s_per_m",
+    "coupling_n_per_v",
+    "coil_ohm",
+    "inductance_mh",
+    "capacitance_nf",
+    "n_per_m",
+    "strength_n_mm4",
+    "gap_mm",
     "seed",
 ];
 
@@ -106,7 +116,8 @@ pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Opti
 pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> SweepAxis {
     let with_stops =
         ground(scene, when_on, &[SweepAxis { field: path.to_owned(), step: 1.0, ..SweepAxis::default() }]);
-    let signed = FieldPath::new(path).get(&with_stops).unwrap_or(1.0);
+    // an open circuit has a load without end
+    let signed = FieldPath::new(path).get(&with_stops).filter(|value| value.is_finite()).unwrap_or(1.0);
     let present = signed.abs();
     let name = path.rsplit('.').next().unwrap_or(path);
     let upward = |greatest: f64| {

@@ -1,5 +1,6 @@
 //! View of the map: every combination of two fields, each run from rest.
 
+mod best;
 mod coordinates;
 mod cuts;
 mod picture;
@@ -112,6 +113,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         picture.draw(&painter, &frame, map, &style);
         cuts::draw(&painter, &frame, (map, &scale), scene, &style);
         trail::draw(&painter, &frame, &style, &trail);
+        best::draw(&painter, &frame, (map, place), context.session.best.limit_mm(), &style);
         frame.axes(&painter, &style, scale.bar.as_ref().map(|bar| bar.label.as_str()));
         if let Some(rect) = frame.bar {
             bar(&painter, rect, &scale, &style);

@@ -1,0 +1,95 @@
+//! View of the power: what the load of a transducer takes, and the work of the base where there is none.
+
+use eframe::egui::{Label, Rect, RichText, Ui, UiBuilder, pos2, vec2};
+
+use crate::app::session::Session;
+use crate::app::words::numbers::{power, power_unit, three};
+use crate::dynamics::{Outcome, Summary};
+
+use super::ViewContext;
+use super::ranges::axis_end;
+use super::trace::{TraceQuantity, trace_ui};
+
+/// Height in points that the trace is left at least; a lower view has the trace alone.
+const TRACE: f32 = 110.0;
+
+/// What stands in place of the numbers where nothing gives power.
+const NONE: &str = "The work of the base. This scene has no transducer: add one to its file, such as \
+                    transducer: Electromagnetic(coupling_v_s_per_m: 5, coil_ohm: 40, load_ohm: 60), or open \
+                    the scene harvester.";
+
+/// Draws it.
+pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    let (style, area) = (context.style, ui.max_rect());
+    ui.painter().rect_filled(area, 0.0, style.ground());
+    let has_transducer = context.session.shown().has_transducer();
+    let words = if has_transducer { harvested(context.session) } else { vec![NONE.to_owned()] };
+    let place = area.shrink2(vec2(10.0, 6.0));
+    let wrapped = |text: &str| {
+        let galley = ui.painter().layout(text.to_owned(), style.body(), style.ink(), place.width());
+        galley.size().y + ui.spacing().item_spacing.y
+    };
+    let height = words.iter().map(|line| wrapped(line)).sum::<f32>() + 6.0;
+    let mut top = area.top();
+    if area.height() - height >= TRACE {
+        top += height;
+        let card = Rect::from_min_max(place.min, pos2(place.right(), top));
+        ui.scope_builder(UiBuilder::new().max_rect(card), |ui| {
+            for (i, line) in words.into_iter().enumerate() {
+                let colour = if i == 0 && has_transducer { style.ink() } else { style.faint() };
+                ui.add(Label::new(RichText::new(line).font(style.body()).color(colour)).wrap());
+            }
+        });
+    }
+    let quantity = match has_transducer {
+        true => {
+            let end = axis_end(context.memory.ranges.follow(context.session).load_power());
+            let (per_watt, unit) = power_unit(end);
+            TraceQuantity::LoadPower { per_watt: per_watt as u32, unit }
+        }
+        false => TraceQuantity::Power,
+    };
+    let below = UiBuilder::new().max_rect(area.with_min_y(top));
+    ui.scope_builder(below, |ui| trace_ui(ui, quantity, context));
+}
+
+/// What the transducer gives, in sentences: the numbers, and what they are means over.
+fn harvested(session: &Session) -> Vec<String> {
+    let now = session.player.state();
+    let output = session.shown().output(&now).filter(|own| own.power.is_finite());
+    let now = output.map_or(String::new(), |own| format!("; now {}", power(own.power)));
+    let known = session.settled_now();
+    let Some(summary) = known else {
+        return vec![format!("Into the load: the mean is being worked out{now}."), String::new()];
+    };
+    let Some(harvest) = summary.harvest else {
+        return vec![format!("Into the load: no mean is known{now}."), String::new()];
+    };
+    let (Some(load), Some(coil), Some(volt)) =
+        (harvest.mean_load_power, harvest.mean_coil_power, harvest.voltage_rms)
+    else {
+        return vec![format!("The run ended before there was a mean{now}."), String::new()];
+    };
+    let share = match harvest.load_share {
+        Some(share) => format!(", {} % of the work of the base", three(100.0 * share)),
+        None => String::new(),
+    };
+    vec![
+        format!("Into the load: mean {}{share}{now}.", power(load)),
+        format!("Coil: mean {}. Voltage: {} V RMS. {}", power(coil), three(volt), what_of(summary)),
+    ]
+}
+
+/// What the means are means over, and whether they are to be relied on.
+fn what_of(summary: &Summary) -> String {
+    let (from, to) = summary.window;
+    let length = three(to - from);
+    match (summary.outcome, summary.settled) {
+        (Outcome::Done, Some(true)) => format!("Means over {length} s of settled motion."),
+        (Outcome::Done, Some(false)) => {
+            format!("Not settled: means over the last {length} s, which may still change.")
+        }
+        (Outcome::Done, None) => format!("The shaking has no period: means over {length} s of it."),
+        _ => format!("The run ended early: means over the {length} s before."),
+    }
+}

@@ -1,0 +1,66 @@
+//! Sentences about the best stops of a scene.
+
+use crate::app::words::columns::column_info;
+use crate::app::words::numbers::{power, three};
+use crate::app::words::status::speed;
+use crate::numeric::short;
+use crate::study::{BestDesign, DesignRange, NoBest, Optimum};
+
+/// What a search has come to.
+#[derive(Debug, Clone, Copy)]
+pub enum Found<'a> {
+    /// It goes on after so many runs; what the coarse scan had.
+    Searching(u64, Option<&'a Optimum>),
+    /// It has ended.
+    Whole(&'a Result<BestDesign, NoBest>),
+    /// It has ended without an answer.
+    Nothing,
+}
+
+/// A value of what is made large, with its unit.
+fn value_of(column: &str, value: f64) -> String {
+    if column.ends_with("_w") { power(value) } else { format!("{} mm/s", speed(value)) }
+}
+
+/// What is found in runs from rest of `duration_s` seconds.
+pub fn sentence(found: &Found<'_>, column: &str, range: &DesignRange, duration_s: f64) -> String {
+    let name = column_info(column).map_or(column, |own| own.name);
+    let mm = |value: f64| format!("{} mm", short(value));
+    let design = match found {
+        Found::Searching(runs, None) => return format!("Looking for the best stops: {runs} runs."),
+        Found::Searching(runs, Some(best)) => {
+            let (at, value) = (mm(best.at[0]), value_of(column, best.value));
+            return format!("Looking for the best stops: {runs} runs; so far ±{at} with {value}.");
+        }
+        Found::Nothing => return "The search for the best stops ended without an answer.".to_owned(),
+        Found::Whole(Err(_)) => {
+            return format!(
+                "With stops anywhere between ±{} and ±{} no run has a {name}.",
+                short(range.low),
+                mm(range.high)
+            );
+        }
+        Found::Whole(Ok(design)) => design,
+    };
+    let (at, value) = (design.optimum.at[0], value_of(column, design.optimum.value));
+    let between = format!("between ±{} and ±{}", short(range.low), mm(range.high));
+    let runs = format!("from rest, in runs of {} s", three(duration_s));
+    if design.flat {
+        return format!("No stops are best: the {name} is {value} wherever they stand {between}, {runs}.");
+    }
+    let [low, high] = design.margins[0];
+    let side = |margin: Option<f64>, way: &str, end: f64| match margin {
+        Some(margin) => format!("{} further {way}", mm(margin)),
+        None => format!("nowhere further {way}, up to ±{}", mm(end)),
+    };
+    let border = match design.at_border[0] {
+        true => " It is an end of the range that was searched.",
+        false => "",
+    };
+    format!(
+        "Best stops: ±{}, where the {name} is largest, {value}, {runs}. A tenth of it is lost {} and {}.{border}",
+        mm(at),
+        side(low, "in", range.low),
+        side(high, "out", range.high)
+    )
+}

@@ -1,0 +1,288 @@
+//! Power of a transducer in the window, and the search for the best stops.
+
+use eframe::egui::{Event, Key, Modifiers, accesskit::Role};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use interwell::app::session::Session;
+use interwell::app::session::explore::WalkQuantity;
+use interwell::app::ui::settings::Settings;
+use interwell::app::views::View;
+use interwell::app::window::{Command, Window};
+use interwell::app::words::columns::column_info;
+use interwell::scene::{Excitation, FieldPath, Layout, Stops, Transducer};
+
+use crate::shared::axis;
+use crate::support::{LONG, PROJECTED, WIDE, command, is_painted, settled, sliced, wait_until, window};
+
+const LIMIT: &str = "stops.travel_limit_mm";
+const LOAD: &str = "transducer.load_ohm";
+
+#[track_caller]
+fn near(own: f64, known: f64, tolerance: f64) {
+    assert!((own - known).abs() <= tolerance, "{own:e} is not {known:e}");
+}
+
+fn number(session: &Session, path: &str) -> Option<f64> {
+    FieldPath::new(path).get(session.scene())
+}
+
+/// A window with the view of the power alone.
+fn alone(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {
+    let mut harness = window(preset, size, Settings::default());
+    for view in View::ALL {
+        command(&mut harness, Command::Show(view, view == View::Power));
+    }
+    harness.state_mut().session.restart();
+    harness.state_mut().session.player.set_playing(false);
+    harness.state_mut().session.wait_settled(LONG);
+    harness.run_steps(3);
+    harness
+}
+
+#[test]
+fn the_view_says_what_the_load_takes() {
+    for size in [WIDE, PROJECTED] {
+        let harness = alone("harvester", size);
+        let summary = *harness.state().session.settled_now().unwrap();
+        let harvest = summary.harvest.unwrap();
+        near(harvest.mean_load_power.unwrap(), 3.261_236_594e-4, 1e-12);
+        near(harvest.mean_coil_power.unwrap() / harvest.mean_load_power.unwrap(), 40.0 / 60.0, 1e-12);
+        near(harvest.load_share.unwrap(), 0.124_12, 1e-5);
+        // begins at rest
+        assert!(is_painted(
+            &harness,
+            "Into the load: mean 326 µW, 12.4 % of the work of the base; now 0 mW."
+        ));
+        assert!(is_painted(&harness, "Coil: mean 217 µW. Voltage: 0.140 V RMS."));
+        assert!(is_painted(&harness, "of settled motion."));
+        assert!(is_painted(&harness, "power into the load (mW)"));
+        assert_eq!(sliced(&harness), [""; 0]);
+    }
+}
+
+#[test]
+fn without_a_transducer_it_says_how_to_add_one() {
+    for size in [WIDE, PROJECTED] {
+        let harness = alone("paper", size);
+        assert!(is_painted(&harness, "This scene has no transducer: add one to its file"));
+        assert!(is_painted(&harness, "power (mW)") && !is_painted(&harness, "Into the load"));
+        assert_eq!(sliced(&harness), [""; 0]);
+    }
+}
+
+#[test]
+fn means_of_a_motion_that_has_not_settled_are_called_so() {
+    // 31 forcing periods of an irregular motion are no verdict
+    let mut harness = alone("harvester", WIDE);
+    let session = &mut harness.state_mut().session;
+    session.edit_once(|scene| {
+        (scene.stops, scene.run.duration_s) = (Stops::None, 10.0);
+        let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation else { panic!("a sine") };
+        *amplitude_g = 1.4;
+    });
+    session.wait_settled(LONG);
+    let says = match session.settled_now().unwrap().settled {
+        Some(true) => "of settled motion.",
+        Some(false) => "Not settled: means over the last",
+        None => panic!("a sine has a period"),
+    };
+    harness.run_steps(3);
+    assert!(is_painted(&harness, says));
+    // shaking without a period
+    harness.state_mut().session.edit_once(|scene| {
+        scene.excitation = Excitation::Noise { rms_g: 0.4, low_hz: 1.0, high_hz: 6.0, seed: 1, lines: 16 };
+    });
+    harness.state_mut().session.wait_settled(LONG);
+    harness.run_steps(3);
+    assert!(is_painted(&harness, "The shaking has no period: means over 5.00 s of it."));
+}
+
+#[test]
+fn the_load_is_a_slider_and_takes_both_its_ends_typed() {
+    let mut harness = window("harvester", WIDE, Settings::default());
+    harness.get_by_label("More").click();
+    harness.run_steps(15);
+    harness.get_by_role_and_label(Role::Slider, "coupling");
+    let mut typed = |text: &str| {
+        harness.get_by_role_and_label(Role::SpinButton, "load").click();
+        harness.run_steps(2);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        harness.run_steps(1);
+        harness.event(Event::Text(text.to_owned()));
+        harness.run_steps(2);
+        harness.key_press(Key::Enter);
+        harness.run_steps(2);
+        number(&harness.state().session, LOAD).unwrap()
+    };
+    assert_eq!(typed("inf"), f64::INFINITY);
+    assert_eq!(typed("0"), 0.0);
+    assert_eq!(typed("46.5"), 46.5);
+    assert_eq!(typed("-1"), 46.5);
+    let session = &mut harness.state_mut().session;
+    assert!(session.fault().is_none());
+    // three values are three steps back
+    assert!(session.undo() && session.undo() && session.undo() && !session.undo());
+    assert_eq!(number(session, LOAD), Some(60.0));
+    // a press of an arrow key on the slider is a step by ratio
+    harness.get_by_role_and_label(Role::Slider, "load").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    let load = number(&harness.state().session, LOAD).unwrap();
+    assert!((61.0..72.0).contains(&load), "{load}");
+}
+
+#[test]
+fn the_map_and_the_walks_go_over_the_load() {
+    let mut session = settled("harvester", &["run.duration_s=6", "run.settle_s=4"]);
+    assert!(session.map_axes().unwrap().iter().any(|axis| axis.field == LOAD));
+    assert!(session.map_fields().iter().any(|field| field == LOAD));
+    session
+        .map
+        .choose(Some([axis(LOAD, (20.0, 80.0, 20.0)), axis("excitation.amplitude_g", (0.9, 1.0, 0.1))]));
+    session.map.show(column_info("mean_load_power_w").unwrap());
+    session.want_map(0.0);
+    assert!(session.wait_for_map(LONG));
+    let map = session.map.map().unwrap();
+    let power = |column: usize| {
+        map.cell(column, 1).unwrap().0.summary().unwrap().harvest.unwrap().mean_load_power.unwrap()
+    };
+    assert!(power(1) > power(0) && power(2) > power(3), "{:?}", [0, 1, 2, 3].map(power));
+    let mut harness = window("harvester", WIDE, Settings::default());
+    harness.state_mut().session.explore.walks.chosen = Some(axis(LOAD, (20.0, 80.0, 20.0)));
+    command(&mut harness, Command::Arrange(Layout::Explore));
+    harness.get_by_label("Power").click();
+    wait_until("the walks", || {
+        harness.run_steps(1);
+        harness.state().session.explore.walks.found.is_whole()
+    });
+    assert_eq!(harness.state().session.explore.walks.quantity, WalkQuantity::LoadPower);
+    assert!(is_painted(&harness, "mean power into the load (µW)"));
+}
+
+/// A session on the prototype in short runs.
+fn short(changes: &[&str]) -> Session {
+    settled("paper", &[&["run.duration_s=4", "run.settle_s=2"], changes].concat())
+}
+
+#[test]
+fn the_best_stops_are_found_and_taken() {
+    let mut session = short(&["stops=None"]);
+    let before = session.scene().clone();
+    session.find_best_stops();
+    assert!(session.wait_for_best_stops(LONG));
+    let limit = session.best.limit_mm().unwrap();
+    // outward of 2 mm the mass rests
+    assert!((1.9..2.2).contains(&limit), "{limit}");
+    let words = session.best.words();
+    assert!(words.starts_with("Best stops: ±2."), "{words}");
+    for part in
+        ["the RMS velocity is largest", "from rest, in runs of 4.00 s", "further in and", "further out"]
+    {
+        assert!(words.contains(part), "{part}: {words}");
+    }
+    assert!(!session.is_at_best_stops());
+    session.go_to_best_stops();
+    assert!(session.is_at_best_stops() && number(&session, LIMIT) == Some(limit));
+    // the answer is about every place of the stops
+    session.poll();
+    assert!(session.best.is_shown());
+    assert!(session.undo() && *session.scene() == before && !session.undo());
+    session.poll();
+    assert!(session.best.is_shown());
+    // of another shaking nothing is known
+    session.edit_once(|scene| scene.mass_g = 16.0);
+    session.poll();
+    assert!(!session.best.is_shown() && session.best.limit_mm().is_none());
+}
+
+#[test]
+fn a_search_is_ended_by_a_change_and_by_a_hand() {
+    let mut session = settled("paper", &["run.duration_s=2000", "run.settle_s=1000", "run.recurrence=false"]);
+    session.find_best_stops();
+    assert!(session.best.is_running() && session.best.words().starts_with("Looking for the best stops"));
+    session.edit_once(|scene| scene.mass_g = 16.0);
+    session.poll();
+    assert!(!session.best.is_running() && !session.best.is_shown());
+    session.find_best_stops();
+    session.best.close();
+    assert!(!session.best.is_running() && !session.best.is_shown());
+}
+
+#[test]
+fn with_a_load_the_power_is_made_large() {
+    let mut session = settled("harvester", &["run.duration_s=4", "run.settle_s=2"]);
+    session.find_best_stops();
+    assert!(session.wait_for_best_stops(LONG));
+    let words = session.best.words();
+    assert!(words.contains("where the mean power into the load is largest, 4"), "{words}");
+    assert!((1.85..2.1).contains(&session.best.limit_mm().unwrap()), "{words}");
+}
+
+#[test]
+fn what_has_no_best_stops_says_so() {
+    // too weak to move anything, with stops wherever
+    let mut session = short(&["excitation=None"]);
+    session.find_best_stops();
+    assert!(session.wait_for_best_stops(LONG));
+    assert!(session.best.words().starts_with("No stops are best: the RMS velocity is 0.0 mm/s"));
+    assert!(session.best.limit_mm().is_none() && !session.is_at_best_stops());
+    session.switch_stops(false);
+    assert!(!session.is_at_best_stops());
+    let mut session = settled("uneven-stops", &[]);
+    session.find_best_stops();
+    assert!(!session.best.is_running() && session.best.words().contains("both stand equally far out"));
+    session.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 1.5, restitution: 0.36 });
+    session.poll();
+    assert!(!session.best.is_shown());
+}
+
+#[test]
+fn the_window_offers_the_search_and_marks_its_answer_on_the_map() {
+    let mut harness = window("paper", WIDE, Settings::default());
+    harness.state_mut().session.edit_once(|scene| {
+        (scene.run.duration_s, scene.run.settle_s) = (4.0, Some(2.0));
+    });
+    let axes = [axis(LIMIT, (1.0, 3.0, 0.5)), axis("excitation.amplitude_g", (0.5, 1.5, 0.5))];
+    harness.state_mut().session.map.choose(Some(axes));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
+    harness.run_steps(3);
+    // beside the slider and among the tools of the map
+    harness.get_by_label("Find the best stops");
+    harness.get_by_label("Best stops").click();
+    harness.run_steps(3);
+    assert!(harness.state_mut().session.wait_for_best_stops(LONG));
+    assert!(harness.state_mut().session.wait_for_map(LONG));
+    harness.run_steps(3);
+    let limit = harness.state().session.best.limit_mm();
+    assert!(is_painted(&harness, "Best stops: ±2.") && is_painted(&harness, "best stops"));
+    harness.get_by_label("Take the stops there").click();
+    harness.run_steps(3);
+    assert_eq!(number(&harness.state().session, LIMIT), limit);
+    assert!(is_painted(&harness, "The stops stand there."));
+    harness.get_by_label("Close").click();
+    harness.run_steps(3);
+    assert!(!is_painted(&harness, "est stops: ±"));
+}
+
+#[test]
+fn a_lesson_does_not_give_the_best_stops_away() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    harness.state_mut().open_lesson("08-design-it");
+    harness.run_steps(3);
+    assert!(harness.state().lesson().is_some());
+    command(&mut harness, Command::BestStops);
+    harness.state_mut().session.find_best_stops();
+    harness.run_steps(3);
+    assert!(!harness.state().session.best.is_shown());
+    for name in ["Find the best stops", "Best stops"] {
+        assert_eq!(harness.query_all_by_label(name).count(), 0);
+    }
+}
+
+#[test]
+fn a_scene_without_a_load_has_none_to_turn() {
+    let session = settled("paper", &[]);
+    assert_eq!(session.scene().transducer, Transducer::None);
+    assert!(session.number(LOAD).is_none() && !session.map_fields().iter().any(|field| field == LOAD));
+}
