@@ -108,7 +108,6 @@ impl Session {
         self.pins.poll();
         self.measured.poll();
         self.apply();
-        self.follow_best();
         self.follow_accuracy();
     }
 

@@ -55,27 +55,20 @@ pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 
 /// What the transducer gives, in sentences: the numbers, and what they are means over.
 fn harvested(session: &Session) -> Vec<String> {
-    let now = session.player.state();
-    let output = session.shown().output(&now).filter(|own| own.power.is_finite());
-    let now = output.map_or(String::new(), |own| format!("; now {}", power(own.power)));
-    let known = session.settled_now();
-    let Some(summary) = known else {
-        return vec![format!("Into the load: the mean is being worked out{now}."), String::new()];
+    let Some(summary) = session.settled_now() else {
+        return vec!["Into the load: the mean is being worked out.".to_owned(), String::new()];
     };
-    let Some(harvest) = summary.harvest else {
-        return vec![format!("Into the load: no mean is known{now}."), String::new()];
+    let harvest = summary.harvest;
+    let means = harvest.and_then(|own| Some((own.mean_load_power?, own.mean_coil_power?, own.voltage_rms?)));
+    let Some((load, coil, volt)) = means else {
+        return vec!["Into the load: the run ended before there was a mean.".to_owned(), String::new()];
     };
-    let (Some(load), Some(coil), Some(volt)) =
-        (harvest.mean_load_power, harvest.mean_coil_power, harvest.voltage_rms)
-    else {
-        return vec![format!("The run ended before there was a mean{now}."), String::new()];
-    };
-    let share = match harvest.load_share {
+    let share = match harvest.and_then(|own| own.load_share) {
         Some(share) => format!(", {} % of the work of the base", three(100.0 * share)),
         None => String::new(),
     };
     vec![
-        format!("Into the load: mean {}{share}{now}.", power(load)),
+        format!("Into the load: mean {}{share}.", power(load)),
         format!("Coil: mean {}. Voltage: {} V RMS. {}", power(coil), three(volt), what_of(summary)),
     ]
 }
@@ -89,7 +82,7 @@ fn what_of(summary: &Summary) -> String {
         (Outcome::Done, Some(false)) => {
             format!("Not settled: means over the last {length} s, which may still change.")
         }
-        (Outcome::Done, None) => format!("The shaking has no period: means over {length} s of it."),
+        (Outcome::Done, None) => format!("The shaking changes: means over {length} s of it."),
         _ => format!("The run ended early: means over the {length} s before."),
     }
 }

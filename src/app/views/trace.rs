@@ -312,15 +312,17 @@ pub(in crate::app) fn stretch(model: &Model) -> f64 {
     model.forcing_period().map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(most))
 }
 
-/// The path as lines. A line that turns on the spot is drawn with a tip that reaches beyond it: between stops
+/// The path as lines, without what is not known. A line that turns on the spot is drawn with a tip that
+/// reaches beyond it: between stops
 /// each flight is a line of its own, so that none is seen to go through.
 fn paths(samples: &[Sample], flights: bool, point: impl Fn(&Sample) -> PlotPoint) -> Vec<Vec<PlotPoint>> {
     let turns = |pair: &&[Sample]| pair[0].t == pair[1].t;
+    let line = |part: &[Sample]| part.iter().map(&point).filter(|own| !own.y.is_nan()).collect();
     if !flights || samples.windows(2).filter(turns).count() > MOST_FLIGHTS {
-        return vec![samples.iter().map(point).collect()];
+        return vec![line(samples)];
     }
     let parts = samples.chunk_by(|a, b| a.t != b.t);
-    parts.map(|part| part.iter().map(&point).collect()).collect()
+    parts.map(line).collect()
 }
 
 /// Each stop from when to when it was where, in s and mm; a stop that stayed is one line.

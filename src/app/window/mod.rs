@@ -194,6 +194,7 @@ impl Window {
                 }
             });
         }
+        self.session.follow_best();
         if self.session.best.is_shown() && !self.covered {
             let panel = Panel::top("best stops").frame(line);
             panel.show(ui, |ui| best_stops::answer_ui(ui, &mut self.session));

@@ -58,7 +58,8 @@ pub fn sentence(found: &Found<'_>, column: &str, range: &DesignRange, duration_s
         false => "",
     };
     format!(
-        "Best stops: ±{}, where the {name} is largest, {value}, {runs}. A tenth of it is lost {} and {}.{border}",
+        "Best stops: ±{}, where the {name} is largest, {value}, {runs}. A tenth of it is lost {} and \
+         {}.{border}",
         mm(at),
         side(low, "in", range.low),
         side(high, "out", range.high)

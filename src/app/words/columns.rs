@@ -61,7 +61,7 @@ pub static COLUMNS: [(&str, &[ColumnInfo]); 7] = [
     ]),
     ("Power", &[
         own("mean_load_power_w", "mean power into the load", "Of the transducer, over the settled window."),
-        own("mean_coil_power_w", "mean power lost in the coil", "Of the transducer, over the settled window."),
+        own("mean_coil_power_w", "mean power lost in the coil", "Of the transducer, as above."),
         own("voltage_rms_v", "RMS voltage", "Over the load of the transducer, in the settled window."),
     ]),
     ("Energy", &[

@@ -86,6 +86,7 @@ const UNIT: ((f64, f64, f64), Scale) = ((0.0, 1.0, 0.01), Scale::Fixed);
 const LONG: ((f64, f64, f64), Scale) = ((10.0, 60.0, 0.1), Scale::Value);
 const WIDE: ((f64, f64, f64), Scale) = ((1.0, 60.0, 0.1), Scale::Value);
 const LOAD: ((f64, f64, f64), Scale) = ((1.0, 1e4, 0.1), Scale::Ratio);
+const COUPLING: (f64, f64) = (-1e6, 1e6);
 const ANY_LOAD: (f64, f64) = (0.0, f64::INFINITY);
 const RAMP: ((f64, f64, f64), Scale) = ((1.0, 600.0, 1.0), Scale::Value);
 
@@ -95,11 +96,10 @@ const REBOUND_HOVER: &str =
     "Increase: a rebound keeps more of the speed, so that the mass chatters for longer before it rests.";
 const SHAKING_HOVER: &str =
     "Increase: the base pushes the mass harder. Beyond some amplitude it crosses to the other well.";
-const LOAD_HOVER: &str = "Increase: more voltage over the load and less current through it. The power into it is \
-                          largest somewhere between a short circuit (0) and an open one (inf), which both take \
-                          none. Either may be typed.";
-const COUPLING_HOVER: &str = "Increase: the same speed gives more voltage, and the load brakes the mass harder: \
-                              more power at first, and less once the mass crosses no longer.";
+const LOAD_HOVER: &str = "Increase: more voltage over the load, less current through it. The power is largest somewhere between a \
+     short circuit (0) and an open one (inf), which take none. Both may be typed.";
+const COUPLING_HOVER: &str = "Increase: the same speed gives more voltage, and the load brakes the mass harder. That is more power at \
+     first, and less once the mass crosses no longer.";
 const FASTER_HOVER: &str = "Increase: the pushes follow each other faster and last less long.";
 
 /// All of them, in the order of a scene.
@@ -134,12 +134,12 @@ pub static FIELDS: &[FieldInfo] = &[
         "Increase: the motion dies away faster."),
     field("transducer.load_ohm", "load", "ohm", LOAD, ANY_LOAD, LOAD_HOVER),
     field("transducer.load_kohm", "load", "kohm", LOAD, ANY_LOAD, LOAD_HOVER),
-    field("transducer.coupling_v_s_per_m", "coupling", "V s/m", ((0.0, 10.0, 0.05), Scale::Value), (-1e6, 1e6),
+    field("transducer.coupling_v_s_per_m", "coupling", "V s/m", ((0.0, 10.0, 0.05), Scale::Value), COUPLING,
         COUPLING_HOVER),
-    field("transducer.coupling_n_per_v", "coupling", "N/V", ((0.0, 5e-3, 1e-5), Scale::Value), (-1e6, 1e6),
+    field("transducer.coupling_n_per_v", "coupling", "N/V", ((0.0, 5e-3, 1e-5), Scale::Value), COUPLING,
         COUPLING_HOVER),
     field("transducer.coil_ohm", "coil", "ohm", ((0.0, 200.0, 1.0), Scale::Value), SIZE,
-        "Increase: the coil turns a larger part of the electrical power into heat, and brakes the mass less."),
+        "Increase: more of the electrical power becomes heat in the coil, which brakes the mass less."),
     field("transducer.inductance_mh", "inductance", "mH", ((0.0, 200.0, 1.0), Scale::Value), (0.0, 1e9),
         "Increase: the current follows the velocity more slowly, and fast motion gives less of it."),
     field("transducer.capacitance_nf", "capacitance", "nF", ((1.0, 200.0, 1.0), Scale::Value), (1e-6, 1e9),
@@ -191,6 +191,7 @@ const OTHERS: &[(&str, &str, &str)] = &[
     ("excitation.seed", "seed", ""),
     ("excitation.lines", "lines of the noise", ""),
     ("excitation.path", "record", ""),
+    ("start.electrical", "start, current or voltage", ""),
     ("run.settle_s", "settling time", "s"),
     ("run.tolerance", "tolerance", ""),
 ];
