@@ -36,10 +36,11 @@ pub struct Arguments {
 
     /// A field of the design and its range (repeatable, at most four); a step is that of the first scan
     /// [default: a 256th of the range; of two fields a 32nd, of three a 12th, of four an 8th]
-    #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true, required = true)]
+    #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// What is to be largest: a number of the summary, such as mean_load_power_w of a scene with a transducer
+    /// What is to be largest: a number of the summary, such as mean_power_w, into the load, of a scene
+    /// with a transducer
     #[arg(long, value_name = "COLUMN", default_value = "rms_velocity_m_per_s", visible_alias = "maximize")]
     pub maximise: String,
 
@@ -201,6 +202,11 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
 /// The ranges of `--over`.
 fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Failure> {
     let mut ranges: Vec<DesignRange> = Vec::new();
+    if over.is_empty() {
+        return Err(Failure::argument(
+            "--over is missing: name a field of the design, such as --over stops.travel_limit_mm=0.5:7",
+        ));
+    }
     for text in over {
         let wrong = |problem: String| Failure::argument(format!("--over {text}: {problem}"));
         let form = || wrong("write FIELD=A:B, such as stops.travel_limit_mm=0.5:7".into());
@@ -241,9 +247,13 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
     Ok(ranges)
 }
 
+/// A shorter name of the power into the load.
+const POWER: (&str, &str) = ("mean_power_w", "mean_load_power_w");
+
 /// The column called `name`, where it is a number.
 fn number(option: &str, name: &str) -> Result<&'static SummaryField, Failure> {
     let is_number = |own: &&SummaryField| matches!(own.read, Read::Number(_) | Read::Count(_));
+    let name = if name == POWER.0 { POWER.1 } else { name };
     let found = SummaryField::find(name).filter(is_number);
     found.ok_or_else(|| {
         let known: Vec<&str> = SUMMARY_FIELDS.iter().filter(is_number).map(|own| own.name).collect();

@@ -25,7 +25,7 @@ Examples:
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// Scene files or built-in scenes; --set changes each of them
-    #[arg(value_name = "SCENE", required = true, num_args = 1..)]
+    #[arg(value_name = "SCENE", default_value = "paper")]
     pub scenes: Vec<String>,
 
     /// The scene whose excitation, a sine, and run all of them have [default: the first]

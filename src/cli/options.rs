@@ -120,7 +120,7 @@ commands! {
     /// The least value of a field from which on a motion from rest is released, crosses or is interwell
     threshold Threshold " [SCENE]";
     /// Scenes side by side under one sine: least amplitudes, speed, reach, band of frequencies, sensitivity
-    compare Compare " SCENE..";
+    compare Compare " [SCENE]..";
     /// The place in some fields where a result is largest, for one environment or several, with its margins
     best Best " [SCENE] --over FIELD=A:B";
     /// Amplitude and power spectral density of the settled motion over frequency: CSV

@@ -43,6 +43,8 @@ presets! {
     "uneven-stops": "the prototype between unequal stops: two different rebounds, and two thresholds";
     "walking": "the prototype carried by a walking person: crosses in every step with stops at 0.6 mm";
     "random-shaking": "the prototype under noise: crosses with stops at 1 mm, and not without stops";
+    "balanced": "the prototype with a spring in place of stops that leaves an equally low barrier";
+    "magnet": "the same with two magnets in place of the spring: crosses from 0.14 g";
     "harvester": "the prototype with a coil and a load: the power, and the load that takes most of it";
     "nominal-cubic": "a textbook double well with the prototype's mass; its map has 41 x 101 cells";
     "monostable": "one well for comparison: nothing to cross, and no least shaking";

@@ -5,6 +5,7 @@
 //! as the text has. Numbers that depend on rounding, those of irregular motion, are held within what the
 //! words allow.
 
+mod alternatives;
 mod harvester;
 mod impact_oscillator;
 mod prototype;
@@ -83,6 +84,8 @@ texts! {
     "uneven-stops": prototype::uneven_stops;
     "walking": prototype::walking;
     "random-shaking": prototype::random_shaking;
+    "balanced": alternatives::balanced;
+    "magnet": alternatives::magnet;
     "harvester": harvester::harvester;
     "nominal-cubic": textbook::nominal_cubic;
     "monostable": textbook::monostable;

@@ -35,7 +35,7 @@ const fn known(
 use Regime::{Crossing, Interwell, Intrawell, OneWell};
 
 /// All but the two that never repeat.
-const KNOWN: [Known; 16] = [
+const KNOWN: [Known; 18] = [
     known("paper", Interwell, Some(1), (30, 600), 0.049_494_877_83, 0.0015),
     known("paper-table", Interwell, Some(1), (30, 600), 0.049_140_721_78, 0.0015),
     known("paper-unconstrained", Intrawell, Some(1), (0, 0), 0.017_170_973_36, 0.007_239_045_314),
@@ -43,6 +43,8 @@ const KNOWN: [Known; 16] = [
     known("uneven-stops", Interwell, Some(1), (30, 630), 0.051_828_258_00, 0.0017),
     known("walking", Crossing, None, (211, 2022), 0.016_279_666_40, 0.0006),
     known("random-shaking", Crossing, None, (85, 937), 0.015_280_332_87, 0.001),
+    known("balanced", Interwell, Some(1), (60, 0), 0.106_992_269_4, 0.006_798_103_290),
+    known("magnet", Interwell, Some(1), (60, 0), 0.123_181_595_2, 0.007_482_460_996),
     known("harvester", Interwell, Some(1), (30, 600), 0.046_627_864_30, 0.0015),
     known("nominal-cubic", Interwell, Some(1), (30, 660), 0.114_697_633_3, 0.004),
     known("monostable", OneWell, Some(1), (60, 0), 0.065_565_728_46, 0.003_591_152_840),

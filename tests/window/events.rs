@@ -11,7 +11,7 @@ use interwell::app::window::{Command, Window};
 use interwell::dynamics::EventKind;
 use interwell::study::{Watch, events_table, watched_events};
 
-use crate::support::{PROJECTED, WIDE, command, is_painted, session, sliced, window};
+use crate::support::{PROJECTED, WIDE, command, is_painted, session, settled, sliced, window};
 
 /// The preset with the table of events alone, after some seconds, standing.
 fn listed(preset: &str, size: [f32; 2], seconds: usize) -> Harness<'static, Window> {
@@ -64,7 +64,7 @@ fn events_have_the_columns_of_the_command_line_and_two_more() {
 #[test]
 fn a_compliant_contact_has_no_loss_of_one_instant() {
     let mut own =
-        session("paper", &["stops=Hertz(travel_limit_mm:1.5,radius_mm:5,young_gpa:69,loss_s_per_m:4.854)"]);
+        settled("paper", &["stops=Hertz(travel_limit_mm:1.5,radius_mm:5,young_gpa:69,loss_s_per_m:4.854)"]);
     own.player.speed = 10.0;
     (0..20).for_each(|_| own.player.tick(0.1));
     let watch = own.player.watch();

@@ -15,7 +15,7 @@ use crate::system::files;
 use super::Window;
 use super::leave::{self, Answer, Next};
 use super::lessons;
-use super::measured_dialog::ENDINGS;
+use super::measured_dialog::{ENDINGS, is_measured};
 use super::messages::CANNOT_OPEN;
 use super::path_dialog::{Ended, PathDialog};
 use super::wanted::{Chosen, Wanted};
@@ -184,7 +184,6 @@ impl Window {
                 self.leave_for(ctx, Next::Text(text));
             }
         }
-        self.take_figure();
         self.tell_written();
         let dirty = if self.is_unsaved() { "* " } else { "" };
         let name = self.lesson().map_or(&self.session.scene().title, |own| &own.lesson().title);
@@ -192,6 +191,16 @@ impl Window {
         if title != self.titled {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.titled = title;
+        }
+    }
+
+    /// Takes a file that was dropped on the window: measured data, a scene or a lesson.
+    pub fn take_dropped(&mut self, ctx: &egui::Context, path: &Path) {
+        match is_measured(path) {
+            true if self.waits_for_answer() && self.columns.is_none() => {}
+            true if self.lesson().is_some() => self.messages.tell("Leave the lesson first"),
+            true => self.open_measured(path),
+            false => self.leave_for(ctx, Next::Open(path.to_string_lossy().into_owned())),
         }
     }
 
@@ -220,7 +229,6 @@ impl Window {
                 Answer::Cancel => self.after_save = None,
             }
         }
-        self.measured_ui(ui);
         if let Some(typed) = &mut self.typed
             && let Some(ended) = typed.ui(ui)
         {
@@ -230,7 +238,6 @@ impl Window {
                 self.take_file(ctx, wanted, path);
             }
         }
-        self.figure_ui(ui);
         if ui.input(|input| !input.raw.hovered_files.is_empty()) {
             let painter =
                 ctx.layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));

@@ -2,27 +2,16 @@
 
 use std::path::Path;
 
-use eframe::egui::{Context, Ui};
+use eframe::egui::Ui;
 
 use crate::app::session::measured::MeasuredRecord;
 use crate::app::views::View;
 use crate::scene::Quantity;
 
 use super::Window;
-use super::leave::Next;
-use super::measured_dialog::{Ended, MeasuredDialog, is_measured};
+use super::measured_dialog::{Ended, MeasuredDialog};
 
 impl Window {
-    /// Takes a file that was dropped on the window: measured data, a scene or a lesson.
-    pub fn take_dropped(&mut self, ctx: &Context, path: &Path) {
-        match is_measured(path) {
-            true if self.waits_for_answer() && self.columns.is_none() => {}
-            true if self.lesson().is_some() => self.messages.tell("Leave the lesson first"),
-            true => self.open_measured(path),
-            false => self.leave_for(ctx, Next::Open(path.to_string_lossy().into_owned())),
-        }
-    }
-
     /// Asks for the columns of a file of measured data.
     pub fn open_measured(&mut self, path: &Path) {
         self.columns = Some(MeasuredDialog::new(path, &self.wake));

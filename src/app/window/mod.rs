@@ -215,6 +215,9 @@ impl Window {
         }
         self.lecturer_ui(&ctx);
         self.questions_ui(ui, &ctx);
+        self.measured_ui(ui);
+        self.take_figure();
+        self.figure_ui(ui);
         self.glossary = self.glossary && glossary_ui(ui);
         self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened));
         self.messages.ui(ui);

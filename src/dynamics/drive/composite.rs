@@ -132,7 +132,7 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         let order = order as u64;
         let lines = self.lines.count() as u64;
         tones * (15 + order) / 5
-            + lines * (15 + order) / 30
+            + lines * (15 + order) / 20
             + chirps * (120 + order) / 4
             + 20 * self.records.len() as u64
     }

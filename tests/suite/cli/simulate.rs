@@ -97,7 +97,7 @@ fn the_last_line_says_that_a_run_ended_early_and_strict_fails() {
     headless("simulate --strict --out /dev/null --set run.duration_s=1 --set run.settle_s=0")
         .assert()
         .success();
-    refused(headless("sweep --strict"), &["--strict"]);
+    refused(headless("section --strict"), &["--strict"]);
 }
 
 #[test]

@@ -89,14 +89,6 @@ fn formula() -> impl Strategy<Value = Mechanism> {
             *all.last_mut().unwrap() = 1.0;
             polynomial(all)
         }),
-        // a strength of 1 in N m^4 at a gap of 1 m
-        2 => (-3.0..-0.3f64, 0.0..0.2f64, 0.5..1.5f64).prop_map(|(n_per_m, strength, gap)| {
-            Mechanism::Sum(vec![
-                Mechanism::Linear { n_per_m },
-                Mechanism::Cubic { linear_n_per_m: 0.0, cubic_n_per_m3: 1.0 },
-                Mechanism::Magnet { strength_n_mm4: 1e12 * strength, gap_mm: 1e3 * gap },
-            ])
-        }),
         1 => prop_oneof![
             Just(polynomial(vec![0.0])),
             (-2.0..2.0f64).prop_map(move |c| polynomial(vec![c])),

@@ -1,0 +1,57 @@
+//! Scenes with another way to a low barrier than stops.
+
+use interwell::study::Onset;
+
+use super::super::support::*;
+use super::*;
+
+/// Height in mJ from the right well to the barrier of a built-in scene with fields changed.
+fn height(name: &str, changes: &[&str]) -> f64 {
+    1e3 * mechanism(&changed(name, changes)).landscape.barrier.unwrap().from_right_j
+}
+
+/// What both scenes have in common; the threshold is looked for in `range`.
+fn low_barrier(text: &mut Text, name: &str, range: std::ops::Range<f64>) {
+    let prototype = mechanism(&changed("paper", &[]));
+    let climbed = 1e3 * (prototype.curve.potential(0.0) - prototype.curve.potential(1.5e-3));
+    near_relative(height(name, &[]), climbed, 1e-9);
+    let whole = 1e3 * prototype.landscape.barrier.unwrap().from_right_j;
+    text.says(&format!("Of the barrier of {whole:.3} mJ"));
+    text.says(&format!("{climbed:.4} mJ, as much as the mass has to climb from a stop at 1.5 mm"));
+    let own = least(Onset::Crossing, name, &[], range);
+    let stopped = least(Onset::Crossing, "paper", &[], 0.5..1.0);
+    text.says(&format!("crosses from {own:.2} g on, where it takes {stopped:.2} g from that stop"));
+    let settled = settled(name, &[]);
+    crosses(&settled);
+    let reach = 1e3 * settled.max_abs_x.unwrap();
+    text.says(&format!(
+        "in every period, at {:.0} mm/s, and swings {reach:.1} mm to each side",
+        rms(&settled)
+    ));
+}
+
+pub fn balanced(text: &mut Text) {
+    low_barrier(text, "balanced", 0.15..0.25);
+    let stiffness = 50.489_568_209_863_194;
+    text.says(&format!("A spring of {stiffness:.2} N/m"));
+    let other = |share: f64| height("balanced", &[&format!("mechanism.1.n_per_m={}", share * stiffness)]);
+    let (stiffer, softer) = (other(1.01), other(0.99));
+    text.says(&format!("A spring 1 % stiffer leaves {stiffer:.4} mJ, a softer one {softer:.4} mJ"));
+    let raised = |name: &str, field: &str| {
+        100.0 * (height(name, &[&format!("{field}={}", 1.01 * 2.7)]) / height(name, &[]) - 1.0)
+    };
+    let with = raised("balanced", "mechanism.0.preload_mm");
+    let without = raised("paper-unconstrained", "mechanism.preload_mm");
+    text.says(&format!("1 % larger raises the barrier by {with:.1} %, without the spring by {without:.1} %"));
+}
+
+pub fn magnet(text: &mut Text) {
+    low_barrier(text, "magnet", 0.1..0.2);
+    let from = least(Onset::Crossing, "magnet", &[], 0.1..0.2);
+    text.says(&format!("in place of the spring: crosses from {from:.2} g"));
+    let strength = 1_331.382_602_919_717_3;
+    let other = |share: f64| height("magnet", &[&format!("mechanism.1.strength_n_mm4={}", share * strength)]);
+    let (stronger, weaker) = (other(1.01), other(0.99));
+    text.says(&format!("Magnets 1 % stronger leave {stronger:.4} mJ, weaker ones {weaker:.4} mJ"));
+    text.says("at x = 0");
+}
