@@ -96,10 +96,11 @@ const REBOUND_HOVER: &str =
     "Increase: a rebound keeps more of the speed, so that the mass chatters for longer before it rests.";
 const SHAKING_HOVER: &str =
     "Increase: the base pushes the mass harder. Beyond some amplitude it crosses to the other well.";
-const LOAD_HOVER: &str = "Increase: more voltage over the load, less current through it. The power is largest somewhere between \
-     a short circuit (0) and an open one (inf), which take none. Both may be typed.";
-const COUPLING_HOVER: &str = "Increase: the same speed gives more voltage, and the load brakes the mass harder. That is more power \
-     at first, and less once the mass crosses no longer.";
+const LOAD_HOVER: &str = "Increase: more voltage over the load, less current through it. The power is \
+                          largest somewhere between a short circuit (0) and an open one (inf), which take \
+                          none. Both may be typed.";
+const COUPLING_HOVER: &str = "Increase: the same speed gives more voltage, and the load brakes the mass \
+                              harder. That is more power at first, and less once the mass crosses no longer.";
 const FASTER_HOVER: &str = "Increase: the pushes follow each other faster and last less long.";
 
 /// All of them, in the order of a scene.
