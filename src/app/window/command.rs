@@ -197,6 +197,8 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("", control(Key::Y), C::Redo, Joined),
         Item(DISCARD, plain(Key::Home), C::BackToStart,
             As("Time", "discard your changes: scene, view and time as opened")),
+        Item("Find the best stops", plain(Key::B), C::BestStops,
+            As("Scene", "search for the stops with which the mass moves fastest, or gives most power")),
         Line,
         Item("Copy the scene as text", control(Key::C), C::CopyScene,
             As("Scene", "copy, paste the scene as text")),
@@ -240,8 +242,6 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("Cover the results", plain(Key::C), C::Cover,
             As("Views", "cover the motion and all results, until C again: predict first")),
         Item("What it would take", plain(Key::H), C::Ways, As("Views", "what it would take to cross")),
-        Item("Find the best stops", plain(Key::B), C::BestStops,
-            As("Views", "search for the stops with which the mass moves fastest, or gives most power")),
         Item("Full screen", plain(Key::F11), C::FullScreen, As("Views", "full screen")),
     ]),
     ("Motion", &[
