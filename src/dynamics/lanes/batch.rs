@@ -1,4 +1,4 @@
-//! Batch: lanes that hold a motion each, and the steps that they take together.
+//! Batch: motions in groups by the shape of their force, and the steps that a group takes together.
 
 use super::columns::{Columns, LaneMotion, Trial};
 use crate::dynamics::drive::form::clock;
@@ -13,8 +13,12 @@ use crate::dynamics::state::Contact;
 use crate::dynamics::step::stepper::Step;
 use crate::numeric::{GaussLegendre, Lanes, Scalar};
 
-/// Steps of the batch between two checks of the budget and the cancel flag.
+/// Steps of a group between two checks of the budget and the cancel flag.
 const BATCH_STEPS: u64 = 256;
+
+/// Motions under way, in widths of the batch, where their forces have several shapes: of the shapes that are
+/// worth the while one always has enough of them to fill its lanes.
+const UNDER_WAY: usize = 4;
 
 /// A run and what it is made of.
 pub(super) struct Prepared<'a> {
@@ -29,11 +33,29 @@ pub(super) struct Prepared<'a> {
 /// What is done with a motion that has ended: its place, the motion, what it began as, and its outcome.
 pub(super) type Ended<'r> = dyn FnMut(usize, LaneMotion, &Begun<f64>, Outcome) + 'r;
 
-/// A lane: a motion, and what it began as.
-pub(super) struct Lane<'a> {
+/// A motion under way, and what it began as.
+struct Member<'a> {
     index: usize,
     motion: Box<LaneMotion<'a>>,
     begun: Begun<f64>,
+}
+
+/// Motions whose force has one shape at present.
+struct Group<const W: usize> {
+    columns: Box<Columns<W>>,
+    series: Box<Series<Lanes<W>>>,
+    /// The motion in each lane.
+    lanes: [Option<usize>; W],
+    /// Motions that wait for a lane.
+    waiting: Vec<usize>,
+    rounds: u64,
+}
+
+impl<const W: usize> Group<W> {
+    /// Motions whose next step is one of this group's.
+    fn ready(&self) -> usize {
+        self.lanes.iter().flatten().count() + self.waiting.len()
+    }
 }
 
 pub(super) struct Batch<'a, 'r, const W: usize> {
@@ -41,9 +63,10 @@ pub(super) struct Batch<'a, 'r, const W: usize> {
     request: &'a Request<'a>,
     ended: &'r mut Ended<'r>,
     next: usize,
-    lanes: [Option<Lane<'a>>; W],
-    columns: Box<Columns<W>>,
-    series: Box<Series<Lanes<W>>>,
+    members: Vec<Option<Member<'a>>>,
+    /// Places among the members that are free.
+    free: Vec<usize>,
+    groups: Vec<Group<W>>,
     rule: GaussLegendre<Lanes<W>>,
     order: usize,
     tolerance_log2: f64,
@@ -51,99 +74,85 @@ pub(super) struct Batch<'a, 'r, const W: usize> {
 
 impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     pub fn new(prepared: &'a [Prepared<'a>], request: &'a Request<'a>, ended: &'r mut Ended<'r>) -> Self {
-        let most = prepared.iter().map(|own| own.equation.most_products()).max().unwrap_or(0);
-        let mut bundle = Self {
+        Self {
             prepared,
             request,
             ended,
             next: 0,
-            lanes: [const { None }; W],
-            columns: Box::new(Columns::new()),
-            series: Box::new(Series::new(most)),
+            members: (0..UNDER_WAY * W).map(|_| None).collect(),
+            free: (0..UNDER_WAY * W).rev().collect(),
+            groups: Vec::new(),
             rule: f64::gauss_legendre(1).map(|value| Lanes([value; W])),
             order: 0,
             tolerance_log2: 0.0,
-        };
-        for lane in 0..W {
-            bundle.start_next(lane);
         }
-        if let Some(first) = bundle.lanes.iter().flatten().next() {
-            let settings = &first.motion.stepper.settings;
-            (bundle.order, bundle.tolerance_log2) = (settings.order, settings.tolerance_log2);
-            let rule = first.motion.record.rule_of_steps();
-            bundle.rule = rule.map(|value| Lanes([value; W]));
-        }
-        bundle
-    }
-
-    /// Puts the next run into a lane.
-    fn start_next(&mut self, lane: usize) {
-        self.lanes[lane] = self.prepared.get(self.next).map(|own| {
-            let clock = clock(own.model, own.equation.unit);
-            let (model, request) = (own.model, self.request);
-            let motion = Motion::new(model, request, model.tolerance, own.equation, clock, own.drive);
-            let mut motion = Box::new(match own.pursuit {
-                Some(pursuit) => motion.pursuing(pursuit, model),
-                None => motion.with_recurrence(model.recurrence, model),
-            });
-            let begun = motion.begin(model);
-            Lane { index: self.next, motion, begun }
-        });
-        self.next += 1;
-    }
-
-    /// Ends the run of a lane and takes up the next.
-    fn end(&mut self, lane: usize, outcome: Outcome) {
-        if let Some(Lane { index, motion, begun }) = self.lanes[lane].take() {
-            (self.ended)(self.prepared[index].place, *motion, &begun, outcome);
-        }
-        self.start_next(lane);
     }
 
     #[inline(always)]
     pub fn run(mut self) {
-        let mut rounds = 0;
+        while let Some(group) = self.fullest() {
+            self.step(group);
+        }
+    }
+
+    /// The group with the most motions that are ready for it, once it can fill its lanes or no more can be
+    /// started; none at the end.
+    fn fullest(&mut self) -> Option<usize> {
         loop {
-            for lane in 0..W {
-                if !self.columns.active[lane] {
-                    self.prepare_lane(lane);
-                }
-            }
-            if !self.columns.active.contains(&true) {
-                return;
-            }
-            loop {
-                let trial = self.columns.step(&mut self.series, &self.rule, self.order, self.tolerance_log2);
-                rounds += 1;
-                for lane in 0..W {
-                    if trial.taken[lane] & self.columns.logged[lane] {
-                        self.log_step(lane, &trial);
-                    }
-                }
-                if rounds % BATCH_STEPS == 0 {
-                    self.check_budgets();
-                    break;
-                }
-                if trial.stopped.contains(&true) {
-                    for lane in 0..W {
-                        if trial.stopped[lane] {
-                            self.store(lane, &trial);
-                        }
-                    }
-                    break;
-                }
+            let fullest = (0..self.groups.len()).max_by_key(|own| self.groups[*own].ready());
+            let ready = fullest.map_or(0, |own| self.groups[own].ready());
+            if ready >= W || !self.start_next() {
+                return fullest.filter(|_| ready > 0);
             }
         }
     }
 
-    /// Goes on with the motion of a lane alone until its steps are event-free and its force has the shape
-    /// that the other lanes have, or no run is left.
-    fn prepare_lane(&mut self, lane: usize) {
-        while let Some(own) = &mut self.lanes[lane] {
+    /// Starts the next run; false where there is none, or no room.
+    fn start_next(&mut self) -> bool {
+        let Some(own) = self.prepared.get(self.next) else { return false };
+        let Some(place) = self.free.pop() else { return false };
+        let clock = clock(own.model, own.equation.unit);
+        let (model, request) = (own.model, self.request);
+        let motion = Motion::new(model, request, model.tolerance, own.equation, clock, own.drive);
+        let mut motion = Box::new(match own.pursuit {
+            Some(pursuit) => motion.pursuing(pursuit, model),
+            None => motion.with_recurrence(model.recurrence, model),
+        });
+        if self.order == 0 {
+            let settings = &motion.stepper.settings;
+            (self.order, self.tolerance_log2) = (settings.order, settings.tolerance_log2);
+            self.rule = motion.record.rule_of_steps().map(|value| Lanes([value; W]));
+        }
+        let begun = motion.begin(model);
+        self.members[place] = Some(Member { index: self.next, motion, begun });
+        self.next += 1;
+        self.wait(place);
+        true
+    }
+
+    /// Ends the run of a member.
+    fn end(&mut self, place: usize, outcome: Outcome) {
+        if let Some(Member { index, motion, begun }) = self.members[place].take() {
+            (self.ended)(self.prepared[index].place, *motion, &begun, outcome);
+            self.free.push(place);
+        }
+    }
+
+    /// Lets a member wait for a lane of the group of its force, once its steps are event-free.
+    fn wait(&mut self, place: usize) {
+        if let Some(group) = self.prepare(place) {
+            self.groups[group].waiting.push(place);
+        }
+    }
+
+    /// Goes on with a motion alone until its steps are event-free; the group of its force then, none where
+    /// the run has ended.
+    fn prepare(&mut self, place: usize) -> Option<usize> {
+        while let Some(own) = &mut self.members[place] {
             let left = match own.motion.left() {
                 Ok(left) => left,
                 Err(outcome) => {
-                    self.end(lane, outcome);
+                    self.end(place, outcome);
                     continue;
                 }
             };
@@ -151,26 +160,94 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
             if motion.state.contact == Contact::Free
                 && motion.stepper.flies_freely(&motion.state)
                 && motion.has_budget_for(2 * BATCH_STEPS)
-                && self.columns.load(lane, own.index, motion)
             {
-                return;
+                let force = &motion.stepper.mode(&motion.state).force;
+                let found = self.groups.iter().position(|own| own.columns.takes(force));
+                return Some(found.unwrap_or_else(|| {
+                    self.groups.push(Group {
+                        columns: Box::new(Columns::new(force)),
+                        series: Box::new(Series::new(force.products())),
+                        lanes: [None; W],
+                        waiting: Vec::new(),
+                        rounds: 0,
+                    });
+                    self.groups.len() - 1
+                }));
             }
             if let Some(outcome) = motion.proceed(left).or_else(|| motion.spent()) {
-                self.end(lane, outcome);
+                self.end(place, outcome);
+            }
+        }
+        None
+    }
+
+    /// Steps a group until it has fewer motions than lanes, or once more than that.
+    #[inline(always)]
+    fn step(&mut self, group: usize) {
+        loop {
+            self.fill(group);
+            let Group { columns, series, rounds, .. } = &mut self.groups[group];
+            let trial = loop {
+                let trial = columns.step(series, &self.rule, self.order, self.tolerance_log2);
+                *rounds += 1;
+                let logs = (0..W).any(|lane| trial.taken[lane] & columns.logged[lane]);
+                if logs || *rounds % BATCH_STEPS == 0 || trial.stopped.contains(&true) {
+                    break trial;
+                }
+            };
+            let check = *rounds % BATCH_STEPS == 0;
+            for lane in 0..W {
+                if trial.taken[lane] & self.groups[group].columns.logged[lane] {
+                    self.log_step(group, lane, &trial);
+                }
+            }
+            for lane in 0..W {
+                if trial.stopped[lane] {
+                    self.store(group, lane, &trial);
+                }
+            }
+            if check {
+                self.check_budgets(group);
+            }
+            if self.groups[group].ready() < W {
+                return;
             }
         }
     }
 
-    /// Stores a lane back to its motion, which takes the step on which an event is possible.
-    fn store(&mut self, lane: usize, trial: &Trial<W>) {
-        let Some(own) = &mut self.lanes[lane] else { return };
-        let motion = &mut own.motion;
-        self.columns.store(lane, motion);
+    /// Loads motions that wait into the lanes that are free.
+    fn fill(&mut self, group: usize) {
+        let Group { columns, lanes, waiting, .. } = &mut self.groups[group];
+        for (lane, held) in lanes.iter_mut().enumerate().filter(|(_, held)| held.is_none()) {
+            let Some(place) = waiting.pop() else { return };
+            if let Some(own) = &self.members[place] {
+                columns.load(lane, own.index, &own.motion);
+                *held = Some(place);
+            }
+        }
+    }
+
+    /// The motion of a lane, where it holds one.
+    fn member(&mut self, group: usize, lane: usize) -> Option<(usize, &mut Group<W>, &mut Member<'a>)> {
+        let group = &mut self.groups[group];
+        let place = group.lanes[lane]?;
+        let member = self.members[place].as_mut()?;
+        Some((place, group, member))
+    }
+
+    /// Stores a lane back to its motion, which takes the step on which an event is possible; loads it again
+    /// where it stays in the group.
+    fn store(&mut self, group: usize, lane: usize, trial: &Trial<W>) {
+        let order = self.order;
+        let Some((place, own, member)) = self.member(group, lane) else { return };
+        let motion = &mut member.motion;
+        own.lanes[lane] = None;
+        own.columns.store(lane, motion);
         let left = motion.stepper.clock.between(&motion.state.at, &motion.stepper.end);
         let flow = if trial.holds[lane] && trial.length.0[lane] < left {
-            copy_lane(&self.series, lane, self.order, &mut motion.stepper.series);
+            copy_lane(&own.series, lane, order, &mut motion.stepper.series);
             let alone = &mut motion.stepper.series;
-            alone.measured = self.columns.inside[lane].then(|| (trial.length.0[lane], trial.squared.0[lane]));
+            alone.measured = own.columns.inside[lane].then(|| (trial.length.0[lane], trial.squared.0[lane]));
             motion.stepper.evaluations += 1;
             motion.stepper.cursor = Some(trial.drive_at_end(lane));
             motion.take(&Step { length: trial.length.0[lane], arrival: None, end: trial.end(lane) })
@@ -178,15 +255,28 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
             motion.fly(left)
         };
         if let Some(outcome) = flow.or_else(|| motion.spent()) {
-            self.end(lane, outcome);
+            self.end(place, outcome);
+        }
+        match self.prepare(place) {
+            Some(other) if other == group => self.load(group, lane, place),
+            Some(other) => self.groups[other].waiting.push(place),
+            None => {}
+        }
+    }
+
+    fn load(&mut self, group: usize, lane: usize, place: usize) {
+        if let Some(own) = &self.members[place] {
+            self.groups[group].columns.load(lane, own.index, &own.motion);
+            self.groups[group].lanes[lane] = Some(place);
         }
     }
 
     /// Logs the step that a lane has just taken.
-    fn log_step(&mut self, lane: usize, trial: &Trial<W>) {
-        let Some(own) = &mut self.lanes[lane] else { return };
-        let motion = &mut own.motion;
-        copy_lane(&self.series, lane, self.order, &mut motion.stepper.series);
+    fn log_step(&mut self, group: usize, lane: usize, trial: &Trial<W>) {
+        let order = self.order;
+        let Some((_, own, member)) = self.member(group, lane) else { return };
+        let motion = &mut member.motion;
+        copy_lane(&own.series, lane, order, &mut motion.stepper.series);
         let mode = motion.stepper.mode(&motion.state);
         let (length, end) = (trial.length.0[lane], trial.end(lane));
         let state = (end.y + mode.origin, end.v);
@@ -194,25 +284,23 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         if let Some(log) = &mut motion.log {
             log.add_step(&view);
         }
-        self.columns.copy_state(lane, motion);
+        own.columns.copy_state(lane, motion);
         motion.mark();
-        self.columns.logged[lane] = motion.log.is_some();
+        own.columns.logged[lane] = motion.log.is_some();
     }
 
     /// Checks budgets and the cancel flag.
-    fn check_budgets(&mut self) {
+    fn check_budgets(&mut self, group: usize) {
         for lane in 0..W {
-            let Some(own) = &mut self.lanes[lane] else { continue };
-            if !self.columns.active[lane] {
-                continue;
-            }
-            let motion = &mut own.motion;
-            self.columns.store(lane, motion);
+            let Some((place, own, member)) = self.member(group, lane) else { continue };
+            let motion = &mut member.motion;
+            own.lanes[lane] = None;
+            own.columns.store(lane, motion);
             if motion.stepper.work.is_cancelled() {
                 let outcome = Outcome::Cancelled { at: motion.stepper.clock.seconds(&motion.state.at) };
-                self.end(lane, outcome);
-            } else if motion.has_budget_for(2 * BATCH_STEPS) {
-                self.columns.load(lane, own.index, motion);
+                self.end(place, outcome);
+            } else {
+                self.wait(place);
             }
         }
     }

@@ -152,7 +152,8 @@ impl<const W: usize> Trial<W> {
 }
 
 impl<const W: usize> Columns<W> {
-    pub fn new() -> Self {
+    /// For forces of the shape that this one has.
+    pub fn new(force: &PieceForce<f64>) -> Self {
         let zero = Lanes([0.0; W]);
         let clocks = Clocks { cycle: zero, phase: zero };
         let sums = CompensatedSums { sum: zero, carry: zero };
@@ -161,7 +162,7 @@ impl<const W: usize> Columns<W> {
             steps: zero,
             crossings: zero,
             of: [(usize::MAX, 0); W],
-            force: PieceForce::new(vec![zero], false),
+            force: PieceForce::new(vec![zero; force.coefficients().len()], force.is_odd()),
             origin: zero,
             low_end: zero,
             high_end: zero,
@@ -193,18 +194,14 @@ impl<const W: usize> Columns<W> {
         }
     }
 
-    /// Loads a motion into a lane, as number `index` of the runs; false where the active lanes have a force
-    /// of another shape.
-    pub fn load(&mut self, lane: usize, index: usize, motion: &LaneMotion) -> bool {
+    /// Whether a force has the shape of those of the lanes.
+    pub fn takes(&self, force: &PieceForce<f64>) -> bool {
+        self.force.coefficients().len() == force.coefficients().len() && self.force.is_odd() == force.is_odd()
+    }
+
+    /// Loads a motion, whose force has the lanes' shape, into a lane, as number `index` of the runs.
+    pub fn load(&mut self, lane: usize, index: usize, motion: &LaneMotion) {
         let mode = motion.stepper.mode(&motion.state);
-        let (count, odd) = (mode.force.coefficients().len(), mode.force.is_odd());
-        if self.force.coefficients().len() != count || self.force.is_odd() != odd {
-            if self.active.contains(&true) {
-                return false;
-            }
-            self.force = PieceForce::new(vec![Lanes([0.0; W]); count], odd);
-            self.of = [(usize::MAX, 0); W];
-        }
         let chord = motion.record.begin_event_free(&motion.state.at, &motion.stepper.end);
         if self.of[lane] != (index, motion.state.mode) {
             self.of[lane] = (index, motion.state.mode);
@@ -241,7 +238,6 @@ impl<const W: usize> Columns<W> {
         self.steps.0[lane] = 0.0;
         self.crossings.0[lane] = 0.0;
         self.active[lane] = true;
-        true
     }
 
     /// Copies the state of a lane to its motion, whose last step is to be logged.
