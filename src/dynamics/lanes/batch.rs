@@ -16,8 +16,8 @@ use crate::numeric::{GaussLegendre, Lanes, Scalar};
 /// Steps of a group between two checks of the budget and the cancel flag.
 const BATCH_STEPS: u64 = 256;
 
-/// Motions under way, in widths of the batch, where their forces have several shapes: of the shapes that are
-/// worth the while one always has enough of them to fill its lanes.
+/// The most motions that are under way at a time, in widths of the batch: so many that, where their forces
+/// have two or three shapes, one group can fill its lanes.
 const UNDER_WAY: usize = 4;
 
 /// A run and what it is made of.
@@ -217,12 +217,10 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
 
     /// Loads motions that wait into the lanes that are free.
     fn fill(&mut self, group: usize) {
-        let Group { columns, lanes, waiting, .. } = &mut self.groups[group];
-        for (lane, held) in lanes.iter_mut().enumerate().filter(|(_, held)| held.is_none()) {
-            let Some(place) = waiting.pop() else { return };
-            if let Some(own) = &self.members[place] {
-                columns.load(lane, own.index, &own.motion);
-                *held = Some(place);
+        for lane in 0..W {
+            if self.groups[group].lanes[lane].is_none() {
+                let Some(place) = self.groups[group].waiting.pop() else { return };
+                self.load(group, lane, place);
             }
         }
     }
@@ -264,6 +262,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
+    /// Loads a motion into a lane.
     fn load(&mut self, group: usize, lane: usize, place: usize) {
         if let Some(own) = &self.members[place] {
             self.groups[group].columns.load(lane, own.index, &own.motion);

@@ -5,8 +5,9 @@
 //! extremes of the settled window) lies in columns and is computed for all lanes by the same instructions. A
 //! step on which an event is possible (a surface or the barrier near by, a turning point that may be an
 //! extreme, a border of the window, a stroboscopic state) is not taken there: the lane is stored back to its
-//! motion, which takes that step alone, and is then loaded again. A lane whose run has ended starts the next
-//! run. The arithmetic is that of a motion alone, operation for operation, so the result has the same bits
+//! motion, which takes that step alone, and is then loaded again. The lanes of a group hold forces of one
+//! shape; a motion that enters a piece of the curve with another shape waits for a lane of that group. A run
+//! that has ended makes room for the next. The arithmetic is that of a motion alone, operation for operation, so the result has the same bits
 //! for any width, batch and processor.
 //!
 //! The width is chosen at run time by the processor.
