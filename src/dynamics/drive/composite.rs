@@ -1,8 +1,10 @@
 //! A sum of any number of tones, chirps and records.
 
+use std::ops::RangeInclusive;
+
 use super::chirp::{Chirp, ChirpState, next_chirp};
 use super::lines::{Lines, LinesCursor};
-use super::record::{Record, RecordSeries, SingleLine};
+use super::record::{Record, RecordSeries};
 use super::release::Search;
 use super::tone::Tone;
 use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
@@ -184,7 +186,7 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         if acceleration.threshold - acceleration.sign * self.constant > self.reach {
             return (ReleaseRoot::Never, 0);
         }
-        let lines = self.alone().and_then(|record| record.lines_from(&span.from, span.segment));
+        let lines = self.alone().and_then(|own| Some((own, own.samples_from(&span.from, span.segment)?)));
         if let Some(lines) = lines {
             return self.release_on(lines, clock, span, acceleration, cursor);
         }
@@ -199,37 +201,38 @@ impl<T: Scalar> Composite<T> {
         (self.fastest == T::zero()).then_some(record)
     }
 
-    /// The next release on lines for which a polynomial stands. A line that keeps its sign has none.
-    fn release_on<'a>(
+    /// The next release on the lines from a sample to another, for which a polynomial stands. A line that
+    /// keeps its sign has none.
+    fn release_on(
         &self,
-        lines: impl Iterator<Item = SingleLine<'a, T>>,
+        (record, samples): (&Record<T>, RangeInclusive<usize>),
         clock: &Clock<T>,
         span: &Span<T>,
         acceleration: ContactAcceleration<T>,
         cursor: &mut Cursor<T>,
-    ) -> (ReleaseRoot<T>, u64)
-    where
-        T: 'a,
-    {
+    ) -> (ReleaseRoot<T>, u64) {
         let ContactAcceleration { threshold, sign, .. } = acceleration;
-        let mut work = 0;
-        for (passed, line) in lines.enumerate() {
-            let presses = |a: T| threshold - sign * (self.constant + a) > T::zero();
-            if line.values().into_iter().all(presses) {
-                continue;
-            }
-            let [begin, end] = line.ends();
+        let square = clock.unit() * clock.unit();
+        let presses = |a: &f64| threshold - sign * (self.constant + T::of(*a * square)) > T::zero();
+        let (mut sample, last) = samples.into_inner();
+        let mut work = (last - sample) as u64 / 8;
+        while sample < last {
+            let values = &record.source.accelerations[sample..=last];
+            let Some(ahead) = values.iter().position(|a| !presses(a)) else { break };
+            sample += ahead.saturating_sub(1);
+            let (segment, [begin, end]) = record.single_line(sample);
             let from = if clock.between(&span.from, &begin) > T::zero() { begin } else { span.from };
             let until = if clock.between(&end, &span.until) > T::zero() { end } else { span.until };
             if !(clock.between(&from, &span.until) > T::zero()) {
                 break;
             }
-            let single = Span { from, until, segment: line.segment(), since: from };
-            let (root, more) = self.search(clock, acceleration, single.segment).first(&single, cursor);
-            work = more + passed as u64 / 8;
+            let single = Span { from, until, segment, since: from };
+            let (root, more) = self.search(clock, acceleration, segment).first(&single, cursor);
+            work += more;
             if !matches!(root, ReleaseRoot::Never) {
                 return (root, work);
             }
+            sample += 1;
         }
         (ReleaseRoot::Never, work)
     }

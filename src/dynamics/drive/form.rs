@@ -20,8 +20,8 @@ use crate::numeric::{Ratio, Scalar};
 use crate::scene;
 
 /// By how much a polynomial in place of the lines of a record may change speed and displacement, as shares of
-/// the tolerance: neither adds up from piece to piece, but the displacement acts on the force.
-const SPEED_SHARE: f64 = 0.2;
+/// the tolerance. Neither adds up from piece to piece; only the displacement acts on the force.
+const SPEED_SHARE: f64 = 1.0;
 const LENGTH_SHARE: f64 = 0.02;
 
 /// Cycle of the clock without a drive, in kernel time units.

@@ -5,6 +5,7 @@
 //! that share the record. What is told of the base, and the search for a release, are those of the lines.
 //! From a release to the next sample a flight follows its line too, so that its net force begins at 0.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::dynamics::clock::{Clock, Instant};
@@ -163,16 +164,16 @@ impl<T: Scalar> Record<T> {
         series.known = series.known.max(2);
     }
 
-    /// In a polynomial, the lines that it stands for, from an instant on: the segment, when it begins and
-    /// ends, and the values there.
-    pub fn lines_from<'a>(
-        &'a self,
-        at: &Instant<T>,
-        segment: usize,
-    ) -> Option<impl Iterator<Item = SingleLine<'a, T>>> {
+    /// In a polynomial, the samples whose lines it stands for, from the one before an instant on.
+    pub fn samples_from(&self, at: &Instant<T>, segment: usize) -> Option<RangeInclusive<usize>> {
         let piece = self.line(segment)?.piece.map(|piece| &self.pieces[piece])?;
-        let first = self.sample(at, piece);
-        Some((first..piece.first + piece.lines).map(move |sample| SingleLine { record: self, sample }))
+        Some(self.sample(at, piece)..=piece.first + piece.lines)
+    }
+
+    /// The line from a sample within a polynomial: its segment, and when it begins and ends.
+    pub fn single_line(&self, sample: usize) -> (usize, [Instant<T>; 2]) {
+        let at = |sample: usize| self.clock.at(self.source.times[sample].max(0.0));
+        (INSIDE + sample, [at(sample), at(sample + 1)])
     }
 
     /// The segment of the line that is there within a polynomial; the same one elsewhere.
@@ -190,28 +191,5 @@ impl<T: Scalar> Record<T> {
         let piece = line.piece.map(|piece| &self.pieces[piece])?;
         let last = piece.first + piece.lines == end;
         Some((line.first_segment + usize::from(last), self.clock.at(self.source.times[end])))
-    }
-}
-
-/// A line within a polynomial.
-pub(crate) struct SingleLine<'a, T> {
-    record: &'a Record<T>,
-    sample: usize,
-}
-
-impl<T: Scalar> SingleLine<'_, T> {
-    pub fn segment(&self) -> usize {
-        INSIDE + self.sample
-    }
-
-    /// The values at its ends.
-    pub fn values(&self) -> [T; 2] {
-        let (values, unit) = (&self.record.source.accelerations, self.record.clock.unit());
-        [0, 1].map(|end| T::of(values[self.sample + end] * (unit * unit)))
-    }
-
-    /// When it begins and ends.
-    pub fn ends(&self) -> [Instant<T>; 2] {
-        [0, 1].map(|end| self.record.clock.at(self.record.source.times[self.sample + end].max(0.0)))
     }
 }
