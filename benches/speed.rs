@@ -1,18 +1,15 @@
 //! Where the time goes, as the tables of docs/speed.md: `cargo bench --bench speed`.
 //!
-//! The flexure preset's work against precision; how time grows with jobs, duration, impacts and the size of a
-//! map; what a step costs against what the processor can do; and what each measure saves, switched off one by
-//! one.
+//! The flexure preset's work against precision; how time grows with duration, impacts and the size of a map;
+//! what a step costs against what the processor can do; and what each measure saves, switched off one by one.
 
 mod shared;
 
 use std::hint::black_box;
-use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 use interwell::dynamics::{Model, Request};
 use interwell::scene::Document;
-use interwell::study::{Grid, Sweep, Task};
+use interwell::study::Grid;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Runs that a sweep hands to one thread at a time.
@@ -31,7 +28,6 @@ fn main() {
     map_size();
     step();
     measures();
-    jobs();
 }
 
 /// CPU time in s of a run alone, and of one in a batch, medians.
@@ -255,30 +251,5 @@ fn measures() {
         let text: Vec<String> =
             all.iter().map(|time| format!("{time:.3} s ({:.1})", time / all[0])).collect();
         println!("| {name} | {} |", text.join(" | "));
-    }
-}
-
-/// Wall time, since that is what jobs are for.
-fn jobs() {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    println!("\n| jobs ({cores} cores) | P3 of 151 x 401 cells, wall | against one |");
-    println!("| --- | --- | --- |");
-    let document = shared::changed("nominal-cubic", &["run.tolerance=1e-6"]);
-    let size = if shared::is_measured() { (151, 401) } else { (3, 4) };
-    let mut first = None;
-    for jobs in (0..).map(|power| 1 << power).take_while(|jobs| *jobs <= cores) {
-        let pool = interwell::system::threads::Pool::new(jobs).unwrap();
-        let mut all = Vec::new();
-        for _ in 0..shared::rounds(3) {
-            let sweep = Sweep::new(&document.scene, &document.files, grid(&document, size));
-            let watch = Instant::now();
-            let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-            let tally = sweep.run::<()>(&pool, &task, |_| Ok(true));
-            black_box(tally.is_ok());
-            all.push(watch.elapsed().as_secs_f64());
-        }
-        let time = shared::median(&mut all);
-        let one = *first.get_or_insert(time);
-        println!("| {jobs} | {time:.2} s | {:.2} |", one / time);
     }
 }

@@ -1,7 +1,7 @@
 //! Time and error of the studies: `cargo bench --bench studies`.
 //!
 //! A row a study. The error is against an answer that is known in closed form, or another run of the study,
-//! named beside it; the time is that of one thread.
+//! named beside it; the time is that of one thread. Then two threads beside one, of a second or more of work.
 
 mod shared;
 
@@ -10,9 +10,9 @@ use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::study::{
-    Answer, Basins, Branch, BranchEvent, EvenRange, ExponentOptions, Family, Grid, Onset, Orbit, Scan,
-    SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Table, Task, branch, exponents,
-    spectrum, threshold,
+    Answer, Basins, Branch, BranchEvent, Carry, EvenRange, ExponentOptions, Family, Grid, Onset, Orbit, Scan,
+    SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Sweep, SweepOptions, Table, Task,
+    branch, check_step, exponents, result_fields, spectrum, threshold, threshold_table,
 };
 use interwell::system::threads::Pool;
 
@@ -28,6 +28,7 @@ fn main() {
     growth();
     diagrams();
     maps();
+    jobs();
 }
 
 /// Does `study`, which gives its error, several times, and prints its row.
@@ -142,6 +143,10 @@ fn growth() {
 
 /// The states of 100 forcing periods after 200, at 90 degrees, over 400 amplitudes.
 fn diagram(name: &str, changes: &[&str]) -> Table {
+    sections(name, changes, &Pool::new(1).unwrap())
+}
+
+fn sections(name: &str, changes: &[&str], pool: &Pool) -> Table {
     let document = shared::changed(name, changes);
     let axes = document.axes(&["excitation.amplitude_g=0.6025:1.6:0.0025"]).unwrap();
     let options = SectionOptions {
@@ -158,7 +163,7 @@ fn diagram(name: &str, changes: &[&str]) -> Table {
         all.append(table);
         Ok::<_, ()>(true)
     };
-    sections.run(&Pool::new(1).unwrap(), &task, write).unwrap();
+    sections.run(pool, &task, write).unwrap();
     all
 }
 
@@ -186,28 +191,111 @@ fn diagrams() {
     });
 }
 
-/// The map of 200 x 200 starts within the stops.
-fn basins(tolerance: &str) -> Answer {
+/// The map of so many starts each way within the stops.
+fn basins(tolerance: &str, count: u64, pool: &Pool) -> Answer {
     let document = shared::changed("paper", &["excitation.amplitude_g=0.7", tolerance]);
     let mechanism = shared::mechanism(&document);
-    let range = |end: f64| EvenRange { from: -end, to: end, count: 200 };
+    let range = |end: f64| EvenRange { from: -end, to: end, count };
     let starts = Starts::grid(&range(1.5), &range(0.5)).unwrap();
     let mut basins = Basins::new(&document.scene, mechanism, starts).unwrap();
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };
-    let pool = Pool::new(1).unwrap();
     while !basins.is_whole() {
-        basins.run_level(&pool, &task);
+        basins.run_level(pool, &task);
     }
     basins.answer(&task).unwrap()
 }
 
 fn maps() {
-    let fine = basins("run.tolerance=1e-13");
+    let one = Pool::new(1).unwrap();
+    let fine = basins("run.tolerance=1e-13", 200, &one);
     row("basins", "`paper` at 0.7 g, 40 000 starts", "the share of others at 1e-13", || {
-        let own = basins("run.tolerance=1e-9");
+        let own = basins("run.tolerance=1e-9", 200, &one);
         let to = |answer: &Answer, row: usize| answer.rows[row].map(|own| own.0);
         let others = (0..own.rows.len()).filter(|row| to(&own, *row) != to(&fine, *row)).count();
         others as f64 / own.rows.len() as f64
     });
+}
+
+/// Rounds of which each figure on jobs is the median.
+const JOBS_ROUNDS: usize = 5;
+
+/// A sweep over these axes; walked where `carry` says so.
+fn sweep(name: &str, changes: &[&str], axes: &[&str], carry: Option<Carry>, pool: &Pool) {
+    let document = shared::changed(name, changes);
+    let grid = Grid::new(document.axes(axes).unwrap()).unwrap();
+    let options = SweepOptions { carry, ..SweepOptions::default() };
+    let sweep = Sweep::new(&document.scene, &document.files, grid).with(options);
+    let never = AtomicBool::new(false);
+    sweep.run::<()>(pool, &Task { tick: &|| (), cancel: &never }, |_| Ok(true)).unwrap();
+}
+
+fn threshold_of(pool: &Pool) {
+    let document = shared::changed("paper-unconstrained", &[]);
+    let values = (1..=200).map(|i| 0.01 * f64::from(i)).collect();
+    let scan = Scan { field: "excitation.amplitude_g".into(), values, resolution: 1e-5 };
+    let asked = (&scan, Onset::Interwell);
+    let never = AtomicBool::new(false);
+    let task = Task { tick: &|| (), cancel: &never };
+    threshold_table((&document.scene, &document.files), None, asked, pool, &task).unwrap().unwrap();
+}
+
+fn lessons(pool: &Pool) {
+    let all = interwell::scene::lesson::LESSONS;
+    let load = |name: &str| interwell::scene::lesson::LessonDocument::load(name, &result_fields()).unwrap();
+    let documents: Vec<_> = all.iter().map(|own| load(own.name)).collect();
+    let of = |own: usize| (0..documents[own].lesson.steps.len()).map(move |step| (own, step));
+    let steps: Vec<(usize, usize)> = (0..documents.len()).flat_map(of).collect();
+    let never = AtomicBool::new(false);
+    let task = Task { tick: &|| (), cancel: &never };
+    let check = |(): &mut (), part: usize| check_step(&documents[steps[part].0], steps[part].1, &task);
+    pool.map(steps.len(), || (), check).unwrap();
+}
+
+/// Wall time, since that is what jobs are for, and beside it without the waits for a processor that others
+/// use.
+fn jobs() {
+    println!("\n| two jobs beside one | one | two | ratio | ratio without waits |");
+    println!("| --- | --- | --- | --- | --- |");
+    type Work = (&'static str, Box<dyn Fn(&Pool)>);
+    let amplitudes = "excitation.amplitude_g=0:2:0.005";
+    let limits = "stops.travel_limit_mm=0.5:8:0.05";
+    let studies: Vec<Work> = vec![
+        (
+            "P3 of 151 x 401 cells",
+            Box::new(move |pool| {
+                sweep("nominal-cubic", &["run.tolerance=1e-6"], &[limits, amplitudes], None, pool);
+            }),
+        ),
+        (
+            "`paper-unconstrained`, 401 cells",
+            Box::new(move |pool| sweep("paper-unconstrained", &[], &[amplitudes], None, pool)),
+        ),
+        (
+            "the same, up and down",
+            Box::new(move |pool| sweep("paper-unconstrained", &[], &[amplitudes], Some(Carry::Both), pool)),
+        ),
+        (
+            "`section --over`, `paper-unconstrained`",
+            Box::new(|pool| drop(sections("paper-unconstrained", &[], pool))),
+        ),
+        ("`basins`, `paper`, 10^6 starts", Box::new(|pool| drop(basins("run.tolerance=1e-9", 1000, pool)))),
+        ("`threshold`, `paper-unconstrained`", Box::new(threshold_of)),
+        ("`lesson --check`", Box::new(lessons)),
+    ];
+    let pools = [1, 2].map(|count| Pool::new(count).unwrap());
+    for (name, work) in studies.iter().filter(|_| shared::is_measured()) {
+        let mut times: [(Vec<f64>, Vec<f64>); 2] = Default::default();
+        for _ in 0..JOBS_ROUNDS {
+            for (pool, own) in pools.iter().zip(&mut times) {
+                let (wall, run) = shared::wall(|| work(pool));
+                own.0.push(wall);
+                own.1.push(run);
+            }
+        }
+        let [one, two] =
+            times.map(|(mut wall, mut run)| [shared::median(&mut wall), shared::median(&mut run)]);
+        let (ratio, without) = (one[0] / two[0], one[1] / two[1]);
+        println!("| {name} | {:.2} s | {:.2} s | {ratio:.2} | {without:.2} |", one[0], two[0]);
+    }
 }

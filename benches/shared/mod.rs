@@ -12,6 +12,7 @@
 mod scenes;
 
 use std::hint::black_box;
+use std::time::Instant;
 
 use cpu_time::{ProcessTime, ThreadTime};
 pub use scenes::{changed, mechanism, preset};
@@ -38,6 +39,28 @@ pub fn cpu_of_all<R>(work: impl FnOnce() -> R) -> f64 {
     let watch = ProcessTime::now();
     black_box(work());
     watch.elapsed().as_secs_f64()
+}
+
+/// Wall time of `work` in s, and the same without the time in which its threads wait for a processor that
+/// others use, where the system tells that (Linux).
+pub fn wall<R>(work: impl FnOnce() -> R) -> (f64, f64) {
+    let (watch, before) = (Instant::now(), run_and_waited());
+    black_box(work());
+    let time = watch.elapsed().as_secs_f64();
+    let (run, waited) = run_and_waited();
+    let (run, waited) = (run - before.0, waited - before.1);
+    (time, if run > 0.0 { time * run / (run + waited) } else { time })
+}
+
+/// Nanoseconds that the threads of this process have run, and have waited for a processor.
+fn run_and_waited() -> (f64, f64) {
+    let of = |entry: std::io::Result<std::fs::DirEntry>| {
+        let text = std::fs::read_to_string(entry.ok()?.path().join("schedstat")).ok()?;
+        let mut numbers = text.split(' ').map_while(|own| own.parse::<f64>().ok());
+        numbers.next().zip(numbers.next())
+    };
+    let threads = std::fs::read_dir("/proc/self/task").into_iter().flatten().filter_map(of);
+    threads.fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1))
 }
 
 /// The median of some numbers; sorts them.

@@ -10,6 +10,7 @@ pub mod fit;
 mod lanes;
 mod number;
 mod periodogram;
+pub mod pieces;
 mod quadrature;
 mod quick;
 mod ratio;

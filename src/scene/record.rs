@@ -4,7 +4,7 @@
 //! cells of a sweep share it.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::columns::{ColumnsError, MOST_ROWS, read_columns};
 use super::data::Excitation;
@@ -13,6 +13,7 @@ use super::files::Files;
 use super::measured::{Ask, Measured, MeasuredError};
 use super::timing::Timing;
 use super::unit::Quantity;
+use crate::numeric::pieces::{Piece, pieces};
 
 const TIME: &str = "t_s";
 const ACCELERATION: &str = "accel_m_per_s2";
@@ -24,6 +25,33 @@ pub struct Record {
     pub times: Vec<f64>,
     /// Accelerations in m/s^2, one for each time.
     pub accelerations: Vec<f64>,
+    made: Made,
+}
+
+/// What has been made of a record, for all runs that share it.
+#[derive(Debug, Default)]
+struct Made {
+    peak: OnceLock<f64>,
+    pieces: Mutex<Vec<(Limits, Arc<Vec<Piece>>)>>,
+}
+
+/// Exponents of the powers of two that limits were rounded down to.
+type Limits = (i32, i32);
+
+/// Pieces for other limits than these first ones are not kept: a sweep needs a few.
+const MOST_KEPT: usize = 16;
+
+impl Clone for Made {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl PartialEq for Made {
+    /// It follows from the samples.
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 /// What is wrong with the text of a record.
@@ -60,6 +88,28 @@ pub fn read_record(path: &Path) -> Result<Record, String> {
 }
 
 impl Record {
+    /// Of samples at times in s, strictly increasing and at least two, with accelerations in m/s^2.
+    pub fn new(times: Vec<f64>, accelerations: Vec<f64>) -> Self {
+        Self { times, accelerations, made: Made::default() }
+    }
+
+    /// Polynomials in place of its lines whose integrals, in m/s and m, differ by no more than these limits
+    /// (rounded down to powers of two); made once and shared.
+    pub(crate) fn pieces(&self, limits: (f64, f64)) -> Arc<Vec<Piece>> {
+        let exponent = |limit: f64| limit.log2().floor().max(-1000.0) as i32;
+        let key = (exponent(limits.0), exponent(limits.1));
+        let mut made = self.made.pieces.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, found)) = made.iter().find(|own| own.0 == key) {
+            return Arc::clone(found);
+        }
+        let limits = (f64::from(key.0).exp2(), f64::from(key.1).exp2());
+        let new = Arc::new(pieces(&self.times, &self.accelerations, limits));
+        if made.len() < MOST_KEPT {
+            made.push((key, Arc::clone(&new)));
+        }
+        new
+    }
+
     /// Reads the text of a record: CSV with the columns `t_s,accel_m_per_s2` among others, or with one column
     /// of time and one of acceleration by the units at the ends of their names, as a measured record has it.
     pub fn parse(text: &str) -> Result<Self, RecordError> {
@@ -85,7 +135,7 @@ impl Record {
             }
         }
         let (times, accelerations) = columns.rows.iter().map(|row| (row[0], row[1])).unzip();
-        Ok(Self { times, accelerations })
+        Ok(Self::new(times, accelerations))
     }
 
     fn by_units(text: &str) -> Result<Self, RecordError> {
@@ -95,7 +145,7 @@ impl Record {
         if times.len() > MOST_ROWS {
             return Err(ColumnsError::TooMany(MOST_ROWS).into());
         }
-        Ok(Self { times, accelerations })
+        Ok(Self::new(times, accelerations))
     }
 
     /// Remarks for a run of `duration` s, each a clause that continues the file's name.
@@ -123,7 +173,7 @@ impl Record {
 
     /// The largest magnitude in m/s^2.
     pub fn peak(&self) -> f64 {
-        self.accelerations.iter().fold(0.0, |peak, a| a.abs().max(peak))
+        *self.made.peak.get_or_init(|| self.accelerations.iter().fold(0.0, |peak, a| a.abs().max(peak)))
     }
 }
 

@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use super::Task;
-use super::amplitudes::thresholds;
+use super::amplitudes::thresholds_on;
 use super::family::Family;
 use super::fields::{Read, SummaryField};
 use super::settled::settled;
 use super::table::{Table, Values};
 use super::thresholds::{Onset, longest, multiple};
-use crate::dynamics::{Model, Summary};
+use crate::dynamics::{Model, Request, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::numeric::round::decade;
 use crate::scene::{Excitation, FieldPath, Files, Scene, Start, numeric_fields};
@@ -103,8 +103,8 @@ pub fn alternatives(scenes: &[Alternative], pool: &Pool, task: &Task) -> Option<
     let parts = parts(scenes);
     let work = |_: &mut (), index: usize| {
         let done = match &parts[index] {
-            Part::Own(i) => rate(&scenes[*i], task).map(|own| Done::Own(Box::new(own))),
-            Part::Changed(i, field, by) => changed(&scenes[*i], field, *by, task).map(Done::Changed),
+            Part::Own(i) => rate(&scenes[*i], pool, task).map(|own| Done::Own(Box::new(own))),
+            Part::Changed(i, field, by) => changed(&scenes[*i], (field, *by), pool, task).map(Done::Changed),
         };
         (task.tick)();
         done.filter(|_| !task.is_cancelled()).ok_or(())
@@ -128,9 +128,9 @@ pub fn alternatives(scenes: &[Alternative], pool: &Pool, task: &Task) -> Option<
     Some(rated)
 }
 
-fn rate(own: &Alternative, task: &Task) -> Option<Rated> {
+fn rate(own: &Alternative, pool: &Pool, task: &Task) -> Option<Rated> {
     let trial = Scene { start: Start::Rest, ..own.scene.clone() };
-    let found = thresholds(&trial, &own.mechanism, task);
+    let found = thresholds_on(Some(pool), &trial, &own.mechanism, task);
     if task.is_cancelled() {
         return None;
     }
@@ -140,13 +140,13 @@ fn rate(own: &Alternative, task: &Task) -> Option<Rated> {
         release_g: found.and_then(|own| own.frees_at),
         crossing_g: found.and_then(|own| own.crosses_from),
         summary: settled(&model, task.cancel)?,
-        crosses_hz: band(own, &trial, task)?,
+        crosses_hz: band(own, &trial, pool, task)?,
         sensitivity: None,
     })
 }
 
 /// The crossing threshold with one size changed.
-fn changed(own: &Alternative, field: &str, by: f64, task: &Task) -> Option<Option<f64>> {
+fn changed(own: &Alternative, (field, by): (&str, f64), pool: &Pool, task: &Task) -> Option<Option<f64>> {
     let mut trial = Scene { start: Start::Rest, ..own.scene.clone() };
     let path = FieldPath::new(field);
     let value = path.get(&trial)?;
@@ -157,28 +157,23 @@ fn changed(own: &Alternative, field: &str, by: f64, task: &Task) -> Option<Optio
         Ok(mechanism) => Arc::new(mechanism),
         Err(BuildError::Wrong(_) | BuildError::Unsolved(_)) => return Some(None),
     };
-    let found = thresholds(&trial, &mechanism, task);
+    let found = thresholds_on(Some(pool), &trial, &mechanism, task);
     (!task.is_cancelled()).then(|| found.and_then(|own| own.crosses_from))
 }
 
 /// The band of frequencies that cross. The steps of a scan are all run, and only the ends of the band are
 /// bisected: what is narrower than a step, a gap or a band, may be missed.
-fn band(own: &Alternative, trial: &Scene, task: &Task) -> Option<Option<(f64, f64)>> {
+fn band(own: &Alternative, trial: &Scene, pool: &Pool, task: &Task) -> Option<Option<(f64, f64)>> {
     let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Some(None) };
     let family = Family::new(trial, &own.files, &own.mechanism, FREQUENCY);
     let ask = |values: &[f64]| -> Option<Vec<bool>> {
-        let models: Vec<Option<Model>> = values.iter().map(|value| family.model(*value).ok()).collect();
-        models
-            .iter()
-            .map(|model| {
-                let Some(model) = model else { return Some(false) };
-                let mut run =
-                    Model::run_all(std::slice::from_ref(model), Some(longest(model)), Some(task.cancel))
-                        .into_iter();
-                let crosses = run.next().is_some_and(|run| Onset::Crossing.is_in(&run.summary));
-                (!task.is_cancelled()).then_some(crosses)
-            })
-            .collect()
+        let crosses = |(): &mut (), number: usize| {
+            let Ok(model) = family.model(values[number]) else { return Ok(false) };
+            let until_settled = Some(longest(&model));
+            let run = model.run(&Request { cancel: Some(task.cancel), until_settled, ..Request::default() });
+            if task.is_cancelled() { Err(()) } else { Ok(Onset::Crossing.is_in(&run.summary)) }
+        };
+        pool.map(values.len(), || (), crosses).ok()
     };
     let values: Vec<f64> = (-STEPS..=STEPS)
         .map(|i| decimal(frequency_hz * 10_f64.powf(f64::from(i) / f64::from(STEPS))))

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use super::Task;
 use super::push::{AMPLITUDE, frees_at, holding_push};
-use super::thresholds::{Onset, Scan, TOGETHER, longest, multiple, threshold};
+use super::thresholds::{Onset, Scan, TOGETHER, longest, multiple, threshold_on};
 use crate::dynamics::{Model, Regime, Request};
 use crate::mechanics::Mechanism;
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
 use crate::scene::{Excitation, Files, Scene, Start, Stops};
+use crate::system::threads::Pool;
 
 /// One in the last of three significant digits of a value.
 fn third_digit(value: f64) -> f64 {
@@ -45,6 +46,16 @@ const GAP_STEP: f64 = 0.01;
 /// Searches the amplitudes of a sine. None where the drive is no sine, nothing is to be crossed, or the
 /// search was cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
+    thresholds_on(None, scene, mechanism, task)
+}
+
+/// The same, by the threads of a pool.
+pub(super) fn thresholds_on(
+    pool: Option<&Pool>,
+    scene: &Scene,
+    mechanism: &Arc<Mechanism>,
+    task: &Task,
+) -> Option<Thresholds> {
     let Excitation::Sine { .. } = scene.excitation else { return None };
     let push = holding_push(scene, mechanism)?;
     let step = push / f64::from(FINE_STEPS);
@@ -60,7 +71,7 @@ pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Opt
     let scan = |values: Vec<f64>| {
         let resolution = third_digit(values.first().copied().unwrap_or(push));
         let scan = Scan { field: AMPLITUDE.to_owned(), values, resolution };
-        threshold(scene, mechanism, &files, (&scan, Onset::Crossing), task)
+        threshold_on(pool, scene, mechanism, &files, (&scan, Onset::Crossing), task)
     };
     let mut found = Thresholds {
         frees_at: frees_at(scene, mechanism),

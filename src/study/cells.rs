@@ -96,6 +96,9 @@ const BATCH: usize = 128;
 /// The same where each cell is waited for, and the fewest where cells take long.
 const SHOWN: usize = 16;
 
+/// The fewest of the last batches, which several threads share.
+const LAST: u64 = 8;
+
 /// Batches that may be begun, for each thread, before the first of them is over.
 const AHEAD: usize = 32;
 
@@ -167,7 +170,10 @@ impl Cells {
         let mut next = from;
         let batches = std::iter::from_fn(|| {
             let begin = next;
-            next = (begin + size.load(Ordering::Relaxed)).min(slice.rows());
+            // Towards the end ever smaller, so that no thread waits long for the last one.
+            let share = if threads == 1 { u64::MAX } else { (slice.rows() - begin).div_ceil(2 * threads) };
+            let fitting = size.load(Ordering::Relaxed);
+            next = (begin + share.max(LAST).min(fitting)).min(slice.rows());
             (begin < next).then(|| (begin..next).map(|place| slice.row(place)).collect::<Vec<u64>>())
         });
         let run = |scene: &mut Scene, cells: Vec<u64>| {

@@ -99,8 +99,20 @@ pub fn threshold(
     (scan, onset): (&Scan, Onset),
     task: &Task,
 ) -> Option<Found> {
+    threshold_on(None, scene, mechanism, files, (scan, onset), task)
+}
+
+/// The same, by the threads of a pool.
+pub(super) fn threshold_on(
+    pool: Option<&Pool>,
+    scene: &Scene,
+    mechanism: &Arc<Mechanism>,
+    files: &Files,
+    (scan, onset): (&Scan, Onset),
+    task: &Task,
+) -> Option<Found> {
     let trial = from_rest(scene);
-    let search = Search::new(&trial, mechanism, files, (scan, onset), task);
+    let search = Search { pool, ..Search::new(&trial, mechanism, files, (scan, onset), task) };
     if onset == Onset::Release
         && scan.field == AMPLITUDE
         && let Some(value) = frees_at(scene, mechanism)
@@ -116,24 +128,20 @@ pub fn threshold(
     }
     let mut found = Found { value: None, windows: 0, without_gap: None };
     let (mut before, mut last) = (None, false);
-    for values in scan.values.chunks(TOGETHER) {
-        let does = search.ask(values)?;
-        for (value, does) in values.iter().zip(does) {
-            (task.tick)();
-            match (does, found.value) {
-                (true, None) => {
-                    let located = search.locate(before, *value, scan.resolution)?;
-                    (found.value, found.without_gap) = (Some(located), Some(located));
-                }
-                (true, Some(_)) if !last => {
-                    found.windows += 1;
-                    found.without_gap = Some(*value);
-                }
-                (false, Some(_)) if last => found.windows += 1,
-                _ => {}
+    for (value, does) in scan.values.iter().zip(search.ask_all(&scan.values)?) {
+        match (does, found.value) {
+            (true, None) => {
+                let located = search.locate(before, *value, scan.resolution)?;
+                (found.value, found.without_gap) = (Some(located), Some(located));
             }
-            (before, last) = (Some(*value), does);
+            (true, Some(_)) if !last => {
+                found.windows += 1;
+                found.without_gap = Some(*value);
+            }
+            (false, Some(_)) if last => found.windows += 1,
+            _ => {}
         }
+        (before, last) = (Some(*value), does);
     }
     found.without_gap = found.without_gap.filter(|_| last);
     Some(found)
@@ -178,7 +186,7 @@ pub fn threshold_table(
         return Some(Err(wrong));
     }
     let cell = |scene: &mut Scene, index: usize| match prepared(scene, index) {
-        Ok(mechanism) => threshold(scene, &mechanism, files, asked, task).ok_or(()),
+        Ok(mechanism) => threshold_on(Some(pool), scene, &mechanism, files, asked, task).ok_or(()),
         Err(_) => {
             asked.0.values.iter().for_each(|_| (task.tick)());
             Ok(Found { value: None, windows: 0, without_gap: None })
@@ -209,6 +217,7 @@ struct Search<'a> {
     family: Family<'a>,
     onset: Onset,
     task: &'a Task<'a>,
+    pool: Option<&'a Pool>,
 }
 
 impl<'a> Search<'a> {
@@ -219,7 +228,25 @@ impl<'a> Search<'a> {
         (scan, onset): (&Scan, Onset),
         task: &'a Task<'a>,
     ) -> Self {
-        Self { trial, family: Family::new(trial, files, mechanism, &scan.field), onset, task }
+        let family = Family::new(trial, files, mechanism, &scan.field);
+        Self { trial, family, onset, task, pool: None }
+    }
+
+    /// Which of the values do it; ticks for each.
+    fn ask_all(&self, values: &[f64]) -> Option<Vec<bool>> {
+        let parts: Vec<&[f64]> = values.chunks(TOGETHER).collect();
+        let part = |(): &mut (), number: usize| {
+            let does = self.ask(parts[number]).ok_or(());
+            parts[number].iter().for_each(|_| (self.task.tick)());
+            does
+        };
+        match self.pool {
+            Some(pool) => pool.map(parts.len(), || (), part).ok().map(|does| does.concat()),
+            None => (0..parts.len())
+                .map(|number| part(&mut (), number).ok())
+                .collect::<Option<Vec<_>>>()
+                .map(|does| does.concat()),
+        }
     }
 
     /// Which of the values do it.
@@ -236,11 +263,18 @@ impl<'a> Search<'a> {
             }
         }
         let until = models.iter().map(longest).fold(0.0, f64::max);
-        for (place, run) in
-            places.into_iter().zip(Model::run_all(&models, Some(until), Some(self.task.cancel)))
-        {
-            does[place] = self.onset.is_in(&run.summary);
-        }
+        let run = |models: &[Model]| -> Vec<bool> {
+            let runs = Model::run_all(models, Some(until), Some(self.task.cancel));
+            runs.iter().map(|run| self.onset.is_in(&run.summary)).collect()
+        };
+        let found = match self.pool {
+            Some(pool) => {
+                let parts: Vec<&[Model]> = models.chunks(TOGETHER / 2).collect();
+                pool.map(parts.len(), || (), |(), number| Ok::<_, ()>(run(parts[number]))).ok()?.concat()
+            }
+            None => run(&models),
+        };
+        places.into_iter().zip(found).for_each(|(place, own)| does[place] = own);
         (!self.task.is_cancelled()).then_some(does)
     }
 

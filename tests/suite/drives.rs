@@ -45,6 +45,44 @@ fn a_chirp_is_its_formula_and_holds_its_last_frequency() {
 }
 
 #[test]
+fn a_smooth_record_takes_the_steps_of_its_curve_and_moves_the_mass_as_its_lines_do() {
+    // against the same run in 31 digits, which goes from sample to sample
+    let sine = |i: u32| 1.5 * STANDARD_GRAVITY * (TAU * 3.0 * f64::from(i) / 5e3).sin();
+    let rows = (0..=5000).map(|i| format!("{},{}\n", f64::from(i) / 5e3, sine(i)));
+    let (_folder, path) = record(&format!("t_s,accel_m_per_s2\n{}", rows.collect::<String>()));
+    let excitation = format!("excitation=Recorded(path: {path:?})");
+    for (stops, tolerance) in [("None", 1e-6), ("None", 1e-8), ("Rigid", 1e-6), ("Rigid", 1e-8)] {
+        let stops = if stops == "None" { "stops=None" } else { "stops.restitution=0.36" };
+        let tolerance_set = format!("run.tolerance={tolerance}");
+        let changes = [&excitation, stops, &tolerance_set, "run.duration_s=1", "run.settle_s=0.5"];
+        let m = preset("nominal-cubic", &changes);
+        let times = every(0.0437, 22);
+        let request = Request { sample_times: &times, events: true, ..Request::default() };
+        let (a, b) = (m.run(&request), m.run_reference(&request, 1e-24));
+        assert!(a.summary.steps * 20 < b.summary.steps, "{stops}: {} steps", a.summary.steps);
+        for (own, exact) in a.samples.iter().zip(&b.samples) {
+            near(own.x, exact.x, 7e-3 * tolerance);
+            near(own.v, exact.v, m.scales().speed * 1.5 * tolerance);
+            near(own.base_accel, exact.base_accel, 1e-12); // what is told is the record
+        }
+        let told = |run: &interwell::dynamics::Run| -> Vec<interwell::dynamics::Event> {
+            let fast = |own: &&interwell::dynamics::Event| match own.kind {
+                EventKind::Impact => own.v_out.abs() > 1e-3,
+                kind => kind == EventKind::Release,
+            };
+            run.events.iter().filter(fast).copied().collect()
+        };
+        let (a, b) = (told(&a), told(&b));
+        assert_eq!(a.iter().any(|own| own.kind == EventKind::Release), stops != "stops=None");
+        assert_eq!(a.len(), b.len());
+        for (own, exact) in a.iter().zip(&b) {
+            assert_eq!(own.kind, exact.kind);
+            near(own.t, exact.t, tolerance / 3.0);
+        }
+    }
+}
+
+#[test]
 fn a_mass_follows_chirp_noise_and_record_as_twice_the_digits_do() {
     // The same run in 31 digits: position and velocity to what a disturbance of a step grows to in 2 s
     let (_folder, path) = record("t_s,accel_m_per_s2\n0,0\n0.3,4\n0.35,-3\n1.1,2\n2.5,0.5\n3,-6\n4,0\n");

@@ -1,8 +1,10 @@
 //! A sum of any number of tones, chirps and records.
 
+use std::ops::RangeInclusive;
+
 use super::chirp::{Chirp, ChirpState, next_chirp};
 use super::lines::{Lines, LinesCursor};
-use super::record::{Record, value_and_slope};
+use super::record::{Record, RecordSeries};
 use super::release::Search;
 use super::tone::Tone;
 use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
@@ -41,11 +43,13 @@ pub(crate) struct Cursor<T> {
     tones: Vec<[T; 4]>,
     lines: LinesCursor<T>,
     chirps: Vec<ChirpState<T>>,
+    records: RecordSeries<T>,
 }
 
-impl<T> Default for Cursor<T> {
+impl<T: Scalar> Default for Cursor<T> {
     fn default() -> Self {
-        Self { tones: Vec::new(), lines: LinesCursor::default(), chirps: Vec::new() }
+        let (tones, chirps) = (Vec::new(), Vec::new());
+        Self { tones, lines: LinesCursor::default(), chirps, records: RecordSeries::default() }
     }
 }
 
@@ -66,7 +70,7 @@ impl<T: Scalar> Tail<T> for Composite<T> {
                 sum += state.amplitude * state.sine[1];
             }
         }
-        a[k] = sum;
+        a[k] = if k < cursor.records.known { sum + cursor.records.a[k] } else { sum };
     }
 }
 
@@ -109,9 +113,11 @@ impl<T: Scalar> Drive<T> for Composite<T> {
             }
             cursor.chirps.push(state);
         }
-        let (value, slope) = value_and_slope(&self.records, clock, at, segment);
-        sums[0] += value;
-        sums[1] += slope;
+        if !self.records.is_empty() {
+            cursor.records = RecordSeries::default();
+            self.records.iter().for_each(|own| own.seed(at, segment, &mut cursor.records));
+            sums.iter_mut().zip(&cursor.records.a).for_each(|(sum, own)| *sum += *own);
+        }
         a[..SEEDED].copy_from_slice(&sums);
     }
 
@@ -119,12 +125,13 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         self.common_cycles.unwrap_or(1)
     }
 
-    /// As the first coefficient, in the same order of sums.
+    /// As the first coefficient, in the same order of sums, but for records, which are told as they are.
     fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
         let tones = self.tones.iter().map(|tone| tone.amplitude_at(clock, at, segment).0 * tone.unit(at).0);
         let chirps = self.chirps.iter().map(|chirp| chirp.amplitude * chirp.state(clock, at, segment).0);
         let tones = tones.fold(self.constant, |sum, a| sum + a) + self.lines.value(at);
-        chirps.fold(tones, |sum, a| sum + a) + value_and_slope(&self.records, clock, at, segment).0
+        let records = self.records.iter().map(|own| own.exact(at, segment));
+        chirps.fold(tones, |sum, a| sum + a) + records.fold(T::zero(), |sum, a| sum + a)
     }
 
     fn cost(&self, order: usize) -> u64 {
@@ -149,11 +156,24 @@ impl<T: Scalar> Drive<T> for Composite<T> {
             return by_series();
         }
         let tones = self.tones.iter().map(|tone| tone.amplitude_at(clock, at, segment).0 * tone.unit(at).0);
-        tones.fold(self.constant + value_and_slope(&self.records, clock, at, segment).0, |sum, a| sum + a)
+        let records = self.records.iter().map(|own| own.value(at, segment));
+        tones.fold(self.constant + records.fold(T::zero(), |sum, a| sum + a), |sum, a| sum + a)
     }
 
     fn segment_end(&self, segment: usize) -> Option<Instant<T>> {
-        self.segment_ends.get(segment).copied()
+        match self.alone().and_then(|record| record.after_single(segment)) {
+            Some((_, end)) => Some(end),
+            None => self.segment_ends.get(segment).copied(),
+        }
+    }
+
+    fn next_segment(&self, segment: usize) -> usize {
+        let single = self.alone().and_then(|record| record.after_single(segment));
+        single.map_or(segment + 1, |(next, _)| next)
+    }
+
+    fn segment_of_release(&self, at: &Instant<T>, segment: usize) -> usize {
+        self.alone().map_or(segment, |record| record.single_segment(at, segment))
     }
 
     fn next_release(
@@ -166,11 +186,57 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         if acceleration.threshold - acceleration.sign * self.constant > self.reach {
             return (ReleaseRoot::Never, 0);
         }
+        let lines = self.alone().and_then(|own| Some((own, own.samples_from(&span.from, span.segment)?)));
+        if let Some(lines) = lines {
+            return self.release_on(lines, clock, span, acceleration, cursor);
+        }
         self.search(clock, acceleration, span.segment).first(span, cursor)
     }
 }
 
 impl<T: Scalar> Composite<T> {
+    /// The one record, where there is one and nothing else that moves.
+    fn alone(&self) -> Option<&Record<T>> {
+        let [record] = self.records.as_slice() else { return None };
+        (self.fastest == T::zero()).then_some(record)
+    }
+
+    /// The next release on the lines from a sample to another, for which a polynomial stands. A line that
+    /// keeps its sign has none.
+    fn release_on(
+        &self,
+        (record, samples): (&Record<T>, RangeInclusive<usize>),
+        clock: &Clock<T>,
+        span: &Span<T>,
+        acceleration: ContactAcceleration<T>,
+        cursor: &mut Cursor<T>,
+    ) -> (ReleaseRoot<T>, u64) {
+        let ContactAcceleration { threshold, sign, .. } = acceleration;
+        let square = clock.unit() * clock.unit();
+        let presses = |a: &f64| threshold - sign * (self.constant + T::of(*a * square)) > T::zero();
+        let (mut sample, last) = samples.into_inner();
+        let mut work = (last - sample) as u64 / 8;
+        while sample < last {
+            let values = &record.source.accelerations[sample..=last];
+            let Some(ahead) = values.iter().position(|a| !presses(a)) else { break };
+            sample += ahead.saturating_sub(1);
+            let (segment, [begin, end]) = record.single_line(sample);
+            let from = if clock.between(&span.from, &begin) > T::zero() { begin } else { span.from };
+            let until = if clock.between(&end, &span.until) > T::zero() { end } else { span.until };
+            if !(clock.between(&from, &span.until) > T::zero()) {
+                break;
+            }
+            let single = Span { from, until, segment, since: from };
+            let (root, more) = self.search(clock, acceleration, segment).first(&single, cursor);
+            work += more;
+            if !matches!(root, ReleaseRoot::Never) {
+                return (root, work);
+            }
+            sample += 1;
+        }
+        (ReleaseRoot::Never, work)
+    }
+
     /// A search for a release in one of its segments.
     pub(super) fn search<'a>(
         &'a self,

@@ -1,5 +1,7 @@
 //! Builder of a model's drive: its simplest form, in kernel units.
 
+use std::sync::Arc;
+
 use super::Still;
 use super::base_at;
 use super::chirp::Chirp;
@@ -13,8 +15,14 @@ use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::model::Model;
 use crate::dynamics::model::excitation::TonePart;
 use crate::dynamics::model::scales::Scales;
+use crate::numeric::pieces::Piece;
 use crate::numeric::{Ratio, Scalar};
 use crate::scene;
+
+/// By how much a polynomial in place of the lines of a record may change speed and displacement, as shares of
+/// the tolerance. Neither adds up from piece to piece; only the displacement acts on the force.
+const SPEED_SHARE: f64 = 1.0;
+const LENGTH_SHARE: f64 = 0.02;
 
 /// Cycle of the clock without a drive, in kernel time units.
 const SHORTEST_CYCLE: f64 = 1.0 / 65536.0;
@@ -110,7 +118,8 @@ fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite
     let square = unit * unit;
     let ramps = drive.tones.iter().filter_map(|t| t.ramp.map(|r| r.1));
     let chirps = drive.chirps.iter().map(|c| c.over);
-    let samples = drive.records.iter().flat_map(|r| r.times.iter().copied());
+    let pieces: Vec<_> = drive.records.iter().map(|own| (own, pieces::<T>(model, own))).collect();
+    let samples = pieces.iter().flat_map(|(own, pieces)| corners(own, pieces));
     let outlasting = ramps.clone().any(|over| over > model.duration);
     let mut ends: Vec<f64> =
         ramps.chain(chirps).chain(samples).filter(|t| *t > 0.0 && *t <= model.duration).collect();
@@ -135,7 +144,7 @@ fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite
         over: chirp.over,
         holds_from_segment: holds_from(chirp.over),
     });
-    let records = drive.records.iter().map(|record| lines(record, model, unit, clock, segment));
+    let records = pieces.iter().map(|(own, pieces)| record((own, Arc::clone(pieces)), model, clock, segment));
     let largest = |tone: &TonePart| tone.amplitude.abs().max(tone.ramp.map_or(0.0, |r| r.0.abs()));
     let reach = drive.tones.iter().map(largest).sum::<f64>()
         + drive.chirps.iter().map(|c| c.amplitude.abs()).sum::<f64>()
@@ -158,36 +167,63 @@ fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite
     }
 }
 
-/// The lines between the samples of a record, as far as the run goes.
-fn lines<T: Scalar>(
-    record: &scene::Record,
+/// The times of the samples at which lines or polynomials meet, and of the last one.
+fn corners(source: &scene::Record, pieces: &[Piece]) -> impl Iterator<Item = f64> {
+    let ends = pieces.iter().flat_map(|piece| {
+        let begins = if piece.polynomial.is_some() { 1 } else { piece.lines };
+        piece.first..piece.first + begins
+    });
+    ends.map(|sample| source.times[sample]).chain(source.times.last().copied())
+}
+
+/// The lines of a record and the polynomials in place of lines, as far as the run goes.
+fn record<T: Scalar>(
+    (source, pieces): (&Arc<scene::Record>, Arc<Vec<Piece>>),
     model: &Model,
-    unit: f64,
     clock: &Clock<T>,
     segment: impl Fn(f64) -> usize,
 ) -> Record<T> {
-    let (times, values) = (&record.times, &record.accelerations);
+    let (times, values, unit) = (&source.times, &source.accelerations, clock.unit());
     let square = unit * unit;
     let zero_time = Instant { cycle: 0, phase: T::zero() };
     let mut lines = Vec::new();
-    for i in 0..times.len() {
-        if times[i] > model.duration || times.get(i + 1).is_some_and(|next| *next <= 0.0) {
-            continue;
+    let mut add = |sample: usize, end: Option<usize>, piece: Option<usize>| {
+        if times[sample] > model.duration || end.is_some_and(|end| times[end] <= 0.0) {
+            return;
         }
-        let first_segment = if times[i] <= 0.0 { 0 } else { segment(times[i]) };
-        let Some(next) = times.get(i + 1) else {
-            let at = clock.at(times[i].max(0.0));
-            lines.push(Line { first_segment, at, value: T::zero(), slope: T::zero() });
-            continue;
-        };
-        let slope = T::of(values[i + 1] - values[i]) / T::of(next - times[i]);
-        let (at, value) = if times[i] < 0.0 {
-            (zero_time, T::of(values[i]) - slope * T::of(times[i]))
-        } else {
-            (clock.at(times[i]), T::of(values[i]))
-        };
-        let (value, slope) = (value * T::of(square), slope * T::of(square * unit));
-        lines.push(Line { first_segment, at, value, slope });
+        let first_segment = if times[sample] <= 0.0 { 0 } else { segment(times[sample]) };
+        let mut line =
+            Line { first_segment, at: zero_time, sample, value: T::zero(), slope: T::zero(), piece };
+        if times[sample] > 0.0 {
+            line.at = clock.at(times[sample]);
+        }
+        if let Some(end) = end.filter(|_| piece.is_none()) {
+            let slope = T::of(values[end] - values[sample]) / T::of(times[end] - times[sample]);
+            let value = T::of(values[sample]) - slope * T::of(times[sample].min(0.0));
+            (line.value, line.slope) = (value * T::of(square), slope * T::of(square * unit));
+        }
+        lines.push(line);
+    };
+    for (number, piece) in pieces.iter().enumerate() {
+        let end = piece.first + piece.lines;
+        match piece.polynomial {
+            Some(_) => add(piece.first, Some(end), Some(number)),
+            None => (piece.first..end).for_each(|sample| add(sample, Some(sample + 1), None)),
+        }
     }
-    lines
+    add(times.len() - 1, None, None);
+    Record { lines, source: Arc::clone(source), pieces, clock: *clock }
+}
+
+/// The pieces of a record: with polynomials in place of lines as the tolerance allows it. In some 31 digits
+/// there are none, nor beside another part of the drive or a circuit, since a release is searched for over
+/// the lines of a record alone.
+fn pieces<T: Scalar>(model: &Model, source: &scene::Record) -> Arc<Vec<Piece>> {
+    let drive = &model.excitation;
+    let parts = drive.tones.len() + drive.chirps.len() + drive.records.len();
+    if parts > 1 || model.circuit().is_some() || T::EPSILON < f64::EPSILON {
+        return Arc::new(vec![Piece { first: 0, lines: source.times.len() - 1, polynomial: None }]);
+    }
+    let Scales { speed, length, .. } = model.scales;
+    source.pieces((SPEED_SHARE * model.tolerance * speed, LENGTH_SHARE * model.tolerance * length))
 }

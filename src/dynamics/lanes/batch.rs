@@ -20,6 +20,10 @@ const BATCH_STEPS: u64 = 256;
 /// have two or three shapes, one group can fill its lanes.
 const UNDER_WAY: usize = 4;
 
+/// Fewer motions than this go on faster one after the other: a step of all lanes takes as long as some five
+/// steps alone, however many lanes are in use.
+const FEWEST: usize = 5;
+
 /// A run and what it is made of.
 pub(super) struct Prepared<'a> {
     pub model: &'a Model,
@@ -96,13 +100,35 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     }
 
     /// The group with the most motions that are ready for it, once it can fill its lanes or no more can be
-    /// started; none at the end.
+    /// started; none at the end. The last few go on alone.
     fn fullest(&mut self) -> Option<usize> {
         loop {
             let fullest = (0..self.groups.len()).max_by_key(|own| self.groups[*own].ready());
             let ready = fullest.map_or(0, |own| self.groups[own].ready());
             if ready >= W || !self.start_next() {
-                return fullest.filter(|_| ready > 0);
+                if ready < FEWEST.min(W / 2) {
+                    self.finish_alone();
+                    return None;
+                }
+                return fullest;
+            }
+        }
+    }
+
+    /// Goes on with each motion alone to its end.
+    #[inline(never)] // once a batch
+    fn finish_alone(&mut self) {
+        for group in 0..self.groups.len() {
+            for lane in 0..W {
+                if let Some((_, own, member)) = self.member(group, lane) {
+                    own.columns.store(lane, &mut member.motion);
+                }
+            }
+        }
+        for place in 0..self.members.len() {
+            if let Some(own) = &mut self.members[place] {
+                let outcome = own.motion.go_on();
+                self.end(place, outcome);
             }
         }
     }

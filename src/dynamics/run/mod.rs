@@ -81,7 +81,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     }
 
     /// Goes on from event to event until the run has ended.
-    fn go_on(&mut self) -> Outcome {
+    pub fn go_on(&mut self) -> Outcome {
         loop {
             let left = match self.left() {
                 Ok(left) => left,

@@ -48,7 +48,7 @@ type Ran = Result<Summary, Vec<Fault>>;
 /// What evaluates designs.
 pub(super) struct Evaluator<'a> {
     pub question: &'a BestQuestion,
-    pool: &'a Pool,
+    pub pool: &'a Pool,
     task: &'a Task<'a>,
     paths: Vec<FieldPath>,
     varied: Vec<FieldPath>,

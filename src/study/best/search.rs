@@ -102,11 +102,10 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
             break;
         }
     }
-    for i in begins {
-        let start = judged[i].optimum(&places[i]);
-        if let Some(own) = start.map(|start| refine(evaluator, start)).transpose()?
-            && own.value > best.value
-        {
+    let starts: Vec<Optimum> = begins.into_iter().filter_map(|i| judged[i].optimum(&places[i])).collect();
+    let refined = evaluator.pool.map(starts.len(), || (), |(), i| refine(evaluator, starts[i].clone()))?;
+    for own in refined {
+        if own.value > best.value {
             best = own;
         }
     }

@@ -11,8 +11,8 @@ use crate::study::walk::without_a_period;
 use crate::study::{Grid, Task};
 use crate::system::threads::Pool;
 
-/// Cells that a thread has of a chunk of rows.
-const CELLS_PER_THREAD: u64 = 32;
+/// Cells that may be begun, for each thread, before the first of them is over.
+const AHEAD: usize = 32;
 
 /// A scene and the grid over it whose exponents are asked for.
 #[derive(Debug)]
@@ -76,7 +76,7 @@ impl ExponentCells {
         pool.find_first(self.cells.grid.cells(), || self.cells.base.clone(), faults).map_or(Ok(()), Err)
     }
 
-    /// Measures every cell on `pool` and hands the rows to `write`, chunk by chunk in order. `write` answers
+    /// Measures every cell on `pool` and hands the rows to `write`, one by one in order. `write` answers
     /// whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
     pub fn run<E>(
         &self,
@@ -85,31 +85,34 @@ impl ExponentCells {
         task: &Task,
         mut write: impl FnMut(&Table) -> Result<bool, E>,
     ) -> Result<ExponentTally, SweepEnd<E>> {
-        let cells = self.cells.grid.cells();
-        let mut tally = ExponentTally::default();
-        while tally.cells < cells {
-            let begin = tally.cells;
-            let count = (CELLS_PER_THREAD * pool.count() as u64).min(cells - begin);
-            let cell = |scene: &mut Scene, place: usize| {
-                let model = self.cells.model(begin + place as u64, scene, task).and_then(Result::ok);
-                let found = match model.map(|model| exponents(&model, options, task.cancel)) {
-                    Some(Err(NoExponents::Cancelled)) => return Err(()),
-                    Some(Ok(found)) => Some(found),
-                    Some(Err(_)) | None => None,
-                };
-                (task.tick)();
-                if task.is_cancelled() { Err(()) } else { Ok(found) }
+        let cell = |scene: &mut Scene, index: u64| {
+            let model = self.cells.model(index, scene, task).and_then(Result::ok);
+            let found = match model.map(|model| exponents(&model, options, task.cancel)) {
+                Some(Err(NoExponents::Cancelled)) => return None,
+                Some(Ok(found)) => Some(found),
+                Some(Err(_)) | None => None,
             };
-            let found = pool.map(count as usize, || self.cells.base.clone(), cell);
-            let found = found.map_err(|()| SweepEnd::Cancelled)?;
-            tally.cells += count;
-            tally.missing += found.iter().filter(|own| own.is_none()).count() as u64;
-            tally.resting += found.iter().flatten().filter(|own| own.rests()).count() as u64;
-            if !write(&self.table(begin, &found)).map_err(SweepEnd::Write)? {
-                break;
-            }
-        }
-        Ok(tally)
+            (task.tick)();
+            (!task.is_cancelled()).then_some(found)
+        };
+        let (mut tally, mut end) = (ExponentTally::default(), None);
+        let take = |found: Option<Found>| {
+            let Some(found) = found else {
+                end = Some(SweepEnd::Cancelled);
+                return false;
+            };
+            let table = self.table(tally.cells, &[found]);
+            tally.cells += 1;
+            tally.missing += u64::from(found.is_none());
+            tally.resting += u64::from(found.is_some_and(|own| own.rests()));
+            write(&table).unwrap_or_else(|error| {
+                end = Some(SweepEnd::Write(error));
+                false
+            })
+        };
+        let ahead = AHEAD * pool.count();
+        pool.in_order(ahead, 0..self.cells.grid.cells(), || self.cells.base.clone(), cell, take);
+        end.map_or(Ok(tally), Err)
     }
 
     fn table(&self, begin: u64, found: &[Found]) -> Table {

@@ -4,7 +4,7 @@ use interwell::scene::Record;
 
 #[test]
 fn a_record_is_read_by_its_names_or_by_the_units_that_end_them() {
-    let expected = Record { times: vec![0.0, 0.5, 1.5], accelerations: vec![9.80665, -4.903325, 0.0] };
+    let expected = Record::new(vec![0.0, 0.5, 1.5], vec![9.80665, -4.903325, 0.0]);
     for text in [
         "t_s,accel_m_per_s2\n0,9.80665\n0.5,-4.903325\n1.5,0\n",
         // the two names count more than any unit

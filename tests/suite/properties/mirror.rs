@@ -30,7 +30,7 @@ fn opposite(excitation: &Excitation) -> Option<Excitation> {
             path: path.clone(),
             record: record.as_ref().map(|own| {
                 let accelerations = own.accelerations.iter().map(|a| -a).collect();
-                Arc::new(Record { times: own.times.clone(), accelerations })
+                Arc::new(Record::new(own.times.clone(), accelerations))
             }),
         },
         Excitation::Sum(parts) => Excitation::Sum(parts.iter().map(opposite).collect::<Option<_>>()?),

@@ -117,7 +117,7 @@ fn record() -> impl Strategy<Value = Excitation> {
                 (at, a)
             })
             .unzip();
-        let record = Some(Arc::new(Record { times, accelerations }));
+        let record = Some(Arc::new(Record::new(times, accelerations)));
         Excitation::Recorded { path: "record.csv".into(), record }
     })
 }

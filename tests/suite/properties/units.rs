@@ -151,14 +151,10 @@ impl Units {
             Excitation::Recorded { path, record } => Excitation::Recorded {
                 path: path.clone(),
                 record: record.as_ref().map(|own| {
-                    Arc::new(Record {
-                        times: own.times.iter().map(|t| self.seconds(*t)).collect(),
-                        accelerations: own
-                            .accelerations
-                            .iter()
-                            .map(|a| self.gravities(*a) * STANDARD_GRAVITY)
-                            .collect(),
-                    })
+                    let times = own.times.iter().map(|t| self.seconds(*t)).collect();
+                    let accelerations = own.accelerations.iter();
+                    let accelerations = accelerations.map(|a| self.gravities(*a) * STANDARD_GRAVITY);
+                    Arc::new(Record::new(times, accelerations.collect()))
                 }),
             },
             Excitation::Sum(parts) => {

@@ -152,7 +152,7 @@ pub(super) const SHOCK: HardCase = HardCase {
     conditioning: LINEAR,
     find: |bench| {
         let peak = 50.0 * STANDARD_GRAVITY;
-        let record = Record { times: vec![0.0995, 0.1005, 0.1015], accelerations: vec![0.0, peak, 0.0] };
+        let record = Record::new(vec![0.0995, 0.1005, 0.1015], vec![0.0, peak, 0.0]);
         Ok(vec![recorded(bench, "50 g in 2 ms", record, 1.0)?])
     },
 };
@@ -169,7 +169,7 @@ pub(super) const RECORD: HardCase = HardCase {
         let jump = |i: u32| (f64::from(i) * 0.618_033_988_749_894_9).fract() - 0.5;
         let times = (0..1000_u32).map(|i| f64::from(i) * 0.005).collect();
         let accelerations = (0..1000_u32).map(|i| STANDARD_GRAVITY * jump(i)).collect();
-        Ok(vec![recorded(bench, "1000 samples", Record { times, accelerations }, 5.0)?])
+        Ok(vec![recorded(bench, "1000 samples", Record::new(times, accelerations), 5.0)?])
     },
 };
 
