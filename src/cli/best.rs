@@ -2,10 +2,10 @@
 
 use clap::Args;
 use interwell::numeric::short;
-use interwell::scene::{Axis, Document, FieldPath, RunSettings, column_names};
+use interwell::scene::{Axis, Document, FieldPath, RunSettings, Transducer, column_names};
 use interwell::study::{
-    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Read,
-    SAMPLES, SUMMARY_FIELDS, SummaryField, Task, Variation, best, scan_runs,
+    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Optimum,
+    Read, SAMPLES, SUMMARY_FIELDS, SummaryField, Task, Variation, best, scan_runs,
 };
 use interwell::system::files::{canonical, is_file};
 
@@ -87,8 +87,14 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     // how many runs follow the scan is not known before
     let tick = || bar.inc_beyond();
     let task = Task { tick: &tick, cancel: interrupt::listen() };
-    let found = best(&question, &pool, &task, &mut |_| ());
+    let mut so_far = None;
+    let found = best(&question, &pool, &task, &mut |own| so_far = Some(own.clone()));
     bar.finish_and_clear();
+    if let (Err(NoBest::Cancelled), Some(own)) = (&found, &so_far) {
+        let maximised = question.maximise.name;
+        let at = place(&names(&question), own);
+        say(&format!("{}: best so far at {at}: {maximised} {}", document.name, short(own.value)));
+    }
     let design = found.map_err(|why| failure(why, options, &question, &document))?;
     write_table(&mut sinks[0], &design.table(&question))?;
     if !common.quiet {
@@ -117,11 +123,9 @@ fn has_fields(question: &BestQuestion) -> Result<(), Failure> {
 fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
     let names = names(question);
     let maximised = question.maximise.name;
-    let at: Vec<String> =
-        names.iter().zip(&design.optimum.at).map(|(name, value)| format!("{name} = {value}")).collect();
+    let at = place(&names, &design.optimum);
     let mean = if question.environments.len() > 1 { "the mean of " } else { "" };
-    let mut lines =
-        vec![format!("{mean}{maximised} is largest at {}: {}", at.join(", "), short(design.optimum.value))];
+    let mut lines = vec![format!("{mean}{maximised} is largest at {at}: {}", short(design.optimum.value))];
     if design.flat {
         lines.push(format!("{maximised} is the same wherever it was looked, so that no place is better"));
     }
@@ -146,7 +150,7 @@ fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
         }
     }
     if !question.vary.is_empty() {
-        let number = |value: f64| if value.is_nan() { "nothing".to_owned() } else { short(value) };
+        let number = |value: f64| if value.is_nan() { "no result".to_owned() } else { short(value) };
         let spread = &design.spread;
         lines.push(format!(
             "of {SAMPLES} samples of what varies the worst gives {}, one in twenty less than {}",
@@ -171,6 +175,12 @@ fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
     lines
 }
 
+/// A place as `field = value`, field by field.
+fn place(names: &[String], own: &Optimum) -> String {
+    let each = names.iter().zip(&own.at).map(|(name, value)| format!("{name} = {value}"));
+    each.collect::<Vec<_>>().join(", ")
+}
+
 fn names(question: &BestQuestion) -> Vec<String> {
     let fields: Vec<&str> = question.over.iter().map(|range| range.field.as_str()).collect();
     column_names(&fields)
@@ -180,10 +190,24 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
     match why {
         NoBest::Cancelled => Failure::interrupted(),
         NoBest::Invalid(faults) => document.error_from(faults).into(),
-        NoBest::NoValue => Failure::argument(format!(
-            "--maximise {}: no design of the range has this result, or one of --subject-to",
-            options.maximise
-        )),
+        NoBest::NoValue => {
+            let without = |own: &Environment| own.scene.transducer == Transducer::None;
+            let asked =
+                std::iter::once(question.maximise).chain(question.subject_to.iter().map(|own| own.of));
+            let electrical = asked.map(|own| own.name).find(|name| OF_TRANSDUCER.contains(name));
+            let missing = electrical.filter(|_| question.environments.iter().any(without));
+            Failure::argument(match missing {
+                Some(name) => format!(
+                    "{}: {name} needs a transducer, and the scene has none; name one with --set \
+                     'transducer=Electromagnetic(coupling_v_s_per_m: 5, coil_ohm: 40, load_ohm: 60)'",
+                    document.name
+                ),
+                None => format!(
+                    "--maximise {}: no design of the range has this result, or one of --subject-to",
+                    options.maximise
+                ),
+            })
+        }
         NoBest::NoneMeets { nearest, results } => {
             let at =
                 names(question).into_iter().zip(nearest).map(|(name, value)| format!("{name} = {value}"));
@@ -218,6 +242,9 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
         };
         let axis = Axis::parse(&ends, &document.scene).map_err(wrong)?;
         let (low, high) = (axis.values[0], axis.values[1]);
+        if !(low.is_finite() && high.is_finite()) {
+            return Err(wrong("the ends of the range must be finite".into()));
+        }
         if low >= high {
             return Err(wrong(format!("the range must go upward: {low} is not below {high}")));
         }
@@ -246,6 +273,9 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
     }
     Ok(ranges)
 }
+
+/// Numbers that only a scene with a transducer has.
+const OF_TRANSDUCER: [&str; 3] = ["mean_load_power_w", "mean_coil_power_w", "voltage_rms_v"];
 
 /// A shorter name of the power into the load.
 const POWER: (&str, &str) = ("mean_power_w", "mean_load_power_w");
@@ -337,11 +367,19 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
             }
         } else {
             let (name, weight) = weighted(text, &option)?;
+            let wrong = |problem: String| Failure::argument(format!("{option}: {problem}"));
             if name.to_ascii_lowercase().ends_with(".csv") {
+                // (a name that is no file may be that of a table of the program)
                 let path = canonical(name.as_ref()).unwrap_or_else(|| name.into());
-                own.set(&format!("excitation=Recorded(path: {:?})", path.display().to_string()))?;
+                let set = own.set(&format!("excitation=Recorded(path: {:?})", path.display().to_string()));
+                let set = set.map_err(|error| error.to_string());
+                let checked = set.and_then(|()| own.check().map_err(|error| error.to_string()));
+                checked.map_err(|problem| match is_file(name.as_ref()) {
+                    true => wrong(problem),
+                    false => wrong("no such file; give a record with columns t_s and accel_m_per_s2".into()),
+                })?;
             } else {
-                let other = Document::of_argument(name)?;
+                let other = Document::of_argument(name).map_err(|error| wrong(error.to_string()))?;
                 other.check()?;
                 let RunSettings { tolerance, recurrence, .. } = document.scene.run;
                 own.scene.excitation = other.scene.excitation;

@@ -89,21 +89,22 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
 /// All shards of one sweep in their order; an error names what does not fit, and what is missing with the
 /// commands that compute it.
 fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
-    let (mut parts, mut unfinished): (Vec<Part>, Vec<String>) = (Vec::new(), Vec::new());
+    let (mut parts, mut unfinished): (Vec<Part>, Vec<&Path>) = (Vec::new(), Vec::new());
     for path in paths {
         match Part::open(path)? {
             Some(part) => parts.push(part),
-            None => unfinished.push(path.display().to_string()),
+            None => unfinished.push(path.as_path()),
         }
     }
+    let unfinished: Vec<String> = unfinished.into_iter().map(why_not).collect();
     let Some(first) = parts.first() else {
         if paths.is_empty() {
             let such = "such as merge map-*-of-5.csv --out map.csv";
             return Err(Failure::argument(format!("merge: name the files of all shards, {such}")));
         }
-        let names = unfinished.join(", ");
         return Err(Failure::argument(format!(
-            "{names}: no manifest stands beside it, as beside the rows of every shard that is whole"
+            "{}; name the rows of every shard, beside which a manifest stands when it is whole",
+            unfinished.join(", ")
         )));
     };
     for part in &parts[1..] {
@@ -120,7 +121,8 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     parts.sort_by_key(|own| own.shard.number());
     if let Some(same) = parts.windows(2).find(|own| own[0].shard == own[1].shard) {
         let (a, b) = (same[0].path.display(), same[1].path.display());
-        return Err(Failure::argument(format!("{a} and {b} are both the shard {}", same[0].shard)));
+        let both = format!("{a} and {b} are both the shard {}; name each shard once", same[0].shard);
+        return Err(Failure::argument(both));
     }
     let count = parts[0].shard.count();
     let has = |number: u64| parts.iter().any(|own| own.shard.number() == number);
@@ -138,6 +140,17 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
         missing.len(),
         missing.join("\n")
     )))
+}
+
+/// Why the file at `path` is no shard.
+fn why_not(path: &Path) -> String {
+    let name = path.display();
+    let begun = files::exists(Path::new(&format!("{name}.part")));
+    match (files::exists(path), begun) {
+        (true, _) => format!("{name}: no manifest stands beside it"),
+        (false, true) => format!("{name}: not whole yet"),
+        (false, false) => format!("{name}: no such file"),
+    }
 }
 
 impl Part {

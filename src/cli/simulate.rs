@@ -155,7 +155,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     if let Some(warning) = yield_warning(&model, &simulation.summary).filter(|_| !common.quiet) {
         say(&format!("warning: {}: {warning}", document.name));
     }
-    if let Some(reason) = remark(simulation.summary.outcome) {
+    if let Some(reason) = remark(&model, simulation.summary.outcome) {
         let reason = format!("{}: {reason}", document.name);
         if options.strict {
             return Err(Failure::Failed(anyhow::anyhow!("{reason}")));
@@ -174,17 +174,23 @@ fn spanned(sampling: &Sampling) -> Option<(f64, f64)> {
 }
 
 /// Why a run ended before its duration, or what is wrong with it; none where it is done.
-fn remark(outcome: Outcome) -> Option<String> {
+fn remark(model: &Model, outcome: Outcome) -> Option<String> {
     let reason = match outcome {
         Outcome::Done => return None,
         Outcome::LeftTable { .. } => "the mass left the range of the force curve".to_owned(),
         Outcome::ImpactBudget { count, .. } => format!("{count} impacts are all that one run may make"),
-        Outcome::StepBudget { count, .. } => format!("{count} steps took all the work that one run may take"),
+        Outcome::StepBudget { count, .. } => {
+            let remedy = model
+                .fast_circuit()
+                .unwrap_or_else(|| "a larger tolerance or a shorter run takes fewer".to_owned());
+            format!("{count} steps took all the work that one run may take; {remedy}")
+        }
         Outcome::NotFinite { .. } => "a number was no longer finite".to_owned(),
         Outcome::Inaccurate { residual } => {
+            let remedy = model.fast_circuit().unwrap_or_else(|| "use a smaller tolerance".to_owned());
             return Some(format!(
-                "the energy does not balance ({}): the residual is {} times the energy that was moved; use a \
-                 smaller tolerance",
+                "the energy does not balance ({}): the residual is {} times the energy that was moved; \
+                 {remedy}",
                 outcome.name(),
                 short(residual)
             ));

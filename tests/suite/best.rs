@@ -180,6 +180,35 @@ fn stepping_back_from_a_cliff_costs_less_than_falling() {
     assert_ne!(found_by(&asked, 2).unwrap().stepped_back.unwrap().1, spread);
 }
 
+/// The place with the best worst case, by all samples of all places: what is tried no further is behind.
+#[test]
+fn the_best_worst_case_is_that_of_all_samples_at_every_place() {
+    let document = changed("paper", &["run.duration_s=6"]);
+    for (by, inward) in [(0.02, 1.6), (0.1, 1.5), (0.3, 1.0)] {
+        let mut asked = question(&document, ("stops.travel_limit_mm", inward, 2.5), 25);
+        asked.vary = vec![Variation { field: "excitation.amplitude_g".into(), by, relative: true }];
+        let own = found_by(&asked, 2).unwrap();
+        let (back, spread) = own.stepped_back.clone().unwrap();
+        // of a range that ends at it the optimum is a place of its own, with the same samples
+        let spread_at = |limit: f64| {
+            let mut fixed = question(&document, ("stops.restitution", 0.35, 0.36), 1);
+            fixed.over[0].low = 0.36 - 1e-9;
+            let mut document = document.clone();
+            document.set(&format!("stops.travel_limit_mm={limit}")).unwrap();
+            fixed.environments = vec![environment(&document)];
+            fixed.vary = asked.vary.clone();
+            found_by(&fixed, 2).unwrap().spread
+        };
+        near_relative(spread_at(back.at[0]).worst, spread.worst, 1e-6);
+        near_relative(spread_at(back.at[0]).quantile_5, spread.quantile_5, 1e-6);
+        for share in [0.05, 0.2, 0.4, 0.7, 1.0] {
+            let other = own.optimum.at[0] - share * (own.optimum.at[0] - inward);
+            let worst = spread_at(other).worst;
+            assert!(!(worst > 1.02 * spread.worst), "{by}: {other} {worst} {spread:?}");
+        }
+    }
+}
+
 #[test]
 fn two_fields_are_searched_together() {
     // the velocity at resonance A/(2 zeta w0) is largest for the least stiffness and the frequency of it
@@ -244,10 +273,14 @@ fn what_cannot_be_searched_is_refused_with_what_would_be_right() {
     refused(of("--vary stops.bogus=+-1%"), &["--vary", "stops.restitution"]);
     refused(of("--vary start.x_mm=+-1%"), &["--vary"]);
     refused(of("--environment excitation.amplitude_g=1*0"), &["weight"]);
-    refused(of("--environment nowhere"), &["nowhere"]);
+    refused(of("--environment nowhere"), &["--environment nowhere: ", "no built-in scene"]);
+    refused(of("--environment nowhere.csv"), &["--environment nowhere.csv: no such file; give a record"]);
     refused(
         of("--environment walking --vary excitation.amplitude_g=+-1%"),
         &["walking", "has no such number"],
     );
     refused(of("--maximise peak_contact_force_n"), &["no design of the range has this result"]);
+    refused(of("--maximise mean_power_w"), &["mean_load_power_w needs a transducer", "--set 'transducer="]);
+    let open = "best harvester --over transducer.load_ohm=1:inf";
+    refused(headless(open), &["load_ohm=1:inf", "must be finite"]);
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View};
-use interwell::scene::Document;
+use interwell::scene::{Document, is_manifest};
 use interwell::study::{
     Carry, DIRECTION, Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, Shard, SummaryField, Sweep,
 };
@@ -25,16 +25,21 @@ pub struct Asked {
     pub data: PathBuf,
 }
 
+/// With `--check` the scene is a manifest.
+pub fn has_manifest(options: &Arguments) -> Result<(), Failure> {
+    if !options.check || is_manifest(options.scene.as_ref()) {
+        return Ok(());
+    }
+    let scene = &options.scene;
+    Err(Failure::argument(format!(
+        "--check {scene}: give the manifest of a sweep, such as map.csv.json, as the scene"
+    )))
+}
+
 impl Asked {
     /// An argument counts more than a manifest.
     pub fn new(options: &Arguments, document: &Document) -> Result<Self, Failure> {
         let swept = document.swept.clone().unwrap_or_default();
-        if options.check && swept.data.is_empty() {
-            let scene = &options.scene;
-            return Err(Failure::argument(format!(
-                "--check {scene}: give the manifest of a sweep, such as map.csv.json, as the scene"
-            )));
-        }
         let words = options.columns.is_empty().then_some(swept.columns);
         let carry = options.carry.as_ref().or(swept.carry.as_ref());
         let variable = |name: &str| std::env::var(name).ok();

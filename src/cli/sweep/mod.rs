@@ -105,6 +105,7 @@ pub struct Arguments {
 /// Runs the grid and writes a row a cell.
 pub fn run(options: &Arguments) -> Result<(), Failure> {
     let common = &options.common;
+    asked::has_manifest(options)?;
     let picture = Picture::asked(&options.plot, &options.common)?;
     let axes = ranges(&options.ranges, "--plot-x")?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;

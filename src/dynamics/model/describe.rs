@@ -85,7 +85,10 @@ impl Model {
             absent.push("excitation");
         }
         match &self.transducer {
-            Some(own) => lines.push(own.describe()),
+            Some(own) => {
+                lines.push(own.describe());
+                lines.extend(self.fast_circuit());
+            }
             None => absent.push("transducer"),
         }
         lines.push(format!(

@@ -43,6 +43,12 @@ impl Model {
         self.circuit().is_some()
     }
 
+    /// Why steps are short beside a circuit that is far faster than the motion, and what the scene would be
+    /// without it; none without such a circuit.
+    pub fn fast_circuit(&self) -> Option<String> {
+        self.transducer.as_ref()?.fast_circuit(self.mass, self.scales.time)
+    }
+
     /// Electrical state at the start in A or V; 0 without one.
     pub fn start_electrical(&self) -> f64 {
         self.start_electrical

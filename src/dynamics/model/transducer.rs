@@ -55,6 +55,12 @@ impl Circuit {
     }
 }
 
+/// A circuit is fast from this multiple of the motion's rate on.
+const FAST: f64 = 100.0;
+
+/// The share of the motion up to which a fast circuit may be left out.
+const NEARLY: f64 = 1e-2;
+
 /// What a transducer gives at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -142,6 +148,42 @@ impl Transducer {
             (Some(own), Some(was)) if own.is_voltage == was.is_voltage => electrical,
             _ => 0.0,
         }
+    }
+
+    /// Why steps are short beside a circuit that is far faster than a motion of this time scale in s, and
+    /// what the scene would be without it; none of another one. `mass` in kg.
+    pub fn fast_circuit(&self, mass: f64, time: f64) -> Option<String> {
+        let own = self.circuit.as_ref()?;
+        let (coupling, decay) = (own.coupling.abs(), own.decay);
+        if !(coupling.max(decay) * time > FAST) {
+            return None;
+        }
+        // what is left out with the state: its lag, and the mass that this takes or gives
+        let apart = (1.0 / (decay * time)).max((coupling / decay).powi(2));
+        if !(apart < NEARLY) {
+            let storage = if own.is_voltage { "capacitance_nf" } else { "inductance_mh" };
+            return Some(format!(
+                "mass and circuit exchange their energy in {} s, and a step covers but a few of it; a larger \
+                 {storage} or a weaker coupling makes that slower",
+                short(1.0 / coupling)
+            ));
+        }
+        let instead = if own.is_voltage {
+            let (load, force) = (1.0 / self.current, coupling * mass / own.amount);
+            format!(
+                "transducer=Electromagnetic(coupling_v_s_per_m: {}, coil_ohm: 0, load_ohm: {}) gives the \
+                 same voltage, current and power without a state of its own",
+                short(force * load),
+                short(load)
+            )
+        } else {
+            "without inductance_mh the coil is a damping".to_owned()
+        };
+        let constant = short(1.0 / decay);
+        Some(format!(
+            "the circuit's time constant is {constant} s, and a step covers but a few of it; {instead}, but \
+             for a share of some {apart:.0e}"
+        ))
     }
 
     /// It in words, for `check`.

@@ -27,6 +27,10 @@ const MANY_STEPS: f64 = 1000.0;
 const MISSING: f64 = 0.1;
 const STILL: f64 = 1e-12;
 
+/// A circuit whose coupling is this many times as fast as the motion holds the mass fast. What little moves
+/// then is what is asked for, be it below the rounding of displacement and force.
+const STRONG: f64 = 1e3;
+
 /// Range and largest speed of a motion, in m and m/s.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Excursion {
@@ -52,11 +56,15 @@ pub(super) fn judged(model: &Model, run: &Run, reach: Excursion) -> Outcome {
     if !(averaged && numbers.into_iter().chain(energies).all(f64::is_finite) && samples()) {
         return Outcome::NotFinite { at: model.duration };
     }
+    let moved = residual_j.abs() / energy_residual;
+    let strong = model.circuit().is_some_and(|own| own.coupling.abs() * model.scales.time > STRONG);
+    if strong && residual_j.abs() > MISSING * moved {
+        return Outcome::Inaccurate { residual: energy_residual };
+    }
     let missing = residual_j.abs() - rounding(model, reach, summary.steps);
     if !(missing > 0.0) {
         return Outcome::Done;
     }
-    let moved = residual_j.abs() / energy_residual;
     let many = (summary.steps as f64 / MANY_STEPS).max(1.0);
     let allowed = TOLERANCES * model.tolerance.max(FINEST) * many;
     let by_tolerance = allowed * (moved + model.mass * model.scales.speed * reach.speed);

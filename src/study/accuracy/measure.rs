@@ -187,10 +187,10 @@ impl<'a> Bench<'a> {
     /// number| per relative change of the datum, by runs in double-double arithmetic with the datum changed
     /// by [`CHANGE`].
     ///
-    /// The data are mass, start velocity, amplitude, damping and restitution, as far as the scene has them: a
-    /// change of the mass is one of every acceleration all along the run, one of the restitution of every
-    /// rebound, so that errors made on the way are covered and not only those of the start. `numbers` answers
-    /// in a fixed order and number.
+    /// The data are mass, start velocity, amplitude, damping, restitution, and a transducer's numbers, as far
+    /// as the scene has them: a change of the mass is one of every acceleration all along the run, one of the
+    /// restitution of every rebound, so that errors made on the way are covered and not only those of the
+    /// start. `numbers` answers in a fixed order and number.
     pub fn sensitivity(
         &self,
         setup: &Setup,
@@ -229,16 +229,20 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// The scene with one datum after the other changed: mass, speed, shaking, damping and restitution, each by
-/// the fields whose paths begin and end so.
+/// The scene with one datum after the other changed: mass, speed, shaking, damping, restitution, and what is
+/// electrical, each by the fields whose paths begin and end so.
 fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
     let (more, less) = (1.0 + change, 1.0 - change);
-    let data: [(&str, &[&str], f64); 5] = [
+    let data: [(&str, &[&str], f64); 9] = [
         ("mass_g", &[""], more),
         ("start.v_m_per_s", &[""], more),
         ("excitation.", &["accel_g", "amplitude_g", ".from_g", ".to_g", "rms_g"], more),
         ("damping.", &[""], more),
         ("stops.restitution", &[""], less),
+        ("start.electrical", &[""], more),
+        ("transducer.coupling", &[""], more),
+        ("transducer.", &["inductance_mh", "capacitance_nf"], more),
+        ("transducer.", &["ohm"], more),
     ];
     let fields = numeric_fields(&setup.scene);
     let with = |(begin, ends, by): (&str, &[&str], f64)| {

@@ -86,6 +86,15 @@ impl Setup {
         self
     }
 
+    /// With a transducer whose electrical state in A or V is this at the start.
+    pub fn beside(mut self, transducer: Transducer, state: f64) -> Self {
+        self.scene.transducer = transducer;
+        if let Start::At { electrical, .. } = &mut self.scene.start {
+            *electrical = state;
+        }
+        self
+    }
+
     /// The force is that of `curve`, whatever the scene's mechanism says.
     pub fn on(mut self, curve: ForceCurve) -> Self {
         self.curve = Some(curve);
@@ -141,6 +150,25 @@ pub(super) fn left_stop(left_mm: f64, restitution: f64) -> Stops {
         right_mm: None,
         restitution_left: Some(restitution),
         restitution_right: None,
+    }
+}
+
+/// A coil of this coupling in V s/m, resistance in ohm, load and all, and inductance in H.
+pub(super) fn coil(coupling: f64, resistance: f64, inductance: f64) -> Transducer {
+    Transducer::Electromagnetic {
+        coupling_v_s_per_m: coupling,
+        coil_ohm: 0.0,
+        load_ohm: resistance,
+        inductance_mh: inductance * 1e3,
+    }
+}
+
+/// A piezoelectric layer of this coupling in N/V and capacitance in F beside a load in ohm.
+pub(super) fn layer(coupling: f64, capacitance: f64, load: f64) -> Transducer {
+    Transducer::Piezoelectric {
+        coupling_n_per_v: coupling,
+        capacitance_nf: capacitance * 1e9,
+        load_kohm: load / 1e3,
     }
 }
 

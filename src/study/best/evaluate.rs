@@ -10,7 +10,7 @@ use crate::study::Task;
 use crate::study::fields::{Read, SummaryField};
 use crate::system::threads::Pool;
 
-/// Runs that a thread makes together.
+/// Runs that a thread makes together, at most.
 const BATCH: usize = 16;
 
 /// What one design came to.
@@ -98,11 +98,13 @@ impl<'a> Evaluator<'a> {
     pub fn judge_varied(&self, designs: &[Design]) -> Result<Vec<Judged>, NoBest> {
         let each = self.question.environments.len();
         let runs = designs.len() * each;
+        // few runs are shared out, so that no thread waits
+        let batch = runs.div_ceil(self.pool.count()).clamp(1, BATCH);
         let part = |_: &mut (), part: usize| {
-            let jobs = part * BATCH..((part + 1) * BATCH).min(runs);
+            let jobs = part * batch..((part + 1) * batch).min(runs);
             self.run(jobs.map(|job| (&designs[job / each], job % each)))
         };
-        let parts: Vec<Vec<Ran>> = self.pool.map(runs.div_ceil(BATCH), || (), part)?;
+        let parts: Vec<Vec<Ran>> = self.pool.map(runs.div_ceil(batch), || (), part)?;
         let summaries = parts.concat();
         Ok(summaries.chunks(each).map(|own| self.judged(own)).collect())
     }

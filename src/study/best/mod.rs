@@ -21,8 +21,8 @@ pub use design::{
 use evaluate::Evaluator;
 pub use varied::SAMPLES;
 
-/// Searches for the best design. Where it is found by a coarse scan first, `preview` has it early. The result
-/// is the same for any number of threads.
+/// Searches for the best design. `preview` has the best place of the coarse scan, and the best place when it
+/// is found, before margins and samples. The result is the same for any number of threads.
 pub fn best(
     question: &BestQuestion,
     pool: &Pool,

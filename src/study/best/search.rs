@@ -102,55 +102,75 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
             break;
         }
     }
-    let starts: Vec<Optimum> = begins.into_iter().filter_map(|i| judged[i].optimum(&places[i])).collect();
-    let refined = evaluator.pool.map(starts.len(), || (), |(), i| refine(evaluator, starts[i].clone()))?;
-    for own in refined {
+    let starts = begins.iter().filter_map(|i| judged[*i].optimum(&places[*i])).collect();
+    for own in refine(evaluator, starts)? {
         if own.value > best.value {
             best = own;
         }
     }
+    preview(&best);
     Ok(Found { optimum: best, flat: all_equal })
 }
 
-/// Scans a box around a place, moves to the best in it and halves it or less, until the resolution of every
-/// field is reached.
-fn refine(evaluator: &Evaluator, mut best: Optimum) -> Result<Optimum, NoBest> {
+/// A box that shrinks around its best place.
+struct Closer {
+    best: Optimum,
+    /// Places that have been tried; none of them is better.
+    tried: Vec<Vec<f64>>,
+}
+
+/// Scans a box around each of some places, moves each to the best in it and halves it or less, until the
+/// resolution of every field is reached.
+fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, NoBest> {
     let over = &evaluator.question.over;
     let sides = SIDES[over.len() - 1];
     let mut half: Vec<f64> = over.iter().map(DesignRange::step).collect();
+    let closer = |best: Optimum| Closer { tried: vec![best.at.clone()], best };
+    let mut boxes: Vec<Closer> = starts.into_iter().map(closer).collect();
+    let grid: Vec<DesignRange> = over
+        .iter()
+        .map(|range| DesignRange { low: -1.0, high: 1.0, intervals: 2 * sides, ..range.clone() })
+        .collect();
+    let grid = indices(&grid);
     loop {
-        let box_: Vec<DesignRange> = over
-            .iter()
-            .map(|range| DesignRange { low: -1.0, high: 1.0, intervals: 2 * sides, ..range.clone() })
-            .collect();
-        let mut places: Vec<Vec<f64>> = indices(&box_)
-            .into_iter()
-            .map(|own| {
-                let at = |(field, index): (usize, &usize)| {
-                    let offset = half[field] * (*index as f64 / sides as f64 - 1.0);
-                    rounded(&over[field], best.at[field] + offset)
-                };
-                own.iter().enumerate().map(at).collect()
-            })
-            .collect();
-        places.sort_by(|a: &Vec<f64>, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-        places.dedup();
-        let judged = evaluator.judge(&places)?;
-        if let Some(own) = highest(&places, &judged).filter(|own| own.value > best.value) {
-            best = own;
+        // of all boxes together, so that no thread waits
+        let places: Vec<Vec<Vec<f64>>> = boxes.iter().map(|own| around(own, over, &grid, &half)).collect();
+        let judged = evaluator.judge(&places.concat())?;
+        let mut rest = judged.as_slice();
+        for (own, places) in boxes.iter_mut().zip(places) {
+            let (judged, others) = rest.split_at(places.len());
+            rest = others;
+            if let Some(better) = highest(&places, judged).filter(|better| better.value > own.best.value) {
+                own.best = better;
+            }
+            own.tried.extend(places);
         }
-        if half.iter().zip(over).all(|(half, range)| half / sides as f64 <= resolution(range)) {
-            return Ok(best);
-        }
+        let finest = half.iter().zip(over).all(|(half, range)| half / sides as f64 <= resolution(range));
         // with one place to each side the best may lie anywhere in the box, so that it is only halved
         let smaller = if sides == 1 { 0.5 } else { 1.0 / sides as f64 };
         for (half, range) in half.iter_mut().zip(over) {
             *half = (*half * smaller).max(resolution(range));
         }
-        if sides == 1 && half.iter().zip(over).all(|(half, range)| *half <= resolution(range)) {
-            return Ok(best);
+        if finest || sides == 1 && half.iter().zip(over).all(|(half, range)| *half <= resolution(range)) {
+            return Ok(boxes.into_iter().map(|own| own.best).collect());
         }
     }
+}
+
+/// The places of a box that have not been tried: on a grid of so many indices, `half` to each side.
+fn around(own: &Closer, over: &[DesignRange], grid: &[Vec<usize>], half: &[f64]) -> Vec<Vec<f64>> {
+    let sides = SIDES[over.len() - 1] as f64;
+    let place = |indices: &Vec<usize>| -> Vec<f64> {
+        let at = |(field, index): (usize, &usize)| {
+            let offset = half[field] * (*index as f64 / sides - 1.0);
+            rounded(&over[field], own.best.at[field] + offset)
+        };
+        indices.iter().enumerate().map(at).collect()
+    };
+    let mut places: Vec<Vec<f64>> = grid.iter().map(place).filter(|at| !own.tried.contains(at)).collect();
+    places.sort_by(|a: &Vec<f64>, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    places.dedup();
+    places
 }
 
 /// Why no place has a value.

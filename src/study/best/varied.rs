@@ -52,41 +52,87 @@ pub(super) fn robust(
             places.push(at);
         }
     }
-    let judged = evaluator.judge(&places)?;
-    let (mut first, mut back): (Option<Spread>, Option<(Optimum, Spread)>) = (None, None);
-    for (at, own) in places.iter().zip(&judged) {
-        let Some(own) = own.optimum(at) else { continue };
-        let spread = spread(evaluator, at)?;
-        let most = back.as_ref().map_or(first, |own| Some(own.1));
-        match most {
-            None => first = Some(spread),
-            Some(most) if spread.worst > most.worst || most.worst.is_nan() && !spread.worst.is_nan() => {
-                back = Some((own, spread));
-            }
-            _ => {}
+    let judged = evaluator.judge(&places[1..])?;
+    let back = places[1..].iter().zip(&judged).filter_map(|(at, own)| own.optimum(at));
+    let mut all: Vec<Sampled> =
+        std::iter::once(best.clone()).chain(back).map(|own| Sampled::new(evaluator, own)).collect();
+    let everything: Vec<usize> = (0..SAMPLES).collect();
+    evaluate(evaluator, &mut all[..1], &everything)?;
+    // What is worst here is so elsewhere as a rule, and the worst that is known of a place bounds its worst
+    // case: few places need all samples to be behind.
+    let mut order = everything;
+    order.sort_by(|a, b| all[0].values[*a].total_cmp(&all[0].values[*b]));
+    evaluate(evaluator, &mut all[1..], &order[..TOGETHER])?;
+    loop {
+        let ahead =
+            (1..all.len()).fold(0, |first, i| if all[i].worst() > all[first].worst() { i } else { first });
+        let known = all[ahead].known;
+        if known == SAMPLES {
+            let first = all[0].spread();
+            let back = (ahead > 0).then(|| (all[ahead].at.clone(), all[ahead].spread()));
+            return Ok((first, back));
         }
+        let next = &order[known..(2 * known).min(SAMPLES)];
+        evaluate(evaluator, &mut all[ahead..=ahead], next)?;
     }
-    Ok((first.unwrap_or(Spread { worst: f64::NAN, quantile_5: f64::NAN }), back))
 }
 
-/// The spread at a place: the same samples at each.
-fn spread(evaluator: &Evaluator, at: &[f64]) -> Result<Spread, NoBest> {
-    let mut random = ChaCha8Rng::seed_from_u64(evaluator.question.seed);
-    let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-    let nominal = evaluator.values_of_varied(at);
-    let designs: Vec<Design> = (0..SAMPLES)
-        .map(|_| {
+/// Samples that are evaluated together at a place.
+const TOGETHER: usize = 8;
+
+/// A place and its samples: the same at each.
+struct Sampled {
+    at: Optimum,
+    /// Values of what varies in each.
+    varied: Vec<Vec<f64>>,
+    /// Of those that are known the value, minus infinity where there is none; else infinity.
+    values: Vec<f64>,
+    /// How many are known.
+    known: usize,
+}
+
+impl Sampled {
+    fn new(evaluator: &Evaluator, at: Optimum) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(evaluator.question.seed);
+        let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        let nominal = evaluator.values_of_varied(&at.at);
+        let mut sample = || {
             let vary = evaluator.question.vary.iter().zip(&nominal).map(|(own, value)| {
                 let by = if own.relative { own.by * value } else { own.by };
                 value + by * (2.0 * uniform() - 1.0)
             });
-            (at.to_vec(), vary.collect())
-        })
-        .collect();
+            vary.collect()
+        };
+        let varied = (0..SAMPLES).map(|_| sample()).collect();
+        Self { at, varied, values: vec![f64::INFINITY; SAMPLES], known: 0 }
+    }
+
+    /// The worst that is known.
+    fn worst(&self) -> f64 {
+        self.values.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// The spread, where all are known.
+    fn spread(&self) -> Spread {
+        let mut values = self.values.clone();
+        values.sort_by(f64::total_cmp);
+        let shown = |value: f64| if value.is_finite() { value } else { f64::NAN };
+        let place = (QUANTILE * SAMPLES as f64) as usize;
+        Spread { worst: shown(values[0]), quantile_5: shown(values[place]) }
+    }
+}
+
+/// Makes these samples of all places known.
+fn evaluate(evaluator: &Evaluator, places: &mut [Sampled], samples: &[usize]) -> Result<(), NoBest> {
+    let of = |own: &Sampled, sample: usize| (own.at.at.clone(), own.varied[sample].clone());
+    let designs: Vec<Design> =
+        places.iter().flat_map(|own| samples.iter().map(move |sample| of(own, *sample))).collect();
     let judged = evaluator.judge_varied(&designs)?;
-    let mut values: Vec<f64> = judged.iter().map(|own| own.value().unwrap_or(f64::NEG_INFINITY)).collect();
-    values.sort_by(f64::total_cmp);
-    let shown = |value: f64| if value.is_finite() { value } else { f64::NAN };
-    let place = (QUANTILE * SAMPLES as f64) as usize;
-    Ok(Spread { worst: shown(values[0]), quantile_5: shown(values[place]) })
+    for (own, judged) in places.iter_mut().zip(judged.chunks(samples.len())) {
+        for (sample, judged) in samples.iter().zip(judged) {
+            own.values[*sample] = judged.value().unwrap_or(f64::NEG_INFINITY);
+        }
+        own.known += samples.len();
+    }
+    Ok(())
 }

@@ -85,6 +85,13 @@ fn with_stops_no_fixed_step_comes_below_what_is_said_of_them() {
 }
 
 #[test]
+fn the_page_counts_the_hard_cases() {
+    let page = include_str!("../../../docs/accuracy.md");
+    let count = interwell::study::accuracy::HARD_CASES.len();
+    assert!(page.contains(&format!("has {count} hard cases")), "{count}");
+}
+
+#[test]
 fn the_cases_are_listed_with_their_reasons() {
     let all = stdout("accuracy --list");
     for word in ["p1", "flexures", "separatrix", "chatter-at-release", "Digits allowed:", "Answer:"] {

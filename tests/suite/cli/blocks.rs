@@ -323,6 +323,7 @@ fn a_manifest_is_run_again_and_compared() {
     fs::remove_file(&path).unwrap();
     check().code(2).stderr(contains("map.csv"));
     refused(headless("sweep paper --check"), &["--check", "manifest"]);
+    refused(headless("sweep Cargo.toml --check"), &["--check Cargo.toml: give the manifest of a sweep"]);
 }
 
 #[test]

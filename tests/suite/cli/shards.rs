@@ -61,7 +61,7 @@ fn a_missing_shard_is_named_with_the_command_that_computes_it() {
     shards(folder.path(), MAP, &[1, 2, 4], 5);
     let assert = merge(folder.path(), &["p1.csv", "p2.csv", "p4.csv", "p5.csv"], "map.csv").assert().code(1);
     let text = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
-    assert!(text.contains("p5.csv; 2 of 5 shards are missing"), "{text}");
+    assert!(text.contains("p5.csv: no such file; 2 of 5 shards are missing"), "{text}");
     let commands: Vec<&str> = text.lines().skip(1).collect();
     assert_eq!(commands.len(), 2, "{text}");
     for command in commands {
@@ -85,7 +85,9 @@ fn what_does_not_fit_together_is_refused() {
     let refuse = |parts: &[&str], words: &[&str]| refused(merge(folder, parts, "map.csv"), words);
     refuse(&["p1.csv", &foreign], &[&foreign, "p1.csv", "scene.mass_g is 16.0 there and 15.2 here"]);
     refuse(&["p1.csv", "p1.csv"], &["both the shard 1/2"]);
-    refuse(&["none.csv"], &["none.csv", "manifest"]);
+    refuse(&["none.csv"], &["none.csv: no such file", "manifest"]);
+    let foreign = Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml").display().to_string();
+    refuse(&[&foreign], &["Cargo.toml: no manifest stands beside it"]);
     shards(other.path(), MAP, &[3], 3);
     let third = other.path().join("p3.csv").display().to_string();
     refuse(&["p1.csv", &third], &["shard 3/3", "1/2"]);

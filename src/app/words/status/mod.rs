@@ -99,14 +99,18 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
         Outcome::ImpactBudget { count, .. } => {
             format!("{count} impacts are more than it may make. Lower the restitution.")
         }
-        Outcome::StepBudget { .. } => {
-            "it took more work than it may take. Use a larger tolerance.".to_owned()
-        }
+        Outcome::StepBudget { .. } => match model.fast_circuit() {
+            Some(why) => format!("it took more work than it may take; {why}."),
+            None => "it took more work than it may take. Use a larger tolerance.".to_owned(),
+        },
         Outcome::NotFinite { .. } => {
             "the mass went beyond all bounds. Set stops, or a force that holds it.".to_owned()
         }
         Outcome::Inaccurate { .. } => {
-            return Sentence::new(Kind::Fault, "The energy does not balance. Use a smaller tolerance.");
+            let remedy = model.fast_circuit().map(|why| format!("The energy does not balance: {why}."));
+            let text =
+                remedy.unwrap_or_else(|| "The energy does not balance. Use a smaller tolerance.".into());
+            return Sentence::new(Kind::Fault, text);
         }
         Outcome::Cancelled { .. } | Outcome::Done => "it was stopped.".to_owned(),
     };

@@ -27,7 +27,7 @@ fn sprung(c: f64, drive: Excitation, duration: f64) -> Setup {
 }
 
 /// The forcings of the tones of a model, in its own doubles; a ramp as what it is before its end.
-fn tones(model: &Model) -> Vec<Forcing> {
+pub(super) fn tones(model: &Model) -> Vec<Forcing> {
     let tone = |tone: &crate::dynamics::TonePart| {
         let (amplitude, growth) = tone.ramp.map_or((tone.amplitude, dd(0.0)), |(from, over)| {
             (from, (dd(tone.amplitude) - dd(from)) / dd(over))
@@ -39,7 +39,7 @@ fn tones(model: &Model) -> Vec<Forcing> {
 }
 
 /// Even times within a run.
-fn even(duration: f64, count: usize) -> Vec<f64> {
+pub(super) fn even(duration: f64, count: usize) -> Vec<f64> {
     (1..=count).map(|i| duration * i as f64 / (count as f64 + 0.5)).collect()
 }
 

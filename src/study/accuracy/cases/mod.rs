@@ -9,6 +9,8 @@
 mod ball;
 mod case;
 mod chatter;
+mod circuit;
+mod circuit_events;
 mod curves;
 mod drives;
 mod long;
@@ -47,6 +49,13 @@ pub const HARD_CASES: &[HardCase] = &[
     curves::STOP_AT_THE_EQUILIBRIUM,
     curves::STOP_AT_THE_FORCE_MAXIMUM,
     curves::BOTH_STOPS_ON_ONE_SIDE,
+    circuit::STIFF,
+    circuit::STRONG,
+    circuit::NO_INDUCTANCE,
+    circuit::OPEN_AND_SHORT,
+    circuit_events::AT_REST,
+    circuit_events::RELEASE,
+    circuit_events::AT_IMPACTS,
     long::CHAOS,
     scales::UNITS,
 ];

@@ -6,6 +6,7 @@
 
 mod ball;
 mod corner;
+mod coupled;
 mod elementary;
 mod oscillator;
 mod pressed;
@@ -13,6 +14,7 @@ mod well;
 
 pub use ball::{first_hit, impact_time, rest_time};
 pub use corner::Corner;
+pub use coupled::Coupled;
 pub use elementary::{elliptic_k, exp, sin_cos, sine_turns};
 pub use oscillator::{Forcing, Oscillator};
 pub use pressed::Pressed;

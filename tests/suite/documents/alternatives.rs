@@ -1,0 +1,197 @@
+//! Numbers of the page on alternatives, each measured anew by its own command, or by a part of it where the
+//! whole takes a minute.
+
+use std::sync::atomic::AtomicBool;
+
+use interwell::dynamics::{Model, Regime, Request};
+use interwell::scene::{Document, FieldPath};
+use interwell::study::{Task, settled, thresholds};
+
+use crate::cli::{column, headless};
+use crate::support::*;
+
+const PAGE: &str = include_str!("../../../docs/alternatives.md");
+
+/// The page says this, whatever its lines.
+#[track_caller]
+fn says(claim: &str) {
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words(PAGE).contains(&words(claim)), "docs/alternatives.md does not say: {claim}");
+}
+
+/// The cells of the row that begins so.
+#[track_caller]
+fn row(name: &str) -> Vec<&'static str> {
+    let begin = format!("| {name} |");
+    let row = PAGE.lines().find(|line| line.starts_with(&begin));
+    let row = row.unwrap_or_else(|| panic!("docs/alternatives.md has no row {name}"));
+    row.trim_matches('|').split('|').skip(1).map(str::trim).collect()
+}
+
+/// The command of the page that begins so, and what it says and writes.
+fn command(begin: &str, without: &str) -> (String, String) {
+    let line = PAGE.lines().find_map(|line| line.strip_prefix("interwell --headless ")?.strip_prefix(begin));
+    let line = format!("{begin}{}", line.unwrap_or_else(|| panic!("no command {begin}")));
+    let line = if without.is_empty() { line } else { line.split(without).next().unwrap().to_owned() };
+    let output = headless(&line).assert().success().get_output().clone();
+    [output.stderr, output.stdout].map(|text| String::from_utf8(text).unwrap()).into()
+}
+
+fn number(csv: &str, name: &str) -> f64 {
+    column(csv, name)[0].parse().unwrap()
+}
+
+/// A scene under the shaking and with the run of `paper`, and with fields changed.
+fn beside_paper(name: &str, changes: &[&str]) -> Document {
+    let paper = changed("paper", &[]).scene;
+    let mut document = changed(name, &[]);
+    (document.scene.excitation, document.scene.run) = (paper.excitation, paper.run);
+    document.scene.sweep.clear();
+    changes.iter().for_each(|change| document.set(change).unwrap());
+    document
+}
+
+/// The least amplitude in g that crosses, as `compare` looks for it.
+fn crossing(document: &Document) -> f64 {
+    let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+    thresholds(&document.scene, &mechanism(document), &task).unwrap().crosses_from.unwrap()
+}
+
+#[test]
+fn the_rows_of_the_comparison_are_measured() {
+    let csv = command("compare paper", " balanced").1;
+    let with = |digits: usize, value: f64| format!("{value:.digits$}");
+    let (release, speed) = (number(&csv, "release_g"), number(&csv, "rms_velocity_m_per_s"));
+    assert_eq!(row("frees the mass from, g"), [&with(3, release), "", "", ""]);
+    assert_eq!(row("crosses from, g")[0], with(3, number(&csv, "crossing_g")));
+    assert_eq!(row("RMS velocity, mm/s")[0], with(1, 1e3 * speed));
+    assert_eq!(row("fastest impact, mm/s")[0], with(0, 1e3 * number(&csv, "impact_speed_max_m_per_s")));
+    assert_eq!((row("crosses from, Hz")[0], number(&csv, "crosses_from_hz")), ("0.3 or less", 0.3));
+    assert_eq!(row("crosses to, Hz")[0], with(1, number(&csv, "crosses_to_hz")));
+    let change = 100.0 * number(&csv, "threshold_sensitivity");
+    assert_eq!(row("change of the threshold for 1 % of a size")[0], format!("{change:.0} %"));
+    for (i, name) in ["paper", "balanced", "magnet", "paper-unconstrained"].into_iter().enumerate() {
+        let document = beside_paper(name, &[]);
+        let own = settled(&build(&document), &AtomicBool::new(false)).unwrap();
+        assert_eq!(row("crosses from, g")[i], with(3, crossing(&document)), "{name}");
+        assert_eq!(row("reach, mm")[i].parse::<f64>().unwrap(), decimal(1e3 * own.max_abs_x.unwrap(), i));
+        let speed = 1e3 * own.rms_velocity.unwrap();
+        assert!(row("RMS velocity, mm/s")[i].starts_with(&with(1, speed)), "{name}: {speed}");
+        let (crosses, impacts) = (own.crossings > 0, own.impacts > 0);
+        assert_eq!((crosses, impacts), (name != "paper-unconstrained", name == "paper"), "{name}");
+        assert_eq!(row("fastest impact, mm/s")[i] == "none", !impacts, "{name}");
+    }
+}
+
+#[test]
+fn speeds_of_irregular_motions_are_those_of_the_windows_that_are_named() {
+    let irregular = ["balanced", "magnet"].map(|name| build(&beside_paper(name, &[])));
+    let early = irregular.each_ref().map(|model| {
+        let own = model.run(&Request::default()).summary;
+        assert_eq!(own.window, (5.0, 10.0));
+        1e3 * own.rms_velocity.unwrap()
+    });
+    says(&format!("From 5 to 10 s they are {:.1} and {:.1} mm/s", early[0], early[1]));
+    for model in &irregular {
+        let own = settled(model, &AtomicBool::new(false)).unwrap();
+        assert_eq!((own.regime, own.window), (Regime::Irregular, (335.0, 340.0)));
+    }
+}
+
+/// A reach in mm as the page has it: the stop's with one decimal, others with two.
+fn decimal(value: f64, column: usize) -> f64 {
+    let unit = if column == 0 { 10.0 } else { 100.0 };
+    (unit * value).round() / unit
+}
+
+#[test]
+fn the_change_of_the_threshold_by_one_percent_of_a_size_is_as_said() {
+    let length = |document: &Document, field: &str, by: f64| {
+        let value = FieldPath::new(field).get(&document.scene).unwrap();
+        format!("{field}={}", value * by)
+    };
+    let spring = beside_paper("balanced", &[]);
+    let (buckling, parallel) = ("mechanism.0.buckling.length_mm", "mechanism.0.parallel.length_mm");
+    let before: f64 = row("crosses from, g")[1].parse().unwrap();
+    let change = |by: f64| {
+        let other = beside_paper("balanced", &[&length(&spring, buckling, by)]);
+        (crossing(&other) / before - 1.0).abs()
+    };
+    let most = change(0.99).max(change(1.01));
+    assert_eq!(row("change of the threshold for 1 % of a size")[1], format!("{:.0} %", 100.0 * most));
+    says(&format!("moves the threshold by {:.0} % beside the spring", 100.0 * most));
+    let magnet = beside_paper("magnet", &[]);
+    let without = [0.99, 1.01].map(|by| beside_paper("magnet", &[&length(&magnet, parallel, by)]));
+    assert!(without.iter().any(|own| mechanism(own).landscape.barrier.is_none()));
+    assert_eq!(row("change of the threshold for 1 % of a size")[2], "no threshold left");
+}
+
+#[test]
+fn the_best_limits_are_those_of_their_commands() {
+    let cells = |csv: &str, digits: [usize; 4]| {
+        let names = ["travel_limit_mm", "value", "margin_low", "margin_high"];
+        let scaled = [1.0, 1e3, 1.0, 1.0];
+        let cell = |i: usize| format!("{:.*}", digits[i], scaled[i] * number(csv, names[i]));
+        [0, 1, 2, 3].map(cell)
+    };
+    let (said, csv) = command("best paper --over stops.travel_limit_mm=0.5:7", "");
+    assert_eq!(row("3 Hz, 1 g"), cells(&csv, [3, 1, 3, 3]));
+    let in_mm = |name: &str| 1e3 * number(&csv, name);
+    says(&format!(
+        "at {} mm the worst of 200 samples then gives {:.1} mm/s",
+        row("3 Hz, 1 g")[0],
+        in_mm("worst")
+    ));
+    let lost = 100.0 * (1.0 - in_mm("back_value") / in_mm("value"));
+    let back = number(&csv, "back_to");
+    says(&format!(
+        "Stepped back to {back:.3} mm, at a cost of {lost:.1} %, the worst gives {:.0} mm/s",
+        in_mm("back_worst")
+    ));
+    assert!(said.contains(&format!("at travel_limit_mm = {back} the worst gives")), "{said}");
+    let csv = command("best paper --over stops.travel_limit_mm=0.2:2", " --vary").1;
+    assert_eq!(row("a walker"), cells(&csv, [3, 1, 3, 3]));
+}
+
+#[test]
+fn the_best_limits_at_other_amplitudes_are_as_said() {
+    let best = |amplitude: f64| {
+        let line = format!(
+            "best paper --over stops.travel_limit_mm=0.5:7 --set excitation.amplitude_g={amplitude} --quiet"
+        );
+        let output = headless(&line).assert().success().get_output().stdout.clone();
+        let csv = String::from_utf8(output).unwrap();
+        (number(&csv, "travel_limit_mm"), 1e3 * number(&csv, "value"))
+    };
+    let (weak, strong) = (best(0.8), best(1.2));
+    says(&format!(
+        "For 0.8 g the best limit is {:.3} mm ({:.1} mm/s), for 1.2 g {:.3} mm ({:.1} mm/s)",
+        weak.0, weak.1, strong.0, strong.1
+    ));
+}
+
+/// The whole command takes a minute: its answer, a tenth beside it, and what lies around.
+#[test]
+fn the_best_limit_under_noise_is_better_than_those_around_it() {
+    let cells = row("noise of 0.3 g, 1 to 6 Hz, mean of five seeds");
+    let [limit, speed, below, above] =
+        cells[..].try_into().map(|own: [&str; 4]| own.map(|s| s.parse().unwrap())).unwrap();
+    let mean = |limit: f64| -> f64 {
+        let model = |seed: u32| {
+            let changes = [format!("stops.travel_limit_mm={limit}"), format!("excitation.seed={seed}")];
+            preset("random-shaking", &changes.each_ref().map(String::as_str))
+        };
+        let models: Vec<Model> = (1..=5).map(model).collect();
+        let runs = Model::run_all(&models, None, None);
+        runs.iter().map(|run| 1e3 * run.summary.rms_velocity.unwrap()).sum::<f64>() / 5.0
+    };
+    let own = mean(limit);
+    assert_eq!(format!("{own:.1}"), format!("{speed:.1}"));
+    for other in [limit - below, limit + above] {
+        assert!(mean(other) < 0.9 * own, "{other}");
+    }
+    for share in [-0.8, -0.5, -0.2, 0.2, 0.5, 0.8] {
+        let other = limit + share * if share < 0.0 { below } else { above };
+        assert!((0.9 * own..own).contains(&mean(other)), "{other}");
+    }
+}
