@@ -34,8 +34,27 @@ pub struct Mechanism {
     pub landscape: Landscape,
     /// The flexures behind the curve, where there are such; of a sum those of its only part with flexures.
     pub flexures: Option<Arc<Flexures>>,
+    /// The spring or the magnets behind the curve, where it is one of these; of a sum none.
+    pub element: Option<Element>,
     /// The parts of a sum; of any other mechanism none.
     pub parts: Vec<Self>,
+}
+
+/// A part that is more than its curve. SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Element {
+    /// A spring without force at x = 0.
+    Spring {
+        /// In N/m.
+        stiffness: f64,
+    },
+    /// Two magnets that face each other at x = 0, as dipoles.
+    Magnets {
+        /// In N m^4; above 0 they attract each other at x = 0.
+        strength: f64,
+        /// In m.
+        gap: f64,
+    },
 }
 
 /// Why a mechanism has no force curve.
@@ -145,15 +164,19 @@ impl Mechanism {
                 let table = ForceTable::parse(&text).map_err(|e| fault(e.to_string()))?;
                 Ok(Self::new(fit_unless(&table, *tolerance, cancel).map_err(fault)?))
             }
-            scene::Mechanism::Linear { n_per_m } => Ok(Self::new(ForceCurve::polynomial(&[0.0, *n_per_m]))),
+            scene::Mechanism::Linear { n_per_m } => {
+                let element = Some(Element::Spring { stiffness: *n_per_m });
+                Ok(Self { element, ..Self::new(ForceCurve::polynomial(&[0.0, *n_per_m])) })
+            }
             scene::Mechanism::Magnet { strength_n_mm4, gap_mm } => {
                 let fault = |problem: String| Fault {
                     field: "mechanism.strength_n_mm4".into(),
                     value: strength_n_mm4.to_string(),
                     problem,
                 };
-                let curve = magnet::magnet(strength_n_mm4 * 1e-12, gap_mm / 1e3).map_err(fault)?;
-                Ok(Self::new(curve))
+                let (strength, gap) = (strength_n_mm4 * 1e-12, gap_mm / 1e3);
+                let curve = magnet::magnet(strength, gap).map_err(fault)?;
+                Ok(Self { element: Some(Element::Magnets { strength, gap }), ..Self::new(curve) })
             }
             scene::Mechanism::Sum(parts) => {
                 let part = |(index, part): (usize, &scene::Mechanism)| {
@@ -195,7 +218,7 @@ impl Mechanism {
     /// A mechanism with this curve.
     pub fn new(curve: ForceCurve) -> Self {
         let landscape = Landscape::of(&curve);
-        Self { curve, landscape, flexures: None, parts: Vec::new() }
+        Self { curve, landscape, flexures: None, element: None, parts: Vec::new() }
     }
 
     /// These mechanisms side by side; at least one.
@@ -216,6 +239,11 @@ impl Mechanism {
         let mut flexures = parts.iter().filter_map(|part| part.flexures.clone());
         let only = flexures.next().filter(|_| flexures.next().is_none());
         Ok(Self { flexures: only, parts, ..Self::new(curve) })
+    }
+
+    /// The parts of a sum; of any other mechanism itself.
+    pub fn side_by_side(&self) -> &[Self] {
+        if self.parts.is_empty() { std::slice::from_ref(self) } else { &self.parts }
     }
 
     /// What a person should know of the tables behind the curve, each a sentence.

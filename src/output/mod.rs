@@ -17,14 +17,14 @@ pub use manifest::{Made, Provenance, basins_manifest, exponents_manifest, manife
 pub use number::push_number;
 pub use plan::{plan, plan_checksum, plan_differences};
 pub use plot::{
-    AXIS_EDGES, Argument, BACK_EDGES, BLACK, BoxPlace, Caption, Cut, ExponentPicture, Face, Figure, Format,
-    Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, Panel, PlotAxis, Projection, RMS, Ranges, SIDES,
-    SectionPicture, Sheet, SheetError, SheetText, SpectrumQuantity, SweepPicture, Theme, ThresholdPicture,
-    UnknownFormat, View, accuracy_figure, attractor_colour, basins_figure, branch_figure, can_show,
-    can_show_exponents, can_show_starts, can_show_thresholds, contact_figure, curve_figure, exponents_figure,
-    identified_figure, measured_figure, measured_force_figure, picture_arguments, quantities, run_figure,
-    section_figure, spectrum_figure, speed_unit, surface_faces, sweep_about, sweep_figure, threshold_figure,
-    viridis, wall_lines, words_of,
+    AXIS_EDGES, Argument, BACK_EDGES, BLACK, BoxPlace, Caption, ComparisonPicture, Cut, ExponentPicture,
+    Face, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, Panel, PlotAxis,
+    Projection, RMS, Ranges, SIDES, SectionPicture, Sheet, SheetError, SheetText, SpectrumQuantity,
+    SweepPicture, Theme, ThresholdPicture, UnknownFormat, View, accuracy_figure, attractor_colour,
+    basins_figure, branch_figure, can_show, can_show_exponents, can_show_starts, can_show_thresholds,
+    comparison_figure, contact_figure, curve_figure, exponents_figure, identified_figure, measured_figure,
+    measured_force_figure, picture_arguments, quantities, run_figure, section_figure, spectrum_figure,
+    speed_unit, surface_faces, sweep_about, sweep_figure, threshold_figure, viridis, wall_lines, words_of,
 };
 pub use text::aligned;
 

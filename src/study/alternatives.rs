@@ -32,7 +32,10 @@ pub struct Alternative {
 /// The share of itself by which each size is changed.
 pub const SIZE_CHANGE: f64 = 0.01;
 
-/// Frequencies that are tried to each side of the drive's own, in a decade.
+/// Up to so many times the drive's frequency, and down to this part of it, crossings are looked for.
+pub const SEARCHED_SPAN: f64 = 10.0;
+
+/// Frequencies that are tried to each side of the drive's own.
 const STEPS: i32 = 40;
 
 /// How closely the ends of the band are located, as a share.
@@ -176,7 +179,7 @@ fn band(own: &Alternative, trial: &Scene, pool: &Pool, task: &Task) -> Option<Op
         pool.map(values.len(), || (), crosses).ok()
     };
     let values: Vec<f64> = (-STEPS..=STEPS)
-        .map(|i| decimal(frequency_hz * 10_f64.powf(f64::from(i) / f64::from(STEPS))))
+        .map(|i| decimal(frequency_hz * SEARCHED_SPAN.powf(f64::from(i) / f64::from(STEPS))))
         .collect();
     let does = ask(&values)?;
     let mut bands: Vec<(usize, usize)> = Vec::new();

@@ -109,7 +109,7 @@ mod tests {
 
     fn cubic() -> Mechanism {
         let curve = ForceCurve::polynomial(&[0.0, -40.0, 0.0, 8e5]);
-        Mechanism { curve, landscape: Landscape::default(), flexures: None, parts: Vec::new() }
+        Mechanism { landscape: Landscape::default(), ..Mechanism::new(curve) }
     }
 
     #[test]

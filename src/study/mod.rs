@@ -48,7 +48,9 @@ mod watched_events;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-pub use alternatives::{Alternative, Rated, SIZE_CHANGE, alternatives, comparison_parts, comparison_table};
+pub use alternatives::{
+    Alternative, Rated, SEARCHED_SPAN, SIZE_CHANGE, alternatives, comparison_parts, comparison_table,
+};
 pub use amplitudes::{Thresholds, stops_that_cross, thresholds};
 pub use basins::{Answer, Attractor, Basins, EvenRange, MAX_STARTS, NoBasins, Shares, Starts, StartsError};
 pub use best::{

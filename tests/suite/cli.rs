@@ -4,6 +4,7 @@ mod accuracy;
 mod bad_input;
 mod basins;
 mod blocks;
+mod compare;
 mod curve;
 mod flexure_numbers;
 mod flexures;

@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod advanced;
+mod beside;
 mod compare;
 mod cursors;
 mod documents;

@@ -59,6 +59,48 @@ fn the_view_says_what_the_load_takes() {
 }
 
 #[test]
+fn its_sentences_hold_for_every_transducer() {
+    let coil = |coupling_v_s_per_m, load_ohm| Transducer::Electromagnetic {
+        coupling_v_s_per_m,
+        coil_ohm: 40.0,
+        load_ohm,
+        inductance_mh: 0.0,
+    };
+    let layer =
+        |load_kohm| Transducer::Piezoelectric { coupling_n_per_v: 1e-3, capacitance_nf: 40.0, load_kohm };
+    let mut harness = alone("harvester", WIDE);
+    let mut shown = |transducer: Transducer, shaken: bool| {
+        let session = &mut harness.state_mut().session;
+        session.edit_once(|scene| {
+            scene.transducer = transducer;
+            let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation else { panic!("a sine") };
+            *amplitude_g = if shaken { 1.0 } else { 0.0 };
+        });
+        session.wait_settled(LONG);
+        harness.run_steps(3);
+        let words: Vec<String> = painted(&harness).into_iter().map(|own| own.0).collect();
+        let line = |begin: &str| words.iter().find(|own| own.starts_with(begin)).cloned();
+        assert!(words.iter().all(|own| !own.contains("NaN") && !own.contains("inf")), "{words:?}");
+        (line("Into the load: mean ").unwrap(), line("Coil: "), line("Voltage: "))
+    };
+    // nothing is taken by an open circuit, a short one, without coupling, and without motion
+    for (own, shaken) in [
+        (coil(5.0, f64::INFINITY), true),
+        (coil(5.0, 0.0), true),
+        (coil(0.0, 60.0), true),
+        (coil(5.0, 60.0), false),
+        (layer(0.0), true),
+    ] {
+        let (load, ..) = shown(own, shaken);
+        assert!(load.starts_with("Into the load: mean 0 mW"), "{own:?}: {load}");
+    }
+    assert!(shown(coil(5.0, 0.0), true).1.is_some_and(|own| !own.starts_with("Coil: mean 0 mW")));
+    // what has no coil does not speak of one
+    let (load, coil, voltage) = shown(layer(100.0), true);
+    assert!(load.ends_with("% of the work of the base.") && coil.is_none() && voltage.is_some());
+}
+
+#[test]
 fn a_current_that_goes_on_by_itself_is_drawn_through_impacts() {
     let mut harness = alone("harvester", WIDE);
     harness.state_mut().session.set_number("transducer.inductance_mh", 200.0).unwrap();
@@ -281,6 +323,33 @@ fn the_window_offers_the_search_and_marks_its_answer_on_the_map() {
     harness.get_by_label("Close").click();
     harness.run_steps(3);
     assert!(!is_painted(&harness, "est stops: ±"));
+}
+
+#[test]
+fn the_search_has_a_button_where_a_projector_has_room_for_it() {
+    let mut harness = window("paper", PROJECTED, Settings::default());
+    let inside = harness.ctx.content_rect();
+    for (role, name) in [
+        (Role::Slider, "amplitude"),
+        (Role::CheckBox, "Stops"),
+        (Role::Slider, "travel limit ±"),
+        (Role::Button, "Best stops"),
+        (Role::Button, "More"),
+    ] {
+        let place = harness.get_by_role_and_label(role, name).rect();
+        assert!(inside.contains_rect(place) && place.width() > 16.0, "{name} {place:?}");
+    }
+    assert_eq!(sliced(&harness), [""; 0]);
+    harness.get_by_label("Best stops").click();
+    harness.run_steps(3);
+    assert!(harness.state().session.best.is_shown());
+    harness.state_mut().session.best.close();
+    // two sliders of stops, or a narrower window, leave no room
+    for (preset, size) in [("uneven-stops", PROJECTED), ("paper", [640.0, 480.0])] {
+        let harness = window(preset, size, Settings::default());
+        assert_eq!(harness.query_all_by_label("Best stops").count(), 0, "{preset}");
+        harness.get_by_label("More");
+    }
 }
 
 #[test]

@@ -13,6 +13,10 @@ use super::{advanced, best_stops, geometry};
 /// Width in points of a row of controls that has no room for a heading.
 const NARROW: f32 = 640.0;
 
+/// Width in points of the button of the search in that row, and of a slider beside it at least.
+const SEARCH: f32 = 96.0;
+const LEAST_BESIDE: f32 = 70.0;
+
 /// How a lesson calls the switch of the stops, and the width in points that it takes.
 const SWITCH: &str = "stops";
 const SWITCH_WIDTH: f32 = 90.0;
@@ -23,8 +27,8 @@ const LEAST_SLIDER: f32 = 60.0;
 const WIDEST_SLIDER: f32 = 280.0;
 
 /// What stands under More.
-const MORE_HOVER: &str =
-    "Restitution, preload, frequency, damping and mass; a transducer, where there is one.";
+const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass; spring, magnets and \
+                          transducer, where there are such.";
 
 /// The numbers of a transducer that stand first, and those under Advanced.
 const LOAD: [&str; 4] = [
@@ -70,7 +74,10 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             // where room is short the name of the number has to do
             let is_narrow = ui.available_width() < NARROW;
             let names = if is_narrow { 330.0 } else { 395.0 } + 110.0 * sides as f32;
-            let width = ((ui.available_width() - names) / (1 + sides) as f32).clamp(30.0, 260.0);
+            let each = |room: f32| (ui.available_width() - names - room) / (1 + sides) as f32;
+            // the search where the sliders stay long enough beside it
+            let has_search = !is_narrow && each(SEARCH) >= LEAST_BESIDE;
+            let width = each(if has_search { SEARCH } else { 0.0 }).clamp(30.0, 260.0);
             if !is_narrow {
                 heading_ui(ui, "Shaking");
             }
@@ -78,6 +85,9 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             ui.separator();
             stops_switch_ui(ui, session);
             limit_ui(ui, session, width);
+            if has_search {
+                best_stops::button_ui(ui, session, "Best stops");
+            }
         });
     });
 }
@@ -174,6 +184,7 @@ fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &LOAD, width);
     restitution_ui(ui, session, width);
     geometry::preload_ui(ui, session, width);
+    geometry::balancing_ui(ui, session, width);
     if matches!(session.scene().excitation, Excitation::Sine { .. }) {
         field_ui(ui, session, "excitation.frequency_hz", width);
     }

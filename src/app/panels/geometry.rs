@@ -29,10 +29,21 @@ pub fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     }
 }
 
+/// Springs and magnets, which lower the barrier as stops do.
+fn is_balancing(path: &str) -> bool {
+    [".n_per_m", ".strength_n_mm4", ".gap_mm"].iter().any(|end| path.ends_with(end))
+}
+
+/// The sliders of springs and magnets.
+pub fn balancing_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    let own = sliders(session).into_iter().filter(|path| is_balancing(path));
+    own.for_each(|path| field_ui(ui, session, &path, width));
+}
+
 /// The sliders of the other sizes.
 pub fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let mut sizes = sliders(session);
-    sizes.retain(|path| !is_preload(path));
+    sizes.retain(|path| !is_preload(path) && !is_balancing(path));
     if sizes.is_empty() {
         let why = "The mechanism of this scene is a force without flexures behind it.";
         absent_ui(ui, "sizes of flexures", why);

@@ -12,7 +12,7 @@ use super::ghosts::PINNED;
 use super::hand::hand;
 use super::labels::haloed;
 use super::legend::LEGEND;
-use super::plot::{MARGIN, decades, marks, plot_place, power, still_plot};
+use super::plot::{LOW, MARGIN, decades, marks, plot_place, power, still_plot};
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
@@ -65,20 +65,22 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let of_all = |word: &dyn Fn(&Pin) -> String| {
         pins.iter().map(|pin| format!("{} {}", pin.letter(), word(pin))).collect::<Vec<_>>().join(", ")
     };
-    let at_each = |t: f64| of_all(&|pin| format!("{:.1e} mm", 1e3 * apart(pin, t)));
+    let at_each = |t: f64| of_all(&|pin| millimetres(apart(pin, t)));
     let between = |a: f64, b: f64| {
         let rate = |pin: &Pin| (apart(pin, b) / apart(pin, a)).ln() / (b - a);
         let said = |rate: f64| if rate.is_finite() { format!("{} /s", three(rate)) } else { "-".to_owned() };
         format!("exponential rate {}", of_all(&|pin| said(rate(pin))))
     };
     let readout = readout_ui(ui, context, (area, to - from), at_each, between);
+    let is_low = area.height() < LOW;
+    let (time_label, label) = if is_low { ("", "mm") } else { ("time (s)", "distance (mm)") };
     let plot = area.with_min_y(area.top() + LEGEND + readout).shrink2(vec2(MARGIN, 0.0));
     let mut child = plot_place(ui, &style, plot);
     let shown = still_plot("distance")
         .x_grid_spacer(|_| marks(from, to - 0.05 * (to - from), columns))
         .y_grid_spacer(|_| decades(least, most, rows))
-        .x_axis_label("time (s)")
-        .y_axis_label("distance (mm)")
+        .x_axis_label(time_label)
+        .y_axis_label(label)
         .y_axis_formatter(|mark, _| power(mark.value))
         .show(&mut child, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([from, least], [to, most]));
@@ -106,7 +108,7 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         .filter_map(|(place, path)| Some((PINNED[place % PINNED.len()], path.last()?.1)))
         .map(|(letter, metres)| match metres {
             0.0 => format!("{letter}: equal to the last digit"),
-            metres => format!("{letter}: {:.1e} mm", metres * 1e3),
+            metres => format!("{letter}: {}", millimetres(metres)),
         })
         .collect();
     let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
@@ -115,6 +117,12 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let frame = *shown.transform.frame();
     hand(&child, context.memory, View::Distance, &shown.response, (area, frame));
     cursors_ui(&mut child, context, &shown.response, (frame, (from, to)), "distance");
+}
+
+/// A distance in m in words: short ones as powers of ten.
+fn millimetres(metres: f64) -> String {
+    let mm = 1e3 * metres;
+    if mm >= 0.01 { format!("{} mm", three(mm)) } else { format!("{mm:.1e} mm") }
 }
 
 /// What stands there while nothing is pinned.

@@ -5,7 +5,7 @@
 //! own; sideways it has the view's, and the ratio of the two is written. The mass is a body between the two
 //! groups, its size no part of the scale.
 
-use eframe::egui::{self, Align2, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
+use eframe::egui::{self, Align2, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
 use crate::app::ui::style::Style;
 use crate::mechanics::flexure::{Geometry, State};
@@ -64,6 +64,11 @@ impl DrawingScale {
         }
     }
 
+    /// Points per m along the flexures.
+    pub fn along(&self) -> f32 {
+        self.along as f32
+    }
+
     /// The middle of the body.
     pub fn middle(&self, state: &State) -> f32 {
         let end = |line: usize| state.lines.get(line).and_then(|line| line.points.last());
@@ -81,16 +86,9 @@ impl DrawingScale {
         pos2(span.screen_from_world(across, rect), y)
     }
 
-    /// Lines of both groups.
-    pub fn shapes(
-        &self,
-        geometry: &Geometry,
-        state: &State,
-        span: Span,
-        rect: Rect,
-        stroke: Stroke,
-    ) -> Vec<Shape> {
-        let mut shapes = Vec::new();
+    /// The lines of the flexures below the body and of those above it, each from its clamp.
+    pub fn lines(&self, geometry: &Geometry, state: &State, span: Span, rect: Rect) -> [Vec<Vec<Pos2>>; 2] {
+        let mut lines = [Vec::new(), Vec::new()];
         for (line, (group, above)) in
             state.lines.iter().zip([(&geometry.parallel, false), (&geometry.buckling, true)])
         {
@@ -103,10 +101,10 @@ impl DrawingScale {
             for i in 0..count {
                 let share = if count == 1 { 0.0 } else { 2.0 * i as f32 / (count - 1) as f32 - 1.0 };
                 let aside = vec2(0.9 * share * self.place.half.x, 0.0);
-                shapes.push(Shape::line(points.iter().map(|point| *point + aside).collect(), stroke));
+                lines[usize::from(above)].push(points.iter().map(|point| *point + aside).collect());
             }
         }
-        shapes
+        lines
     }
 
     /// A bar of 10 mm along the flexures.

@@ -1,10 +1,10 @@
 //! View of the mechanism as a drawing, seen from the base, on the x axis of the well.
 //!
 //! Where the force comes from flexures they are drawn as they are bent ([`flexures`](super::flexures));
-//! another force is a spring in a schematic, and one that is the same everywhere has none. The base stands
-//! still in it, and the push that the mass feels instead is an arrow; the base's own motion is far larger
-//! than the travel and has an inset at its own scale. An impact is a ring whose size is the energy that it
-//! takes.
+//! another force is a spring in a schematic, and one that is the same everywhere has none; springs, magnets
+//! and a transducer stand [`beside`](super::beside) these. The base stands still in it, and the push that
+//! the mass feels instead is an arrow; the base's own motion is far larger than the travel and has an inset
+//! at its own scale. An impact is a ring whose size is the energy that it takes.
 
 use eframe::egui::{self, Align2, Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -13,6 +13,7 @@ use crate::app::words::meanings::explained;
 use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
+use super::beside::{Below, Bench, Beside, NAMED};
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
 use super::ghosts::ghosts;
 use super::labels::{ago, plated};
@@ -21,14 +22,14 @@ use super::schematic::{Schematic, schematic};
 use super::stops::{WALL, stops_ui};
 use super::{ViewContext, mass::mass_ui, too_small_ui};
 
-/// The least size in points of a drawing whose parts are named.
-const NAMED: egui::Vec2 = vec2(280.0, 140.0);
-
 /// Height in points of the name of a stop above its foot, clear of the rail.
 const CLEAR: f32 = 6.0;
 
 /// Length in points of an arrow's head.
 const ARROW_HEAD: f32 = 12.0;
+
+/// This part of a flexure next to its clamp is its foot.
+const FOOT: usize = 5;
 
 /// Room in points that the base's own motion needs.
 const INSET: f32 = 184.0;
@@ -54,16 +55,21 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     // as wide as the ball on the well, so that it touches the stops when it should
     let half = vec2(BALL, ((bottom - top) * 0.13).clamp(14.0, 30.0));
     let place = DrawingArea { top, bottom, half };
-    let (middle, words) = match bent_ui(ui, &painter, context, rect, place, state.x) {
-        Some(drawn) => drawn,
+    let beside = Beside::of(context.drawn.model(context.session));
+    let behind = painter.add(Shape::Noop);
+    let (middle, words, below) = match bent_ui(ui, &painter, context, rect, place, state.x) {
+        Some((middle, words, below)) => (middle, words, Some(below)),
         None => {
             let middle = 0.5 * (top + bottom);
             let x = context.span.screen_from_world(state.x, rect);
-            (middle, schematic(&painter, context, rect, (x, middle, half), top))
+            let mass = (x, middle, half);
+            (middle, schematic(&painter, context, rect, mass, (top, bottom), &beside), None)
         }
     };
     let x = context.span.screen_from_world(state.x, rect);
     let body = Rect::from_center_size(pos2(x, middle), half * 2.0);
+    let zero = context.span.screen_from_world(0.0, rect);
+    beside.draw(ui, &painter, &style, behind, &Bench { rect, bottom, body, zero, below });
     let edge = Stroke::new(1.5, style.mass_edge());
     painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     let heights = (middle - half.y - 4.0, middle + half.y + 4.0);
@@ -76,7 +82,8 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     stops_ui(ui, context, rect, heights, BALL);
     mass_ui(ui, context, pos2(x, middle), rect);
     rings(ui, context, rect, middle);
-    push_arrow(&painter, context, body, state.base_accel, rect);
+    let arrow = body.translate(vec2(0.0, -beside.lift() * half.y));
+    push_arrow(&painter, context, arrow, state.base_accel, rect);
     names(&painter, context, rect, (top, heights), body);
     words_ui(ui, &painter, context, rect, &words, state.base_accel);
 }
@@ -118,7 +125,7 @@ fn names(
     if model.mechanism().flexures.is_some() {
         let zero = context.span.screen_from_world(0.0, rect);
         put(!at_clamp, (zero + 8.0, zero - 8.0), top + 5.0, true, "flexure");
-    } else if Schematic::of(&model.mechanism().curve, context.span) == Schematic::Spring {
+    } else if Schematic::of(model.mechanism(), context.span) == Schematic::Spring {
         let foot = context.span.screen_from_world(barrier, rect);
         put(body.center().x < foot, (foot + 10.0, foot - 10.0), top + 5.0, true, "spring");
     }
@@ -158,8 +165,8 @@ fn explain(ui: &Ui, place: Rect, word: &str) {
     explained(ui.interact(place, id, Sense::hover()), word);
 }
 
-/// The flexures as they are bent, where there are such: the middle of the body, and what is said of the
-/// drawing.
+/// The flexures as they are bent, where there are such: the middle of the body, what is said of the drawing,
+/// and what is below the body.
 fn bent_ui(
     ui: &Ui,
     painter: &egui::Painter,
@@ -167,7 +174,7 @@ fn bent_ui(
     rect: Rect,
     place: DrawingArea,
     x: f64,
-) -> Option<(f32, String)> {
+) -> Option<(f32, String, Below)> {
     let bent = state_at(context, x)?;
     let style = context.style;
     let mechanism = &context.drawn.model(context.session).mechanism();
@@ -183,15 +190,17 @@ fn bent_ui(
         let y = if above { y - CLAMP..=y } else { y..=y + CLAMP };
         clamp(painter, &style, Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y), above);
     }
-    painter.extend(scale.shapes(geometry, &bent, context.span, rect, style.flexure_stroke()));
+    let lines = scale.lines(geometry, &bent, context.span, rect);
+    let feet = lines[0].iter().map(|line| line[..line.len() / FOOT].to_vec()).collect();
+    painter.extend(lines.into_iter().flatten().map(|line| Shape::line(line, style.flexure_stroke())));
     scale.bar(painter, &style, pos2(rect.right() - 18.0, place.bottom - 8.0));
     let words = bulge_words(&bent);
     // beside the feet of the flexures, where these never are
     let at = pos2(rect.left() + 12.0, place.bottom - 5.0);
     let place = plated(painter, &style, (at, Align2::LEFT_BOTTOM), &words, (style.body(), style.ink()));
     explain(ui, place, &words);
-    let words = scale.words(context.span, rect);
-    Some((scale.middle(&bent), words))
+    let below = Below { along: scale.along(), feet };
+    Some((scale.middle(&bent), scale.words(context.span, rect), below))
 }
 
 /// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g). It lies at the mass's

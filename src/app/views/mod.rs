@@ -8,6 +8,7 @@ mod accuracy;
 mod axes;
 mod basins;
 mod before_now;
+mod beside;
 mod chart;
 mod compare;
 mod context;

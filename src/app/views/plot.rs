@@ -13,6 +13,9 @@ pub const MARGIN: f32 = 6.0;
 /// Width in points that every vertical axis takes, so that plots below each other line up.
 pub const AXIS_WIDTH: f32 = 58.0;
 
+/// Height in points below which the names of the axes are left out.
+pub const LOW: f32 = 150.0;
+
 /// A part of `ui` in which axes are written as those of the other views.
 pub fn plot_place(ui: &mut Ui, style: &Style, rect: Rect) -> Ui {
     let mut child = ui.new_child(UiBuilder::new().max_rect(rect));

@@ -5,6 +5,7 @@ use eframe::egui::{Label, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use crate::app::session::Session;
 use crate::app::words::numbers::{power, power_unit, three};
 use crate::dynamics::{Outcome, Summary};
+use crate::scene::Transducer;
 
 use super::ViewContext;
 use super::ranges::axis_end;
@@ -63,13 +64,18 @@ fn harvested(session: &Session) -> Vec<String> {
     let Some((load, coil, volt)) = means else {
         return vec!["Into the load: the run ended before there was a mean.".to_owned(), String::new()];
     };
-    let share = match harvest.and_then(|own| own.load_share) {
+    // of work that goes back to the base there is no share
+    let share = match harvest.and_then(|own| own.load_share).filter(|share| *share >= 0.0) {
         Some(share) => format!(", {} % of the work of the base", three(100.0 * share)),
         None => String::new(),
     };
+    let coil = match session.model().transducer() {
+        Transducer::Electromagnetic { .. } => format!("Coil: mean {}. ", power(coil)),
+        _ => String::new(),
+    };
     vec![
         format!("Into the load: mean {}{share}.", power(load)),
-        format!("Coil: mean {}. Voltage: {} V RMS. {}", power(coil), three(volt), what_of(summary)),
+        format!("{coil}Voltage: {} V RMS. {}", three(volt), what_of(summary)),
     ]
 }
 

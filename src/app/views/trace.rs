@@ -20,7 +20,7 @@ use super::hand::hand;
 use super::labels::haloed;
 use super::legend::{LEGEND, Sign, legend};
 use super::overlay::{MeasuredTrace, with_room};
-use super::plot::{MARGIN, marks, plot_place, still_plot};
+use super::plot::{LOW, MARGIN, marks, plot_place, still_plot};
 use super::ranges::room_for_push;
 use super::view::Axis;
 use super::{View, ViewContext};
@@ -45,9 +45,6 @@ const MOST_GHOST_POINTS: usize = 4000;
 
 /// The most flights that are drawn one by one; of more no tip is seen.
 const MOST_FLIGHTS: usize = 400;
-
-/// Height in points below which the names of the axes are left out.
-const LOW: f32 = 150.0;
 
 /// What is drawn over time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -36,7 +36,8 @@ views! {
     /// The mechanism as a drawing.
     Mechanism "Mechanism"
         "The mass between its stops, seen from the base that shakes, with its flexures or a spring in \
-         their place. The arrow is the push that the mass feels. Drag the mass or a stop.";
+         their place, and a spring, magnets or a transducer beside them. The arrow is the push that the mass \
+         feels. Drag the mass or a stop.";
     /// The potential with the mass on it.
     Well "Well"
         "The mass rides on the potential like a ball on a tray that the push tips. Drag the ball or a \
@@ -90,10 +91,11 @@ views! {
     BaseAcceleration "Base acceleration"
         "Acceleration of the base over time. The mass feels the opposite of it, as one does in a bus that \
          brakes. The wheel zooms in time, a double click is back.";
-    /// Work of the base in a second, over time.
+    /// Power into a load, or work of the base in a second, over time.
     Power "Power"
-        "Work of the base on the mass in a second. Below zero the mass gives energy back to the base. The \
-         wheel zooms in time, a double click is back.";
+        "What the load of a transducer takes in a second, over time. Without a transducer the work of the \
+         base on the mass; below zero the mass gives energy back to the base. The wheel zooms in time, a \
+         double click is back.";
     /// What happened when, as a table.
     Events "Events"
         "What happened when: impacts, rests, releases and crossings, with phase of the shaking, velocity \

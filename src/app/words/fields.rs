@@ -96,9 +96,9 @@ const REBOUND_HOVER: &str =
     "Increase: a rebound keeps more of the speed, so that the mass chatters for longer before it rests.";
 const SHAKING_HOVER: &str =
     "Increase: the base pushes the mass harder. Beyond some amplitude it crosses to the other well.";
-const LOAD_HOVER: &str = "Increase: more voltage over the load, less current through it. The power is \
-                          largest somewhere between a short circuit (0) and an open one (inf), which take \
-                          none. Both may be typed.";
+const LOAD_HOVER: &str = "Increase: the same motion gives more voltage over the load and less current \
+                          through it. The power is largest somewhere between a short circuit (0) and an \
+                          open one (inf), which take none. Both may be typed.";
 const COUPLING_HOVER: &str = "Increase: the same speed gives more voltage, and the load brakes the mass \
                               harder. That is more power at first, and less once the mass crosses no longer.";
 const FASTER_HOVER: &str = "Increase: the pushes follow each other faster and last less long.";
@@ -123,7 +123,8 @@ pub static FIELDS: &[FieldInfo] = &[
         "Increase: the buckling flexure pushes harder: the barrier grows."),
     field("mechanism.n_per_m", "spring", "N/m", ((-100.0, 100.0, 1.0), Scale::Value), (-1e6, 1e6),
         "Increase: a stiffer spring draws the mass to the middle: the barrier is lower, the wells move in."),
-    field("mechanism.strength_n_mm4", "magnet", "N mm⁴", ((-2e3, 2e3, 1.0), Scale::Value), (-1e9, 1e9),
+    field("mechanism.strength_n_mm4", "strength of the magnets", "N mm⁴",
+        ((-2e3, 2e3, 1.0), Scale::Value), (-1e9, 1e9),
         "Increase: the magnets attract each other more where they face each other: the barrier gets lower. \
          Below 0 they repel each other, and it gets higher."),
     field("mechanism.gap_mm", "gap of the magnets", "mm", ((0.5, 20.0, 0.1), Scale::Value), LENGTH,

@@ -10,6 +10,7 @@ use super::transducer::{Circuit, Output};
 use crate::dynamics::result::Sample;
 use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::{DoubleDouble, Number, Scalar};
+use crate::scene;
 
 impl Model {
     /// Proof mass in kg.
@@ -31,6 +32,11 @@ impl Model {
     /// Whether the scene has a transducer.
     pub fn has_transducer(&self) -> bool {
         self.transducer.is_some()
+    }
+
+    /// The transducer as the scene has it.
+    pub fn transducer(&self) -> scene::Transducer {
+        self.transducer.map_or(scene::Transducer::None, |own| own.described)
     }
 
     /// What the transducer gives at a sample of the motion; none without one.

@@ -10,6 +10,8 @@ use crate::scene;
 /// A transducer as run. SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transducer {
+    /// As the scene has it.
+    pub described: scene::Transducer,
     /// Damping coefficient in N s/m that it adds.
     pub damping: f64,
     /// The circuit whose state goes on with the motion, where there is one.
@@ -77,7 +79,15 @@ impl Transducer {
     /// The transducer of a scene whose mass in kg is given; none where it has none.
     pub fn of(transducer: &scene::Transducer, mass: f64) -> Option<Self> {
         use scene::Transducer::{Electromagnetic, Piezoelectric};
-        let nothing = Self { damping: 0.0, circuit: None, voltage: 0.0, current: 0.0, load: 0.0, coil: 0.0 };
+        let nothing = Self {
+            described: *transducer,
+            damping: 0.0,
+            circuit: None,
+            voltage: 0.0,
+            current: 0.0,
+            load: 0.0,
+            coil: 0.0,
+        };
         Some(match *transducer {
             scene::Transducer::None => return None,
             Electromagnetic { coupling_v_s_per_m, load_ohm, .. } if load_ohm.is_infinite() => {
@@ -100,6 +110,7 @@ impl Transducer {
                     current: gain,
                     load: load_ohm * gain * gain,
                     coil: coil_ohm * gain * gain,
+                    ..nothing
                 }
             }
             Piezoelectric { coupling_n_per_v, load_kohm: 0.0, .. } => {

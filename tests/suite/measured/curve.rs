@@ -9,7 +9,7 @@ use crate::cli::{headless, refused};
 /// The force -40 x + 8e5 x^3.
 fn cubic() -> Mechanism {
     let curve = ForceCurve::polynomial(&[0.0, -40.0, 0.0, 8e5]);
-    Mechanism { curve, landscape: Landscape::default(), flexures: None, parts: Vec::new() }
+    Mechanism { landscape: Landscape::default(), ..Mechanism::new(curve) }
 }
 
 fn row(table: &Table, quantity: &str) -> [f64; 4] {

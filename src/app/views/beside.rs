@@ -1,0 +1,390 @@
+//! Drawing of what stands beside flexures: a spring, magnets, a transducer with its load.
+//!
+//! The spring lies between the frame on the left and the mass. The magnets face each other across their gap
+//! where the mass is at x = 0, one below the mass and one on a post; along the flexures the gap has their
+//! scale where there is room for that. A coil stands at the lower clamp; piezoelectric patches lie on the
+//! flexures there. Their load is to the right.
+
+use eframe::egui::layers::ShapeIdx;
+use eframe::egui::{Align2, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
+
+use crate::app::ui::style::Style;
+use crate::app::words::numbers::three;
+use crate::dynamics::Model;
+use crate::mechanics::Element;
+use crate::numeric::short;
+use crate::scene::Transducer;
+
+use super::labels::plated;
+
+/// The least size in points of a drawing whose parts are named.
+pub(super) const NAMED: Vec2 = vec2(280.0, 140.0);
+
+/// Half turns of the spring, half its width and the length of its ends in points; where on the mass it
+/// begins, in halves of its height.
+const HALF_TURNS: usize = 30;
+const SPRING: f32 = 6.0;
+const END: f32 = 16.0;
+const SPRING_AT: f32 = 0.5;
+
+/// Half the width of a magnet, and the height of a pole where there is room, where its letter fits, and at
+/// least.
+const MAGNET: f32 = 7.5;
+const POLE: f32 = 12.0;
+const LETTERED: f32 = 10.5;
+const LEAST_POLE: f32 = 4.5;
+
+/// Width of a coil, how far to the right of x = 0 its middle is, and its turns.
+const WINDING: f32 = 28.0;
+const ASIDE: f32 = 38.0;
+const TURNS: usize = 5;
+
+/// Thickness of a flexure with patches on both of its faces.
+const PATCHES: f32 = 7.0;
+
+/// Width of a load, and of the room to the right that it leaves to the scale of the drawing and to its name.
+const LOAD: f32 = 34.0;
+const SCALE_ROOM: f32 = 67.0;
+/// Room on the left for what is said of the flexures.
+const WORDS_ROOM: f32 = 120.0;
+
+/// What stands beside the flexures, or alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Beside {
+    /// Stiffness in N/m of all springs together; 0 without one.
+    stiffness: f64,
+    /// Strength in N m^4 and gap in m of the magnets that are the stiffest in the middle, and how many pairs
+    /// there are.
+    magnets: Option<(f64, f64)>,
+    pairs: usize,
+    transducer: Transducer,
+}
+
+/// Where it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Bench {
+    /// The drawing.
+    pub rect: Rect,
+    /// The inner side of the lower clamp.
+    pub bottom: f32,
+    /// The mass.
+    pub body: Rect,
+    /// Where x is 0.
+    pub zero: f32,
+    /// The flexures below the mass, where there are such.
+    pub below: Option<Below>,
+}
+
+/// The flexures below the mass.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Below {
+    /// Points per m along them.
+    pub along: f32,
+    /// Their lines next to the clamp.
+    pub feet: Vec<Vec<Pos2>>,
+}
+
+impl Beside {
+    /// That of a model.
+    pub fn of(model: &Model) -> Self {
+        let mut own = Self { stiffness: 0.0, magnets: None, pairs: 0, transducer: model.transducer() };
+        let stiff = |(strength, gap): (f64, f64)| strength.abs() / gap.powi(5);
+        for element in model.mechanism().side_by_side().iter().filter_map(|part| part.element) {
+            match element {
+                Element::Spring { stiffness } => own.stiffness += stiffness,
+                Element::Magnets { strength, gap } if strength != 0.0 => {
+                    own.pairs += 1;
+                    let least = own.magnets.map_or(0.0, stiff);
+                    if stiff((strength, gap)) > least {
+                        own.magnets = Some((strength, gap));
+                    }
+                }
+                Element::Magnets { .. } => {}
+            }
+        }
+        own
+    }
+
+    /// Whether there are magnets.
+    pub fn has_magnets(&self) -> bool {
+        self.magnets.is_some()
+    }
+
+    /// Whether something stands on a clamp below the mass.
+    pub fn stands_below(&self) -> bool {
+        self.has_magnets() || self.transducer != Transducer::None
+    }
+
+    /// Whether there is a spring or magnets.
+    pub fn is_drawn(&self) -> bool {
+        self.stiffness != 0.0 || self.has_magnets()
+    }
+
+    /// How far over the middle of the mass the arrow of its push stands, in halves of its height: the spring
+    /// lies below.
+    pub fn lift(&self) -> f32 {
+        if self.stiffness == 0.0 { 0.0 } else { 0.4 }
+    }
+
+    /// Draws it, most of it in the place that was kept for it behind the flexures.
+    pub fn draw(&self, ui: &Ui, painter: &Painter, style: &Style, behind: ShapeIdx, bench: &Bench) {
+        let mut shapes = Vec::new();
+        let named = bench.rect.width() >= NAMED.x && bench.rect.height() >= NAMED.y;
+        let is_free_on_the_right = self.transducer == Transducer::None;
+        let pen = Pen { ui, painter, style, bench, named, is_free_on_the_right };
+        pen.spring(self.stiffness, &mut shapes);
+        if let Some(magnets) = self.magnets {
+            pen.magnets(magnets, self.pairs, &mut shapes);
+        }
+        if self.transducer != Transducer::None {
+            pen.transducer(&self.transducer, &mut shapes);
+        }
+        painter.set(behind, Shape::Vec(shapes));
+    }
+}
+
+/// What all of the drawing needs.
+struct Pen<'a> {
+    ui: &'a Ui,
+    painter: &'a Painter,
+    style: &'a Style,
+    bench: &'a Bench,
+    /// Whether parts have their names.
+    named: bool,
+    /// Whether there is no load.
+    is_free_on_the_right: bool,
+}
+
+impl Pen<'_> {
+    fn thin(&self) -> Stroke {
+        Stroke::new(1.3, self.style.ink())
+    }
+
+    /// A name where it has room between these ends, and whether it has.
+    fn name(&self, (at, align): (Pos2, Align2), text: &str, (left, right): (f32, f32)) -> bool {
+        let (font, colour) = (self.style.small(), self.style.faint());
+        let size = self.painter.layout_no_wrap(text.to_owned(), font.clone(), colour).size();
+        let place = align.anchor_size(at, size);
+        let has_room = self.named && place.left() >= left && place.right() <= right;
+        if has_room {
+            plated(self.painter, self.style, (at, align), text, (font, colour));
+        }
+        has_room
+    }
+
+    /// What a part is, under the pointer.
+    fn explain(&self, place: Rect, part: &str, words: &str) {
+        let id = self.ui.scope_id().with(("beside", part));
+        self.ui.interact(place.expand(2.0), id, Sense::hover()).on_hover_text(words);
+    }
+
+    fn spring(&self, stiffness: f64, shapes: &mut Vec<Shape>) {
+        let Bench { rect, body, .. } = *self.bench;
+        let y = body.center().y + SPRING_AT * 0.5 * body.height();
+        let wall = Rect::from_min_max(pos2(rect.left() + 2.0, y - 14.0), pos2(rect.left() + 10.0, y + 14.0));
+        let (from, to) = (pos2(wall.right(), y), pos2(body.left(), y));
+        if stiffness == 0.0 || to.x - from.x < 2.0 {
+            return;
+        }
+        shapes.push(Shape::rect_filled(wall, 0.0, self.style.frame_colour()));
+        let edge = [wall.right_top(), wall.right_bottom()];
+        shapes.push(Shape::line_segment(edge, Stroke::new(1.5, self.style.faint())));
+        shapes.push(Shape::line(
+            coil((from, to), HALF_TURNS, SPRING, (END / (to.x - from.x)).min(0.25)),
+            self.style.flexure_stroke(),
+        ));
+        let text = format!("spring {} N/m", short(stiffness));
+        // under the stops
+        let below = (pos2(from.x + 6.0, body.bottom() + 5.0), Align2::LEFT_TOP);
+        self.name(below, &text, (rect.left(), rect.right()));
+        let way = if stiffness > 0.0 { "draws the mass there" } else { "pushes the mass away from there" };
+        let words = format!(
+            "A spring of {} N/m between the frame and the mass. It has no force at x = 0 and {way}, harder \
+             the further out the mass is.",
+            short(stiffness)
+        );
+        let place = Rect::from_two_pos(from - vec2(0.0, SPRING), to + vec2(0.0, SPRING));
+        self.explain(place, "spring", &words);
+    }
+
+    fn magnets(&self, (strength, gap): (f64, f64), pairs: usize, shapes: &mut Vec<Shape>) {
+        let Bench { rect, bottom, body, zero, ref below } = *self.bench;
+        let room = bottom - body.bottom();
+        let pole = POLE.min((room - 6.0) / 4.0);
+        if pole < LEAST_POLE {
+            return;
+        }
+        // of the two middles
+        let (least, most) = (2.0 * pole + 3.0, (room - 2.0 * pole - 3.0).max(2.0 * pole + 3.0));
+        let wanted = below.as_ref().map_or(0.5 * (least + most), |own| own.along * gap as f32);
+        let apart = wanted.clamp(least, most);
+        let attract = strength > 0.0;
+        let hung = pos2(body.center().x, body.bottom() + pole);
+        let stood = pos2(zero, body.bottom() + pole + apart);
+        let post = Rect::from_min_max(pos2(zero - 3.0, stood.y + pole), pos2(zero + 3.0, bottom));
+        shapes.push(Shape::rect_filled(post, 0.0, self.style.frame_colour()));
+        self.magnet(hung, pole, true);
+        self.magnet(stood, pole, attract);
+        let verb = if attract { "attract" } else { "repel" };
+        // on the side to which the flexures do not go
+        let beside = match body.center().x < zero && self.is_free_on_the_right {
+            true => (pos2(zero + MAGNET + 6.0, stood.y), Align2::LEFT_CENTER),
+            false => (pos2(zero - MAGNET - 6.0, stood.y), Align2::RIGHT_CENTER),
+        };
+        self.name(beside, &format!("magnets {verb}"), (rect.left() + WORDS_ROOM, rect.right()));
+        let does = if attract { "draw the mass to x = 0" } else { "push the mass away from x = 0" };
+        let mm = |metres: f64| three(1e3 * metres);
+        let more = match pairs {
+            1 => String::new(),
+            n => {
+                format!(" Of {n} pairs of magnets this one is the stiffest there; the others are not drawn.")
+            }
+        };
+        let words = format!(
+            "Two magnets, {} mm apart where they face each other at x = 0, with a strength of {} N mm⁴. They \
+             {does} up to {} mm from it, and further out the other way.{more}",
+            mm(gap),
+            three((1e12 * strength).abs()),
+            mm(2.0 * gap)
+        );
+        self.explain(Rect::from_center_size(stood, vec2(2.0 * MAGNET, 2.0 * pole)), "magnets", &words);
+    }
+
+    /// A magnet with its north pole above or below.
+    fn magnet(&self, middle: Pos2, pole: f32, north_above: bool) {
+        let (ink, ground) = (self.style.ink(), self.style.ground());
+        let half = |above: bool| {
+            let y = if above { middle.y - pole } else { middle.y };
+            Rect::from_min_size(pos2(middle.x - MAGNET, y), vec2(2.0 * MAGNET, pole))
+        };
+        for (place, north) in [(half(true), north_above), (half(false), !north_above)] {
+            let (fill, letter) = if north { (ink, ground) } else { (ground, ink) };
+            let edge = Stroke::new(1.2, ink);
+            self.painter.rect(place, 0.0, fill, edge, StrokeKind::Inside);
+            if pole >= LETTERED {
+                let text = if north { "N" } else { "S" };
+                self.painter.text(place.center(), Align2::CENTER_CENTER, text, self.style.small(), letter);
+            }
+        }
+    }
+
+    fn transducer(&self, transducer: &Transducer, shapes: &mut Vec<Shape>) {
+        let Bench { rect, bottom, body, zero, ref below } = *self.bench;
+        let height = (bottom - body.bottom() - 12.0).clamp(8.0, 24.0);
+        // patches lie where the flexures stand
+        let is_patched = below.is_some() && matches!(transducer, Transducer::Piezoelectric { .. });
+        let aside = if is_patched { 0.0 } else { ASIDE };
+        let corner = pos2(zero + aside - 0.5 * WINDING, bottom - 3.0 - height);
+        let part = Rect::from_min_size(corner, vec2(WINDING, height));
+        let (name, coupled, load, words) = match *transducer {
+            Transducer::None => return,
+            Transducer::Electromagnetic { coupling_v_s_per_m, load_ohm, .. } => {
+                self.coil(part, shapes);
+                let words = format!(
+                    "A coil at the frame. The mass has a magnet, which induces {} V in it at 1 m/s.",
+                    short(coupling_v_s_per_m.abs())
+                );
+                ("coil", coupling_v_s_per_m, (load_ohm, "ohm"), words)
+            }
+            Transducer::Piezoelectric { coupling_n_per_v, load_kohm, .. } => {
+                self.patches(part, shapes);
+                let words = format!(
+                    "A piezoelectric layer, which the motion strains: 1 V on it is a force of {} N on the \
+                     mass.",
+                    short(coupling_n_per_v.abs())
+                );
+                ("piezo", coupling_n_per_v, (load_kohm, "kohm"), words)
+            }
+        };
+        let none = if coupled == 0.0 { " Its coupling is 0: it does nothing." } else { "" };
+        self.explain(part, "transducer", &format!("{words}{none}"));
+        let right = rect.right() - if below.is_some() { SCALE_ROOM } else { 8.0 };
+        self.load(part, load, (name, right), shapes);
+    }
+
+    /// A winding, seen from the side.
+    fn coil(&self, part: Rect, shapes: &mut Vec<Shape>) {
+        shapes.push(Shape::rect_filled(part, 2.0, self.style.frame_colour()));
+        let step = part.width() / TURNS as f32;
+        for i in 0..TURNS {
+            let x = part.left() + step * i as f32;
+            let turn = [pos2(x + 0.25 * step, part.bottom()), pos2(x + 0.75 * step, part.top())];
+            shapes.push(Shape::line_segment(turn, Stroke::new(2.2, self.style.ink())));
+        }
+    }
+
+    /// Patches on the flexures; without these a layer between two electrodes.
+    fn patches(&self, part: Rect, shapes: &mut Vec<Shape>) {
+        if let Some(below) = &self.bench.below {
+            let stroke = Stroke::new(PATCHES, self.style.frame_colour());
+            shapes.extend(below.feet.iter().map(|foot| Shape::line(foot.clone(), stroke)));
+            return;
+        }
+        let layer = part.with_min_y(part.bottom() - 8.0);
+        shapes.push(Shape::rect_filled(layer, 0.0, self.style.frame_colour()));
+        for y in [layer.top(), layer.bottom()] {
+            let ends = [pos2(layer.left(), y), pos2(layer.right(), y)];
+            shapes.push(Shape::line_segment(ends, Stroke::new(2.2, self.style.ink())));
+        }
+    }
+
+    /// The load and its two wires: a resistor, a wire for a short circuit, a gap for an open one.
+    fn load(
+        &self,
+        part: Rect,
+        (value, unit): (f64, &str),
+        (name, right): (&str, f32),
+        shapes: &mut Vec<Shape>,
+    ) {
+        let (up, down) = (part.bottom() - part.height().min(18.0) + 2.0, part.bottom() - 2.0);
+        let begin = self.bench.zero + ASIDE + 0.5 * WINDING + 10.0;
+        let (end, y) = (begin + LOAD + 9.0, [up, down]);
+        if end > right {
+            return;
+        }
+        let mut wire = |points: &[Pos2]| shapes.push(Shape::line(points.to_vec(), self.thin()));
+        wire(&[pos2(part.right(), y[0]), pos2(begin, y[0])]);
+        wire(&[pos2(part.right(), y[1]), pos2(end, y[1]), pos2(end, y[0]), pos2(begin + LOAD, y[0])]);
+        let resistor = Rect::from_min_max(pos2(begin, y[0] - 5.0), pos2(begin + LOAD, y[0] + 5.0));
+        let (text, words) = match value {
+            0.0 => {
+                wire(&[pos2(begin, y[0]), pos2(begin + LOAD, y[0])]);
+                let words = "A short circuit: the load is 0 and takes no power.";
+                ("short circuit".to_owned(), words.to_owned())
+            }
+            f64::INFINITY => {
+                for x in [begin, begin + LOAD] {
+                    shapes.push(Shape::circle_filled(pos2(x, y[0]), 2.5, self.style.ink()));
+                }
+                let words = "An open circuit: no current flows through the load, which takes no power.";
+                ("open circuit".to_owned(), words.to_owned())
+            }
+            value => {
+                shapes.push(Shape::rect_filled(resistor, 0.0, self.style.ground()));
+                shapes.push(Shape::rect_stroke(resistor, 0.0, self.thin(), StrokeKind::Inside));
+                let text = format!("load {} {unit}", short(value));
+                let words = format!("The load, {} {unit}, which takes the power.", short(value));
+                (text, words)
+            }
+        };
+        let at = (pos2(end + 6.0, y[1] + 2.0), Align2::LEFT_BOTTOM);
+        let named = self.name(at, &format!("{name}, {text}"), (0.0, right));
+        if !named {
+            self.name(at, &text, (0.0, right));
+        }
+        self.explain(resistor, "load", &words);
+    }
+}
+
+/// A coil spring from one place to another, half of it so wide: straight ends, each such a share of it, and
+/// turns between that a stretch pulls apart.
+pub(super) fn coil((from, to): (Pos2, Pos2), half_turns: usize, half: f32, end: f32) -> Vec<Pos2> {
+    let along = to - from;
+    let across = along.normalized().rot90() * half;
+    let turn = |i: usize| {
+        let share = end + (1.0 - 2.0 * end) * (i as f32 + 0.5) / half_turns as f32;
+        from + along * share + if i.is_multiple_of(2) { across } else { -across }
+    };
+    let turns = (0..half_turns).map(turn);
+    [from, from + along * end].into_iter().chain(turns).chain([from + along * (1.0 - end), to]).collect()
+}

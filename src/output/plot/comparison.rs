@@ -1,0 +1,400 @@
+//! Picture of scenes side by side: a row a scene, a panel a quantity, the best of each panel marked.
+
+use std::collections::BTreeSet;
+
+use super::axis::PlotAxis;
+use super::figure::{Align, Area, Figure, Text, fitted};
+use super::font;
+use super::frame::Frame;
+use super::mark::{Caption, Marker, REGIMES, Sample, legend, marker, regime};
+use super::run::speed_unit;
+use super::style::{self, Ink, Theme};
+use crate::numeric::round::decade;
+use crate::numeric::short;
+use crate::study::{Rated, SEARCHED_SPAN, Table, Values};
+
+/// What the picture of a comparison is drawn from.
+#[derive(Debug, Clone, Copy)]
+pub struct ComparisonPicture<'a> {
+    /// A scene a row.
+    pub rated: &'a [Rated],
+    /// The drive's frequency in Hz.
+    pub frequency_hz: f64,
+}
+
+/// Least width of a panel, room between panels, and the most that the names of the scenes take.
+const LEAST_WIDTH: f64 = 186.0;
+const BETWEEN: f64 = 34.0;
+const MOST_NAME: f64 = 330.0;
+/// Over a panel its title in two lines, under it the numbers of its axis; least height of a row in it.
+const TITLE: f64 = 74.0;
+const NUMBERS: f64 = 74.0;
+const ROW: f64 = 46.0;
+/// Height of a bar, at most and as a share of its row.
+const BAR: (f64, f64) = (46.0, 0.5);
+/// What is left free behind the longest bar for its number.
+const NUMBER: f64 = 88.0;
+/// Where the first legend stands.
+const LEGEND: f64 = 146.0;
+
+/// A frequency this near to an end of the search is at it.
+const NEAR: f64 = 1.001;
+
+/// Which value of a panel is best.
+#[derive(Clone, Copy, PartialEq)]
+enum Best {
+    Least,
+    Most,
+}
+
+/// A value of a scene: its end, its beginning where that is not 0, and what is written at it.
+#[derive(Clone)]
+struct Entry {
+    from: f64,
+    to: f64,
+    words: String,
+}
+
+/// A quantity.
+struct Panel {
+    title: &'static str,
+    unit: String,
+    best: Best,
+    entries: Vec<Entry>,
+    /// Frequencies in decades, each a band.
+    is_band: bool,
+}
+
+impl Panel {
+    /// What is compared of an entry.
+    fn merit(&self, entry: &Entry) -> f64 {
+        if self.is_band { entry.to / entry.from } else { entry.to }
+    }
+
+    /// The best of at least two that have a value.
+    fn best(&self) -> Option<usize> {
+        let merits: Vec<f64> = self.entries.iter().map(|own| self.merit(own)).collect();
+        let known = || merits.iter().enumerate().filter(|own| own.1.is_finite());
+        let by = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
+        let best = match self.best {
+            Best::Least => known().min_by(by),
+            Best::Most => known().max_by(by),
+        };
+        let (place, merit) = best?;
+        // what others have as well is not marked
+        (merits.iter().filter(|own| *own == merit).count() == 1 && known().count() > 1).then_some(place)
+    }
+}
+
+/// To three digits.
+fn three(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return short(value);
+    }
+    let digit = 10_f64.powi(decade(value) - 2);
+    short((value / digit).round() * digit)
+}
+
+/// The picture of a comparison.
+pub fn comparison_figure(picture: &ComparisonPicture<'_>, caption: &Caption, theme: &Theme) -> Figure {
+    let ComparisonPicture { rated, .. } = *picture;
+    let panels = panels(picture);
+    let names = names(rated);
+    let widest = names.iter().map(|own| font::width(own, style::TICK, false)).fold(0.0, f64::max);
+    // how many panels stand side by side follows from the width alone
+    let probe = Figure::new(theme, caption, 0.0);
+    let (left, right) = probe.breadth((60.0, probe.right()));
+    let name_width = widest.min(MOST_NAME).min(0.3 * (right - left));
+    let room = right - left - name_width - 20.0;
+    let fits = ((room + BETWEEN) / (LEAST_WIDTH + BETWEEN)).floor().max(1.0) as usize;
+    let rows = panels.len().div_ceil(fits);
+    let each = panels.len().div_ceil(rows);
+    let least_row = TITLE + NUMBERS + ROW * rated.len() as f64;
+    let mut figure = Figure::new(theme, caption, rows as f64 * least_row + 60.0);
+
+    let entries = legend_entries(rated, &panels, theme);
+    let top = LEGEND.max(legend(&mut figure, theme, &entries, (left, right), LEGEND)) + 12.0;
+    // below each frame stand numbers, and no label
+    let end = figure.bottom() + 40.0 + NUMBERS;
+    let height = (end - top) / rows as f64;
+    let width = (room - BETWEEN * (each as f64 - 1.0)) / each as f64;
+    for (i, panel) in panels.iter().enumerate() {
+        let (row, column) = (i / each, i % each);
+        let from = left + name_width + 20.0 + column as f64 * (width + BETWEEN);
+        let above = top + row as f64 * height;
+        let bottom = (above + height - NUMBERS).max(above + TITLE + 10.0);
+        let area = Area::new(from, above + TITLE, from + width, bottom);
+        let frame = draw(&mut figure, picture, panel, area, theme);
+        for (scene, name) in names.iter().enumerate().filter(|_| column == 0) {
+            let step = (area.bottom - area.top) / names.len() as f64;
+            let size = style::TICK.min(0.9 * step);
+            figure.text(Text {
+                words: fitted(name, size, false, name_width),
+                at: (from - 18.0, frame.down(place(rated, scene)) + 0.5 * size * font::CAPITAL),
+                size,
+                ink: theme.ink,
+                bold: false,
+                align: Align::Right,
+                upright: false,
+            });
+        }
+    }
+    figure.data = drawn(rated);
+    let about = "from rest; speeds, reach and impacts over the settled window, numbers to three digits";
+    caption.draw(&mut figure, theme, about, left);
+    figure
+}
+
+/// The height on the upward axis of a scene.
+fn place(rated: &[Rated], scene: usize) -> f64 {
+    rated.len() as f64 - scene as f64 - 0.5
+}
+
+/// The scenes' names, without folders where they are told apart so.
+fn names(rated: &[Rated]) -> Vec<String> {
+    let last = |own: &Rated| own.name.rsplit(['/', '\\']).next().unwrap_or(&own.name).to_owned();
+    let names: Vec<String> = rated.iter().map(last).collect();
+    let apart: BTreeSet<&String> = names.iter().collect();
+    if apart.len() == names.len() { names } else { rated.iter().map(|own| own.name.clone()).collect() }
+}
+
+/// The quantities that are above 0 for at least one of the scenes.
+fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
+    let ComparisonPicture { rated, frequency_hz } = *picture;
+    let panel = |title, unit: &str, best, scale: f64, of: &dyn Fn(&Rated) -> Option<f64>| {
+        let entry = |own: &Rated| {
+            let to = of(own).map_or(f64::NAN, |own| own * scale);
+            let words = match to {
+                to if to.is_nan() => "\u{2013}".to_owned(),
+                to if to.is_infinite() => "lost".to_owned(),
+                0.0 => "none".to_owned(),
+                to => three(to),
+            };
+            Entry { from: 0.0, to, words }
+        };
+        let entries = rated.iter().map(entry).collect();
+        Panel { title, unit: unit.to_owned(), best, entries, is_band: false }
+    };
+    let speed = |own: &Rated| own.summary.rms_velocity;
+    // a motion without an impact strikes with nothing
+    let impact = |own: &Rated| speed(own).map(|_| own.summary.impact_speed_max.unwrap_or(0.0));
+    let power = |own: &Rated| own.summary.harvest.and_then(|own| own.mean_load_power);
+    let (per_speed, speed_name) = speed_unit(rated.iter().filter_map(speed));
+    let (per_impact, impact_name) = speed_unit(rated.iter().filter_map(impact));
+    let (per_watt, watt) = match rated.iter().filter_map(power).fold(0.0, f64::max) {
+        most if most >= 1.0 => (1.0, "W"),
+        most if most >= 1e-3 => (1e3, "mW"),
+        _ => (1e6, "\u{b5}W"),
+    };
+    let sensitivity = |own: &Rated| own.sensitivity.as_ref().map(|own| own.0);
+    let all = [
+        panel("crosses from", "g", Best::Least, 1.0, &|own| own.crossing_g),
+        panel("RMS velocity", speed_name, Best::Most, per_speed, &speed),
+        panel("power", watt, Best::Most, per_watt, &power),
+        panel("reach", "mm", Best::Least, 1e3, &|own| own.summary.max_abs_x),
+        panel("fastest impact", impact_name, Best::Least, per_impact, &impact),
+        bands(rated, frequency_hz),
+        panel("sensitivity", "% for 1 % of a size", Best::Least, 100.0, &sensitivity),
+    ];
+    all.into_iter().filter(|own| own.entries.iter().any(|own| own.to > 0.0)).collect()
+}
+
+/// The bands of frequencies; an end that is that of the search may be further out.
+fn bands(rated: &[Rated], frequency_hz: f64) -> Panel {
+    let entry = |own: &Rated| {
+        let Some((from, to)) = own.crosses_hz else {
+            return Entry { from: f64::NAN, to: f64::NAN, words: "\u{2013}".to_owned() };
+        };
+        let least = if from < frequency_hz / SEARCHED_SPAN * NEAR { "\u{2264}" } else { "" };
+        let most = if to * NEAR > frequency_hz * SEARCHED_SPAN { "\u{2265}" } else { "" };
+        Entry { from, to, words: format!("{least}{}\u{2013}{most}{}", three(from), three(to)) }
+    };
+    let entries = rated.iter().map(entry).collect();
+    Panel { title: "crosses at", unit: "Hz".to_owned(), best: Best::Most, entries, is_band: true }
+}
+
+/// The axis of the frequencies at which crossings were looked for.
+fn searched(frequency_hz: f64) -> PlotAxis {
+    let (low, high) = ((frequency_hz / SEARCHED_SPAN).log10(), (frequency_hz * SEARCHED_SPAN).log10());
+    let powers = low.ceil() as i32..=high.floor() as i32;
+    let ticks = powers.map(|power| (f64::from(power), short(10_f64.powi(power)))).collect();
+    PlotAxis { low, high, ticks, label: String::new() }
+}
+
+/// A panel with its title.
+fn draw(
+    figure: &mut Figure,
+    picture: &ComparisonPicture<'_>,
+    panel: &Panel,
+    area: Area,
+    theme: &Theme,
+) -> Frame {
+    let ComparisonPicture { rated, frequency_hz } = *picture;
+    let ends = panel.entries.iter().map(|own| own.to).filter(|own| own.is_finite());
+    let most = ends.fold(0.0, f64::max);
+    let count = ((area.right - area.left) / 95.0).floor().clamp(1.0, 4.0) as usize;
+    let across = match panel.is_band {
+        true => searched(frequency_hz),
+        // with room for the number behind the longest bar
+        false if most > 0.0 => {
+            let width = area.right - area.left;
+            PlotAxis::between(0.0, most * width / (width - NUMBER), count, "")
+        }
+        false => PlotAxis::between(0.0, 1.0, count, ""),
+    };
+    let up = PlotAxis { low: 0.0, high: rated.len() as f64, ticks: Vec::new(), label: String::new() };
+    let frame = Frame::new(area, across, up);
+    frame.grid(figure, theme);
+    if panel.is_band {
+        frame.vertical(figure, frequency_hz.log10(), style::THIN, theme.shaking, Some(style::DASH));
+    }
+    let best = panel.best();
+    let step = (area.bottom - area.top) / rated.len() as f64;
+    let half = 0.5 * BAR.0.min(BAR.1 * step);
+    for (scene, entry) in panel.entries.iter().enumerate() {
+        let y = frame.down(place(rated, scene));
+        let ink = if best == Some(scene) { theme.stable } else { theme.soft.over(theme.paper, 0.35) };
+        bar(figure, &frame, (panel, entry), (y - half, y + half), ink);
+        words(figure, &frame, (panel, entry), (y, 0.95 * step), best == Some(scene), theme);
+        if panel.title == "crosses from"
+            && let Some(release) = rated[scene].release_g
+        {
+            let at = (frame.across(release), y);
+            marker(figure, Marker::Triangle, at, style::MARKER, theme.unstable, theme.ink);
+        }
+        if panel.title == "RMS velocity" && entry.to.is_finite() {
+            let name = rated[scene].summary.regime.name();
+            let (shape, ink) = regime(name, theme);
+            let x = (area.left + 18.0).max(frame.across(entry.to));
+            if !name.is_empty() {
+                marker(figure, shape, (x.min(area.right - 16.0), y), style::MARKER, ink, theme.ink);
+            }
+        }
+    }
+    frame.axes(figure, theme);
+    let better = match (panel.best, panel.is_band) {
+        (_, true) => "wide",
+        (Best::Least, _) => "small",
+        (Best::Most, _) => "large",
+    };
+    let unit = format!("{}, {better} is good", panel.unit);
+    for (text, size, ink, y) in
+        [(panel.title, style::TICK, theme.ink, 42.0), (&*unit, style::FOOTER, theme.soft, 14.0)]
+    {
+        let size =
+            size * ((area.right - area.left + BETWEEN - 8.0) / font::width(text, size, false)).min(1.0);
+        figure.text(Text {
+            words: text.to_owned(),
+            at: (area.left, area.top - y),
+            size,
+            ink,
+            bold: false,
+            align: Align::Left,
+            upright: false,
+        });
+    }
+    frame
+}
+
+/// The bar of a value, or of a band.
+fn bar(figure: &mut Figure, frame: &Frame, (panel, entry): (&Panel, &Entry), rows: (f64, f64), ink: Ink) {
+    let (top, bottom) = rows;
+    let ends = match panel.is_band {
+        true => [entry.from.log10(), entry.to.log10()],
+        false => [0.0, entry.to],
+    };
+    if ends.iter().all(|own| own.is_finite()) {
+        let [left, right] = ends.map(|own| frame.across(own));
+        figure.rect(Area::new(left, top, right.max(left + 2.0), bottom), ink);
+    } else if entry.to == f64::INFINITY {
+        // longer than any
+        let area = Area::new(frame.area.left, top, frame.area.right, bottom);
+        figure.hatch(area, style::HATCH, ink);
+    }
+}
+
+/// What is written at a bar: behind it, or where that has no room in it.
+fn words(
+    figure: &mut Figure,
+    frame: &Frame,
+    (panel, entry): (&Panel, &Entry),
+    (y, most): (f64, f64),
+    is_best: bool,
+    theme: &Theme,
+) {
+    let Area { left, right, .. } = frame.area;
+    let size = style::FOOTER.min(most);
+    let width = font::width(&entry.words, size, is_best);
+    let end = match panel.is_band {
+        true if entry.to.is_finite() => frame.across(entry.to.log10()),
+        false if entry.to.is_finite() => frame.across(entry.to),
+        _ => left,
+    };
+    let behind = end + if panel.title == "RMS velocity" { 24.0 } else { 8.0 };
+    let is_behind = behind + width <= right - 4.0;
+    let x = if is_behind { behind } else { (left + 8.0).min(right - width) };
+    // the colour of the best is light in either theme
+    let ink = if is_best && !is_behind { style::BLACK } else { theme.ink };
+    figure.text(Text {
+        words: entry.words.clone(),
+        at: (x, y + 0.5 * size * font::CAPITAL),
+        size,
+        ink,
+        bold: is_best,
+        align: Align::Left,
+        upright: false,
+    });
+}
+
+/// What marks and colours mean, of those that are drawn.
+fn legend_entries(rated: &[Rated], panels: &[Panel], theme: &Theme) -> Vec<(Sample, &'static str)> {
+    let mut entries = Vec::new();
+    if panels.iter().any(|own| own.best().is_some()) {
+        entries.push((Sample::Patch(theme.stable, None), "best of its panel"));
+    }
+    if rated.iter().any(|own| own.release_g.is_some()) {
+        entries.push((Sample::Marker(Marker::Triangle, theme.unstable), "leaves its stop from"));
+    }
+    for (name, _) in REGIMES {
+        if rated.iter().any(|own| own.summary.regime.name() == name && own.summary.rms_velocity.is_some()) {
+            let (shape, ink) = regime(name, theme);
+            entries.push((Sample::Marker(shape, ink), name));
+        }
+    }
+    entries.push((Sample::Line(theme.shaking, style::THIN, Some(style::DASH)), "frequency of the drive"));
+    if panels.iter().flat_map(|own| &own.entries).any(|own| own.to == f64::INFINITY) {
+        let patch = Sample::Patch(theme.paper, Some(theme.soft.over(theme.paper, 0.35)));
+        entries.push((patch, "crossing lost by 1 % of a size"));
+    }
+    entries
+}
+
+/// The values that are drawn, each in a row, in SI.
+fn drawn(rated: &[Rated]) -> Table {
+    let (mut series, mut scenes, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    for own in rated {
+        let summary = &own.summary;
+        let power = summary.harvest.and_then(|own| own.mean_load_power);
+        let all = [
+            ("release_g", own.release_g),
+            ("crossing_g", own.crossing_g),
+            ("rms_velocity_m_per_s", summary.rms_velocity),
+            ("mean_load_power_w", power),
+            ("max_abs_x_m", summary.max_abs_x),
+            ("impact_speed_max_m_per_s", summary.impact_speed_max),
+            ("crosses_from_hz", own.crosses_hz.map(|band| band.0)),
+            ("crosses_to_hz", own.crosses_hz.map(|band| band.1)),
+            ("threshold_sensitivity", own.sensitivity.as_ref().map(|own| own.0)),
+        ];
+        for (name, value) in all {
+            let Some(value) = value else { continue };
+            series.push(name);
+            scenes.push(own.name.clone());
+            values.push(value);
+        }
+    }
+    Table::new()
+        .with("series", Values::Words(series))
+        .with("scene", Values::Names(scenes))
+        .with("value", Values::Numbers(values))
+}

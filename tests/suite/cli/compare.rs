@@ -1,0 +1,194 @@
+//! `compare`: each column against the study that it is made of, its picture, and what it says of its scenes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::{column, headless, refused, stdout};
+use crate::plots::texts;
+
+/// The shaking and the run of all scenes here: 0.6 g at 3 Hz.
+const RUN: &str = "excitation: Sine(frequency_hz: 3.0, amplitude_g: 0.6), \
+                   run: (duration_s: 4.0, settle_s: 2.0), damping: Coefficient(c_n_s_per_m: 0.066)";
+
+const CUBIC: &str = "mechanism: Cubic(linear_n_per_m: -40.0, cubic_n_per_m3: 8.2e5)";
+const STOPS: &str = "stops: Rigid(travel_limit_mm: 2.0, restitution: 0.36)";
+const COIL: &str = "transducer: Electromagnetic(coupling_v_s_per_m: 3.0, coil_ohm: 40.0, load_ohm: 60.0)";
+const DEEP: &str = "mechanism: DoubleWell(equilibrium_mm: 7.0, barrier_mj: 50.0)";
+
+/// Scenes in a folder, each of a name and of what it has besides [`RUN`].
+fn scenes(folder: &Path, all: &[(&str, &str)]) -> Vec<PathBuf> {
+    let one = |(name, fields): &(&str, &str)| {
+        let path = folder.join(name);
+        fs::write(&path, format!("(title: \"t\", mass_g: 15.2, {fields}, {RUN})")).unwrap();
+        path
+    };
+    all.iter().map(one).collect()
+}
+
+/// What `compare` writes of scenes in a folder, with these options.
+fn compared(paths: &[PathBuf], options: &str) -> String {
+    let output = headless("compare").args(paths).args(options.split_whitespace()).assert().success();
+    String::from_utf8(output.get_output().stdout.clone()).unwrap()
+}
+
+/// Crossings and other numbers of the settled motion of a scene with something set.
+fn settled(path: &Path, set: &str) -> serde_json::Value {
+    let line = "simulate --out /dev/null --summary - --until-settled 337.33333333333331 --quiet";
+    let mut command = headless(line);
+    command.arg(path);
+    if !set.is_empty() {
+        command.args(["--set", set]);
+    }
+    serde_json::from_slice(&command.assert().success().get_output().stdout).unwrap()
+}
+
+fn number(cell: &str) -> f64 {
+    cell.parse().unwrap_or_else(|_| panic!("`{cell}` is no number"))
+}
+
+#[track_caller]
+fn near(own: f64, known: f64, share: f64) {
+    assert!((own - known).abs() <= share * known.abs(), "{own:e} is not {known:e}");
+}
+
+#[test]
+fn each_column_is_that_of_the_study_it_is_made_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let free = format!("{CUBIC}, {COIL}");
+    let stopped = format!("{CUBIC}, {STOPS}");
+    let paths = scenes(folder.path(), &[("free.ron", &free), ("stopped.ron", &stopped)]);
+    let csv = compared(&paths, "--quiet");
+    let mut ends = 0;
+    for (row, path) in paths.iter().enumerate() {
+        let cell = |name: &str| column(&csv, name)[row].clone();
+        let motion = settled(path, "");
+        for (name, share) in [("rms_velocity_m_per_s", 1e-12), ("max_abs_x_m", 1e-12)] {
+            near(number(&cell(name)), motion[name].as_f64().unwrap(), share);
+        }
+        for name in ["mean_load_power_w", "impact_speed_max_m_per_s"] {
+            match motion.get(name).and_then(serde_json::Value::as_f64) {
+                Some(known) => near(number(&cell(name)), known, 1e-12),
+                None => assert_eq!(cell(name), "", "{name} of row {row}"),
+            }
+        }
+        // the threshold crosses, and a third digit less does not
+        let crosses = |set: String| settled(path, &set)["crossings"].as_u64().unwrap() > 0;
+        let least = number(&cell("crossing_g"));
+        let digit = 10_f64.powf(least.log10().floor() - 2.0);
+        assert!(crosses(format!("excitation.amplitude_g={least}")));
+        assert!(!crosses(format!("excitation.amplitude_g={}", least - digit)), "{least}");
+        // so do the ends of the band that are not those of the search, and a little beyond them does not
+        for (name, beyond) in [("crosses_from_hz", 0.998), ("crosses_to_hz", 1.002)] {
+            let end = number(&cell(name));
+            // a slower shaking has no two periods in the settled window
+            if (1.0..29.99).contains(&end) {
+                assert!(crosses(format!("excitation.frequency_hz={end}")), "{name} {end}");
+                assert!(!crosses(format!("excitation.frequency_hz={}", end * beyond)), "{name} {end}");
+                ends += 1;
+            }
+        }
+    }
+    assert!(ends > 0);
+    // the coil's scene has power, the stopped one a release, in closed form
+    assert!(number(&column(&csv, "mean_load_power_w")[0]) > 0.0);
+    assert_eq!(column(&csv, "release_g")[0], "");
+    let line = format!("threshold {} --of release --quiet", paths[1].display());
+    assert_eq!(column(&csv, "release_g")[1], column(&stdout(&line), "value")[0]);
+    // neither has a size that could be 1 % larger
+    assert_eq!(column(&csv, "threshold_sensitivity"), ["", ""]);
+}
+
+#[test]
+fn the_sensitivity_is_that_of_scenes_with_a_size_changed() {
+    let folder = tempfile::tempdir().unwrap();
+    let magnet = |gap: f64| {
+        format!(
+            "mechanism: Sum([Cubic(linear_n_per_m: -40.0, cubic_n_per_m3: 8.2e5), \
+             Magnet(strength_n_mm4: 300.0, gap_mm: {gap})])"
+        )
+    };
+    let [own, less, more] = [10.0, 9.9, 10.1].map(magnet);
+    let paths = scenes(folder.path(), &[("own.ron", &own), ("less.ron", &less), ("more.ron", &more)]);
+    let csv = compared(&paths, "--quiet");
+    let least: Vec<f64> = column(&csv, "crossing_g").iter().map(|own| number(own)).collect();
+    let change = least[1..].iter().map(|own| (own / least[0] - 1.0).abs()).fold(0.0, f64::max);
+    assert!(change > 0.01, "{least:?}");
+    near(number(&column(&csv, "threshold_sensitivity")[0]), change, 1e-12);
+    assert_eq!(column(&csv, "most_sensitive_to")[0], "mechanism.1.gap_mm");
+}
+
+#[test]
+fn rows_picture_and_data_do_not_depend_on_the_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let stopped = format!("{CUBIC}, {STOPS}");
+    let still = format!("{DEEP}, {STOPS}");
+    let paths =
+        scenes(folder.path(), &[("free.ron", CUBIC), ("stopped.ron", &stopped), ("still.ron", &still)]);
+    let of = |jobs: usize| {
+        let at = |name: &str| folder.path().join(format!("{jobs}-{name}"));
+        let mut command = headless("compare --quiet --no-title --plot-width-mm 170");
+        command.args(&paths).args(["--jobs", &jobs.to_string(), "--out"]).arg(at("rows.csv"));
+        command.arg("--plot").arg(at("a.svg")).arg("--plot-data").arg(at("data.csv"));
+        command.assert().success().stdout("").stderr("");
+        ["rows.csv", "a.svg", "data.csv"].map(at)
+    };
+    let (one, three) = (of(1), of(3));
+    for name in [0, 2] {
+        assert_eq!(fs::read(&one[name]).unwrap(), fs::read(&three[name]).unwrap());
+    }
+    let words = texts(&one[1]);
+    assert_eq!(words, texts(&three[1]));
+    for word in ["free.ron", "still.ron", "crosses from", "reach", "fastest impact", "leaves its stop from"] {
+        assert!(words.iter().any(|own| own == word), "`{word}` is not in {words:?}");
+    }
+    // what is not there is not drawn
+    for word in ["power", "sensitivity"] {
+        assert!(words.iter().all(|own| own != word), "`{word}` is in {words:?}");
+    }
+    // the data are the cells that have a value, in the same digits
+    let (rows, data) = (fs::read_to_string(&one[0]).unwrap(), fs::read_to_string(&one[2]).unwrap());
+    assert_eq!(data.lines().next(), Some("series,scene,value"));
+    let names =
+        rows.lines().next().unwrap().split(',').filter(|own| !["scene", "most_sensitive_to"].contains(own));
+    let mut count = 0;
+    for name in names {
+        for (scene, value) in
+            column(&rows, "scene").iter().zip(column(&rows, name)).filter(|own| !own.1.is_empty())
+        {
+            assert!(data.lines().any(|line| line == format!("{name},{scene},{value}")), "{name} of {scene}");
+            count += 1;
+        }
+    }
+    assert!(count >= 15 && data.lines().count() == count + 1, "{count}");
+}
+
+#[test]
+fn what_a_comparison_cannot_be_made_of() {
+    refused(headless("compare paper no-such-scene"), &["no-such-scene", "no built-in scene", "balanced"]);
+    refused(headless("compare random-shaking paper"), &["random-shaking", "no Sine", "--environment"]);
+    refused(headless("compare paper --environment bouncing-ball"), &["bouncing-ball", "no Sine"]);
+    refused(headless("compare paper paper --plot a.gif"), &["--plot a.gif", ".png, .svg or .pdf"]);
+    refused(headless("compare paper paper --set mass_g=-1"), &["mass_g", "-1"]);
+}
+
+#[test]
+fn what_a_row_cannot_say_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let still = format!("{DEEP}, {STOPS}");
+    let single = "mechanism: Linear(n_per_m: 40.0)";
+    let paths = scenes(folder.path(), &[("still.ron", &still), ("single.ron", single)]);
+    let said = |paths: &[PathBuf], more: &str| {
+        let mut command = headless("compare --out /dev/null");
+        let output = command.args(paths).args(more.split_whitespace()).assert().success();
+        String::from_utf8(output.get_output().stderr.clone()).unwrap()
+    };
+    let both = said(&paths, "");
+    assert!(both.contains("still.ron: 0.6 g does not move it"), "{both}");
+    assert!(both.contains("single.ron: no barrier between two wells, so nothing to cross"), "{both}");
+    assert!(!both.contains("only scene") && !both.contains("with the run of"), "{both}");
+    let alone = said(&paths[1..], "");
+    assert!(alone.contains("single.ron: the only scene; name others to set beside it"), "{alone}");
+    let lent = said(&paths[1..], "--environment duffing");
+    assert!(lent.contains("single.ron: under the excitation and with the run of built-in duffing"), "{lent}");
+    assert_eq!(said(&paths, "--quiet"), "");
+}
