@@ -96,9 +96,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         };
         let mode = self.stepper.mode(&self.state);
         let sign = end.sign::<T>();
-        let ContactStep { whole, length, duration, reached, arrival } = step;
-        let mut root = path.root_at(length).larger(T::zero());
-        let mut speed = path.speed_at(length);
+        let ContactStep { whole, length, end: at, duration, bound, reached, arrival } = step;
+        let (mut root, mut speed) = (at.root.larger(T::zero()), at.speed);
         let surface = self.stepper.equation.surface(end)?;
         let mut x = surface + sign * (root * root);
         match reached {
@@ -114,8 +113,6 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return Some(Outcome::NotFinite { at: self.stepper.seconds(&self.state) });
         }
         self.steps += 1;
-        let displacement = path.scaled(whole);
-        let bound = displacement[1..path.known()].iter().fold(T::zero(), |sum, c| sum + c.abs());
         let view = StepView {
             path: &*path,
             origin: mode.origin,

@@ -3,7 +3,7 @@
 use super::path::Path;
 use super::penetration::Penetration;
 use crate::dynamics::result::Phase;
-use crate::dynamics::series::ROOM;
+use crate::dynamics::series::{ROOM, convolve};
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
 
 impl<T: Scalar> Penetration<T> {
@@ -27,12 +27,22 @@ impl<T: Scalar> Penetration<T> {
     /// The largest force over mass within a step of `h`, up to its share `until`, where it may exceed
     /// `known`.
     pub fn peak(&self, h: T, until: T, known: T) -> T {
-        let scaled = self.powers(&self.push, h);
-        let n = self.order + 1;
-        let bound = scaled[..n].iter().fold(T::zero(), |sum, c| sum + c.abs());
-        if !(self.stop.stiffness * bound > known) {
+        if self.clipped {
             return known;
         }
+        let n = self.order + 1;
+        let changes = self.changes(h);
+        let (root, speed) = (self.root[0] + changes.root, self.speed[0].abs() + changes.speed);
+        if !(self.stop.force(root, speed) > known) {
+            return known;
+        }
+        // Force over stiffness: u^3 (1 + a w).
+        let (mut cube, mut push) = ([T::zero(); ROOM], [T::zero(); ROOM]);
+        for k in 0..n {
+            cube[k] = convolve(&self.root, &self.depth, k);
+            push[k] = cube[k] + self.stop.loss * convolve(&cube, &self.speed, k);
+        }
+        let scaled = self.powers(&push, h);
         let value = |s: T| scaled[..n].iter().rev().fold(T::zero(), |sum, c| sum * s + *c);
         let mut peak = value(T::zero()).larger(value(until));
         let mut slope = [T::zero(); ROOM];
