@@ -11,13 +11,14 @@
 //! that no longer shows. One impact takes 12 to 18 steps from tolerance 1e-3 to 1e-14.
 
 use crate::dynamics::drive::Drive;
-use crate::dynamics::equation::{End, EndKind};
+use crate::dynamics::equation::{Compliant, End, EndKind};
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::Outcome;
 use crate::dynamics::state::{BY_SPEED, Contact, Depth, Flow, HELD, Touch};
 use crate::dynamics::step::contact::{ContactStep, Reached};
 use crate::dynamics::step::path::{Path, StepView};
 use crate::dynamics::step::penetration::Penetration;
+use crate::dynamics::step::quasi_static::{QuasiStatic, QuasiStaticStep};
 use crate::numeric::Scalar;
 
 /// Least speed of a touch, in eps^2 times the speed scale. The parameter of a contact needs a speed to begin
@@ -83,11 +84,47 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return None;
         }
         let stop = self.stepper.equation.compliant?;
+        if self.take_quasi_static_step(end, left, stop) {
+            return None;
+        }
         let new = || Box::new(Penetration::new(stop, self.stepper.equation.most_products()));
         let mut path = self.stepper.penetration.take().unwrap_or_else(new);
         let flow = self.take_contact_step(end, left, &mut path);
         self.stepper.penetration = Some(path);
         flow
+    }
+
+    /// A step of quasi-static motion, where the mass does not ring; whether it was taken.
+    fn take_quasi_static_step(&mut self, end: End, left: T, stop: Compliant<T>) -> bool {
+        let new = || Box::new(QuasiStatic::new(stop));
+        let mut path = self.stepper.quasi_static.take().unwrap_or_else(new);
+        let step = self.stepper.quasi_static_step(&self.state, end, left, &mut path);
+        if let (Some(step), Some(surface)) = (&step, self.stepper.equation.surface(end)) {
+            let (mode, sign) = (self.stepper.mode(&self.state), end.sign::<T>());
+            let &QuasiStaticStep { length, arrival, end: (root, speed), bound } = step;
+            let (x, v) = (surface + sign * (root * root), sign * speed);
+            self.steps += 1;
+            let view = StepView {
+                path: &*path,
+                origin: mode.origin,
+                at: self.state.at,
+                whole: length,
+                length,
+                duration: length,
+                bound,
+                limits: (mode.low, mode.high),
+                x,
+                v,
+            };
+            self.record.step(&view, self.stepper.base(self.state.segment));
+            self.record.contact(&view);
+            self.state.at = arrival.unwrap_or_else(|| self.stepper.clock.advance(&self.state.at, length));
+            (self.state.x, self.state.v) = (x, v);
+            self.state.depth = Depth { root, clip_changed: false };
+            self.state.touch = None;
+        }
+        self.stepper.quasi_static = Some(path);
+        step.is_some()
     }
 
     fn take_contact_step(&mut self, end: End, left: T, path: &mut Penetration<T>) -> Flow {

@@ -83,10 +83,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (u, w) = (start.root.to_f64(), start.speed.abs().to_f64());
         let longest = self.settings.longest;
         let cap = 2.0 * longest / (u + (u * u + w * longest).sqrt());
-        let stored = self.equation.compliant?.stored(start.root);
-        let energetic = (start.speed * start.speed + stored + stored).sqrt();
-        let speed = self.settings.speed.smaller(energetic.larger(self.settings.speed * T::of(LEAST_SPEED)));
-        let tolerance = self.settings.tolerance * CONTACT_SHARE;
+        let (speed, tolerance) = self.contact_tolerance(state)?;
         let settings = (fast_log2(speed.to_f64()), self.settings.tolerance_log2 + CONTACT_SHARE.log2());
         let mut whole = T::of(path.natural_step(settings.0, settings.1, cap));
         let border = self.drive.segment_end(state.segment);
@@ -140,6 +137,15 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             whole = length * T::of(0.5);
         }
         None
+    }
+
+    /// The tolerance of a step in contact, and the speed that it is relative to.
+    pub(super) fn contact_tolerance(&self, state: &MotionState<T>) -> Option<(T, f64)> {
+        let stored = self.equation.compliant?.stored(state.depth.root);
+        let energetic = (state.v * state.v + stored + stored).sqrt();
+        let least = self.settings.speed * T::of(LEAST_SPEED);
+        let speed = self.settings.speed.smaller(energetic.larger(least));
+        Some((speed, self.settings.tolerance * CONTACT_SHARE))
     }
 
     /// The first event within a step of `whole`, as a share of it.

@@ -1,15 +1,14 @@
 //! Reading of a step of contact: position, integrals, dissipation, largest force.
 
-use super::path::Path;
+use super::path::{InStop, Path};
 use super::penetration::Penetration;
 use crate::dynamics::result::Phase;
 use crate::dynamics::series::{ROOM, convolve};
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
 
-impl<T: Scalar> Penetration<T> {
-    /// Energy over mass that the stop keeps over (from, to): by its loss, or, where it is clipped, what it
-    /// had stored.
-    pub fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
+impl<T: Scalar> InStop<T> for Penetration<T> {
+    /// By its loss, or, where it is clipped, what it had stored.
+    fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
         if self.clipped {
             return self.stop.stored(self.root_at(from)) - self.stop.stored(self.root_at(to));
         }
@@ -24,9 +23,7 @@ impl<T: Scalar> Penetration<T> {
         self.stop.stiffness * self.stop.loss * (sum * length)
     }
 
-    /// The largest force over mass within a step of `h`, up to its share `until`, where it may exceed
-    /// `known`.
-    pub fn peak(&self, h: T, until: T, known: T) -> T {
+    fn peak(&self, h: T, until: T, known: T) -> T {
         if self.clipped {
             return known;
         }

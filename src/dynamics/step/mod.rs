@@ -9,6 +9,7 @@ mod contact_path;
 mod exit;
 pub(crate) mod path;
 pub(crate) mod penetration;
+pub(crate) mod quasi_static;
 mod rebound;
 pub(crate) mod settings;
 pub(crate) mod stepper;

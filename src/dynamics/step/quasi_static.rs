@@ -16,7 +16,7 @@
 //! only where that, and the ringing that there is at its start, are below the tolerance; otherwise the motion
 //! is followed as any contact, as it is before a release, where the stop becomes soft.
 
-use super::path::Path;
+use super::path::{InStop, Path};
 use super::settings::RESIDUAL;
 use super::stepper::Stepper;
 use crate::dynamics::clock::Instant;
@@ -24,7 +24,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::force::PieceForce;
 use crate::dynamics::equation::{Compliant, End};
 use crate::dynamics::result::Phase;
-use crate::dynamics::series::{MAX_ORDER, ROOM, SEEDED, Series, convolve, natural_steps, polynomial, square};
+use crate::dynamics::series::{MAX_ORDER, ROOM, SEEDED, Series, natural_steps, polynomial, square};
 use crate::dynamics::state::{Contact, MotionState};
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar, fast_log2};
 
@@ -44,6 +44,9 @@ const MOST_HALVINGS: usize = 4;
 
 /// Share of its speed by which the first term of the quasi-static motion may be off.
 const FIRST_TERM: f64 = 2e-3;
+
+/// The same where the mechanism's own stiffness is left out.
+const ROUGHLY: f64 = 0.1;
 
 /// One step of quasi-static motion, in the time since its start, and the workspace.
 #[derive(Debug, Clone)]
@@ -165,29 +168,32 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (speed, damping, mode) = (sign * state.v, self.equation.damping, self.mode(state));
         let stop = self.equation.compliant?;
         let (scale, tolerance) = self.contact_tolerance(state)?;
+        let ring = T::of(self.settings.tolerance) * scale;
         if !matches!(state.contact, Contact::Compressing(_)) || !(root > T::zero()) {
             return None;
         }
         // Does the mass ring? The first term of its quasi-static motion says whether to look further.
+        let a = &mut path.series.a;
+        self.drive.seed(&self.clock, &state.at, state.segment, a, &mut self.cursor);
+        let (jerk, snap) = (-(sign * a[1]), a[2].abs() * T::of(2.0));
+        let stiffness = T::of(1.5) * stop.stiffness * root;
+        if !((speed * stiffness - jerk).abs() <= ring * stiffness + jerk.abs() * T::of(ROUGHLY)) {
+            return None;
+        }
         let surface = self.equation.surface(end)? - mode.origin;
-        let displacement = surface + sign * (root * root);
-        let (force, slope, _) = mode.force.value(displacement);
-        let square_of_ringing = T::of(1.5) * stop.stiffness * root + slope;
+        let (force, slope, _) = mode.force.value(surface + sign * (root * root));
+        let square_of_ringing = stiffness + slope;
         if !(square_of_ringing > T::zero()) {
             return None;
         }
         let ringing = square_of_ringing.sqrt();
-        let a = &mut path.series.a;
-        self.drive.seed(&self.clock, &state.at, state.segment, a, &mut self.cursor);
-        let (jerk, snap) = (-(sign * a[1]), a[2].abs() * T::of(2.0));
-        let allowed = T::of(tolerance) * scale;
         let first = jerk / square_of_ringing;
-        if !((speed - first).abs() <= allowed + first.abs() * T::of(FIRST_TERM)) {
+        if !((speed - first).abs() <= ring + first.abs() * T::of(FIRST_TERM)) {
             return None;
         }
         let acceleration = -(sign * (force + a[0])) - damping * speed - stop.force(root, speed);
         let slow = snap / square_of_ringing + first * first / (root * root);
-        if !(acceleration.abs() <= ringing * allowed + slow + slow) {
+        if !(acceleration.abs() <= ringing * ring + slow + slow) {
             return None;
         }
         // Yes or no: by the series.
@@ -204,7 +210,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         path.solve(root, (order, sweeps), surface, damping);
         let (start, start_speed) = (path.depth[0], path.depth[1]);
         let off = (speed - start_speed).abs().larger(ringing * (root * root - start).abs());
-        if !(off <= allowed) {
+        if !(off <= ring) {
             return None;
         }
         let [natural] = natural_steps(
@@ -236,15 +242,15 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
                 power = power * length;
                 bound += path.depth[k].abs() * power;
             }
-            let deep = [End::Low, End::High].into_iter().all(|at| {
-                at == end.other() || at.sign::<T>() * (mode.end(at).0 - state.x) > bound + bound
-            });
+            let deep = [End::Low, End::High]
+                .into_iter()
+                .all(|at| at == end.other() || at.sign::<T>() * (mode.end(at).0 - state.x) > bound + bound);
             let half = length * T::of(0.5);
             let mut residual = T::zero();
             for t in [T::zero(), half, length] {
                 residual = residual.larger(path.residual(t, surface, &mode.force, damping).abs());
             }
-            let most = T::of(RESIDUAL * order as f64) * allowed;
+            let most = T::of(RESIDUAL * order as f64 * tolerance) * scale;
             if deep && bound < start && stop.loss * fastest < T::of(1.0) && residual * length <= most {
                 let depth = polynomial::value(&path.depth[..=order], length);
                 let speed = polynomial::slope(&path.depth[..=order], length);
@@ -254,15 +260,6 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         }
         None
     }
-}
-
-/// What is told of a step within a compliant stop, beside its path.
-pub(crate) trait InStop<T: Scalar>: Path<T> {
-    /// Energy over mass that the stop keeps over (from, to) in the path's parameter.
-    fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;
-    /// The largest force over mass within a step of `h`, up to its share `until`, where it may exceed
-    /// `known`.
-    fn peak(&self, h: T, until: T, known: T) -> T;
 }
 
 impl<T: Scalar> InStop<T> for QuasiStatic<T> {
