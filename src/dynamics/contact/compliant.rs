@@ -6,9 +6,9 @@
 //! nothing.
 //!
 //! Resting on such a stop is an oscillation of some kilohertz about a depth of a tenth of a micrometre, and
-//! it is followed: on the prototype's stops at tolerance 1e-9 some 36 steps a period where it reaches up to
-//! the surface, and one or two where it has died out, since an explicit method cannot step over a stiffness
-//! that no longer shows. One impact takes 12 to 18 steps from tolerance 1e-3 to 1e-14.
+//! it is followed as long as it shows: on the prototype's stops at tolerance 1e-9 some 36 steps a period
+//! where it reaches up to the surface, and one or two where it is small. Once it is below the tolerance, the
+//! mass follows its load (`quasi_static`). One impact takes 12 to 18 steps from tolerance 1e-3 to 1e-14.
 
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{Compliant, End, EndKind};
@@ -16,7 +16,7 @@ use crate::dynamics::motion::Motion;
 use crate::dynamics::result::Outcome;
 use crate::dynamics::state::{BY_SPEED, Contact, Depth, Flow, HELD, Touch};
 use crate::dynamics::step::contact::{ContactStep, Reached};
-use crate::dynamics::step::path::{Path, StepView};
+use crate::dynamics::step::path::StepView;
 use crate::dynamics::step::penetration::Penetration;
 use crate::dynamics::step::quasi_static::{QuasiStatic, QuasiStaticStep};
 use crate::numeric::Scalar;

@@ -1,7 +1,8 @@
 //! Choice of a step of contact with a compliant stop, and the first event within it.
 
+use super::contact_path::{Changes, ContactState};
 use super::path::Path;
-use super::penetration::{Changes, ContactState, Penetration, Start, Terms};
+use super::penetration::{Penetration, Start, Terms};
 use super::settings::{RESIDUAL, ROUNDINGS};
 use super::stepper::{MOST_HALVINGS, Stepper};
 use crate::dynamics::clock::Instant;
@@ -25,8 +26,10 @@ const CONTACT_SHARE: f64 = 0.03;
 /// What the order of a contact's series is above that of free flight, for that.
 const CONTACT_ORDERS: usize = 2;
 
-/// The tolerance from which on few terms of force and drive are tried first.
+/// The tolerance from which on few terms of force and drive are tried first, and the share of the scene's
+/// speed: what is slower takes longer steps, over which the drive changes.
 const COARSE: f64 = 1e-9;
+const TREMBLING: f64 = 0.01;
 
 /// Where a step of contact ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,14 +79,16 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         self.drive.seed(&self.clock, &state.at, state.segment, path.seeded(), &mut self.cursor);
         self.evaluations += 1;
         self.work.add(self.costs.contact);
-        let mut terms = if self.settings.tolerance > COARSE { Terms::Few } else { Terms::More };
-        let force = (&mode.force, state.mode);
-        path.expand(&start, (order, terms), force, damping);
         // As far as the speed of the step's start would bring it in the longest time.
         let (u, w) = (start.root.to_f64(), start.speed.abs().to_f64());
         let longest = self.settings.longest;
         let cap = 2.0 * longest / (u + (u * u + w * longest).sqrt());
         let (speed, tolerance) = self.contact_tolerance(state)?;
+        let fast = speed > self.settings.speed * T::of(TREMBLING);
+        let few = fast && self.settings.tolerance > COARSE;
+        let mut terms = if few { Terms::Few } else { Terms::More };
+        let force = (&mode.force, state.mode);
+        path.expand(&start, (order, terms), force, damping);
         let settings = (fast_log2(speed.to_f64()), self.settings.tolerance_log2 + CONTACT_SHARE.log2());
         let mut whole = T::of(path.natural_step(settings.0, settings.1, cap));
         let border = self.drive.segment_end(state.segment);

@@ -22,7 +22,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::Compliant;
 use crate::dynamics::equation::force::PieceForce;
 use crate::dynamics::series::{MAX_ORDER, ROOM, SEEDED, Series, convolve, each_order, square};
-use crate::numeric::{PolynomialRoots, Scalar, fast_exp2, fast_log2};
+use crate::numeric::{Scalar, fast_exp2, fast_log2};
 
 /// Everything about one step of contact, in the parameter s, and the workspace.
 #[derive(Debug, Clone)]
@@ -48,9 +48,9 @@ pub(crate) struct Penetration<T> {
     /// Its nested form in powers of the time, from the second level on.
     nested: [[T; ROOM]; ROOM],
     /// Terms of the base's acceleration over time and of the force over depth that are composed.
-    terms: Terms,
+    pub(super) terms: Terms,
     /// Terms of the base's acceleration that are known.
-    known_drive: usize,
+    pub(super) known_drive: usize,
     /// The force's coefficients about the surface, and the mode that they are of.
     about: Vec<T>,
     about_mode: Option<usize>,
@@ -336,111 +336,4 @@ impl<T: Scalar> Penetration<T> {
         }
         scaled
     }
-
-    /// Bounds, over a step of `h`, of the change of the depth's root, of the speed and of the depth.
-    pub fn changes(&self, h: T) -> Changes<T> {
-        let zero = T::zero();
-        let (mut root, mut speed, mut depth, mut power) = (zero, zero, zero, T::of(1.0));
-        for k in 1..=self.order {
-            power = power * h;
-            root += self.root[k].abs() * power;
-            speed += self.speed[k].abs() * power;
-            depth += self.depth[k].abs() * power;
-        }
-        Changes { root, speed, depth }
-    }
-
-    /// The share of a step of `h` at which the mass separates from the stop.
-    pub fn separation(&self, h: T, changes: &Changes<T>) -> Option<T> {
-        let rise = self.root[1] * h;
-        // (at touch-down the root is 0 and rises)
-        if self.root[0] > changes.root || self.root[0] == T::zero() && rise + rise > changes.root {
-            return None;
-        }
-        let g = self.powers(&self.root, h);
-        let n = self.order + 1;
-        // That 0 is divided out.
-        let from = usize::from(g[0] == T::zero());
-        if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { Some(T::zero()) }
-    }
-
-    /// The share of a step of `h` at which the contact becomes clipped or ceases to be: 1 + a w changes its
-    /// sign. `passed`: it is 0 by definition at the step's start.
-    pub fn clip_change(&self, h: T, passed: bool, changes: &Changes<T>) -> Option<T> {
-        let start = T::of(1.0) + self.stop.loss * self.speed[0];
-        if !(self.stop.loss > T::zero()) || start.abs() > self.stop.loss * changes.speed {
-            return None;
-        }
-        let n = self.order + 1;
-        let mut g = self.powers(&self.speed, h);
-        for c in &mut g[..n] {
-            *c = *c * self.stop.loss;
-            if self.clipped {
-                *c = -*c;
-            }
-        }
-        g[0] += if self.clipped { T::of(-1.0) } else { T::of(1.0) };
-        let from = usize::from(passed);
-        // On the wrong side it is there by rounding: the change was a mere touch, and the contact goes on as
-        // it was.
-        if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { None }
-    }
-
-    /// What the polynomials say of `s`.
-    pub fn state(&self, s: T) -> ContactState<T> {
-        let zero = T::zero();
-        let (mut root, mut speed, mut slope, mut time) = (zero, zero, zero, zero);
-        for k in (0..=self.order).rev() {
-            slope = slope * s + speed;
-            speed = speed * s + self.speed[k];
-            root = root * s + self.root[k];
-            time = time * s + self.time[k];
-        }
-        ContactState { root, speed, slope, time }
-    }
-
-    /// How the polynomials satisfy the equation of motion in this state: dw/ds by them less what the equation
-    /// says.
-    pub fn residual(&self, at: &ContactState<T>, force: &PieceForce<T>, damping: T) -> T {
-        let (f, base, pushed) = self.forces(at, force.at(self.displacement(at)));
-        at.slope + at.root * (damping * at.speed + self.sign * (f + base) + pushed)
-    }
-
-    /// What rounding may make of that.
-    pub fn residual_rounding(&self, at: &ContactState<T>, force: &PieceForce<T>, damping: T) -> T {
-        let (f, _, rounding) = force.value(self.displacement(at));
-        let (f, base, pushed) = self.forces(at, f);
-        let terms = (damping * at.speed).abs() + f.abs() + base.abs() + pushed.abs();
-        let size = at.slope.abs() + at.root.abs() * terms;
-        size * T::of(T::EPSILON) + at.root.abs() * rounding
-    }
-
-    fn displacement(&self, at: &ContactState<T>) -> T {
-        self.surface + self.sign * (at.root * at.root)
-    }
-
-    /// Forces over mass in a state: the mechanism's, as given, the base's by its series, the stop's.
-    fn forces(&self, at: &ContactState<T>, force: T) -> (T, T, T) {
-        let levels = self.known_drive.min(self.terms.of_drive());
-        let base = self.inner.a[..levels].iter().rev().fold(T::zero(), |sum, c| sum * at.time + *c);
-        let pushed = if self.clipped { T::zero() } else { self.stop.force(at.root, at.speed) };
-        (force, base, pushed)
-    }
-}
-
-/// Bounds of what changes over a step of contact.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Changes<T> {
-    pub root: T,
-    pub speed: T,
-    pub depth: T,
-}
-
-/// What the polynomials of a step say of one place: root of the depth, inward speed and its slope, time.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ContactState<T> {
-    pub root: T,
-    pub speed: T,
-    pub slope: T,
-    pub time: T,
 }

@@ -36,6 +36,9 @@ const MORE_SWEEPS: usize = 5;
 /// The tolerance of a step from which on few sweeps do.
 const COARSE: f64 = 1e-9;
 
+/// The speed of the ringing that is left out, in tolerances of a step.
+const RING: f64 = 0.1;
+
 /// Radians of the ringing that a step must be longer than to be worth it.
 const WORTH: f64 = 12.0;
 
@@ -168,7 +171,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (speed, damping, mode) = (sign * state.v, self.equation.damping, self.mode(state));
         let stop = self.equation.compliant?;
         let (scale, tolerance) = self.contact_tolerance(state)?;
-        let ring = T::of(self.settings.tolerance) * scale;
+        let ring = T::of(RING * self.settings.tolerance) * scale;
         if !matches!(state.contact, Contact::Compressing(_)) || !(root > T::zero()) {
             return None;
         }
