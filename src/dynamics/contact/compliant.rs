@@ -15,10 +15,11 @@ use crate::dynamics::equation::{Compliant, End, EndKind};
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::Outcome;
 use crate::dynamics::state::{BY_SPEED, Contact, Depth, Flow, HELD, Touch};
+use crate::dynamics::step::choose_quasi_static::QuasiStaticStep;
 use crate::dynamics::step::contact::{ContactStep, Reached};
 use crate::dynamics::step::path::StepView;
 use crate::dynamics::step::penetration::Penetration;
-use crate::dynamics::step::quasi_static::{QuasiStatic, QuasiStaticStep};
+use crate::dynamics::step::quasi_static::QuasiStatic;
 use crate::numeric::Scalar;
 
 /// Least speed of a touch, in eps^2 times the speed scale. The parameter of a contact needs a speed to begin

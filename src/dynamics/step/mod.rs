@@ -2,6 +2,7 @@
 //! are read.
 
 mod choose;
+pub(crate) mod choose_quasi_static;
 pub(crate) mod chord;
 pub(crate) mod circuit;
 pub(crate) mod contact;

@@ -307,7 +307,7 @@ impl<T: Scalar> Penetration<T> {
         if first < self.about.len() {
             let rest = self.about[first..].iter().rev().fold(T::zero(), |sum, c| sum * deepest + c.abs());
             let power = (0..first).fold(time, |power, _| power * deepest);
-            made = made + rest * power;
+            made += rest * power;
         }
         made
     }
