@@ -28,6 +28,7 @@ fn main() {
     map_size();
     step();
     measures();
+    compliant();
 }
 
 /// CPU time in s of a run alone, and of one in a batch, medians.
@@ -251,5 +252,41 @@ fn measures() {
         let text: Vec<String> =
             all.iter().map(|time| format!("{time:.3} s ({:.1})", time / all[0])).collect();
         println!("| {name} | {} |", text.join(" | "));
+    }
+}
+
+/// A map of the prototype on compliant stops of aluminium against the same on rigid ones, integrated.
+fn compliant() {
+    println!("\n| `paper`, 7 x 11 cells | tolerance | rigid, integrated | compliant | steps | ratio |");
+    println!("| --- | --- | --- | --- | --- | --- |");
+    let stops = "stops=Hertz(travel_limit_mm: 1.5, radius_mm: 5, young_gpa: 69, loss_s_per_m: 4.854)";
+    for tolerance in ["1e-3", "1e-6", "1e-9"] {
+        let own = format!("run.tolerance={tolerance}");
+        let of = |changes: &[&str]| cells(&shared::changed("paper", &[changes, &[&own]].concat()), (7, 11));
+        let (rigid, compliant) = (of(&["run.recurrence=false"]), of(&[stops]));
+        let runs = |models: &[Model]| {
+            let run = |model: &Model| model.run(&Request::default()).summary;
+            models.iter().map(run).collect::<Vec<_>>()
+        };
+        let moves: Vec<bool> = runs(&compliant).iter().map(|run| run.regime.name() != "rest").collect();
+        for moving in [true, false] {
+            let some = |models: &[Model]| {
+                let own = models.iter().zip(&moves).filter(|(_, moves)| **moves == moving);
+                own.map(|(model, _)| model.clone()).collect::<Vec<_>>()
+            };
+            let (rigid, compliant) = (some(&rigid), some(&compliant));
+            let steps: u64 = runs(&compliant).iter().map(|run| run.steps).sum();
+            let (hard, soft, ratio) =
+                shared::compare(shared::rounds(5), || runs(&rigid), || runs(&compliant));
+            let a_cell = |time: f64| time / compliant.len().max(1) as f64 * 1e3;
+            println!(
+                "| {} that {} | {tolerance} | {:.3} ms a cell | {:.2} ms | {} | {ratio:.0} |",
+                compliant.len(),
+                if moving { "move" } else { "rest" },
+                a_cell(hard),
+                a_cell(soft),
+                steps / compliant.len().max(1) as u64
+            );
+        }
     }
 }

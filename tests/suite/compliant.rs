@@ -3,6 +3,7 @@
 mod command_line;
 mod impact;
 mod phases;
+mod quasi_static;
 mod together;
 
 use interwell::dynamics::{EventKind, Model, Run};

@@ -6,18 +6,20 @@
 //! nothing.
 //!
 //! Resting on such a stop is an oscillation of some kilohertz about a depth of a tenth of a micrometre, and
-//! it is followed: on the prototype's stops at tolerance 1e-9 some 36 steps a period where it reaches up to
-//! the surface, and one or two where it has died out, since an explicit method cannot step over a stiffness
-//! that no longer shows. One impact takes 12 to 18 steps from tolerance 1e-3 to 1e-14.
+//! it is followed as long as it shows: on the prototype's stops at tolerance 1e-9 some 36 steps a period
+//! where it reaches up to the surface, and one or two where it is small. Once it is below the tolerance, the
+//! mass follows its load (`quasi_static`). One impact takes 12 to 18 steps from tolerance 1e-3 to 1e-14.
 
 use crate::dynamics::drive::Drive;
-use crate::dynamics::equation::{End, EndKind};
+use crate::dynamics::equation::{Compliant, End, EndKind};
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::Outcome;
 use crate::dynamics::state::{BY_SPEED, Contact, Depth, Flow, HELD, Touch};
+use crate::dynamics::step::choose_quasi_static::QuasiStaticStep;
 use crate::dynamics::step::contact::{ContactStep, Reached};
-use crate::dynamics::step::path::{Path, StepView};
+use crate::dynamics::step::path::StepView;
 use crate::dynamics::step::penetration::Penetration;
+use crate::dynamics::step::quasi_static::QuasiStatic;
 use crate::numeric::Scalar;
 
 /// Least speed of a touch, in eps^2 times the speed scale. The parameter of a contact needs a speed to begin
@@ -83,11 +85,47 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return None;
         }
         let stop = self.stepper.equation.compliant?;
+        if self.take_quasi_static_step(end, left, stop) {
+            return None;
+        }
         let new = || Box::new(Penetration::new(stop, self.stepper.equation.most_products()));
         let mut path = self.stepper.penetration.take().unwrap_or_else(new);
         let flow = self.take_contact_step(end, left, &mut path);
         self.stepper.penetration = Some(path);
         flow
+    }
+
+    /// A step of quasi-static motion, where the mass does not ring; whether it was taken.
+    fn take_quasi_static_step(&mut self, end: End, left: T, stop: Compliant<T>) -> bool {
+        let new = || Box::new(QuasiStatic::new(stop));
+        let mut path = self.stepper.quasi_static.take().unwrap_or_else(new);
+        let step = self.stepper.quasi_static_step(&self.state, end, left, &mut path);
+        if let (Some(step), Some(surface)) = (&step, self.stepper.equation.surface(end)) {
+            let (mode, sign) = (self.stepper.mode(&self.state), end.sign::<T>());
+            let &QuasiStaticStep { length, arrival, end: (root, speed), bound } = step;
+            let (x, v) = (surface + sign * (root * root), sign * speed);
+            self.steps += 1;
+            let view = StepView {
+                path: &*path,
+                origin: mode.origin,
+                at: self.state.at,
+                whole: length,
+                length,
+                duration: length,
+                bound,
+                limits: (mode.low, mode.high),
+                x,
+                v,
+            };
+            self.record.step(&view, self.stepper.base(self.state.segment));
+            self.record.contact(&view);
+            self.state.at = arrival.unwrap_or_else(|| self.stepper.clock.advance(&self.state.at, length));
+            (self.state.x, self.state.v) = (x, v);
+            self.state.depth = Depth { root, clip_changed: false };
+            self.state.touch = None;
+        }
+        self.stepper.quasi_static = Some(path);
+        step.is_some()
     }
 
     fn take_contact_step(&mut self, end: End, left: T, path: &mut Penetration<T>) -> Flow {
@@ -96,9 +134,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         };
         let mode = self.stepper.mode(&self.state);
         let sign = end.sign::<T>();
-        let ContactStep { whole, length, duration, reached, arrival } = step;
-        let mut root = path.root_at(length).larger(T::zero());
-        let mut speed = path.speed_at(length);
+        let ContactStep { whole, length, end: at, duration, bound, reached, arrival } = step;
+        let (mut root, mut speed) = (at.root.larger(T::zero()), at.speed);
         let surface = self.stepper.equation.surface(end)?;
         let mut x = surface + sign * (root * root);
         match reached {
@@ -114,8 +151,6 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return Some(Outcome::NotFinite { at: self.stepper.seconds(&self.state) });
         }
         self.steps += 1;
-        let displacement = path.scaled(whole);
-        let bound = displacement[1..path.known()].iter().fold(T::zero(), |sum, c| sum + c.abs());
         let view = StepView {
             path: &*path,
             origin: mode.origin,

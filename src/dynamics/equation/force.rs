@@ -52,6 +52,17 @@ impl<T: Number> PieceForce<T> {
 }
 
 impl<T: Scalar> PieceForce<T> {
+    /// Coefficients of force over mass about displacement `y` from the origin, into `terms`.
+    pub fn about(&self, y: T, terms: &mut Vec<T>) {
+        terms.clear();
+        terms.extend_from_slice(&self.coefficients);
+        for first in 0..terms.len() {
+            for k in (first..terms.len() - 1).rev() {
+                terms[k] = terms[k] + y * terms[k + 1];
+            }
+        }
+    }
+
     /// Force over mass and its slope at displacement `y` from the origin, and a bound of the rounding.
     pub fn value(&self, y: T) -> (T, T, T) {
         let (mut f, mut slope, mut size) = (T::zero(), T::zero(), T::zero());

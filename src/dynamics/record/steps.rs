@@ -8,8 +8,7 @@ use crate::dynamics::clock::Instant;
 use crate::dynamics::result::Sample;
 use crate::dynamics::series::{ROOM, polynomial};
 use crate::dynamics::step::chord::Chord;
-use crate::dynamics::step::path::{Path, StepView};
-use crate::dynamics::step::penetration::Penetration;
+use crate::dynamics::step::path::{InStop, Path, StepView};
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
@@ -158,7 +157,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
 
     /// Records what a compliant stop dissipated, and its largest force, over a step of contact that has been
     /// recorded.
-    pub fn contact(&mut self, step: &StepView<T, Penetration<T>>) {
+    pub fn contact<P: InStop<T>>(&mut self, step: &StepView<T, P>) {
         if LEDGER {
             let rule = self.rule_of(step.path);
             let whole = step.path.loss(rule, T::zero(), step.length);

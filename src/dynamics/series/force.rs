@@ -170,6 +170,13 @@ pub(crate) fn convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
     if k == 0 { ends } else { inner_convolve(a, b, k) + (ends + a[k] * b[0]) }
 }
 
+/// Sum of a\[i\] a\[k-i\] over i = 0..=k.
+#[inline(always)]
+pub(crate) fn square<T: Number>(a: &[T; ROOM], k: usize) -> T {
+    let ends = a[0] * a[k];
+    if k == 0 { ends } else { inner_square(a, k) + (ends + ends) }
+}
+
 /// Sum of a\[i\] b\[k-i\] over i = 1..k, from the middle outwards: the terms of the highest orders, which
 /// have only just become known, come last. Two running sums, since one addition waits for the last.
 #[inline(always)]

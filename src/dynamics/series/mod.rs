@@ -15,7 +15,7 @@ use crate::dynamics::equation::force::PieceForce;
 use crate::numeric::{Number, Scalar, fast_exp2, fast_log2};
 use force::ForceSeries;
 
-pub(crate) use force::convolve;
+pub(crate) use force::{convolve, square};
 pub(crate) use order::{MAX_ORDER, ROOM, SEEDED, Tail};
 
 /// The Taylor coefficients of one step and the workspace to extend them.
@@ -242,7 +242,7 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
 /// Does something for each of the orders; where `unrolled`, and the first of them is `USUAL`, with numbers
 /// that the compiler knows: the bookkeeping of a loop may cost as much as what is done in it.
 #[inline(always)]
-fn each_order<const USUAL: usize>(
+pub(crate) fn each_order<const USUAL: usize>(
     unrolled: bool,
     orders: std::ops::Range<usize>,
     mut next: impl FnMut(usize),

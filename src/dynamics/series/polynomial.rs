@@ -121,7 +121,7 @@ pub(crate) fn moment<T: Scalar>(y: &[T], rule: &GaussLegendre<T>, from: T, to: T
 
 /// The polynomial of the coefficients `first..count`, the lowest of them the constant, at four times.
 #[inline(always)]
-fn at_four_times<T: Number>(
+pub(crate) fn at_four_times<T: Number>(
     count: usize,
     coefficient: impl Fn(usize) -> T,
     first: usize,

@@ -1,7 +1,8 @@
 //! Choice of a step of contact with a compliant stop, and the first event within it.
 
+use super::contact_path::{Changes, ContactState};
 use super::path::Path;
-use super::penetration::{FEWEST_LEVELS, Penetration, Start};
+use super::penetration::{Penetration, Start, Terms};
 use super::settings::{RESIDUAL, ROUNDINGS};
 use super::stepper::{MOST_HALVINGS, Stepper};
 use crate::dynamics::clock::Instant;
@@ -25,6 +26,11 @@ const CONTACT_SHARE: f64 = 0.03;
 /// What the order of a contact's series is above that of free flight, for that.
 const CONTACT_ORDERS: usize = 2;
 
+/// The tolerance from which on few terms of force and drive are tried first, and the share of the scene's
+/// speed: what is slower takes longer steps, over which the drive changes.
+const COARSE: f64 = 1e-9;
+const TREMBLING: f64 = 0.01;
+
 /// Where a step of contact ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Reached {
@@ -40,7 +46,12 @@ pub(crate) struct ContactStep<T> {
     /// As chosen, and as kept, in the parameter.
     pub whole: T,
     pub length: T,
+    /// State at the end of what is kept.
+    pub end: ContactState<T>,
+    /// The time that it takes.
     pub duration: T,
+    /// Bound of the change of the depth over the whole.
+    pub bound: T,
     pub reached: Reached,
     pub arrival: Option<Instant<T>>,
 }
@@ -68,16 +79,16 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         self.drive.seed(&self.clock, &state.at, state.segment, path.seeded(), &mut self.cursor);
         self.evaluations += 1;
         self.work.add(self.costs.contact);
-        let mut levels = FEWEST_LEVELS.min(D::ZERO_FROM);
-        path.expand(&start, order, levels, &mode.force, damping);
         // As far as the speed of the step's start would bring it in the longest time.
         let (u, w) = (start.root.to_f64(), start.speed.abs().to_f64());
         let longest = self.settings.longest;
         let cap = 2.0 * longest / (u + (u * u + w * longest).sqrt());
-        let stored = self.equation.compliant?.stored(start.root);
-        let energetic = (start.speed * start.speed + stored + stored).sqrt();
-        let speed = self.settings.speed.smaller(energetic.larger(self.settings.speed * T::of(LEAST_SPEED)));
-        let tolerance = self.settings.tolerance * CONTACT_SHARE;
+        let (speed, tolerance) = self.contact_tolerance(state)?;
+        let fast = speed > self.settings.speed * T::of(TREMBLING);
+        let few = fast && self.settings.tolerance > COARSE;
+        let mut terms = if few { Terms::Few } else { Terms::More };
+        let force = (&mode.force, state.mode);
+        path.expand(&start, (order, terms), force, damping);
         let settings = (fast_log2(speed.to_f64()), self.settings.tolerance_log2 + CONTACT_SHARE.log2());
         let mut whole = T::of(path.natural_step(settings.0, settings.1, cap));
         let border = self.drive.segment_end(state.segment);
@@ -86,36 +97,46 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             if !(whole > T::zero()) {
                 return None;
             }
-            let (share, mut reached) = self.first_event(state, whole, path);
+            let changes = path.changes(whole);
+            let (share, mut reached) = self.first_event(state, whole, path, &changes);
             let mut length = share * whole;
-            let mut duration = path.time(length);
-            if levels < D::ZERO_FROM && levels < order {
-                let neglected = path.neglected_drive(self.drive, &mut self.cursor, duration);
+            let mut at = path.state(length);
+            let mut duration = at.time;
+            if !matches!(terms, Terms::All(_)) {
+                let deepest = path.depth[0] + changes.depth;
+                let neglected = path.neglected(self.drive, &mut self.cursor, (duration, deepest));
                 if neglected > T::of(tolerance) * speed {
-                    // A drive as fast as the contact: all its terms.
+                    // A drive as fast as the contact, or a stop so soft that the force changes in it.
                     self.work.add(self.costs.contact);
-                    levels = order;
-                    path.extend_drive(levels, self.drive, &mut self.cursor);
-                    path.expand(&start, order, levels, &mode.force, damping);
+                    terms = match terms {
+                        Terms::Few => Terms::More,
+                        _ => Terms::All(order.min(D::ZERO_FROM)),
+                    };
+                    path.extend_drive(terms.of_drive(), self.drive, &mut self.cursor);
+                    path.expand(&start, (order, terms), force, damping);
                     whole = T::of(path.natural_step(settings.0, settings.1, cap));
                     continue;
                 }
             }
             let mut arrival = None;
-            let mut until = |time: T, at| {
+            let mut until = |time: T, instant| {
                 if time <= duration {
                     (length, duration) = (path.parameter(time, length), time);
-                    (reached, arrival) = (Reached::Time, Some(at));
+                    (reached, arrival) = (Reached::Time, Some(instant));
                 }
             };
             until(left, self.end);
             if let Some(border) = border {
                 until(self.clock.between(&state.at, &border), border);
             }
-            let residual = path.residual(length, &mode.force, damping);
-            let rounding = residual.size * T::of(T::EPSILON * ROUNDINGS);
-            if residual.error.abs() * length <= allowed || residual.error.abs() <= rounding {
-                return Some(ContactStep { whole, length, duration, reached, arrival });
+            if arrival.is_some() {
+                at = path.state(length);
+            }
+            let residual = path.residual(&at, &mode.force, damping).abs();
+            let rounding = || path.residual_rounding(&at, &mode.force, damping) * T::of(ROUNDINGS);
+            if residual * length <= allowed || residual <= rounding() {
+                let bound = changes.depth;
+                return Some(ContactStep { whole, length, end: at, duration, bound, reached, arrival });
             }
             self.work.add(self.costs.check);
             whole = length * T::of(0.5);
@@ -123,16 +144,31 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         None
     }
 
+    /// The tolerance of a step in contact, and the speed that it is relative to.
+    pub(super) fn contact_tolerance(&self, state: &MotionState<T>) -> Option<(T, f64)> {
+        let stored = self.equation.compliant?.stored(state.depth.root);
+        let energetic = (state.v * state.v + stored + stored).sqrt();
+        let least = self.settings.speed * T::of(LEAST_SPEED);
+        let speed = self.settings.speed.smaller(energetic.larger(least));
+        Some((speed, self.settings.tolerance * CONTACT_SHARE))
+    }
+
     /// The first event within a step of `whole`, as a share of it.
-    fn first_event(&self, state: &MotionState<T>, whole: T, path: &Penetration<T>) -> (T, Reached) {
+    fn first_event(
+        &self,
+        state: &MotionState<T>,
+        whole: T,
+        path: &Penetration<T>,
+        changes: &Changes<T>,
+    ) -> (T, Reached) {
         let mut first = (T::of(1.0), Reached::Time);
         let mut earlier = |share: Option<T>, reached: Reached| {
             if let Some(share) = share.filter(|share| *share <= first.0) {
                 first = (share, reached);
             }
         };
-        earlier(path.separation(whole), Reached::Surface);
-        earlier(path.clip_change(whole, state.depth.clip_changed), Reached::ClipChange);
+        earlier(path.separation(whole, changes), Reached::Surface);
+        earlier(path.clip_change(whole, state.depth.clip_changed, changes), Reached::ClipChange);
         let mode = self.mode(state);
         let n = path.known();
         for at in [End::Low, End::High] {
@@ -141,11 +177,15 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             if kind == EndKind::Compliant || touch.is_some_and(|touch| touch.multiplicity == HELD) {
                 continue;
             }
+            let gap = at.sign::<T>() * (level - state.x);
+            if gap > changes.depth {
+                continue;
+            }
             let mut g = path.scaled(whole);
             for c in &mut g[1..n] {
                 *c = -(at.sign::<T>() * *c);
             }
-            g[0] = at.sign::<T>() * (level - state.x);
+            g[0] = gap;
             let mut from = usize::from(touch.is_some());
             while from + 1 < n && g[from] == T::zero() {
                 from += 1;

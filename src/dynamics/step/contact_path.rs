@@ -1,15 +1,125 @@
-//! Reading of a step of contact: position, integrals, dissipation, largest force.
+//! Reading of a step of contact: bounds, events, residual, position, integrals, dissipation, largest force.
 
-use super::path::Path;
+use super::path::{InStop, Path};
 use super::penetration::Penetration;
+use crate::dynamics::equation::force::PieceForce;
 use crate::dynamics::result::Phase;
-use crate::dynamics::series::ROOM;
+use crate::dynamics::series::polynomial::{self, at_four_times};
+use crate::dynamics::series::{ROOM, convolve};
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
 
+/// Bounds of what changes over a step of contact.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Changes<T> {
+    pub root: T,
+    pub speed: T,
+    pub depth: T,
+}
+
+/// What the polynomials of a step say of one place: root of the depth, inward speed and its slope, time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ContactState<T> {
+    pub root: T,
+    pub speed: T,
+    pub slope: T,
+    pub time: T,
+}
+
 impl<T: Scalar> Penetration<T> {
-    /// Energy over mass that the stop keeps over (from, to): by its loss, or, where it is clipped, what it
-    /// had stored.
-    pub fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
+    /// Bounds, over a step of `h`, of the change of the depth's root, of the speed and of the depth.
+    pub fn changes(&self, h: T) -> Changes<T> {
+        let zero = T::zero();
+        let (mut root, mut speed, mut depth, mut power) = (zero, zero, zero, T::of(1.0));
+        for k in 1..=self.order {
+            power = power * h;
+            root += self.root[k].abs() * power;
+            speed += self.speed[k].abs() * power;
+            depth += self.depth[k].abs() * power;
+        }
+        Changes { root, speed, depth }
+    }
+
+    /// The share of a step of `h` at which the mass separates from the stop.
+    pub fn separation(&self, h: T, changes: &Changes<T>) -> Option<T> {
+        let rise = self.root[1] * h;
+        // (at touch-down the root is 0 and rises)
+        if self.root[0] > changes.root || self.root[0] == T::zero() && rise + rise > changes.root {
+            return None;
+        }
+        let g = self.powers(&self.root, h);
+        let n = self.order + 1;
+        // That 0 is divided out.
+        let from = usize::from(g[0] == T::zero());
+        if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { Some(T::zero()) }
+    }
+
+    /// The share of a step of `h` at which the contact becomes clipped or ceases to be: 1 + a w changes its
+    /// sign. `passed`: it is 0 by definition at the step's start.
+    pub fn clip_change(&self, h: T, passed: bool, changes: &Changes<T>) -> Option<T> {
+        let start = T::of(1.0) + self.stop.loss * self.speed[0];
+        if !(self.stop.loss > T::zero()) || start.abs() > self.stop.loss * changes.speed {
+            return None;
+        }
+        let n = self.order + 1;
+        let mut g = self.powers(&self.speed, h);
+        for c in &mut g[..n] {
+            *c = *c * self.stop.loss;
+            if self.clipped {
+                *c = -*c;
+            }
+        }
+        g[0] += if self.clipped { T::of(-1.0) } else { T::of(1.0) };
+        let from = usize::from(passed);
+        // On the wrong side it is there by rounding: the change was a mere touch, and the contact goes on as
+        // it was.
+        if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { None }
+    }
+
+    /// What the polynomials say of `s`.
+    pub fn state(&self, s: T) -> ContactState<T> {
+        let zero = T::zero();
+        let (mut root, mut speed, mut slope, mut time) = (zero, zero, zero, zero);
+        for k in (0..=self.order).rev() {
+            slope = slope * s + speed;
+            speed = speed * s + self.speed[k];
+            root = root * s + self.root[k];
+            time = time * s + self.time[k];
+        }
+        ContactState { root, speed, slope, time }
+    }
+
+    /// How the polynomials satisfy the equation of motion in this state: dw/ds by them less what the equation
+    /// says.
+    pub fn residual(&self, at: &ContactState<T>, force: &PieceForce<T>, damping: T) -> T {
+        let (f, base, pushed) = self.forces(at, force.at(self.displacement(at)));
+        at.slope + at.root * (damping * at.speed + self.sign * (f + base) + pushed)
+    }
+
+    /// What rounding may make of that.
+    pub fn residual_rounding(&self, at: &ContactState<T>, force: &PieceForce<T>, damping: T) -> T {
+        let (f, _, rounding) = force.value(self.displacement(at));
+        let (f, base, pushed) = self.forces(at, f);
+        let terms = (damping * at.speed).abs() + f.abs() + base.abs() + pushed.abs();
+        let size = at.slope.abs() + at.root.abs() * terms;
+        size * T::of(T::EPSILON) + at.root.abs() * rounding
+    }
+
+    fn displacement(&self, at: &ContactState<T>) -> T {
+        self.surface + self.sign * (at.root * at.root)
+    }
+
+    /// Forces over mass in a state: the mechanism's, as given, the base's by its series, the stop's.
+    fn forces(&self, at: &ContactState<T>, force: T) -> (T, T, T) {
+        let levels = self.known_drive.min(self.terms.of_drive());
+        let base = self.inner.a[..levels].iter().rev().fold(T::zero(), |sum, c| sum * at.time + *c);
+        let pushed = if self.clipped { T::zero() } else { self.stop.force(at.root, at.speed) };
+        (force, base, pushed)
+    }
+}
+
+impl<T: Scalar> InStop<T> for Penetration<T> {
+    /// By its loss, or, where it is clipped, what it had stored.
+    fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
         if self.clipped {
             return self.stop.stored(self.root_at(from)) - self.stop.stored(self.root_at(to));
         }
@@ -24,15 +134,23 @@ impl<T: Scalar> Penetration<T> {
         self.stop.stiffness * self.stop.loss * (sum * length)
     }
 
-    /// The largest force over mass within a step of `h`, up to its share `until`, where it may exceed
-    /// `known`.
-    pub fn peak(&self, h: T, until: T, known: T) -> T {
-        let scaled = self.powers(&self.push, h);
-        let n = self.order + 1;
-        let bound = scaled[..n].iter().fold(T::zero(), |sum, c| sum + c.abs());
-        if !(self.stop.stiffness * bound > known) {
+    fn peak(&self, h: T, until: T, known: T) -> T {
+        if self.clipped {
             return known;
         }
+        let n = self.order + 1;
+        let changes = self.changes(h);
+        let (root, speed) = (self.root[0] + changes.root, self.speed[0].abs() + changes.speed);
+        if !(self.stop.force(root, speed) > known) {
+            return known;
+        }
+        // Force over stiffness: u^3 (1 + a w).
+        let (mut cube, mut push) = ([T::zero(); ROOM], [T::zero(); ROOM]);
+        for k in 0..n {
+            cube[k] = convolve(&self.root, &self.depth, k);
+            push[k] = cube[k] + self.stop.loss * convolve(&cube, &self.speed, k);
+        }
+        let scaled = self.powers(&push, h);
         let value = |s: T| scaled[..n].iter().rev().fold(T::zero(), |sum, c| sum * s + *c);
         let mut peak = value(T::zero()).larger(value(until));
         let mut slope = [T::zero(); ROOM];
@@ -99,15 +217,31 @@ impl<T: Scalar> Path<T> for Penetration<T> {
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
         let length = to - from;
         let (mut squared, mut power) = (T::zero(), T::zero());
-        for (node, weight) in rule.nodes().iter().zip(rule.weights()) {
+        let (nodes, weights) = (rule.nodes(), rule.weights());
+        let mut add = |root: T, speed: T, base: T, weight: T| {
+            let travelled = root * speed * weight;
+            squared += travelled * speed;
+            power += travelled * (self.sign * base);
+        };
+        // Four at a time, as in free flight.
+        let mut groups = nodes.chunks_exact(4).zip(weights.chunks_exact(4));
+        for (nodes, weights) in &mut groups {
+            let time = |i: usize| from + length * nodes[i];
+            let times = (time(0), time(1), time(2), time(3));
+            let at = |c: &[T]| at_four_times(c.len(), |k| c[k], 0, times);
+            let (u, w) = (at(&self.root[..=self.order]), at(&self.speed[..=self.order]));
+            let zero = T::zero();
+            let base = if WORK { at(&self.base[..self.order]) } else { (zero, zero, zero, zero) };
+            add(u.0, w.0, base.0, weights[0]);
+            add(u.1, w.1, base.1, weights[1]);
+            add(u.2, w.2, base.2, weights[2]);
+            add(u.3, w.3, base.3, weights[3]);
+        }
+        let done = nodes.len() / 4 * 4;
+        for (node, weight) in nodes[done..].iter().zip(&weights[done..]) {
             let s = from + length * *node;
-            let (u, w) = (self.root_at(s), self.speed_at(s));
-            let travelled = u * w * *weight;
-            squared += travelled * w;
-            if WORK {
-                let base = self.base[..self.order].iter().rev().fold(T::zero(), |sum, c| sum * s + *c);
-                power += travelled * (self.sign * base);
-            }
+            let base = if WORK { polynomial::value(&self.base[..self.order], s) } else { T::zero() };
+            add(self.root_at(s), self.speed_at(s), base, *weight);
         }
         (squared * length, power * length)
     }

@@ -2,6 +2,7 @@
 //! are read.
 
 mod choose;
+pub(crate) mod choose_quasi_static;
 pub(crate) mod chord;
 pub(crate) mod circuit;
 pub(crate) mod contact;
@@ -9,6 +10,7 @@ mod contact_path;
 mod exit;
 pub(crate) mod path;
 pub(crate) mod penetration;
+pub(crate) mod quasi_static;
 mod rebound;
 pub(crate) mod settings;
 pub(crate) mod stepper;

@@ -48,6 +48,15 @@ pub(crate) trait Path<T: Scalar> {
     fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;
 }
 
+/// What is told of a step within a compliant stop, beside its path.
+pub(crate) trait InStop<T: Scalar>: Path<T> {
+    /// Energy over mass that the stop keeps over (from, to) in the path's parameter.
+    fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;
+    /// The largest force over mass within a step of `h`, up to its share `until`, where it may exceed
+    /// `known`.
+    fn peak(&self, h: T, until: T, known: T) -> T;
+}
+
 /// One accepted step, as the recorder sees it.
 pub(crate) struct StepView<'a, T, P = Series<T>> {
     pub path: &'a P,

@@ -21,8 +21,8 @@
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::Compliant;
 use crate::dynamics::equation::force::PieceForce;
-use crate::dynamics::series::{MAX_ORDER, ROOM, SEEDED, Series, convolve};
-use crate::numeric::{PolynomialRoots, Scalar, fast_exp2, fast_log2};
+use crate::dynamics::series::{MAX_ORDER, ROOM, SEEDED, Series, convolve, each_order, square};
+use crate::numeric::{Scalar, fast_exp2, fast_log2};
 
 /// Everything about one step of contact, in the parameter s, and the workspace.
 #[derive(Debug, Clone)]
@@ -35,19 +35,27 @@ pub(crate) struct Penetration<T> {
     pub speed: [T; ROOM],
     /// Time since the step's start.
     pub(super) time: [T; ROOM],
-    /// Force of the stop over stiffness: u^3 (1 + a w); 0 where the contact is clipped.
-    pub(super) push: [T; ROOM],
     pub(super) depth: [T; ROOM],
-    pub(super) cube: [T; ROOM],
-    pub(super) acceleration: [T; ROOM],
+    /// Square of the depth.
+    square: [T; ROOM],
+    /// Outward acceleration by everything but stop and damping.
+    others: [T; ROOM],
+    /// What the force has beyond its first terms, over the square of the depth.
+    beyond: [T; ROOM],
+    time_square: [T; ROOM],
     /// The base's acceleration.
     pub(super) base: [T; ROOM],
     /// Its nested form in powers of the time, from the second level on.
-    pub(super) nested: [[T; ROOM]; ROOM],
-    /// Terms of the base's acceleration over time that are composed.
-    pub(super) levels: usize,
-    /// Terms of it that are known.
+    nested: [[T; ROOM]; ROOM],
+    /// Terms of the base's acceleration over time and of the force over depth that are composed.
+    pub(super) terms: Terms,
+    /// Terms of the base's acceleration that are known.
     pub(super) known_drive: usize,
+    /// The force's coefficients about the surface, and the mode that they are of.
+    about: Vec<T>,
+    about_mode: Option<usize>,
+    /// 1/k.
+    inverse: [T; ROOM],
     pub(super) order: usize,
     pub(super) stop: Compliant<T>,
     /// -1 for the left stop, 1 for the right one.
@@ -56,6 +64,28 @@ pub(crate) struct Penetration<T> {
     pub(super) surface: T,
     /// The contact is clipped: the stop would have to pull.
     pub(super) clipped: bool,
+}
+
+/// How many terms of a slow drive and of a force that hardly changes make up what they are over a contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Terms {
+    /// Three of either.
+    Few,
+    /// Four of the drive, five of the force.
+    More,
+    /// This many of the drive, and the whole force.
+    All(usize),
+}
+
+impl Terms {
+    /// Terms of the drive.
+    pub fn of_drive(self) -> usize {
+        match self {
+            Self::Few => 3,
+            Self::More => SEEDED,
+            Self::All(levels) => levels,
+        }
+    }
 }
 
 /// Where a step of contact begins.
@@ -68,32 +98,36 @@ pub(crate) struct Start<T> {
     pub clipped: bool,
 }
 
-/// The equation of motion at one instant of contact.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Residual<T> {
-    /// dw/ds by the polynomial less what the equation says.
-    pub error: T,
-    /// Sum of the magnitudes of its terms.
-    pub size: T,
+/// What stays from order to order.
+struct Constants<T> {
+    force: [T; 5],
+    stiffness: T,
+    loss: T,
+    damping: T,
 }
 
 impl<T: Scalar> Penetration<T> {
     /// With room for forces that take up to `products` products of series beyond the first.
     pub fn new(stop: Compliant<T>, products: usize) -> Self {
         let zeros = [T::zero(); ROOM];
+        let inverse = std::array::from_fn(|k| T::of(1.0) / T::of((k.max(1)) as f64));
         Self {
             inner: Series::new(products),
             root: zeros,
             speed: zeros,
             time: zeros,
-            push: zeros,
             depth: zeros,
-            cube: zeros,
-            acceleration: zeros,
+            square: zeros,
+            others: zeros,
+            beyond: zeros,
+            time_square: zeros,
             base: zeros,
             nested: [zeros; ROOM],
-            levels: 0,
+            terms: Terms::Few,
             known_drive: 0,
+            about: Vec::new(),
+            about_mode: None,
+            inverse,
             order: 0,
             stop,
             sign: T::of(1.0),
@@ -116,53 +150,106 @@ impl<T: Scalar> Penetration<T> {
         }
     }
 
-    /// Expands the motion from `start` to `order` in s, with `levels` terms of the base's acceleration over
-    /// time (at least one, and no more than are known).
+    /// Expands the motion from `start` to `order` in s, with `terms` of the base's acceleration over time (no
+    /// more than are known) and of the force over depth; `mode` is the number of the force's mode.
     pub fn expand(
         &mut self,
         start: &Start<T>,
-        order: usize,
-        levels: usize,
-        force: &PieceForce<T>,
+        (order, terms): (usize, Terms),
+        (force, mode): (&PieceForce<T>, usize),
         damping: T,
     ) {
         let order = order.min(MAX_ORDER);
-        (self.order, self.levels, self.clipped) = (order, levels, start.clipped);
+        (self.order, self.terms, self.clipped) = (order, terms, start.clipped);
         (self.sign, self.surface) = (start.sign, start.surface);
+        if self.about_mode != Some(mode) {
+            force.about(self.surface, &mut self.about);
+            self.about.resize(self.about.len().max(5), T::zero());
+            self.about_mode = Some(mode);
+        }
         self.root[0] = start.root;
         self.speed[0] = start.speed;
         self.time[0] = T::zero();
-        for k in 0..=order {
-            self.depth[k] = convolve(&self.root, &self.root, k);
-            let displacement = self.sign * self.depth[k];
-            self.inner.y[k] = if k == 0 { self.surface + displacement } else { displacement };
-            if start.clipped {
-                self.push[k] = T::zero();
-            } else {
-                self.cube[k] = convolve(&self.root, &self.depth, k);
-                self.push[k] = self.cube[k] + self.stop.loss * convolve(&self.cube, &self.speed, k);
-            }
-            if k == order {
-                break;
-            }
-            self.compose(k);
-            let others = self.sign * (self.inner.force_coefficient(force, k) + self.base[k]);
-            let pushed = self.stop.stiffness * self.push[k];
-            self.acceleration[k] = -(damping * self.speed[k] + others + pushed);
-            let share = T::of(1.0) / T::of((k + 1) as f64);
-            self.root[k + 1] = self.speed[k] * T::of(0.5) * share;
-            self.time[k + 1] = self.root[k] * share;
-            self.speed[k + 1] = convolve(&self.root, &self.acceleration, k) * share;
+        self.depth[0] = start.root * start.root;
+        let [f0, f1, f2, f3, f4] = [0, 1, 2, 3, 4].map(|k| self.about[k]);
+        let sign = self.sign;
+        let stiffness = if start.clipped { T::zero() } else { self.stop.stiffness };
+        let own = Constants {
+            // As forces outward of the stop over depth: odd ones keep their sign.
+            force: [sign * f0, f1, sign * f2, f3, sign * f4],
+            stiffness,
+            loss: stiffness * self.stop.loss,
+            damping,
+        };
+        let quick = T::QUICK;
+        match terms {
+            Terms::Few => each_order::<0>(
+                quick,
+                0..order,
+                #[inline(always)]
+                |k| self.extend::<false>(k, &own, None),
+            ),
+            Terms::More => each_order::<0>(
+                quick,
+                0..order,
+                #[inline(always)]
+                |k| self.extend::<true>(k, &own, None),
+            ),
+            Terms::All(_) => (0..order).for_each(|k| self.extend::<true>(k, &own, Some(force))),
         }
+        self.inner.y[order] = sign * self.depth[order];
         self.inner.known = order + 1;
     }
 
-    /// Coefficient `k` of the base's acceleration over s: a nested form in the time, the innermost level
-    /// first.
-    fn compose(&mut self, k: usize) {
+    /// Adds the coefficients `k + 1`; with more terms of force and drive, or with all those of the force.
+    #[inline(always)]
+    fn extend<const MORE: bool>(&mut self, k: usize, own: &Constants<T>, all: Option<&PieceForce<T>>) {
+        let displacement = self.sign * self.depth[k];
+        self.inner.y[k] = if k == 0 { self.surface + displacement } else { displacement };
+        self.square[k] = square(&self.depth, k);
+        let mut others = match all {
+            Some(force) => {
+                let Terms::All(levels) = self.terms else { return };
+                self.compose_all(k, levels - 1);
+                self.sign * self.inner.force_coefficient(force, k)
+            }
+            None => {
+                self.compose::<MORE>(k);
+                let [f0, f1, f2, f3, f4] = own.force;
+                let mut sum = f1 * self.depth[k] + f2 * self.square[k];
+                if MORE {
+                    self.beyond[k] = f3 * self.depth[k] + f4 * self.square[k];
+                    sum += convolve(&self.square, &self.beyond, k);
+                }
+                if k == 0 { sum + f0 } else { sum }
+            }
+        };
+        others += self.sign * self.base[k];
+        self.others[k] = others;
+        let next = self.inverse[k + 1];
+        self.root[k + 1] = self.speed[k] * T::of(0.5) * next;
+        self.time[k + 1] = self.root[k] * next;
+        self.depth[k + 1] = square(&self.root, k + 1);
+        let change = (convolve(&self.root, &self.others, k)
+            + own.damping * T::whole(k + 1) * self.depth[k + 1])
+            + (own.stiffness * self.square[k] + own.loss * convolve(&self.square, &self.speed, k));
+        self.speed[k + 1] = -change * next;
+    }
+
+    /// Coefficient `k` of the base's acceleration over s: a polynomial of the time.
+    #[inline(always)]
+    fn compose<const MORE: bool>(&mut self, k: usize) {
+        let a = &self.inner.a;
+        self.time_square[k] = square(&self.time, k);
+        let sum = a[1] * self.time[k] + a[2] * self.time_square[k];
+        let sum = if MORE { sum + a[3] * convolve(&self.time, &self.time_square, k) } else { sum };
+        self.base[k] = if k == 0 { a[0] + sum } else { sum };
+    }
+
+    /// The same of all its terms up to that of the power `top`: a nested form, the innermost level first.
+    fn compose_all(&mut self, k: usize, top: usize) {
         let a = &self.inner.a;
         let constant = |level: usize| if k == 0 { a[level] } else { T::zero() };
-        let top = self.levels - 1;
         if top == 0 {
             self.base[k] = constant(0);
             return;
@@ -195,17 +282,32 @@ impl<T: Scalar> Penetration<T> {
         if log2 < 1000.0 { fast_exp2(log2).min(cap) } else { cap }
     }
 
-    /// Speed that the first terms of the drive that are not composed would make over `time`.
-    pub fn neglected_drive<D: Drive<T>>(&mut self, drive: &D, cursor: &mut D::Cursor, time: T) -> T {
+    /// Speed that what is not composed of drive and force would make over `time` at up to this depth: the
+    /// first such terms of the drive, all those of the force.
+    pub fn neglected<D: Drive<T>>(
+        &mut self,
+        drive: &D,
+        cursor: &mut D::Cursor,
+        (time, deepest): (T, T),
+    ) -> T {
+        let levels = self.terms.of_drive();
         let mut made = T::zero();
-        let mut power = T::of(1.0);
-        for _ in 0..self.levels {
-            power = power * time;
+        if levels < D::ZERO_FROM {
+            let mut power = T::of(1.0);
+            for _ in 0..levels {
+                power = power * time;
+            }
+            self.extend_drive(levels + 2, drive, cursor);
+            for k in levels..levels + 2 {
+                power = power * time;
+                made = made.larger(self.inner.a[k].abs() * power / T::of((k + 1) as f64));
+            }
         }
-        self.extend_drive(self.levels + 2, drive, cursor);
-        for k in self.levels..self.levels + 2 {
-            power = power * time;
-            made = made.larger(self.inner.a[k].abs() * power / T::of((k + 1) as f64));
+        let first = if self.terms == Terms::Few { 3 } else { 5 };
+        if first < self.about.len() {
+            let rest = self.about[first..].iter().rev().fold(T::zero(), |sum, c| sum * deepest + c.abs());
+            let power = (0..first).fold(time, |power, _| power * deepest);
+            made += rest * power;
         }
         made
     }
@@ -234,53 +336,4 @@ impl<T: Scalar> Penetration<T> {
         }
         scaled
     }
-
-    /// The share of a step of `h` at which the mass separates from the stop.
-    pub fn separation(&self, h: T) -> Option<T> {
-        let g = self.powers(&self.root, h);
-        let n = self.order + 1;
-        // At touch-down the root is 0 and rises: that 0 is divided out.
-        let from = usize::from(g[0] == T::zero());
-        if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { Some(T::zero()) }
-    }
-
-    /// The share of a step of `h` at which the contact becomes clipped or ceases to be: 1 + a w changes its
-    /// sign. `passed`: it is 0 by definition at the step's start.
-    pub fn clip_change(&self, h: T, passed: bool) -> Option<T> {
-        if !(self.stop.loss > T::zero()) {
-            return None;
-        }
-        let n = self.order + 1;
-        let mut g = self.powers(&self.speed, h);
-        for c in &mut g[..n] {
-            *c = *c * self.stop.loss;
-            if self.clipped {
-                *c = -*c;
-            }
-        }
-        g[0] += if self.clipped { T::of(-1.0) } else { T::of(1.0) };
-        let from = usize::from(passed);
-        // On the wrong side it is there by rounding: the change was a mere touch, and the contact goes on as
-        // it was.
-        if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { None }
-    }
-
-    /// How the polynomials satisfy the equation of motion at `s`.
-    pub fn residual(&self, s: T, force: &PieceForce<T>, damping: T) -> Residual<T> {
-        let (u, w, time) = (self.root_at(s), self.speed_at(s), self.at(&self.time, s));
-        let mut slope = T::zero();
-        for k in (1..=self.order).rev() {
-            slope = slope * s + self.speed[k] * T::of(k as f64);
-        }
-        let base = self.inner.a[..self.levels].iter().rev().fold(T::zero(), |sum, c| sum * time + *c);
-        let (f, _, rounding) = force.value(self.surface + self.sign * (u * u));
-        let pushed = if self.clipped { T::zero() } else { self.stop.force(u, w) };
-        let acceleration = -(damping * w + self.sign * (f + base) + pushed);
-        let terms = (damping * w).abs() + f.abs() + base.abs() + pushed.abs();
-        let size = slope.abs() + u.abs() * terms;
-        Residual { error: slope - u * acceleration, size: size + u.abs() * rounding / T::of(T::EPSILON) }
-    }
 }
-
-/// Fewest terms of the drive that are composed: those that are there from the start.
-pub(crate) const FEWEST_LEVELS: usize = SEEDED;

@@ -71,7 +71,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let border = self.drive.segment_end(state.segment);
         let before = |border| flight < self.clock.between(&state.at, &border);
         let alone = self.drive.circuit().is_none();
-        if kind != EndKind::Stop || !alone || !(flight < left) || !border.is_none_or(before) {
+        let stop = matches!(kind, EndKind::Stop | EndKind::Compliant);
+        if !stop || !alone || !(flight < left) || !border.is_none_or(before) {
             return None;
         }
         if !self.expand_for(state, flight) {

@@ -2,6 +2,7 @@
 
 use super::path::StepView;
 use super::penetration::Penetration;
+use super::quasi_static::QuasiStatic;
 use super::settings::Settings;
 use super::work::{Costs, Work};
 use crate::dynamics::clock::{Clock, Instant};
@@ -24,6 +25,8 @@ pub(crate) struct Stepper<'a, T: Scalar, D: Drive<T>> {
     pub cursor: D::Cursor,
     /// Workspace of contact with a compliant stop, made at the first.
     pub penetration: Option<Box<Penetration<T>>>,
+    /// The same of a mass that is pressed into it by a slow load.
+    pub quasi_static: Option<Box<QuasiStatic<T>>>,
     /// The end of the run.
     pub end: Instant<T>,
     pub evaluations: u64,
@@ -58,6 +61,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
             series: Series::new(equation.most_products()),
             cursor: D::Cursor::default(),
             penetration: None,
+            quasi_static: None,
             end,
             evaluations: 0,
             work,

@@ -1,0 +1,162 @@
+//! Choice of a step of quasi-static motion: whether the mass rings, and how far the series holds.
+
+use super::quasi_static::QuasiStatic;
+use super::settings::RESIDUAL;
+use super::stepper::Stepper;
+use crate::dynamics::clock::Instant;
+use crate::dynamics::drive::Drive;
+use crate::dynamics::equation::End;
+use crate::dynamics::series::{MAX_ORDER, SEEDED, natural_steps, polynomial};
+use crate::dynamics::state::{Contact, MotionState};
+use crate::numeric::{Scalar, fast_log2};
+
+/// Sweeps from which on the iteration has settled: each takes the error to a thousandth or less where a step
+/// is worth it at all. Each costs two orders, those of d''.
+const SWEEPS: usize = 3;
+const MORE_SWEEPS: usize = 5;
+
+/// The tolerance of a step from which on few sweeps do.
+const COARSE: f64 = 1e-9;
+
+/// The speed of the ringing that is left out, in tolerances of a step.
+const RING: f64 = 1.0;
+
+/// The tolerance of a step below which rounding keeps the ringing up.
+const FINEST: f64 = 1e-13;
+
+/// Radians of the ringing that a step must be longer than to be worth it.
+const WORTH: f64 = 12.0;
+
+/// Halvings of a step before it is given up.
+const MOST_HALVINGS: usize = 4;
+
+/// Share of its speed by which the first term of the quasi-static motion may be off.
+const FIRST_TERM: f64 = 2e-3;
+
+/// The same where the mechanism's own stiffness is left out.
+const ROUGHLY: f64 = 0.1;
+
+/// A quasi-static step that has been chosen.
+pub(crate) struct QuasiStaticStep<T> {
+    pub length: T,
+    pub arrival: Option<Instant<T>>,
+    /// Root of the depth and inward speed at its end.
+    pub end: (T, T),
+    /// Bound of the change of the depth.
+    pub bound: T,
+}
+
+impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
+    /// A step of quasi-static motion; none where the mass rings by more than the tolerance, or the load
+    /// changes too fast for it.
+    pub fn quasi_static_step(
+        &mut self,
+        state: &MotionState<T>,
+        end: End,
+        left: T,
+        path: &mut QuasiStatic<T>,
+    ) -> Option<QuasiStaticStep<T>> {
+        let (root, sign) = (state.depth.root, end.sign::<T>());
+        let (speed, damping, mode) = (sign * state.v, self.equation.damping, self.mode(state));
+        let stop = self.equation.compliant?;
+        let (scale, tolerance) = self.contact_tolerance(state)?;
+        let ring = T::of(RING * self.settings.tolerance) * scale;
+        let compressing = matches!(state.contact, Contact::Compressing(_)) && root > T::zero();
+        if !compressing || self.settings.tolerance < FINEST {
+            return None;
+        }
+        // Does the mass ring? The first term of its quasi-static motion says whether to look further.
+        let a = &mut path.series.a;
+        self.drive.seed(&self.clock, &state.at, state.segment, a, &mut self.cursor);
+        let (jerk, snap) = (-(sign * a[1]), a[2].abs() * T::of(2.0));
+        let stiffness = T::of(1.5) * stop.stiffness * root;
+        if !((speed * stiffness - jerk).abs() <= ring * stiffness + jerk.abs() * T::of(ROUGHLY)) {
+            return None;
+        }
+        let surface = self.equation.surface(end)? - mode.origin;
+        let (force, slope, _) = mode.force.value(surface + sign * (root * root));
+        let square_of_ringing = stiffness + slope;
+        if !(square_of_ringing > T::zero()) {
+            return None;
+        }
+        let ringing = square_of_ringing.sqrt();
+        let first = jerk / square_of_ringing;
+        if !((speed - first).abs() <= ring + first.abs() * T::of(FIRST_TERM)) {
+            return None;
+        }
+        let acceleration = -(sign * (force + a[0])) - damping * speed - stop.force(root, speed);
+        let slow = snap / square_of_ringing + first * first / (root * root);
+        if !(acceleration.abs() <= ringing * ring + slow + slow) {
+            return None;
+        }
+        // Yes or no: by the series.
+        let sweeps = if self.settings.tolerance > COARSE { SWEEPS } else { MORE_SWEEPS };
+        let order = (self.settings.order + 1).min(MAX_ORDER - 2 * sweeps);
+        (path.stop, path.sign) = (stop, sign);
+        mode.force.about(surface, &mut path.about);
+        path.about.resize(path.about.len().max(3), T::zero());
+        // Two terms say whether the mass is on it, and all of them where that leads.
+        let few = 1 + 2 * sweeps;
+        for k in SEEDED..=few {
+            path.series.extend_drive(k, self.drive, &mut self.cursor);
+        }
+        path.solve(root, (1, sweeps), surface, damping);
+        let (start, start_speed) = (path.depth[0], path.depth[1]);
+        let off = (speed - start_speed).abs().larger(ringing * (root * root - start).abs());
+        if !(off <= ring) {
+            return None;
+        }
+        for k in few + 1..=order + 2 * sweeps {
+            path.series.extend_drive(k, self.drive, &mut self.cursor);
+        }
+        path.solve(root, (order, sweeps), surface, damping);
+        self.evaluations += 1;
+        self.work.add(self.costs.contact);
+        let [natural] = natural_steps(
+            order,
+            |k| [path.depth[k].magnitude()],
+            &[fast_log2(scale.to_f64())],
+            tolerance.log2(),
+            &[self.settings.longest],
+        );
+        let mut length = T::of(natural);
+        let border = self.drive.segment_end(state.segment);
+        for _ in 0..MOST_HALVINGS {
+            let mut arrival = None;
+            let mut until = |time: T, instant| {
+                if time <= length {
+                    (length, arrival) = (time, Some(instant));
+                }
+            };
+            until(left, self.end);
+            if let Some(border) = border {
+                until(self.clock.between(&state.at, &border), border);
+            }
+            if !(length * ringing > T::of(WORTH)) {
+                return None;
+            }
+            let (mut bound, mut fastest, mut power) = (T::zero(), T::zero(), T::of(1.0));
+            for k in 1..=order {
+                fastest += path.depth[k].abs() * T::whole(k) * power;
+                power = power * length;
+                bound += path.depth[k].abs() * power;
+            }
+            let deep = [End::Low, End::High]
+                .into_iter()
+                .all(|at| at == end.other() || at.sign::<T>() * (mode.end(at).0 - state.x) > bound + bound);
+            let half = length * T::of(0.5);
+            let mut residual = T::zero();
+            for t in [T::zero(), half, length] {
+                residual = residual.larger(path.residual(t, surface, &mode.force, damping).abs());
+            }
+            let most = T::of(RESIDUAL * order as f64 * tolerance) * scale;
+            if deep && bound < start && stop.loss * fastest < T::of(1.0) && residual * length <= most {
+                let depth = polynomial::value(&path.depth[..=order], length);
+                let speed = polynomial::slope(&path.depth[..=order], length);
+                return Some(QuasiStaticStep { length, arrival, end: (depth.sqrt(), speed), bound });
+            }
+            length = half;
+        }
+        None
+    }
+}
