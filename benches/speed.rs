@@ -101,9 +101,10 @@ fn flexures() {
         let model = shared::preset("paper", changes);
         let exact = model.run_reference(&Request::default(), REFERENCE).summary.rms_velocity.unwrap();
         for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
-            let run = model.with_tolerance(tolerance).run(&Request::default()).summary;
+            let own = model.with_tolerance(tolerance);
+            let run = own.run(&Request::default()).summary;
             let error = (run.rms_velocity.unwrap() / exact - 1.0).abs();
-            let (alone, together) = alone_and_together(&model);
+            let (alone, together) = alone_and_together(&own);
             let (alone, together) = (alone * 1e6, together * 1e6);
             println!(
                 "| {name} | {tolerance:.0e} | {error:.1e} | {} | {alone:.0} us | {together:.0} us |",
