@@ -60,7 +60,7 @@ impl ForceTable {
     ///
     /// Guarantee: at least [`FEWEST_POINTS`] finite points with strictly increasing `x`.
     pub fn parse(text: &str) -> Result<Self, TableError> {
-        let columns = read_columns(text, [X, FORCE], MOST_POINTS)?;
+        let columns = read_columns(text, [X, FORCE], MOST_POINTS, true)?;
         let (mut x, mut force): (Vec<f64>, Vec<f64>) =
             columns.rows.iter().map(|row| (row[0], row[1])).unzip();
         if x.len() < FEWEST_POINTS {

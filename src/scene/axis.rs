@@ -41,7 +41,8 @@ impl Axis {
         let spec = numeric(scene, field)?;
         let read = |text: &str| {
             let text = text.trim();
-            Decimal::parse(text).ok_or_else(|| format!("`{}` is not a finite decimal number", clip(text)))
+            let finite = Decimal::parse(text).filter(|own| own.value().is_finite());
+            finite.ok_or_else(|| format!("`{}` is not a finite decimal number", clip(text)))
         };
         let mut steps = None;
         let values = if values.contains(':') {

@@ -101,14 +101,16 @@ pub struct Columns<const N: usize> {
 
 /// Reads the columns `names` of a CSV text with at most `most` rows.
 ///
-/// Accepts a byte order mark, line ends of any system, blank lines, blanks around values and further columns.
+/// Accepts a byte order mark, line ends of any system, blank lines, blanks around values and further columns;
+/// where it is `ragged` also rows of more values than the header has names.
 pub fn read_columns<const N: usize>(
     text: &str,
     names: [&str; N],
     most: usize,
+    ragged: bool,
 ) -> Result<Columns<N>, ColumnsError> {
     let wanted = names.join(",");
-    let sheet = Sheet::open(text, &wanted, Separators::Comma, most)?;
+    let sheet = Sheet { ragged, ..Sheet::open(text, &wanted, Separators::Comma, most)? };
     let mut at = [0; N];
     for (at, name) in at.iter_mut().zip(names) {
         *at = sheet.column(name)?;
@@ -134,7 +136,8 @@ pub(super) struct Sheet {
     /// The line of each row of it, from 1, that of the header first.
     lines: Vec<usize>,
     separator: u8,
-    may_be: Separators,
+    /// Whether a row may have more values than the header has names.
+    ragged: bool,
     /// The names of the columns.
     pub names: Vec<String>,
     wanted: String,
@@ -163,8 +166,9 @@ impl Sheet {
             Separators::Any if header.contains('\t') => b'\t',
             _ => b',',
         };
+        let ragged = may_be == Separators::Comma;
         let mut sheet =
-            Self { body, lines: numbers, separator, may_be, names: Vec::new(), wanted: wanted.to_owned() };
+            Self { body, lines: numbers, separator, ragged, names: Vec::new(), wanted: wanted.to_owned() };
         let header = sheet.reader().headers().map_err(unreadable)?.clone();
         if sheet.lines.is_empty() || header.is_empty() {
             return Err(ColumnsError::Empty { wanted: wanted.to_owned() });
@@ -224,7 +228,7 @@ impl Sheet {
             // empty values at the end of a row are none
             let names = self.names.len();
             let beyond = record.iter().skip(names).any(|value| !value.trim().is_empty());
-            if self.may_be == Separators::Any && beyond {
+            if !self.ragged && beyond {
                 let (line, found) = (self.line(place), record.len());
                 return Err(ColumnsError::TooManyValues { line, found, names });
             }

@@ -113,7 +113,7 @@ impl Record {
     /// Reads the text of a record: CSV with the columns `t_s,accel_m_per_s2` among others, or with one column
     /// of time and one of acceleration by the units at the ends of their names, as a measured record has it.
     pub fn parse(text: &str) -> Result<Self, RecordError> {
-        let columns = match read_columns(text, [TIME, ACCELERATION], MOST_ROWS) {
+        let columns = match read_columns(text, [TIME, ACCELERATION], MOST_ROWS, false) {
             Err(problem @ ColumnsError::MissingColumn { .. }) => {
                 return match Self::by_units(text) {
                     // no unit tells anything

@@ -96,8 +96,9 @@ const BATCH: usize = 128;
 /// The same where each cell is waited for, and the fewest where cells take long.
 const SHOWN: usize = 16;
 
-/// The fewest of the last batches, which several threads share.
-const LAST: u64 = 8;
+/// The fewest of the last batches, which several threads share: where cells take long, and where they do not,
+/// so that lanes stay filled.
+const LAST: (u64, u64) = (8, 32);
 
 /// Batches that may be begun, for each thread, before the first of them is over.
 const AHEAD: usize = 32;
@@ -173,7 +174,8 @@ impl Cells {
             // Towards the end ever smaller, so that no thread waits long for the last one.
             let share = if threads == 1 { u64::MAX } else { (slice.rows() - begin).div_ceil(2 * threads) };
             let fitting = size.load(Ordering::Relaxed);
-            next = (begin + share.max(LAST).min(fitting)).min(slice.rows());
+            let least = (fitting / 4).clamp(LAST.0, LAST.1);
+            next = (begin + share.max(least).min(fitting)).min(slice.rows());
             (begin < next).then(|| (begin..next).map(|place| slice.row(place)).collect::<Vec<u64>>())
         });
         let run = |scene: &mut Scene, cells: Vec<u64>| {

@@ -29,7 +29,7 @@ fn shaken() {
     let likely = ["5.6", "5.7"].into_iter().flat_map(|low| ["17", "18"].map(|speed| (low, speed)));
     let mut likely = likely.map(|(low, speed)| {
         let between = format!("between {low} and 7.3 mm");
-        format!("Intrawell: will stay in the right-hand well, {between}; RMS velocity about {speed} mm/s.")
+        format!("Intrawell: will settle in the right-hand well, {between}; RMS velocity about {speed} mm/s.")
     });
     assert!(likely.any(|own| text.starts_with(&own)), "{text}");
     assert!(text.contains("g short of crossing, which takes about 1.1"), "{text}");

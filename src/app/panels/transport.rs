@@ -112,7 +112,9 @@ fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Even
         let number = (event.t / stretch).floor();
         number != std::mem::replace(&mut last[row(event.kind)], number)
     };
-    let seen = events.iter().filter(|event| (begin..=end).contains(&event.t));
+    // (a rest is no impact: the row would say one where a mass rests from the start)
+    let told = |event: &&Event| event.kind != EventKind::Rest && (begin..=end).contains(&event.t);
+    let seen = events.iter().filter(told);
     seen.filter(is_first).copied().collect()
 }
 

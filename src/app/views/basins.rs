@@ -138,6 +138,9 @@ fn hand_ui(
     let right = chart.area.right();
     let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return right };
     let (x, v) = chart.world_from_screen(pointer);
+    if !(x >= level.room.0 && x <= level.room.1) {
+        return right; // nothing begins beyond the stops
+    }
     let (across, up) = (Edges::new(&level.axes.0), Edges::new(&level.axes.1));
     let cell = across.cell(x * 1e3).zip(up.cell(v));
     let place = cell.and_then(|(column, row)| {
@@ -153,8 +156,7 @@ fn hand_ui(
     let at = (chart.area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
     let font = (context.style.small(), context.style.ink());
     let left = haloed(&painter, &context.style, at, &text, font).left();
-    let inside = x >= level.room.0 && x <= level.room.1;
-    if response.clicked() && inside {
+    if response.clicked() {
         context.session.start_at(x, v);
     }
     if rests(ui) {

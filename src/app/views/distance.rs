@@ -49,7 +49,9 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         .collect();
     let seen = || lines.iter().flat_map(|own| &own.1).map(|own| (own.1 * 1e3).log10());
     let finite = || seen().filter(|own| own.is_finite());
-    let least = finite().fold(0.0, f64::min).floor().max(LEAST);
+    // motions that are equal to the last digit lie at the bottom, whatever stands there
+    let bottom = if finite().next().is_some() { 0.0 } else { LEAST };
+    let least = finite().fold(bottom, f64::min).floor().max(LEAST);
     let most = finite().fold(least + 1.0, f64::max).ceil().max(1.0);
     let height = |metres: f64| (metres * 1e3).log10().max(least);
     let model = session.shown();

@@ -224,6 +224,7 @@ fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
             };
             let mut apart = match difference.is_finite() && *name != "largest_difference_at" {
                 true if unit.is_empty() => format!("{difference:.0}"),
+                true if (difference * scale).abs() < 1e-9 * most => "0".to_owned(), // rounding
                 true => three(difference * scale),
                 false => String::new(),
             };

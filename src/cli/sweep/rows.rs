@@ -80,6 +80,19 @@ impl Begin<'_> {
             opened.leave();
             return Ok(None);
         }
+        if self.resume
+            && !self.force
+            && !opened.has_rows()
+            && let Some(there) = self.beside().filter(|there| *there != head)
+        {
+            opened.leave();
+            return Err(Failure::argument(format!(
+                "--resume: {} is of another sweep: {}; give the arguments that it was made with, name \
+                 another --out, or start anew with --force",
+                self.out.display(),
+                plan_differences(&flat(&there), &flat(&head))
+            )));
+        }
         if !opened.has_rows() || (self.force && !self.resume) {
             let part = opened.begin(&head.to_string(), self.header).map_err(refused)?;
             return Ok(Some((self.blocks(part), Tally::default())));
@@ -122,12 +135,21 @@ impl Begin<'_> {
         Blocks { part, rows: self.rows, unit: self.unit, block, clock: WallClock::start() }
     }
 
+    /// The manifest of the file, where both are there.
+    fn manifest(&self) -> Option<Value> {
+        let text = files::bytes(&manifest_path(self.out)?).ok().filter(|_| files::exists(self.out));
+        text.and_then(|text| serde_json::from_slice::<Value>(&text).ok())
+    }
+
+    /// The plan and the shard of a sweep that stands in the file.
+    fn beside(&self) -> Option<Value> {
+        let own = self.manifest()?;
+        own["plan"].is_object().then(|| json!({ "plan": own["plan"], "shard": own["shard"] }))
+    }
+
     /// Whether the file is there with all its rows, as its manifest says.
     fn is_whole(&self) -> bool {
-        let Some(beside) = manifest_path(self.out) else { return false };
-        let text = files::bytes(&beside).ok();
-        let manifest = text.and_then(|text| serde_json::from_slice::<Value>(&text).ok());
-        manifest.is_some_and(|own| {
+        self.manifest().is_some_and(|own| {
             own["plan"] == *self.plan
                 && own["shard"].as_str() == Some(&self.shard.to_string())
                 && own["sha256"].as_str() == file_checksum(self.out).as_deref()

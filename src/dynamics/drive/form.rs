@@ -216,12 +216,13 @@ fn record<T: Scalar>(
 }
 
 /// The pieces of a record: with polynomials in place of lines as the tolerance allows it. In some 31 digits
-/// there are none, nor beside another part of the drive or a circuit, since a release is searched for over
-/// the lines of a record alone.
+/// there are none, nor beside another part of the drive, a circuit or rigid stops, since a release is
+/// searched for over the lines of a record alone: a flight along a polynomial might begin pressed back.
 fn pieces<T: Scalar>(model: &Model, source: &scene::Record) -> Arc<Vec<Piece>> {
     let drive = &model.excitation;
     let parts = drive.tones.len() + drive.chirps.len() + drive.records.len();
-    if parts > 1 || model.circuit().is_some() || T::EPSILON < f64::EPSILON {
+    let rests = model.stops.is_some() && model.compliant.is_none();
+    if parts > 1 || rests || model.circuit().is_some() || T::EPSILON < f64::EPSILON {
         return Arc::new(vec![Piece { first: 0, lines: source.times.len() - 1, polynomial: None }]);
     }
     let Scales { speed, length, .. } = model.scales;

@@ -72,6 +72,7 @@ impl Told<'_> {
 /// The words of a tense.
 struct Words {
     stays: &'static str,
+    settles: &'static str,
     leaves: &'static str,
     falls: &'static str,
     crosses: &'static str,
@@ -83,6 +84,7 @@ struct Words {
 
 const NOW: Words = Words {
     stays: "stays",
+    settles: "stays",
     leaves: "leaves",
     falls: "falls",
     crosses: "crosses",
@@ -93,6 +95,8 @@ const NOW: Words = Words {
 };
 const SOON: Words = Words {
     stays: "will stay",
+    // (it may come from the other well)
+    settles: "will settle",
     leaves: "will leave",
     falls: "fall",
     crosses: "will cross",
@@ -169,13 +173,14 @@ pub fn driven(told: &Told) -> Sentence {
             let impacts = times(per_period(summary.impacts));
             let text = format!(
                 "Intrawell{from}: {} in the {side} well and {} its stop {impacts}; {rms}.",
-                words.stays, words.hits
+                words.settles, words.hits
             );
             (Kind::Intrawell, text)
         }
-        Regime::Intrawell => {
-            (Kind::Intrawell, format!("Intrawell{from}: {} in the {side} well, {range}; {rms}.", words.stays))
-        }
+        Regime::Intrawell => (
+            Kind::Intrawell,
+            format!("Intrawell{from}: {} in the {side} well, {range}; {rms}.", words.settles),
+        ),
         Regime::Irregular if summary.crossing_periods >= summary.periods => {
             let text = format!("Irregular: {} in every period, never twice alike; {rms}.", words.crosses);
             (Kind::Irregular, text)
