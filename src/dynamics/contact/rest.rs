@@ -89,7 +89,6 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         match root {
             ReleaseRoot::At(root, turn) => {
                 self.stand(root, phase);
-                self.state.segment = self.stepper.drive.segment_of_release(&root, self.state.segment);
                 self.release(end, BY_JERK);
                 self.label = turn.filter(|_| self.recurs).map(|turn| Label { end, turn, phase: root.phase });
             }

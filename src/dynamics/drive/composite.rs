@@ -1,7 +1,5 @@
 //! A sum of any number of tones, chirps and records.
 
-use std::ops::RangeInclusive;
-
 use super::chirp::{Chirp, ChirpState, next_chirp};
 use super::lines::{Lines, LinesCursor};
 use super::record::{Record, RecordSeries};
@@ -161,19 +159,7 @@ impl<T: Scalar> Drive<T> for Composite<T> {
     }
 
     fn segment_end(&self, segment: usize) -> Option<Instant<T>> {
-        match self.alone().and_then(|record| record.after_single(segment)) {
-            Some((_, end)) => Some(end),
-            None => self.segment_ends.get(segment).copied(),
-        }
-    }
-
-    fn next_segment(&self, segment: usize) -> usize {
-        let single = self.alone().and_then(|record| record.after_single(segment));
-        single.map_or(segment + 1, |(next, _)| next)
-    }
-
-    fn segment_of_release(&self, at: &Instant<T>, segment: usize) -> usize {
-        self.alone().map_or(segment, |record| record.single_segment(at, segment))
+        self.segment_ends.get(segment).copied()
     }
 
     fn next_release(
@@ -186,57 +172,11 @@ impl<T: Scalar> Drive<T> for Composite<T> {
         if acceleration.threshold - acceleration.sign * self.constant > self.reach {
             return (ReleaseRoot::Never, 0);
         }
-        let lines = self.alone().and_then(|own| Some((own, own.samples_from(&span.from, span.segment)?)));
-        if let Some(lines) = lines {
-            return self.release_on(lines, clock, span, acceleration, cursor);
-        }
         self.search(clock, acceleration, span.segment).first(span, cursor)
     }
 }
 
 impl<T: Scalar> Composite<T> {
-    /// The one record, where there is one and nothing else that moves.
-    fn alone(&self) -> Option<&Record<T>> {
-        let [record] = self.records.as_slice() else { return None };
-        (self.fastest == T::zero()).then_some(record)
-    }
-
-    /// The next release on the lines from a sample to another, for which a polynomial stands. A line that
-    /// keeps its sign has none.
-    fn release_on(
-        &self,
-        (record, samples): (&Record<T>, RangeInclusive<usize>),
-        clock: &Clock<T>,
-        span: &Span<T>,
-        acceleration: ContactAcceleration<T>,
-        cursor: &mut Cursor<T>,
-    ) -> (ReleaseRoot<T>, u64) {
-        let ContactAcceleration { threshold, sign, .. } = acceleration;
-        let square = clock.unit() * clock.unit();
-        let presses = |a: &f64| threshold - sign * (self.constant + T::of(*a * square)) > T::zero();
-        let (mut sample, last) = samples.into_inner();
-        let mut work = (last - sample) as u64 / 8;
-        while sample < last {
-            let values = &record.source.accelerations[sample..=last];
-            let Some(ahead) = values.iter().position(|a| !presses(a)) else { break };
-            sample += ahead.saturating_sub(1);
-            let (segment, [begin, end]) = record.single_line(sample);
-            let from = if clock.between(&span.from, &begin) > T::zero() { begin } else { span.from };
-            let until = if clock.between(&end, &span.until) > T::zero() { end } else { span.until };
-            if !(clock.between(&from, &span.until) > T::zero()) {
-                break;
-            }
-            let single = Span { from, until, segment, since: from };
-            let (root, more) = self.search(clock, acceleration, segment).first(&single, cursor);
-            work += more;
-            if !matches!(root, ReleaseRoot::Never) {
-                return (root, work);
-            }
-            sample += 1;
-        }
-        (ReleaseRoot::Never, work)
-    }
-
     /// A search for a release in one of its segments.
     pub(super) fn search<'a>(
         &'a self,

@@ -192,8 +192,7 @@ fn record<T: Scalar>(
             return;
         }
         let first_segment = if times[sample] <= 0.0 { 0 } else { segment(times[sample]) };
-        let mut line =
-            Line { first_segment, at: zero_time, sample, value: T::zero(), slope: T::zero(), piece };
+        let mut line = Line { first_segment, at: zero_time, value: T::zero(), slope: T::zero(), piece };
         if times[sample] > 0.0 {
             line.at = clock.at(times[sample]);
         }

@@ -84,16 +84,6 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
     /// The instant at which segment `segment` ends, where one follows.
     fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
 
-    /// The segment that begins there.
-    fn next_segment(&self, segment: usize) -> usize {
-        segment + 1
-    }
-
-    /// The segment in which a mass goes on that was released at an instant of a segment.
-    fn segment_of_release(&self, _at: &Instant<T>, segment: usize) -> usize {
-        segment
-    }
-
     /// The next instant in the span at which the contact acceleration, positive now, changes sign, and the
     /// work of finding it. The span lies within one segment.
     fn next_release(

@@ -127,9 +127,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     pub fn pass_segment_end(&self, state: &mut MotionState<T>) -> bool {
         let end = self.drive.segment_end(state.segment);
         let ended = end.is_some_and(|border| self.clock.between(&state.at, &border) <= T::zero());
-        if ended {
-            state.segment = self.drive.next_segment(state.segment);
-        }
+        state.segment += usize::from(ended);
         ended
     }
 
