@@ -219,7 +219,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     /// The root between `low` and `high`, by Chebyshev's steps (third order) kept inside a shrinking bracket.
     fn polish(&self, mut low: T, mut high: T) -> T {
         let zero = T::zero();
-        let below = self.value(low) > zero;
+        let below = if low == zero { self.g[0] > zero } else { self.value(low) > zero };
         let half = T::of(0.5);
         let mut s = self.guess(low, high).unwrap_or_else(|| (low + high) * half);
         let close = T::of(T::ROUGH);

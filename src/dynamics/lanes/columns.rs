@@ -304,7 +304,7 @@ impl<const W: usize> Columns<W> {
         let residual = (self.force.at(end.y) + sum).abs() * length;
 
         let mut squared = Lanes([0.0; W]);
-        let deviation = polynomial::chord_deviation(&series.y[..=order], length);
+        let deviations = polynomial::chord_deviations(&series.y[..=order], length);
         if self.inside.contains(&true) {
             squared = polynomial::integrals::<_, false>(&series.y[..=order], &[], rule, squared, length).0;
         }
@@ -319,8 +319,9 @@ impl<const W: usize> Columns<W> {
             let held = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
 
             let (bound, limits) = (end.bound.0[lane], (self.low_end.0[lane], self.high_end.0[lane]));
-            let chord =
-                Chord { start: start.0[lane], end: x.0[lane], bound, deviation: deviation.0[lane], limits };
+            let ways = (self.v.0[lane] * length, end.v.0[lane] * length);
+            let deviations = (deviations.0.0[lane], deviations.1.0[lane]);
+            let chord = Chord { start: start.0[lane], end: x.0[lane], bound, deviations, ways, limits };
             let (clear_low, clear_high) = chord.is_clear();
             let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
             let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
@@ -335,7 +336,7 @@ impl<const W: usize> Columns<W> {
             let (barrier, side, inside) = (self.barrier.0[lane], self.side.0[lane], self.inside[lane]);
             let (from, to) = ((chord.start - barrier) * side, (chord.end - barrier) * side);
             let (near, onto, passed) = ((chord.start - barrier).abs() <= bound, to == 0.0, to < 0.0);
-            let monotone = 8.0 * chord.deviation < self.v.0[lane].abs() * length;
+            let monotone = chord.is_monotone();
             // outside the window only their number counts
             let countable = !inside & (length + length < left);
             let clear_of_barrier =

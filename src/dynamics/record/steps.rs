@@ -119,8 +119,9 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             false => (step.x_at(from), step.x_at(to)),
         };
         let endless = T::of(f64::INFINITY);
-        let mut chord =
-            Chord { start: first, end: last, bound: endless, deviation: endless, limits: step.limits };
+        let (zero, limits) = (T::zero(), step.limits);
+        let (deviations, ways) = ((endless, endless), (zero, zero));
+        let mut chord = Chord { start: first, end: last, bound: endless, deviations, ways, limits };
         chord.bound = if full { step.bound } else { step.bound + step.bound };
         let (low, high, mut turns) = chord.extremes((self.low, self.high));
         if turns
@@ -128,7 +129,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             && step.length == step.whole
             && let Some((y, _)) = step.path.in_time()
         {
-            chord.deviation = polynomial::chord_deviation(y, step.length);
+            chord.deviations = polynomial::chord_deviations(y, step.length);
+            chord.ways = (y[1] * step.length, step.v * step.length);
             (_, _, turns) = chord.extremes((low, high));
         }
         (self.low, self.high) = (low, high);

@@ -84,17 +84,18 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 start: series.y[0] + origin,
                 end: end.y + origin,
                 bound: end.bound,
-                deviation: T::of(f64::INFINITY),
+                deviations: (T::of(f64::INFINITY), T::of(f64::INFINITY)),
+                ways: (v * length, end.v * length),
                 limits,
             };
-            let deviation = || polynomial::chord_deviation(&series.y[..=settings.order], length);
+            let deviations = || polynomial::chord_deviations(&series.y[..=settings.order], length);
             let clear = x - limits.0 > end.bound && limits.1 - x > end.bound
-                || Chord { deviation: deviation(), ..chord }.is_clear() == (true, true);
+                || Chord { deviations: deviations(), ..chord }.is_clear() == (true, true);
             let mut event_free = clear && end.v.is_finite();
             // (without a barrier it is infinitely far away)
             let gap = chord.start - now.barrier.unwrap_or(T::of(f64::NEG_INFINITY));
             if event_free && !(gap.abs() > end.bound * T::of(CLEARANCE)) {
-                let step = (&series.y[..=settings.order], length, v);
+                let step = (&series.y[..=settings.order], length);
                 match now.crossings(&chord, step, length + length < left) {
                     Some((side, count)) => {
                         now.side = side;
@@ -106,7 +107,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             if now.inside && event_free {
                 let y = &series.y[..=settings.order];
                 let squared = polynomial::integrals::<_, false>(y, &[], rule, T::zero(), length).0;
-                event_free = now.record_step(&chord, deviation, (length, squared));
+                event_free = now.record_step(&chord, deviations, (length, squared));
                 if !event_free {
                     series.measured = Some((length, squared));
                 }
@@ -133,10 +134,10 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
 
 impl<T: Scalar> EventFree<T> {
     /// The side of the barrier after a step that comes near it, and the number of crossings; none where their
-    /// instants are needed. Of the step are given coefficients, length, and velocity at its start, and
-    /// whether it ends well before the border.
+    /// instants are needed. Of the step are given coefficients and length, and whether it ends well
+    /// before the border.
     #[inline(never)] // rare, and large
-    fn crossings(&self, chord: &Chord<T>, (y, length, v): (&[T], T, T), early: bool) -> Option<(i8, u64)> {
+    fn crossings(&self, chord: &Chord<T>, (y, length): (&[T], T), early: bool) -> Option<(i8, u64)> {
         let Some(barrier) = self.barrier else { return Some((self.side, 0)) };
         let (gap, end) = (chord.start - barrier, side_of(chord.end, barrier));
         if end == self.side && gap.abs() > chord.bound {
@@ -145,7 +146,7 @@ impl<T: Scalar> EventFree<T> {
         // Inside the window, and where it is listed, it must.
         let countable = early && !self.inside && !self.listed;
         // Where the velocity keeps its sign the ends decide.
-        let monotone = T::of(8.0) * polynomial::chord_deviation(y, length) < v.abs() * length;
+        let monotone = Chord { deviations: polynomial::chord_deviations(y, length), ..*chord }.is_monotone();
         if monotone && self.side != 0 && end != 0 && side_of(gap, T::zero()) == self.side {
             return (countable || end == self.side).then(|| (end, u64::from(end != self.side)));
         }
@@ -162,18 +163,18 @@ impl<T: Scalar> EventFree<T> {
     }
 
     /// Records a step inside the settled window of this length and integral of the squared velocity; false
-    /// where a turning point within it may be an extreme. Its deviation from the chord is only computed where
-    /// that decides.
+    /// where a turning point within it may be an extreme. Its deviations from its chords are only computed
+    /// where that decides.
     #[inline(always)]
     fn record_step(
         &mut self,
         chord: &Chord<T>,
-        deviation: impl Fn() -> T,
+        deviations: impl Fn() -> (T, T),
         (length, squared): (T, T),
     ) -> bool {
         let (low, high, mut turns) = chord.extremes((self.low, self.high));
         if turns {
-            (_, _, turns) = Chord { deviation: deviation(), ..*chord }.extremes((low, high));
+            (_, _, turns) = Chord { deviations: deviations(), ..*chord }.extremes((low, high));
         }
         if turns {
             return false;

@@ -39,16 +39,18 @@ pub(crate) fn slope<T: Scalar>(y: &[T], t: T) -> T {
     sum
 }
 
-/// Bound of the deviation of the displacement from the chord between the ends of a step of length `h`: an
-/// eighth of the square of the length times the largest acceleration.
+/// Bounds of the deviation of the displacement, and of the velocity times `h`, from the chords between the
+/// ends of a step of length `h`: an eighth of the square of the length times the largest second derivative.
 #[inline(always)]
-pub(crate) fn chord_deviation<T: Number>(y: &[T], h: T) -> T {
-    let (mut sum, mut power) = (T::zero(), h);
+pub(crate) fn chord_deviations<T: Number>(y: &[T], h: T) -> (T, T) {
+    let (mut second, mut third, mut power) = (T::zero(), T::zero(), h);
     for (k, c) in y.iter().enumerate().skip(2) {
         power = power * h;
-        sum += c.abs() * power * T::whole(k * (k - 1));
+        let term = c.abs() * power;
+        second += term * T::whole(k * (k - 1));
+        third += term * T::whole(k * (k - 1) * (k - 2));
     }
-    sum * T::of(0.125)
+    (second * T::of(0.125), third * T::of(0.125))
 }
 
 /// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base acceleration

@@ -5,7 +5,7 @@ use super::path::Path;
 use super::stepper::Stepper;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
-use crate::dynamics::series::{Endpoint, ROOM, polynomial};
+use crate::dynamics::series::{Endpoint, polynomial};
 use crate::dynamics::state::{BY_SPEED, HELD, MotionState};
 use crate::numeric::{PolynomialRoots, Scalar};
 
@@ -23,7 +23,6 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let mode = self.mode(state);
         let n = self.series.known;
         let mut first: Option<(T, End)> = None;
-        let mut scaled = None;
         if state.touch.is_none() {
             let limits = (mode.low, mode.high);
             let near = !(state.x - limits.0 > bound && limits.1 - state.x > bound);
@@ -31,8 +30,9 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
                 return None;
             }
             let (y, to) = (&self.series.y[..n], end + mode.origin);
-            let deviation = polynomial::chord_deviation(y, h);
-            if (Chord { start: state.x, end: to, bound, deviation, limits }).is_clear() == (true, true) {
+            let deviations = polynomial::chord_deviations(y, h);
+            let chord = Chord { start: state.x, end: to, bound, deviations, ways: (zero, zero), limits };
+            if chord.is_clear() == (true, true) {
                 return None;
             }
         }
@@ -43,10 +43,9 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             if touch.map_or(gap > bound, |touch| touch.multiplicity == HELD) {
                 continue;
             }
-            let mut g = [zero; ROOM];
-            let scaled = scaled.get_or_insert_with(|| self.series.scaled(h));
-            for (slot, c) in g[1..n].iter_mut().zip(&scaled[1..n]) {
-                *slot = -(sign * *c);
+            let mut g = self.series.scaled(h);
+            if end == End::High {
+                g[1..n].iter_mut().for_each(|c| *c = -*c);
             }
             g[0] = gap;
             // Beyond the surface only by rounding, after it was held, and not on the way out: it is touched.

@@ -141,7 +141,7 @@ impl<T: Scalar> InStop<T> for QuasiStatic<T> {
         };
         let scaled = polynomial::scaled(coefficients, h);
         let most = scaled[..coefficients.len()].iter().fold(T::zero(), |sum, c| sum + c.abs());
-        let speed = polynomial::chord_deviation(coefficients, h) * T::of(8.0) / h + coefficients[1].abs();
+        let speed = polynomial::chord_deviations(coefficients, h).0 * T::of(8.0) / h + coefficients[1].abs();
         if !(self.stop.force(most.sqrt(), speed) > known) {
             return known;
         }

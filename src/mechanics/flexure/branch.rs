@@ -61,12 +61,17 @@ impl Segment {
         if let Some(known) = self.points.get(place).filter(|p| p.x == x) {
             return Ok(known.clone());
         }
-        let point = match solver.solve(&self.guess(x), Prescribed::Displacement(x)) {
-            Ok(point) => point,
-            Err(lost) => self.approach(solver, x).ok_or(lost)?,
-        };
+        let point = self.afresh(solver, x)?;
         self.points.insert(place, point.clone());
         Ok(point)
+    }
+
+    /// The state at `x`, solved for afresh.
+    pub fn afresh(&self, solver: &mut Solver, x: f64) -> Result<Point, Lost> {
+        match solver.solve(&self.guess(x), Prescribed::Displacement(x)) {
+            Ok(point) => Ok(point),
+            Err(lost) => self.approach(solver, x).ok_or(lost),
+        }
     }
 
     /// The state at `x` by way of others, from the nearest that is known: beside a rounded kink an

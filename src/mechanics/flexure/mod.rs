@@ -247,8 +247,8 @@ impl Flexures {
         // In metres, as the curve has its breaks: x/length may round to the other side of a kink.
         let beyond = |segment: &Segment| segment.to * self.units.length < x.abs();
         let segment = &self.segments[self.segments.partition_point(beyond).min(last)];
-        let mut point = solver
-            .solve(&segment.guess(distance), Prescribed::Displacement(distance))
+        let mut point = segment
+            .afresh(&mut solver, distance)
             .map_err(|_| FlexureError::NotConverged { x, residual: f64::NAN })?;
         if x < 0.0 {
             point.x = -point.x;

@@ -2,9 +2,9 @@
 //!
 //! Every solved state gives force and slope, so each piece is Hermite's interpolant at Chebyshev-Lobatto
 //! points: neighbouring pieces share value and slope, and nothing is smoothed across a kink. Inside the kink
-//! one odd polynomial is enough; the taut branch bends so sharply beside the kink that its pieces grow from
-//! there like a geometric series. Each piece is compared with fresh states between its points, and these
-//! comparisons are the accuracy that is reported.
+//! one odd polynomial is enough; the pieces of the taut branch are as long as the tolerance allows. Each
+//! piece is compared with fresh states between its points, and these comparisons are the accuracy that is
+//! reported.
 
 use std::f64::consts::PI;
 
@@ -34,6 +34,9 @@ const SLOPE: f64 = 100.0;
 
 /// The share of the tolerance that a piece may use up; the rest is for places that were not looked at.
 const SHARE: f64 = 0.5;
+
+/// The share of the outermost segment that its first piece takes, where it meets the tolerance there.
+const FIRST: f64 = 0.3;
 
 /// The share that giving up the highest degrees may use.
 const SHARE_OF_DEGREES: f64 = 0.2;
@@ -119,7 +122,7 @@ pub(super) fn fit(
             continue;
         }
         let mut from = segment.from;
-        let mut size = if kink_at_end { length } else { 0.1 * length };
+        let mut size = if kink_at_end { length } else { FIRST * length };
         while from < segment.to {
             let to = if from + 1.2 * size >= segment.to { segment.to } else { from + size };
             let odd = from == 0.0;
