@@ -12,8 +12,9 @@ use super::cell::CellFaults;
 use super::family::Family;
 use super::grid::Grid;
 use super::push::{AMPLITUDE, frees_at};
+use super::shared_runs::shared_runs;
 use super::table::Table;
-use crate::dynamics::{Model, Regime, Summary};
+use crate::dynamics::{Model, Regime, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::Pool;
@@ -84,9 +85,6 @@ pub(super) fn longest(model: &Model) -> f64 {
     model.duration() + PATIENCE * model.forcing_period().unwrap_or(0.0)
 }
 
-/// Runs that are asked for together.
-pub(super) const TOGETHER: usize = 32;
-
 /// Runs the scan of `scene`, each run from rest. `mechanism` is the scene's own, built from `files`. None
 /// where the search was cancelled.
 ///
@@ -128,7 +126,7 @@ pub(super) fn threshold_on(
     }
     let mut found = Found { value: None, windows: 0, without_gap: None };
     let (mut before, mut last) = (None, false);
-    for (value, does) in scan.values.iter().zip(search.ask_all(&scan.values)?) {
+    for (value, does) in scan.values.iter().zip(search.ask(&scan.values, task.tick)?) {
         match (does, found.value) {
             (true, None) => {
                 let located = search.locate(before, *value, scan.resolution)?;
@@ -232,50 +230,19 @@ impl<'a> Search<'a> {
         Self { trial, family, onset, task, pool: None }
     }
 
-    /// Which of the values do it; ticks for each.
-    fn ask_all(&self, values: &[f64]) -> Option<Vec<bool>> {
-        let parts: Vec<&[f64]> = values.chunks(TOGETHER).collect();
-        let part = |(): &mut (), number: usize| {
-            let does = self.ask(parts[number]).ok_or(());
-            parts[number].iter().for_each(|_| (self.task.tick)());
+    /// Which of the values do it; calls `tick` for each.
+    fn ask(&self, values: &[f64], tick: &(dyn Fn() + Sync)) -> Option<Vec<bool>> {
+        let told = |does: bool| {
+            tick();
             does
         };
-        match self.pool {
-            Some(pool) => pool.map(parts.len(), || (), part).ok().map(|does| does.concat()),
-            None => (0..parts.len())
-                .map(|number| part(&mut (), number).ok())
-                .collect::<Option<Vec<_>>>()
-                .map(|does| does.concat()),
-        }
-    }
-
-    /// Which of the values do it.
-    fn ask(&self, values: &[f64]) -> Option<Vec<bool>> {
-        let mut does = vec![false; values.len()];
-        let (mut models, mut places) = (Vec::new(), Vec::new());
-        for (place, value) in values.iter().enumerate() {
-            if self.task.is_cancelled() {
-                return None;
-            }
-            if let Ok(model) = self.family.model(*value) {
-                models.push(model);
-                places.push(place);
-            }
-        }
-        let until = models.iter().map(longest).fold(0.0, f64::max);
-        let run = |models: &[Model]| -> Vec<bool> {
-            let runs = Model::run_all(models, Some(until), Some(self.task.cancel));
-            runs.iter().map(|run| self.onset.is_in(&run.summary)).collect()
+        let model = |number: usize| {
+            let model = self.family.model(values[number]).map_err(|_| told(false))?;
+            let until_settled = Some(longest(&model));
+            Ok((model, Request { until_settled, ..Request::default() }))
         };
-        let found = match self.pool {
-            Some(pool) => {
-                let parts: Vec<&[Model]> = models.chunks(TOGETHER / 2).collect();
-                pool.map(parts.len(), || (), |(), number| Ok::<_, ()>(run(parts[number]))).ok()?.concat()
-            }
-            None => run(&models),
-        };
-        places.into_iter().zip(found).for_each(|(place, own)| does[place] = own);
-        (!self.task.is_cancelled()).then_some(does)
+        let does = |run: &Run| told(self.onset.is_in(&run.summary));
+        shared_runs(self.pool, self.task, values.len(), model, does)
     }
 
     /// The faults of the model at the first of the values, where none of them makes one that can do it.
@@ -315,7 +282,7 @@ impl<'a> Search<'a> {
             let Some(middle) = near.into_iter().find(|own| *own > low && *own < high) else {
                 return Some(high);
             };
-            match self.ask(&[middle])?[0] {
+            match self.ask(&[middle], &|| ())?[0] {
                 true => high = middle,
                 false => low = middle,
             }
