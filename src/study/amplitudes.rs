@@ -74,7 +74,7 @@ pub(super) fn thresholds_on(
     let scan = |values: Vec<f64>| {
         let resolution = third_digit(values.first().copied().unwrap_or(push));
         let scan = Scan { field: AMPLITUDE.to_owned(), values, resolution };
-        threshold_on(pool, scene, mechanism, &files, (&scan, Onset::Crossing), task)
+        threshold_on((pool, 1), scene, mechanism, &files, (&scan, Onset::Crossing), task)
     };
     let mut found = Thresholds {
         frees_at: frees_at(scene, mechanism),

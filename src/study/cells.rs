@@ -157,16 +157,15 @@ impl Cells {
             self.ask(question, &cell, task, next, done);
         };
         let count = (slice.rows() - from) as usize;
-        self.in_order(question, (count, 1), ahead, pool, task, work, write)
+        self.in_order(question, (count, 1, ahead), pool, task, work, write)
     }
 
     /// Hands the rows that come of `work`, as by [`Pool::in_order`], to `write`, with the tally of these
-    /// alone.
+    /// alone. What counts them is as there.
     pub(super) fn in_order<Q: Question, E>(
         &self,
         question: &Q,
-        (count, rows): (usize, usize),
-        ahead: usize,
+        (count, rows, ahead): (usize, usize, usize),
         pool: &Pool,
         task: &Task,
         work: impl Fn(&dyn Fn(usize) -> Option<usize>, &dyn Fn(usize, Ran<Q::Answer>)) + Sync,

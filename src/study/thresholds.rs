@@ -5,6 +5,7 @@
 //! answer is, and the changes above it are counted. Each run goes on until its motion repeats, so that a
 //! crossing on the way to a motion that does not cross is no answer.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::Task;
@@ -97,12 +98,12 @@ pub fn threshold(
     (scan, onset): (&Scan, Onset),
     task: &Task,
 ) -> Option<Found> {
-    threshold_on(None, scene, mechanism, files, (scan, onset), task)
+    threshold_on((None, 1), scene, mechanism, files, (scan, onset), task)
 }
 
-/// The same, by the threads of a pool.
+/// The same, by the threads of a pool; so many values of a bisection are asked at a time.
 pub(super) fn threshold_on(
-    pool: Option<&Pool>,
+    (pool, ahead): (Option<&Pool>, usize),
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
     files: &Files,
@@ -110,7 +111,7 @@ pub(super) fn threshold_on(
     task: &Task,
 ) -> Option<Found> {
     let trial = from_rest(scene);
-    let search = Search { pool, ..Search::new(&trial, mechanism, files, (scan, onset), task) };
+    let search = Search { pool, ahead, ..Search::new(&trial, mechanism, files, (scan, onset), task) };
     if onset == Onset::Release
         && scan.field == AMPLITUDE
         && let Some(value) = frees_at(scene, mechanism)
@@ -183,8 +184,10 @@ pub fn threshold_table(
     if !wrong.is_empty() {
         return Some(Err(wrong));
     }
+    // of several cells each has a thread of its own
+    let ahead = if cells == 1 { pool.count() } else { 1 };
     let cell = |scene: &mut Scene, index: usize| match prepared(scene, index) {
-        Ok(mechanism) => threshold_on(Some(pool), scene, &mechanism, files, asked, task).ok_or(()),
+        Ok(mechanism) => threshold_on((Some(pool), ahead), scene, &mechanism, files, asked, task).ok_or(()),
         Err(_) => {
             asked.0.values.iter().for_each(|_| (task.tick)());
             Ok(Found { value: None, windows: 0, without_gap: None })
@@ -216,6 +219,8 @@ struct Search<'a> {
     onset: Onset,
     task: &'a Task<'a>,
     pool: Option<&'a Pool>,
+    /// Values of a bisection that are asked at a time.
+    ahead: usize,
 }
 
 impl<'a> Search<'a> {
@@ -227,7 +232,7 @@ impl<'a> Search<'a> {
         task: &'a Task<'a>,
     ) -> Self {
         let family = Family::new(trial, files, mechanism, &scan.field);
-        Self { trial, family, onset, task, pool: None }
+        Self { trial, family, onset, task, pool: None, ahead: 1 }
     }
 
     /// Which of the values do it; calls `tick` for each.
@@ -272,22 +277,42 @@ impl<'a> Search<'a> {
     /// does not and one that does.
     fn locate(&self, before: Option<f64>, value: f64, resolution: f64) -> Option<f64> {
         let (Some(mut low), mut high) = (before, value) else { return Some(value) };
-        loop {
-            let middle = multiple(0.5 * (low + high), resolution);
-            let near = [
-                middle,
-                multiple(middle - resolution, resolution),
-                multiple(middle + resolution, resolution),
-            ];
-            let Some(middle) = near.into_iter().find(|own| *own > low && *own < high) else {
-                return Some(high);
+        let mut known: Vec<(f64, bool)> = Vec::new();
+        while let Some(middle) = between(low, high, resolution) {
+            let Some((_, does)) = known.iter().find(|own| own.0 == middle) else {
+                let next = self.next_ones((low, high), resolution);
+                let does = self.ask(&next, &|| ())?;
+                known.extend(next.into_iter().zip(does));
+                continue;
             };
-            match self.ask(&[middle], &|| ())?[0] {
+            match does {
                 true => high = middle,
                 false => low = middle,
             }
         }
+        Some(high)
     }
+
+    /// The value that is asked next, and those that may be asked after it: as many as there are threads for.
+    fn next_ones(&self, span: (f64, f64), resolution: f64) -> Vec<f64> {
+        let (mut spans, mut values) = (VecDeque::from([span]), Vec::new());
+        while values.len() < self.ahead
+            && let Some((low, high)) = spans.pop_front()
+        {
+            if let Some(middle) = between(low, high, resolution) {
+                values.push(middle);
+                spans.extend([(low, middle), (middle, high)]);
+            }
+        }
+        values
+    }
+}
+
+/// The multiple of `resolution` in the middle between two values; none where none lies between them.
+fn between(low: f64, high: f64, resolution: f64) -> Option<f64> {
+    let middle = multiple(0.5 * (low + high), resolution);
+    let near = [middle, multiple(middle - resolution, resolution), multiple(middle + resolution, resolution)];
+    near.into_iter().find(|own| *own > low && *own < high)
 }
 
 /// The multiple of `unit` nearest to a value; of a decimal unit the decimal itself.

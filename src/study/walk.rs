@@ -148,6 +148,6 @@ impl Cells {
             Model::run_from(&mut next, &mut ended);
         };
         let walks = ((slice.rows() - from) / length as u64) as usize;
-        self.in_order(question, (walks, length), usize::MAX, pool, task, work, write)
+        self.in_order(question, (walks, length, usize::MAX), pool, task, work, write)
     }
 }

@@ -41,7 +41,7 @@ impl Judged {
 pub(super) type Design = (Vec<f64>, Vec<f64>);
 
 /// The summary of a run, or what is wrong with its scene.
-type Ran = Result<Summary, Vec<Fault>>;
+type Ran = Result<Box<Summary>, Vec<Fault>>;
 
 /// What evaluates designs.
 pub(super) struct Evaluator<'a> {
@@ -105,7 +105,7 @@ impl<'a> Evaluator<'a> {
             let model = self.model(&designs[job / each], job % each).map_err(|faults| told(Err(faults)))?;
             Ok((model, Request { ledger, ..Request::default() }))
         };
-        let summary = |run: &Run| told(Ok(run.summary));
+        let summary = |run: &Run| told(Ok(Box::new(run.summary)));
         let runs = shared_runs(Some(self.pool), self.task, designs.len() * each, model, summary);
         let summaries = runs.ok_or(NoBest::Cancelled)?;
         Ok(summaries.chunks(each).map(|own| self.judged(own)).collect())
