@@ -156,9 +156,6 @@ pub fn share<R: Send, E: Send>(
 /// Results that come faster than this are handed over some at a time.
 const SOON: Duration = Duration::from_millis(1);
 
-/// Numbers that a thread may hold where others could take them.
-const OWN: usize = 16;
-
 /// Numbers from 0 on that threads take from each other, each of them once.
 #[derive(Debug)]
 pub struct Queue {
@@ -184,7 +181,7 @@ impl Queue {
     }
 
     /// One more number for a thread that holds so many. None where none is left, or at present none is for
-    /// this thread: towards the end none holds many that others could take.
+    /// this thread: of few numbers none holds more than its share.
     pub fn take(&self, held: usize) -> Option<usize> {
         self.take_from(&mut self.lock(), held)
     }
@@ -197,10 +194,8 @@ impl Queue {
     }
 
     fn take_from(&self, state: &mut Taken, held: usize) -> Option<usize> {
-        let rest = self.count - state.next;
-        let own = OWN.min(self.count.div_ceil(self.threads)).max(rest / self.threads);
-        let others_could = self.threads > 1 && held >= own;
-        if state.stopped || rest == 0 || others_could || self.is_full(state) {
+        let has_its_share = held > 0 && held >= self.count.div_ceil(self.threads);
+        if state.stopped || state.next == self.count || has_its_share || self.is_full(state) {
             return None;
         }
         state.next += 1;
@@ -317,19 +312,10 @@ mod tests {
     }
 
     #[test]
-    fn towards_the_end_no_thread_takes_what_others_could() {
-        let queue = Queue::new(100, 2);
-        assert!((0..33).all(|held| queue.take(held) == Some(held)));
-        // 67 are left, 33 for each
-        assert_eq!(queue.take(33), None);
-        assert_eq!(queue.take(0), Some(33));
-        // of few each has its share
-        let queue = Queue::new(2, 2);
-        assert_eq!([queue.take(0), queue.take(1), queue.take(0)], [Some(0), None, Some(1)]);
-        // alone there are no others
-        let queue = Queue::new(100, 1);
-        assert!((0..100).all(|held| queue.take(held) == Some(held)));
-        assert_eq!(queue.take(0), None);
+    fn no_thread_holds_more_than_its_share() {
+        let queue = Queue::new(5, 2);
+        assert_eq!([0, 1, 2].map(|held| queue.take(held)), [Some(0), Some(1), Some(2)]);
+        assert_eq!([3, 0, 2, 1, 0].map(|held| queue.take(held)), [None, Some(3), Some(4), None, None]);
     }
 
     #[test]
