@@ -8,9 +8,10 @@ use super::amplitudes::thresholds_on;
 use super::family::Family;
 use super::fields::{Read, SummaryField};
 use super::settled::settled;
+use super::shared_runs::shared_runs;
 use super::table::{Table, Values};
 use super::thresholds::{Onset, longest, multiple};
-use crate::dynamics::{Model, Request, Summary};
+use crate::dynamics::{Model, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::numeric::round::decade;
 use crate::scene::{Excitation, FieldPath, Files, Scene, Start, numeric_fields};
@@ -170,13 +171,13 @@ fn band(own: &Alternative, trial: &Scene, pool: &Pool, task: &Task) -> Option<Op
     let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Some(None) };
     let family = Family::new(trial, &own.files, &own.mechanism, FREQUENCY);
     let ask = |values: &[f64]| -> Option<Vec<bool>> {
-        let crosses = |(): &mut (), number: usize| {
-            let Ok(model) = family.model(values[number]) else { return Ok(false) };
+        let model = |number: usize| {
+            let model = family.model(values[number]).map_err(|_| false)?;
             let until_settled = Some(longest(&model));
-            let run = model.run(&Request { cancel: Some(task.cancel), until_settled, ..Request::default() });
-            if task.is_cancelled() { Err(()) } else { Ok(Onset::Crossing.is_in(&run.summary)) }
+            Ok((model, Request { until_settled, ..Request::default() }))
         };
-        pool.map(values.len(), || (), crosses).ok()
+        let crosses = |run: &Run| Onset::Crossing.is_in(&run.summary);
+        shared_runs(Some(pool), task, values.len(), model, crosses)
     };
     let values: Vec<f64> = (-STEPS..=STEPS)
         .map(|i| decimal(frequency_hz * SEARCHED_SPAN.powf(f64::from(i) / f64::from(STEPS))))

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::Task;
 use super::push::{AMPLITUDE, frees_at, holding_push};
-use super::thresholds::{Onset, Scan, TOGETHER, longest, multiple, threshold_on};
+use super::thresholds::{Onset, Scan, longest, multiple, threshold_on};
 use crate::dynamics::{Model, Regime, Request};
 use crate::mechanics::Mechanism;
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
@@ -35,6 +35,9 @@ pub struct Thresholds {
 /// of the same length above it, and by how much each further one is longer than the last.
 const FINE_STEPS: u32 = 50;
 const GROWTH: f64 = 1.02;
+
+/// Steps that are run before it is looked whether one of them crosses.
+const TOGETHER: usize = 32;
 
 /// How many times that push is tried at most before nothing is said to cross.
 const MOST_PUSHES: f64 = 30.0;
@@ -71,7 +74,7 @@ pub(super) fn thresholds_on(
     let scan = |values: Vec<f64>| {
         let resolution = third_digit(values.first().copied().unwrap_or(push));
         let scan = Scan { field: AMPLITUDE.to_owned(), values, resolution };
-        threshold_on(pool, scene, mechanism, &files, (&scan, Onset::Crossing), task)
+        threshold_on((pool, 1), scene, mechanism, &files, (&scan, Onset::Crossing), task)
     };
     let mut found = Thresholds {
         frees_at: frees_at(scene, mechanism),

@@ -4,7 +4,7 @@
 //! memory does not grow with the number of cells. What a cell gives depends on its own scene alone, so the
 //! bytes are the same for any number of threads.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::Task;
@@ -15,8 +15,7 @@ use super::table::Table;
 use crate::dynamics::{Model, Request, Run};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
-use crate::system::clock::WallClock;
-use crate::system::threads::Pool;
+use crate::system::threads::{Pool, Queue};
 
 /// A scene, the grid over it, and the mechanisms that its cells share.
 #[derive(Debug)]
@@ -90,21 +89,8 @@ pub(super) trait Question: Sync {
     }
 }
 
-/// Cells that a thread runs together: several times the lanes of any processor, so that few of them fly alone
-/// at the end.
-const BATCH: usize = 128;
-/// The same where each cell is waited for, and the fewest where cells take long.
-const SHOWN: usize = 16;
-
-/// The fewest of the last batches, which several threads share: where cells take long, and where they do not,
-/// so that lanes stay filled.
-const LAST: (u64, u64) = (8, 32);
-
-/// Batches that may be begun, for each thread, before the first of them is over.
-const AHEAD: usize = 32;
-
-/// The time in s that a batch may take where its cells allow: rows come that often.
-const OFTEN: f64 = 1.0;
+/// Cells that may be begun, for each thread, before the first of them has left.
+const AHEAD: u64 = 4096;
 
 /// Mechanisms kept for the whole sweep; beyond that each cell builds its own.
 const KEPT_MECHANISMS: u64 = 4096;
@@ -162,61 +148,51 @@ impl Cells {
         (slice, from): (&Slice, u64),
         pool: &Pool,
         task: &Task,
-        mut write: impl FnMut(&Table, &Tally) -> Result<bool, E>,
+        write: impl FnMut(&Table, &Tally) -> Result<bool, E>,
     ) -> Result<Tally, SweepEnd<E>> {
         let threads = pool.count() as u64;
-        let largest = (question.most_cells() / (4 * threads)).clamp(1, BATCH as u64);
-        let ahead = (question.most_cells() / largest).clamp(threads, AHEAD as u64 * threads);
-        let size = AtomicU64::new(largest.min(SHOWN as u64));
-        let mut next = from;
-        let batches = std::iter::from_fn(|| {
-            let begin = next;
-            // Towards the end ever smaller, so that no thread waits long for the last one.
-            let share = if threads == 1 { u64::MAX } else { (slice.rows() - begin).div_ceil(2 * threads) };
-            let fitting = size.load(Ordering::Relaxed);
-            let least = (fitting / 4).clamp(LAST.0, LAST.1);
-            next = (begin + share.max(least).min(fitting)).min(slice.rows());
-            (begin < next).then(|| (begin..next).map(|place| slice.row(place)).collect::<Vec<u64>>())
-        });
-        let run = |scene: &mut Scene, cells: Vec<u64>| {
-            let clock = WallClock::start();
-            let rows = self.ask(question, &cells, scene, task);
-            cells.iter().for_each(|_| (task.tick)());
-            let fitting = OFTEN * cells.len() as f64 / clock.seconds().max(f64::MIN_POSITIVE);
-            let fitting = (fitting as u64).max(SHOWN as u64).min(largest);
-            size.store(fitting, Ordering::Relaxed);
-            if task.is_cancelled() { None } else { Some(rows) }
+        let ahead = question.most_cells().clamp(threads, AHEAD * threads) as usize;
+        let cell = |number: usize| slice.row(from + number as u64);
+        let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, Ran<Q::Answer>)| {
+            self.ask(question, &cell, task, next, done);
         };
+        let count = (slice.rows() - from) as usize;
+        self.in_order(question, (count, 1, ahead), pool, task, work, write)
+    }
+
+    /// Hands the rows that come of `work`, as by [`Pool::in_order`], to `write`, with the tally of these
+    /// alone. What counts them is as there.
+    pub(super) fn in_order<Q: Question, E>(
+        &self,
+        question: &Q,
+        (count, rows, ahead): (usize, usize, usize),
+        pool: &Pool,
+        task: &Task,
+        work: impl Fn(&dyn Fn(usize) -> Option<usize>, &dyn Fn(usize, Ran<Q::Answer>)) + Sync,
+        mut write: impl FnMut(&Table, &Tally) -> Result<bool, E>,
+    ) -> Result<Tally, SweepEnd<E>> {
         let (mut tally, mut end) = (Tally::default(), None);
-        pool.in_order(
-            ahead as usize,
-            batches,
-            || self.base.clone(),
-            run,
-            |rows| {
-                let Some(rows) = rows else {
-                    end = Some(SweepEnd::Cancelled);
-                    return false;
-                };
-                let mut own = Tally::default();
-                rows.iter().for_each(|row| own.count(&row.cell));
-                tally.add(&own);
-                let wanted = write(&question.table(&self.grid, &rows), &own);
-                wanted.unwrap_or_else(|error| {
-                    end = Some(SweepEnd::Write(error));
-                    false
-                })
-            },
-        );
-        tally.mechanisms = self.built.load(Ordering::Relaxed);
-        end.map_or(Ok(tally), Err)
+        let leave = |ran: Vec<Ran<Q::Answer>>| {
+            let mut own = Tally::default();
+            ran.iter().for_each(|row| own.count(&row.cell));
+            tally.add(&own);
+            tally.mechanisms = self.built.load(Ordering::Relaxed);
+            let wanted = write(&question.table(&self.grid, &ran), &own);
+            wanted.unwrap_or_else(|error| {
+                end = Some(SweepEnd::Write(error));
+                false
+            })
+        };
+        pool.in_order((count, rows, ahead), work, leave);
+        let cancelled = task.is_cancelled() && tally.cells < (count * rows) as u64;
+        end.or(cancelled.then_some(SweepEnd::Cancelled)).map_or(Ok(tally), Err)
     }
 
     /// An upper bound of the bytes that [`run`](Self::run) keeps, however many cells there are.
     pub fn memory<Q: Question>(&self, threads: u64) -> u64 {
         let row = size_of::<Ran<Q::Answer>>() as u64;
         let mechanisms = if self.grid.changes_mechanism() { self.mechanisms.len() as u64 } else { 1 };
-        (AHEAD * BATCH) as u64 * threads * row + mechanisms * LARGEST_MECHANISM
+        AHEAD * threads * row + mechanisms * LARGEST_MECHANISM
     }
 
     /// Runs these cells on `pool`, begun in their order, and hands each over from its thread as soon as it is
@@ -229,57 +205,45 @@ impl Cells {
         cells: &[u64],
         each: &(dyn Fn(u64, Cell) + Sync),
     ) -> bool {
-        // A shared counter keeps the order that a recursive split would lose, and no thread waits for a part.
-        let next = AtomicUsize::new(0);
-        let batches: Vec<&[u64]> = cells.chunks(SHOWN).collect();
+        let queue = Queue::new(cells.len(), pool.count());
+        let done = |_, own: Ran<_>| each(own.index, own.cell);
         pool.everywhere(|| {
-            let mut scene = self.base.clone();
-            while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let rows = self.ask(question, batch, &mut scene, task);
-                if task.is_cancelled() {
-                    return;
-                }
-                for row in rows {
-                    each(row.index, row.cell);
-                    (task.tick)();
-                }
-            }
+            self.ask(question, &|number| cells[number], task, &|held| queue.take(held), &done)
         });
         !task.is_cancelled()
     }
 
-    /// Asks some cells on this thread, many at once where the processor can.
+    /// Asks cells on this thread, many at once where the processor can: those of the numbers that `next`
+    /// gives, which is told how many are under way here; each answer goes to `done` with its number.
     fn ask<Q: Question>(
         &self,
         question: &Q,
-        cells: &[u64],
-        scene: &mut Scene,
+        cell: &dyn Fn(usize) -> u64,
         task: &Task,
-    ) -> Vec<Ran<Q::Answer>> {
-        let ran = |index: &u64| Ran { index: *index, direction: None, cell: Cell::NotRun, answer: None };
-        let mut rows: Vec<Ran<Q::Answer>> = cells.iter().map(ran).collect();
-        let (mut models, mut places) = (Vec::with_capacity(cells.len()), Vec::with_capacity(cells.len()));
-        for (place, row) in rows.iter_mut().enumerate() {
-            if task.is_cancelled() {
-                return rows;
-            }
-            match self.model(row.index, scene, task) {
-                Some(Ok(model)) => {
-                    models.push(question.model(model));
-                    places.push(place);
-                }
-                // Not after the grid has been validated.
-                Some(Err(_)) => {}
-                None => row.cell = Cell::Unsolved,
-            }
-        }
+        next: &dyn Fn(usize) -> Option<usize>,
+        done: &dyn Fn(usize, Ran<Q::Answer>),
+    ) {
         let request = Request { cancel: Some(task.cancel), ..question.request() };
-        let runs = Model::run_together(&models, &request);
-        for ((place, model), run) in places.into_iter().zip(&models).zip(runs) {
-            rows[place].cell = Cell::Run(run.summary);
-            rows[place].answer = Some(question.answer(model, run));
-        }
-        rows
+        let done = |number: usize, outcome: Cell, answer: Option<Q::Answer>| {
+            if !task.is_cancelled() {
+                done(number, Ran { index: cell(number), direction: None, cell: outcome, answer });
+                (task.tick)();
+            }
+        };
+        let mut scene = self.base.clone();
+        let mut next = |under_way: usize| loop {
+            let number = next(under_way).filter(|_| !task.is_cancelled())?;
+            match self.model(cell(number), &mut scene, task) {
+                Some(Ok(model)) => return Some((number, question.model(model), request)),
+                // Not after the grid has been validated.
+                Some(Err(_)) => done(number, Cell::NotRun, None),
+                None => done(number, Cell::Unsolved, None),
+            }
+        };
+        let mut ended = |number: usize, model: &Model, run: Run| {
+            done(number, Cell::Run(run.summary), Some(question.answer(model, run)));
+        };
+        Model::run_from(&mut next, &mut ended);
     }
 
     /// The model of a cell, or its faults; none where its mechanism was not solved, or the task was cancelled

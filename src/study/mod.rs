@@ -33,6 +33,7 @@ mod orbit;
 mod push;
 mod section;
 mod settled;
+mod shared_runs;
 mod simulate;
 mod slice;
 mod spectrum;

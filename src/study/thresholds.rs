@@ -5,6 +5,7 @@
 //! answer is, and the changes above it are counted. Each run goes on until its motion repeats, so that a
 //! crossing on the way to a motion that does not cross is no answer.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::Task;
@@ -12,8 +13,9 @@ use super::cell::CellFaults;
 use super::family::Family;
 use super::grid::Grid;
 use super::push::{AMPLITUDE, frees_at};
+use super::shared_runs::shared_runs;
 use super::table::Table;
-use crate::dynamics::{Model, Regime, Summary};
+use crate::dynamics::{Model, Regime, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::Pool;
@@ -84,9 +86,6 @@ pub(super) fn longest(model: &Model) -> f64 {
     model.duration() + PATIENCE * model.forcing_period().unwrap_or(0.0)
 }
 
-/// Runs that are asked for together.
-pub(super) const TOGETHER: usize = 32;
-
 /// Runs the scan of `scene`, each run from rest. `mechanism` is the scene's own, built from `files`. None
 /// where the search was cancelled.
 ///
@@ -99,12 +98,12 @@ pub fn threshold(
     (scan, onset): (&Scan, Onset),
     task: &Task,
 ) -> Option<Found> {
-    threshold_on(None, scene, mechanism, files, (scan, onset), task)
+    threshold_on((None, 1), scene, mechanism, files, (scan, onset), task)
 }
 
-/// The same, by the threads of a pool.
+/// The same, by the threads of a pool; so many values of a bisection are asked at a time.
 pub(super) fn threshold_on(
-    pool: Option<&Pool>,
+    (pool, ahead): (Option<&Pool>, usize),
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
     files: &Files,
@@ -112,7 +111,7 @@ pub(super) fn threshold_on(
     task: &Task,
 ) -> Option<Found> {
     let trial = from_rest(scene);
-    let search = Search { pool, ..Search::new(&trial, mechanism, files, (scan, onset), task) };
+    let search = Search { pool, ahead, ..Search::new(&trial, mechanism, files, (scan, onset), task) };
     if onset == Onset::Release
         && scan.field == AMPLITUDE
         && let Some(value) = frees_at(scene, mechanism)
@@ -128,7 +127,7 @@ pub(super) fn threshold_on(
     }
     let mut found = Found { value: None, windows: 0, without_gap: None };
     let (mut before, mut last) = (None, false);
-    for (value, does) in scan.values.iter().zip(search.ask_all(&scan.values)?) {
+    for (value, does) in scan.values.iter().zip(search.ask(&scan.values, task.tick)?) {
         match (does, found.value) {
             (true, None) => {
                 let located = search.locate(before, *value, scan.resolution)?;
@@ -185,8 +184,10 @@ pub fn threshold_table(
     if !wrong.is_empty() {
         return Some(Err(wrong));
     }
+    // of several cells each has a thread of its own
+    let ahead = if cells == 1 { pool.count() } else { 1 };
     let cell = |scene: &mut Scene, index: usize| match prepared(scene, index) {
-        Ok(mechanism) => threshold_on(Some(pool), scene, &mechanism, files, asked, task).ok_or(()),
+        Ok(mechanism) => threshold_on((Some(pool), ahead), scene, &mechanism, files, asked, task).ok_or(()),
         Err(_) => {
             asked.0.values.iter().for_each(|_| (task.tick)());
             Ok(Found { value: None, windows: 0, without_gap: None })
@@ -218,6 +219,8 @@ struct Search<'a> {
     onset: Onset,
     task: &'a Task<'a>,
     pool: Option<&'a Pool>,
+    /// Values of a bisection that are asked at a time.
+    ahead: usize,
 }
 
 impl<'a> Search<'a> {
@@ -229,53 +232,22 @@ impl<'a> Search<'a> {
         task: &'a Task<'a>,
     ) -> Self {
         let family = Family::new(trial, files, mechanism, &scan.field);
-        Self { trial, family, onset, task, pool: None }
+        Self { trial, family, onset, task, pool: None, ahead: 1 }
     }
 
-    /// Which of the values do it; ticks for each.
-    fn ask_all(&self, values: &[f64]) -> Option<Vec<bool>> {
-        let parts: Vec<&[f64]> = values.chunks(TOGETHER).collect();
-        let part = |(): &mut (), number: usize| {
-            let does = self.ask(parts[number]).ok_or(());
-            parts[number].iter().for_each(|_| (self.task.tick)());
+    /// Which of the values do it; calls `tick` for each.
+    fn ask(&self, values: &[f64], tick: &(dyn Fn() + Sync)) -> Option<Vec<bool>> {
+        let told = |does: bool| {
+            tick();
             does
         };
-        match self.pool {
-            Some(pool) => pool.map(parts.len(), || (), part).ok().map(|does| does.concat()),
-            None => (0..parts.len())
-                .map(|number| part(&mut (), number).ok())
-                .collect::<Option<Vec<_>>>()
-                .map(|does| does.concat()),
-        }
-    }
-
-    /// Which of the values do it.
-    fn ask(&self, values: &[f64]) -> Option<Vec<bool>> {
-        let mut does = vec![false; values.len()];
-        let (mut models, mut places) = (Vec::new(), Vec::new());
-        for (place, value) in values.iter().enumerate() {
-            if self.task.is_cancelled() {
-                return None;
-            }
-            if let Ok(model) = self.family.model(*value) {
-                models.push(model);
-                places.push(place);
-            }
-        }
-        let until = models.iter().map(longest).fold(0.0, f64::max);
-        let run = |models: &[Model]| -> Vec<bool> {
-            let runs = Model::run_all(models, Some(until), Some(self.task.cancel));
-            runs.iter().map(|run| self.onset.is_in(&run.summary)).collect()
+        let model = |number: usize| {
+            let model = self.family.model(values[number]).map_err(|_| told(false))?;
+            let until_settled = Some(longest(&model));
+            Ok((model, Request { until_settled, ..Request::default() }))
         };
-        let found = match self.pool {
-            Some(pool) => {
-                let parts: Vec<&[Model]> = models.chunks(TOGETHER / 2).collect();
-                pool.map(parts.len(), || (), |(), number| Ok::<_, ()>(run(parts[number]))).ok()?.concat()
-            }
-            None => run(&models),
-        };
-        places.into_iter().zip(found).for_each(|(place, own)| does[place] = own);
-        (!self.task.is_cancelled()).then_some(does)
+        let does = |run: &Run| told(self.onset.is_in(&run.summary));
+        shared_runs(self.pool, self.task, values.len(), model, does)
     }
 
     /// The faults of the model at the first of the values, where none of them makes one that can do it.
@@ -305,22 +277,42 @@ impl<'a> Search<'a> {
     /// does not and one that does.
     fn locate(&self, before: Option<f64>, value: f64, resolution: f64) -> Option<f64> {
         let (Some(mut low), mut high) = (before, value) else { return Some(value) };
-        loop {
-            let middle = multiple(0.5 * (low + high), resolution);
-            let near = [
-                middle,
-                multiple(middle - resolution, resolution),
-                multiple(middle + resolution, resolution),
-            ];
-            let Some(middle) = near.into_iter().find(|own| *own > low && *own < high) else {
-                return Some(high);
+        let mut known: Vec<(f64, bool)> = Vec::new();
+        while let Some(middle) = between(low, high, resolution) {
+            let Some((_, does)) = known.iter().find(|own| own.0 == middle) else {
+                let next = self.next_ones((low, high), resolution);
+                let does = self.ask(&next, &|| ())?;
+                known.extend(next.into_iter().zip(does));
+                continue;
             };
-            match self.ask(&[middle])?[0] {
+            match does {
                 true => high = middle,
                 false => low = middle,
             }
         }
+        Some(high)
     }
+
+    /// The value that is asked next, and those that may be asked after it: as many as there are threads for.
+    fn next_ones(&self, span: (f64, f64), resolution: f64) -> Vec<f64> {
+        let (mut spans, mut values) = (VecDeque::from([span]), Vec::new());
+        while values.len() < self.ahead
+            && let Some((low, high)) = spans.pop_front()
+        {
+            if let Some(middle) = between(low, high, resolution) {
+                values.push(middle);
+                spans.extend([(low, middle), (middle, high)]);
+            }
+        }
+        values
+    }
+}
+
+/// The multiple of `resolution` in the middle between two values; none where none lies between them.
+fn between(low: f64, high: f64, resolution: f64) -> Option<f64> {
+    let middle = multiple(0.5 * (low + high), resolution);
+    let near = [middle, multiple(middle - resolution, resolution), multiple(middle + resolution, resolution)];
+    near.into_iter().find(|own| *own > low && *own < high)
 }
 
 /// The multiple of `unit` nearest to a value; of a decimal unit the decimal itself.

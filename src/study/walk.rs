@@ -1,14 +1,14 @@
 //! Walks over the last field of a grid: each cell goes on from where the motion of the one before was.
 
-use std::sync::Mutex;
-use std::sync::atomic::Ordering;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 use super::Task;
 use super::cell::{Cell, SweepEnd, Tally};
 use super::cells::{Cells, Direction, Question, Ran};
 use super::slice::Slice;
 use super::table::Table;
-use crate::dynamics::{Model, Request};
+use crate::dynamics::{Model, Request, Run};
 use crate::scene::{Fault, Scene};
 use crate::system::threads::Pool;
 
@@ -48,12 +48,6 @@ impl Carry {
     }
 }
 
-/// Walks that a thread runs together: as many as the widest processor has lanes.
-const TOGETHER: usize = 16;
-
-/// Cells of all walks of a thread between two looks at the rows.
-const CELLS_PER_THREAD: usize = 256;
-
 /// One walk: where it is.
 struct Walk {
     /// The first cell of its row of the grid, in which direction it goes, and how many it has gone through.
@@ -66,7 +60,7 @@ struct Walk {
 
 impl Walk {
     /// The cell that comes next of a row of so many.
-    fn next(&self, length: u64) -> u64 {
+    fn cell(&self, length: u64) -> u64 {
         self.begin
             + match self.direction {
                 Direction::Up => self.done,
@@ -102,110 +96,58 @@ impl Cells {
         (slice, from): (&Slice, u64),
         pool: &Pool,
         task: &Task,
-        mut write: impl FnMut(&Table, &Tally) -> Result<bool, E>,
+        write: impl FnMut(&Table, &Tally) -> Result<bool, E>,
     ) -> Result<Tally, SweepEnd<E>> {
         let (length, directions) = (slice.unit(), carry.directions());
-        let walk = |place: u64| {
-            let number = slice.row(place) / length;
+        let begin = |walk: usize| {
+            let number = slice.row(from + walk as u64 * length) / length;
             let (row, way) = (number / directions.len() as u64, number % directions.len() as u64);
             Walk { begin: row * length, direction: directions[way as usize], done: 0, last: None }
         };
-        let mut walks = (from..slice.rows()).step_by(length as usize).map(walk);
-        let mut tally = Tally::default();
-        let mut put = |table: &Table, own: &Tally| {
-            tally.add(own);
-            tally.mechanisms = self.built.load(Ordering::Relaxed);
-            write(table, own).map_err(SweepEnd::Write)
-        };
-        loop {
-            let mut group: Vec<Walk> = walks.by_ref().take(TOGETHER * pool.count()).collect();
-            if group.is_empty() {
-                return Ok(tally);
-            }
-            let each = group.len().div_ceil(pool.count());
-            let parts: Vec<Mutex<&mut [Walk]>> = group.chunks_mut(each).map(Mutex::new).collect();
-            let (mut done, mut tables) = (0, Vec::<(Table, Tally)>::new());
-            while done < length {
-                let most = (question.most_cells() / (parts.len() * each) as u64).max(1);
-                let steps = ((CELLS_PER_THREAD / each) as u64).clamp(1, most).min(length - done);
-                let ran = pool.map(
-                    parts.len(),
-                    || self.base.clone(),
-                    |scene, part| {
-                        // No other thread has this part.
-                        let mut walks = parts[part].lock().map_err(|_| ())?;
-                        self.go_on(question, &mut walks, (length, steps), scene, task)
-                    },
-                );
-                let ran = ran.map_err(|()| SweepEnd::Cancelled)?;
-                for (walk, rows) in ran.into_iter().flatten().enumerate() {
-                    let mut own = Tally::default();
-                    rows.iter().for_each(|row: &Ran<_>| own.count(&row.cell));
-                    let table = question.table(&self.grid, &rows);
-                    if walk == 0 {
-                        if !put(&table, &own)? {
-                            return Ok(tally);
-                        }
-                        continue;
+        let (request, length) = (Request { carry: true, ..question.request() }, length as usize);
+        let work = |take: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, Ran<Q::Answer>)| {
+            let mut scene = self.base.clone();
+            // those that are to go on here, and those under way, by number
+            let (ready, walking) = (RefCell::new(Vec::new()), RefCell::new(BTreeMap::new()));
+            let ran = |number: usize, walk: Walk, cell: Cell, answer: Option<Q::Answer>| {
+                if task.is_cancelled() {
+                    return;
+                }
+                let (index, direction) = (walk.cell(length as u64), Some(walk.direction));
+                done(number * length + walk.done as usize, Ran { index, direction, cell, answer });
+                (task.tick)();
+                let walk = Walk { done: walk.done + 1, ..walk };
+                if (walk.done as usize) < length {
+                    ready.borrow_mut().push((number, walk));
+                }
+            };
+            let mut next = |under_way: usize| loop {
+                let own = ready.borrow_mut().pop();
+                let own = own.or_else(|| take(under_way).map(|number| (number, begin(number))));
+                let (number, walk) = own.filter(|_| !task.is_cancelled())?;
+                match self.model(walk.cell(length as u64), &mut scene, task) {
+                    Some(Ok(model)) => {
+                        let model = question.model(model);
+                        let model = match &walk.last {
+                            Some((before, state)) => model.carried_on(before, *state),
+                            None => model,
+                        };
+                        walking.borrow_mut().insert(number, walk);
+                        return Some((number, model, Request { cancel: Some(task.cancel), ..request }));
                     }
-                    tables.resize_with(tables.len().max(walk), Default::default);
-                    tables[walk - 1].0.append(&table);
-                    tables[walk - 1].1.add(&own);
+                    Some(Err(_)) | None => ran(number, walk, Cell::Unsolved, None),
                 }
-                done += steps;
-            }
-            for (table, own) in &tables {
-                if !put(table, own)? {
-                    return Ok(tally);
+            };
+            let mut ended = |number: usize, model: &Model, run: Run| {
+                let Some(mut walk): Option<Walk> = walking.borrow_mut().remove(&number) else { return };
+                if let Some(state) = run.carried.filter(|(x, v)| x.is_finite() && v.is_finite()) {
+                    walk.last = Some((model.clone(), state));
                 }
-            }
-        }
-    }
-
-    /// Goes on with some walks by so many `steps`; the rows of each walk.
-    fn go_on<Q: Question>(
-        &self,
-        question: &Q,
-        walks: &mut [Walk],
-        (length, steps): (u64, u64),
-        scene: &mut Scene,
-        task: &Task,
-    ) -> Result<Vec<Vec<Ran<Q::Answer>>>, ()> {
-        let request = Request { cancel: Some(task.cancel), carry: true, ..question.request() };
-        let mut rows: Vec<Vec<Ran<Q::Answer>>> = walks.iter().map(|_| Vec::new()).collect();
-        for _ in 0..steps {
-            let (mut models, mut places) = (Vec::new(), Vec::new());
-            for (place, walk) in walks.iter_mut().enumerate() {
-                let index = walk.next(length);
-                walk.done += 1;
-                let model = self.model(index, scene, task).and_then(Result::ok);
-                let cell = if model.is_some() { Cell::NotRun } else { Cell::Unsolved };
-                rows[place].push(Ran { index, direction: Some(walk.direction), cell, answer: None });
-                if let Some(model) = model {
-                    let model = question.model(model);
-                    models.push(match &walk.last {
-                        Some((before, state)) => model.carried_on(before, *state),
-                        None => model,
-                    });
-                    places.push(place);
-                }
-            }
-            let runs = Model::run_together(&models, &request);
-            if task.is_cancelled() {
-                return Err(());
-            }
-            for ((place, model), run) in places.into_iter().zip(models).zip(runs) {
-                let finite = run.carried.filter(|(x, v)| x.is_finite() && v.is_finite());
-                if let Some(row) = rows[place].last_mut() {
-                    row.cell = Cell::Run(run.summary);
-                    row.answer = Some(question.answer(&model, run));
-                }
-                if let Some(state) = finite {
-                    walks[place].last = Some((model, state));
-                }
-            }
-            walks.iter().for_each(|_| (task.tick)());
-        }
-        Ok(rows)
+                ran(number, walk, Cell::Run(run.summary), Some(question.answer(model, run)));
+            };
+            Model::run_from(&mut next, &mut ended);
+        };
+        let walks = ((slice.rows() - from) / length as u64) as usize;
+        self.in_order(question, (walks, length, usize::MAX), pool, task, work, write)
     }
 }

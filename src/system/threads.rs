@@ -1,10 +1,11 @@
 //! Threads.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::time::Duration;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
@@ -69,53 +70,63 @@ impl Pool {
         self.0.install(|| all().find_first(Option::is_some).flatten())
     }
 
-    /// Does the `parts`, each on one of the threads, and hands the results over in order, here, while others
-    /// are still worked on. At most so many are begun `ahead` of the last one that was handed over. Ends
-    /// early where `take` wants no more.
-    pub fn in_order<S, P, R: Send>(
+    /// Has each thread `work` on the numbers from 0 to `count` that it takes by the first argument, as from a
+    /// [`Queue`], and hand over their results by the second one, so many of `each` number, numbered through.
+    /// They leave in order, here, some at a time, while others are still worked on. At most so many numbers
+    /// are begun `ahead` of the last one whose results have left. Ends early where `leave` wants no more.
+    pub fn in_order<R: Send>(
         &self,
-        ahead: usize,
-        parts: impl Iterator<Item = P> + Send,
-        state: impl Fn() -> S + Sync,
-        part: impl Fn(&mut S, P) -> R + Sync,
-        mut take: impl FnMut(R) -> bool,
+        (count, each, ahead): (usize, usize, usize),
+        work: impl Fn(&dyn Fn(usize) -> Option<usize>, &dyn Fn(usize, R)) + Sync,
+        mut leave: impl FnMut(Vec<R>) -> bool,
     ) {
-        let (permit, permits) = channel();
-        // Each thread takes one more, by which it learns that there are no more parts.
-        for _ in 0..ahead.max(self.count()) {
-            let _ = permit.send(());
-        }
-        let parts = Mutex::new((permits, parts.enumerate()));
-        let next = || {
-            let mut parts = parts.lock().ok()?;
-            parts.0.recv().ok()?;
-            parts.1.next()
-        };
-        let stop = AtomicBool::new(false);
+        let queue = Queue { ahead, ..Queue::new(count, self.count()) };
         let (tell, news) = channel();
         self.0.in_place_scope(|scope| {
             scope.spawn_broadcast(|_, _| {
                 let farewell = Farewell(tell.clone());
-                let mut own = state();
-                while let Some((number, given)) = next().filter(|_| !stop.load(Ordering::Relaxed)) {
-                    let _ = farewell.0.send(News::Done(number, part(&mut own, given)));
-                }
+                let held = RefCell::new((Vec::new(), Instant::now()));
+                let send = || {
+                    let done = std::mem::take(&mut held.borrow_mut().0);
+                    let _ = farewell.0.send(News::Done(done));
+                    held.borrow_mut().1 = Instant::now();
+                };
+                let take = |under_way: usize| {
+                    queue.take(under_way).or_else(|| {
+                        let idle = under_way == 0;
+                        idle.then(&send)?;
+                        queue.wait()
+                    })
+                };
+                let done = |number, result| {
+                    held.borrow_mut().0.push((number, result));
+                    if held.borrow().1.elapsed() > SOON {
+                        send();
+                    }
+                };
+                work(&take, &done);
+                send();
             });
-            let (mut waiting, mut taken, mut working) = (BTreeMap::new(), 0, self.count());
-            while working > 0 && !stop.load(Ordering::Relaxed) {
+            let (mut waiting, mut left, mut working) = (BTreeMap::new(), 0, self.count());
+            while working > 0 && !queue.is_stopped() {
                 match news.recv() {
-                    Ok(News::Done(number, result)) => drop(waiting.insert(number, result)),
+                    Ok(News::Done(results)) => waiting.extend(results),
                     Ok(News::Ended { whole: true }) => working -= 1,
                     // The panic goes on when all threads have ended.
-                    Ok(News::Ended { whole: false }) | Err(_) => stop.store(true, Ordering::Relaxed),
+                    Ok(News::Ended { whole: false }) | Err(_) => queue.stop(),
                 }
-                while let Some(result) = waiting.remove(&taken).filter(|_| !stop.load(Ordering::Relaxed)) {
-                    taken += 1;
-                    let _ = permit.send(());
-                    stop.fetch_or(!take(result), Ordering::Relaxed);
+                let mut next = Vec::new();
+                while let Some(result) = waiting.remove(&(left + next.len())) {
+                    next.push(result);
+                }
+                left += next.len();
+                if !next.is_empty() {
+                    queue.leave(left / each);
+                    if !queue.is_stopped() && !leave(next) {
+                        queue.stop();
+                    }
                 }
             }
-            drop(permit);
         });
     }
 
@@ -125,10 +136,101 @@ impl Pool {
     }
 }
 
+/// The results of all numbers from 0 to `count`, in order, or an error of one of them. Each thread of a pool,
+/// or without one this one, asks `work` for those of the numbers that it takes, as from a [`Queue`].
+pub fn share<R: Send, E: Send>(
+    pool: Option<&Pool>,
+    count: usize,
+    work: impl Fn(&dyn Fn(usize) -> Option<usize>) -> Result<Vec<(usize, R)>, E> + Sync,
+) -> Result<Vec<R>, E> {
+    let queue = Queue::new(count, pool.map_or(1, Pool::count));
+    let part = || work(&|held| queue.take(held));
+    let mut all: Vec<(usize, R)> = match pool {
+        Some(pool) => pool.map(pool.count(), || (), |(), _| part())?.into_iter().flatten().collect(),
+        None => part()?,
+    };
+    all.sort_unstable_by_key(|own| own.0);
+    Ok(all.into_iter().map(|own| own.1).collect())
+}
+
+/// Results that come faster than this are handed over some at a time.
+const SOON: Duration = Duration::from_millis(1);
+
+/// Numbers from 0 on that threads take from each other, each of them once.
+#[derive(Debug)]
+pub struct Queue {
+    count: usize,
+    /// How many may be taken before the first of them has left.
+    ahead: usize,
+    threads: usize,
+    state: Mutex<Taken>,
+    moved: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct Taken {
+    next: usize,
+    left: usize,
+    stopped: bool,
+}
+
+impl Queue {
+    /// So many numbers for so many threads.
+    pub fn new(count: usize, threads: usize) -> Self {
+        Self { count, ahead: usize::MAX, threads, state: Mutex::default(), moved: Condvar::new() }
+    }
+
+    /// One more number for a thread that holds so many. None where none is left, or at present none is for
+    /// this thread: of few numbers none holds more than its share.
+    pub fn take(&self, held: usize) -> Option<usize> {
+        self.take_from(&mut self.lock(), held)
+    }
+
+    /// The same for a thread that holds none: none only where none is left.
+    fn wait(&self) -> Option<usize> {
+        let is_full = |own: &mut Taken| !own.stopped && own.next < self.count && self.is_full(own);
+        let mut state = self.moved.wait_while(self.lock(), is_full).unwrap_or_else(PoisonError::into_inner);
+        self.take_from(&mut state, 0)
+    }
+
+    fn take_from(&self, state: &mut Taken, held: usize) -> Option<usize> {
+        let has_its_share = held > 0 && held >= self.count.div_ceil(self.threads);
+        if state.stopped || state.next == self.count || has_its_share || self.is_full(state) {
+            return None;
+        }
+        state.next += 1;
+        Some(state.next - 1)
+    }
+
+    fn is_full(&self, state: &Taken) -> bool {
+        state.next - state.left >= self.ahead
+    }
+
+    /// So many, from 0 on, have left.
+    fn leave(&self, left: usize) {
+        self.lock().left = left;
+        self.moved.notify_all();
+    }
+
+    /// Gives no more.
+    fn stop(&self) {
+        self.lock().stopped = true;
+        self.moved.notify_all();
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.lock().stopped
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Taken> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
 /// What a thread tells whoever waits for its results.
 enum News<R> {
-    /// The result of the part of this number.
-    Done(usize, R),
+    /// Results, each with its number.
+    Done(Vec<(usize, R)>),
     /// It has come to its end, and not by a panic.
     Ended { whole: bool },
 }
@@ -167,39 +269,65 @@ mod tests {
     fn results_come_in_order_and_none_is_begun_too_far_ahead() {
         for threads in [1, 2, 5] {
             let pool = Pool::new(threads).unwrap();
-            let (begun, taken) = (Mutex::new(0), Mutex::new(Vec::new()));
-            let part = |_: &mut (), i: usize| {
-                *begun.lock().unwrap() += 1;
-                // the earlier of two takes longer
-                let work = (0..(1 - i % 2) * 20_000).fold(0.0_f64, |sum, k| sum + (k as f64).sqrt());
-                assert!(work >= 0.0);
-                i * i
+            let (begun, left) = (Mutex::new(0), Mutex::new(Vec::new()));
+            let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+                while let Some(first) = next(0) {
+                    // two at a time where there are two, the later one first
+                    let pair = [next(1), Some(first)];
+                    for i in pair.into_iter().flatten() {
+                        *begun.lock().unwrap() += 1;
+                        done(i, i * i);
+                    }
+                }
             };
-            let take = |result| {
-                let mut taken = taken.lock().unwrap();
-                taken.push(result);
-                assert!(*begun.lock().unwrap() <= taken.len() + 7);
+            let leave = |results: Vec<usize>| {
+                let mut left = left.lock().unwrap();
+                assert!(*begun.lock().unwrap() <= left.len() + results.len() + 7);
+                left.extend(results);
                 true
             };
-            pool.in_order(7, 0..500, || (), part, take);
-            assert_eq!(taken.into_inner().unwrap(), (0..500).map(|i| i * i).collect::<Vec<_>>());
+            pool.in_order((500, 1, 7), work, leave);
+            assert_eq!(left.into_inner().unwrap(), (0..500).map(|i| i * i).collect::<Vec<_>>());
 
             let mut few = Vec::new();
-            let take = |result| {
-                few.push(result);
+            let leave = |results: Vec<usize>| {
+                few.extend(results);
                 few.len() < 3
             };
-            pool.in_order(4, 0..1_000_000_000, || (), |(), i: u64| i, take);
-            assert_eq!(few, [0, 1, 2]);
-            pool.in_order(4, 0..0, || (), |(), i: u64| i, |_| unreachable!());
+            pool.in_order((1_000_000_000, 1, 4), work, leave);
+            assert_eq!(few[..3], [0, 1, 4]);
+            pool.in_order((0, 1, 4), work, |_| unreachable!());
         }
+    }
+
+    #[test]
+    fn shared_results_come_in_order_and_an_error_is_told() {
+        let pool = Pool::new(3).unwrap();
+        let squares = |next: &dyn Fn(usize) -> Option<usize>| {
+            Ok::<_, ()>(std::iter::from_fn(|| next(0)).map(|i| (i, i * i)).collect())
+        };
+        assert_eq!(share(Some(&pool), 100, squares), Ok((0..100).map(|i| i * i).collect()));
+        assert_eq!(share(None, 0, squares), Ok(Vec::new()));
+        assert_eq!(share(Some(&pool), 9, |_| Err::<Vec<(usize, ())>, _>("wrong")), Err("wrong"));
+    }
+
+    #[test]
+    fn no_thread_holds_more_than_its_share() {
+        let queue = Queue::new(5, 2);
+        assert_eq!([0, 1, 2].map(|held| queue.take(held)), [Some(0), Some(1), Some(2)]);
+        assert_eq!([3, 0, 2, 1, 0].map(|held| queue.take(held)), [None, Some(3), Some(4), None, None]);
     }
 
     #[test]
     fn a_panic_in_a_part_ends_all() {
         let pool = Pool::new(2).unwrap();
-        let part = |_: &mut (), i: u64| if i == 3 { panic!("part 3") } else { i };
-        let run = || pool.in_order(2, 0..u64::MAX, || (), part, |_| true);
+        let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+            while let Some(number) = next(0) {
+                assert!(number != 3, "part 3");
+                done(number, number);
+            }
+        };
+        let run = || pool.in_order((usize::MAX, 1, 2), work, |_| true);
         assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err());
     }
 }

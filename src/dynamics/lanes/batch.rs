@@ -11,7 +11,7 @@ use crate::dynamics::run::ending::Begun;
 use crate::dynamics::series::{SEEDED, Series};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::stepper::Step;
-use crate::numeric::{GaussLegendre, Lanes, Scalar};
+use crate::numeric::{GaussLegendre, Lanes};
 
 /// Steps of a group between two checks of the budget and the cancel flag.
 const BATCH_STEPS: u64 = 256;
@@ -27,6 +27,7 @@ const FEWEST: usize = 5;
 /// A run and what it is made of.
 pub(super) struct Prepared<'a> {
     pub model: &'a Model,
+    pub request: &'a Request<'a>,
     pub equation: &'a Equation<f64>,
     pub drive: &'a Sine<f64>,
     /// Of a motion that is pursued.
@@ -34,18 +35,29 @@ pub(super) struct Prepared<'a> {
     pub place: usize,
 }
 
-/// What is done with a motion that has ended: its place, the motion, what it began as, and its outcome.
-pub(super) type Ended<'r> = dyn FnMut(usize, LaneMotion, &Begun<f64>, Outcome) + 'r;
+/// Where runs come from, and where they go.
+pub(super) trait Source<'a> {
+    /// One more run; none where there is none at present, and with none under way where there is none left.
+    fn next(&mut self, under_way: usize) -> Option<Prepared<'a>>;
+
+    /// Takes a motion that has ended, what it began as, and its outcome.
+    fn ended(&mut self, own: &Prepared<'a>, motion: LaneMotion<'a>, begun: &Begun<f64>, outcome: Outcome);
+}
 
 /// A motion under way, and what it began as.
 struct Member<'a> {
+    /// Its number among those of the batch.
     index: usize,
+    own: Prepared<'a>,
     motion: Box<LaneMotion<'a>>,
     begun: Begun<f64>,
 }
 
-/// Motions whose force has one shape at present.
+/// Motions of one order whose force has one shape at present.
 struct Group<const W: usize> {
+    order: usize,
+    tolerance_log2: f64,
+    rule: GaussLegendre<Lanes<W>>,
     columns: Box<Columns<W>>,
     series: Box<Series<Lanes<W>>>,
     /// The motion in each lane.
@@ -63,32 +75,23 @@ impl<const W: usize> Group<W> {
 }
 
 pub(super) struct Batch<'a, 'r, const W: usize> {
-    prepared: &'a [Prepared<'a>],
-    request: &'a Request<'a>,
-    ended: &'r mut Ended<'r>,
-    next: usize,
+    source: &'r mut dyn Source<'a>,
+    /// How many were started.
+    started: usize,
     members: Vec<Option<Member<'a>>>,
     /// Places among the members that are free.
     free: Vec<usize>,
     groups: Vec<Group<W>>,
-    rule: GaussLegendre<Lanes<W>>,
-    order: usize,
-    tolerance_log2: f64,
 }
 
 impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
-    pub fn new(prepared: &'a [Prepared<'a>], request: &'a Request<'a>, ended: &'r mut Ended<'r>) -> Self {
+    pub fn new(source: &'r mut dyn Source<'a>) -> Self {
         Self {
-            prepared,
-            request,
-            ended,
-            next: 0,
+            source,
+            started: 0,
             members: (0..UNDER_WAY * W).map(|_| None).collect(),
             free: (0..UNDER_WAY * W).rev().collect(),
             groups: Vec::new(),
-            rule: f64::gauss_legendre(1).map(|value| Lanes([value; W])),
-            order: 0,
-            tolerance_log2: 0.0,
         }
     }
 
@@ -106,11 +109,13 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
             let fullest = (0..self.groups.len()).max_by_key(|own| self.groups[*own].ready());
             let ready = fullest.map_or(0, |own| self.groups[own].ready());
             if ready >= W || !self.start_next() {
-                if ready < FEWEST.min(W / 2) {
-                    self.finish_alone();
+                if ready >= FEWEST.min(W / 2) {
+                    return fullest;
+                }
+                self.finish_alone();
+                if !self.start_next() {
                     return None;
                 }
-                return fullest;
             }
         }
     }
@@ -122,8 +127,10 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
             for lane in 0..W {
                 if let Some((_, own, member)) = self.member(group, lane) {
                     own.columns.store(lane, &mut member.motion);
+                    own.lanes[lane] = None;
                 }
             }
+            self.groups[group].waiting.clear();
         }
         for place in 0..self.members.len() {
             if let Some(own) = &mut self.members[place] {
@@ -135,31 +142,28 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
 
     /// Starts the next run; false where there is none, or no room.
     fn start_next(&mut self) -> bool {
-        let Some(own) = self.prepared.get(self.next) else { return false };
-        let Some(place) = self.free.pop() else { return false };
+        let Some(place) = self.free.last().copied() else { return false };
+        let under_way = self.members.len() - self.free.len();
+        let Some(own) = self.source.next(under_way) else { return false };
+        self.free.pop();
         let clock = clock(own.model, own.equation.unit);
-        let (model, request) = (own.model, self.request);
+        let (model, request) = (own.model, own.request);
         let motion = Motion::new(model, request, model.tolerance, own.equation, clock, own.drive);
         let mut motion = Box::new(match own.pursuit {
             Some(pursuit) => motion.pursuing(pursuit, model),
             None => motion.with_recurrence(model.recurrence, model),
         });
-        if self.order == 0 {
-            let settings = &motion.stepper.settings;
-            (self.order, self.tolerance_log2) = (settings.order, settings.tolerance_log2);
-            self.rule = motion.record.rule_of_steps().map(|value| Lanes([value; W]));
-        }
         let begun = motion.begin(model);
-        self.members[place] = Some(Member { index: self.next, motion, begun });
-        self.next += 1;
+        self.members[place] = Some(Member { index: self.started, own, motion, begun });
+        self.started += 1;
         self.wait(place);
         true
     }
 
     /// Ends the run of a member.
     fn end(&mut self, place: usize, outcome: Outcome) {
-        if let Some(Member { index, motion, begun }) = self.members[place].take() {
-            (self.ended)(self.prepared[index].place, *motion, &begun, outcome);
+        if let Some(Member { own, motion, begun, .. }) = self.members[place].take() {
+            self.source.ended(&own, *motion, &begun, outcome);
             self.free.push(place);
         }
     }
@@ -188,9 +192,17 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
                 && motion.has_budget_for(2 * BATCH_STEPS)
             {
                 let force = &motion.stepper.mode(&motion.state).force;
-                let found = self.groups.iter().position(|own| own.columns.takes(force));
+                let settings = &motion.stepper.settings;
+                let (order, tolerance_log2) = (settings.order, settings.tolerance_log2);
+                let alike = |own: &Group<W>| {
+                    own.columns.takes(force) && (own.order, own.tolerance_log2) == (order, tolerance_log2)
+                };
+                let found = self.groups.iter().position(alike);
                 return Some(found.unwrap_or_else(|| {
                     self.groups.push(Group {
+                        order,
+                        tolerance_log2,
+                        rule: motion.record.rule_of_steps().map(|value| Lanes([value; W])),
                         columns: Box::new(Columns::new(force)),
                         series: Box::new(Series::new(force.products())),
                         lanes: [None; W],
@@ -212,9 +224,9 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     fn step(&mut self, group: usize) {
         loop {
             self.fill(group);
-            let Group { columns, series, rounds, .. } = &mut self.groups[group];
+            let Group { columns, series, rounds, order, tolerance_log2, rule, .. } = &mut self.groups[group];
             let trial = loop {
-                let trial = columns.step(series, &self.rule, self.order, self.tolerance_log2);
+                let trial = columns.step(series, rule, *order, *tolerance_log2);
                 *rounds += 1;
                 let logs = (0..W).any(|lane| trial.taken[lane] & columns.logged[lane]);
                 if logs || *rounds % BATCH_STEPS == 0 || trial.stopped.contains(&true) {
@@ -262,14 +274,13 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     /// Stores a lane back to its motion, which takes the step on which an event is possible; loads it again
     /// where it stays in the group.
     fn store(&mut self, group: usize, lane: usize, trial: &Trial<W>) {
-        let order = self.order;
         let Some((place, own, member)) = self.member(group, lane) else { return };
         let motion = &mut member.motion;
         own.lanes[lane] = None;
         own.columns.store(lane, motion);
         let left = motion.stepper.clock.between(&motion.state.at, &motion.stepper.end);
         let flow = if trial.holds[lane] && trial.length.0[lane] < left {
-            copy_lane(&own.series, lane, order, &mut motion.stepper.series);
+            copy_lane(&own.series, lane, own.order, &mut motion.stepper.series);
             let alone = &mut motion.stepper.series;
             alone.measured = own.columns.inside[lane].then(|| (trial.length.0[lane], trial.squared.0[lane]));
             motion.stepper.evaluations += 1;
@@ -298,10 +309,9 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
 
     /// Logs the step that a lane has just taken.
     fn log_step(&mut self, group: usize, lane: usize, trial: &Trial<W>) {
-        let order = self.order;
         let Some((_, own, member)) = self.member(group, lane) else { return };
         let motion = &mut member.motion;
-        copy_lane(&own.series, lane, order, &mut motion.stepper.series);
+        copy_lane(&own.series, lane, own.order, &mut motion.stepper.series);
         let mode = motion.stepper.mode(&motion.state);
         let (length, end) = (trial.length.0[lane], trial.end(lane));
         let state = (end.y + mode.origin, end.v);

@@ -15,20 +15,27 @@
 mod batch;
 mod columns;
 
+use std::cell::OnceCell;
 use std::sync::atomic::AtomicBool;
 
 use crate::dynamics::drive::form::{Form, clock, form};
+use crate::dynamics::drive::tone::Sine;
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
-use crate::dynamics::result::{Arrival, Pursuit, Request, Run};
+use crate::dynamics::result::{Arrival, Outcome, Pursuit, Request, Run};
+use crate::dynamics::run::ending::Begun;
 use crate::dynamics::run::pursue::pursue_alone;
 use crate::system::clock::ThreadClock;
-use batch::{Batch, Ended, Prepared};
+use batch::{Batch, Prepared, Source};
+use columns::LaneMotion;
 
 /// Lanes where registers hold eight numbers: two registers a column, so that one addition need not wait for
 /// the last.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 const WIDEST: usize = 16;
+
+/// Runs of which what they are made of is kept together, and given back when all of them have ended.
+const KEPT: usize = 1024;
 
 impl Model {
     /// Runs several models with nothing listed, many at once where the processor can: what [`run`](Self::run)
@@ -43,13 +50,31 @@ impl Model {
         run_all(models, request, usize::MAX)
     }
 
+    /// The same with models that are asked for while others are under way, so that several threads may take
+    /// them from each other. `next` is told how many are under way here and gives a number, a model, and what
+    /// is asked of it: none where there is none at present, and with none under way where there is none left.
+    /// `ended` gets each run with its number and model as soon as it has ended. No CPU time is told.
+    pub fn run_from<'q>(
+        next: &mut dyn FnMut(usize) -> Option<(usize, Self, Request<'q>)>,
+        ended: &mut dyn FnMut(usize, &Self, Run),
+    ) {
+        run_from(usize::MAX, next, ended);
+    }
+
     /// Pursues motions of this model from starts of their own, many at once where the processor can; what
-    /// each has come to, in their order, the same bit for bit for any batch. The model's scales are those of
-    /// all of them, so that motions that meet in one release from rest go on alike. Its start and duration do
-    /// not matter. Precondition: its drive [repeats](Self::repeats), and the starts lie in its curve and
-    /// between its stops.
-    pub fn pursue(&self, pursuits: &[Pursuit], cancel: Option<&AtomicBool>) -> Vec<Arrival> {
-        pursue_all(self, pursuits, &Request { cancel, ..Request::default() }, usize::MAX)
+    /// each has come to, the same bit for bit in any company. `next` gives the places of those that are to be
+    /// pursued here, as for [`run_from`](Self::run_from), and `ended` gets what each has come to. The model's
+    /// scales are those of all of them, so that motions that meet in one release from rest go on alike. Its
+    /// start and duration do not matter. Precondition: its drive [repeats](Self::repeats), and the starts lie
+    /// in its curve and between its stops.
+    pub fn pursue(
+        &self,
+        pursuits: &[Pursuit],
+        cancel: Option<&AtomicBool>,
+        next: &mut dyn FnMut(usize) -> Option<usize>,
+        ended: &mut dyn FnMut(usize, Arrival),
+    ) {
+        pursue(self, pursuits, &Request { cancel, ..Request::default() }, usize::MAX, (next, ended));
     }
 
     /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; none where the processor has
@@ -57,10 +82,14 @@ impl Model {
     #[doc(hidden)]
     pub fn pursue_in_lanes(&self, pursuits: &[Pursuit], width: usize) -> Option<Vec<Arrival>> {
         let request = Request::default();
-        match width {
-            1 => Some(pursue_alone(self, pursuits, &request)),
-            _ => has_lanes(width).then(|| pursue_all(self, pursuits, &request, width)),
+        if width == 1 {
+            return Some(pursuits.iter().map(|own| pursue_alone(self, own, &request)).collect());
         }
+        let (mut all, mut arrivals) = (0..pursuits.len(), vec![None; pursuits.len()]);
+        let mut ended = |place: usize, own| arrivals[place] = Some(own);
+        has_lanes(width)
+            .then(|| pursue(self, pursuits, &request, width, (&mut |_| all.next(), &mut ended)))?;
+        arrivals.into_iter().collect()
     }
 
     /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; none where the processor has not so many.
@@ -70,68 +99,115 @@ impl Model {
     }
 }
 
-/// Runs several models, as [`Model::run`] does; the results in their order.
-///
-/// Those that cannot share their steps with others are run alone. No more than `most` lanes are used.
+/// Runs several models, as [`Model::run`] does; the results in their order. No more than `most` lanes are
+/// used.
 fn run_all(models: &[Model], request: &Request, most: usize) -> Vec<Run> {
+    let watch = ThreadClock::start();
     let mut runs: Vec<Option<Run>> = models.iter().map(|_| None).collect();
-    let mut shared = Vec::new();
-    let batches = !request.ledger && !request.events && request.sample_times.is_empty();
-    for (place, model) in models.iter().enumerate() {
-        let unit = model.scales.unit();
-        match form(model, &clock(model, unit)) {
-            Form::Sine(drive) if batches && model.compliant.is_none() && !model.motionless => {
-                shared.push((model, Equation::new(model, unit), drive, place));
-            }
-            _ => runs[place] = Some(model.run(request)),
-        }
-    }
-    let prepared = shared.iter().map(|(model, equation, drive, place)| Prepared {
-        model,
-        equation,
-        drive,
-        pursuit: None,
-        place: *place,
-    });
-    let mut batched: Vec<Prepared> = prepared.collect();
-    // Motions of one order share their steps; tolerances differ only where a sweep is over them.
-    batched.sort_by(|a, b| b.model.tolerance.total_cmp(&a.model.tolerance));
-    for alike in batched.chunk_by(|a, b| a.model.tolerance == b.model.tolerance) {
-        let watch = ThreadClock::start();
-        run_batch(alike, request, most, &mut |place, motion, begun, outcome| {
-            runs[place] = Some(motion.finish(&models[place], begun, outcome));
-        });
-        let share = watch.seconds() / alike.len() as f64;
-        for own in alike {
-            if let Some(run) = &mut runs[own.place] {
-                run.summary.cpu_s = share;
-            }
-        }
-    }
-    runs.into_iter().zip(models).map(|(run, model)| run.unwrap_or_else(|| model.run(request))).collect()
+    let mut all = models.iter().cloned().enumerate().map(|(place, model)| (place, model, *request));
+    run_from(most, &mut |_| all.next(), &mut |place, _, run| runs[place] = Some(run));
+    let share = watch.seconds() / models.len() as f64;
+    runs.iter_mut().flatten().for_each(|run| run.summary.cpu_s = share);
+    runs.into_iter().flatten().collect()
 }
 
-/// Pursues motions of one model; what each has come to, in their order.
-fn pursue_all(model: &Model, pursuits: &[Pursuit], request: &Request, most: usize) -> Vec<Arrival> {
+fn run_from<'q>(
+    most: usize,
+    next: &mut dyn FnMut(usize) -> Option<(usize, Model, Request<'q>)>,
+    ended: &mut dyn FnMut(usize, &Model, Run),
+) {
+    let mut whole = false;
+    while !whole {
+        let berths: Vec<OnceCell<Box<Berth>>> = (0..KEPT).map(|_| OnceCell::new()).collect();
+        let mut runs = Runs { berths: berths.iter(), next, ended };
+        run_batch(&mut runs, most);
+        whole = runs.berths.len() > 0;
+    }
+}
+
+/// A model and what its run is made of.
+struct Berth<'q> {
+    model: Model,
+    request: Request<'q>,
+    equation: Equation<f64>,
+    drive: Sine<f64>,
+}
+
+/// Runs of models. Those that cannot share their steps with others are run alone.
+struct Runs<'a, 'q, 'r> {
+    berths: std::slice::Iter<'a, OnceCell<Box<Berth<'q>>>>,
+    next: &'r mut dyn FnMut(usize) -> Option<(usize, Model, Request<'q>)>,
+    ended: &'r mut dyn FnMut(usize, &Model, Run),
+}
+
+impl<'a> Source<'a> for Runs<'a, '_, '_> {
+    fn next(&mut self, under_way: usize) -> Option<Prepared<'a>> {
+        let berth = self.berths.as_slice().first()?;
+        loop {
+            let (place, model, request) = (self.next)(under_way)?;
+            let lists = request.ledger || request.events || !request.sample_times.is_empty();
+            let shares = !lists && model.compliant.is_none() && !model.motionless;
+            let unit = model.scales.unit();
+            match shares.then(|| form(&model, &clock(&model, unit))) {
+                Some(Form::Sine(drive)) => {
+                    self.berths.next();
+                    let equation = Equation::new(&model, unit);
+                    let own = berth.get_or_init(|| Box::new(Berth { model, request, equation, drive }));
+                    let Berth { model, request, equation, drive } = &**own;
+                    return Some(Prepared { model, request, equation, drive, pursuit: None, place });
+                }
+                _ => (self.ended)(place, &model, model.run(&request)),
+            }
+        }
+    }
+
+    fn ended(&mut self, own: &Prepared<'a>, motion: LaneMotion<'a>, begun: &Begun<f64>, outcome: Outcome) {
+        (self.ended)(own.place, own.model, motion.finish(own.model, begun, outcome));
+    }
+}
+
+/// What gives the places of pursuits, and what gets what they have come to.
+type Through<'r> = (&'r mut dyn FnMut(usize) -> Option<usize>, &'r mut dyn FnMut(usize, Arrival));
+
+/// Pursues motions of one model.
+fn pursue(model: &Model, pursuits: &[Pursuit], request: &Request, most: usize, (next, ended): Through) {
     let unit = model.scales.unit();
-    let drive = match form(model, &clock(model, unit)) {
-        Form::Sine(drive) if model.compliant.is_none() && pursuits.len() > 1 => drive,
-        _ => return pursue_alone(model, pursuits, request),
-    };
-    let equation = Equation::new(model, unit);
-    let prepared = pursuits.iter().enumerate().map(|(place, pursuit)| Prepared {
-        model,
-        equation: &equation,
-        drive: &drive,
-        pursuit: Some(pursuit),
-        place,
-    });
-    let prepared: Vec<Prepared> = prepared.collect();
-    let mut arrivals: Vec<Option<Arrival>> = pursuits.iter().map(|_| None).collect();
-    run_batch(&prepared, request, most, &mut |place, motion, begun, outcome| {
-        arrivals[place] = Some(motion.arrived(model, begun, outcome));
-    });
-    arrivals.into_iter().flatten().collect()
+    match form(model, &clock(model, unit)) {
+        Form::Sine(drive) if model.compliant.is_none() => {
+            let equation = Equation::new(model, unit);
+            let prepared = |place: usize| Prepared {
+                model,
+                request,
+                equation: &equation,
+                drive: &drive,
+                pursuit: Some(&pursuits[place]),
+                place,
+            };
+            run_batch(&mut Pursuits { prepared, next, ended }, most);
+        }
+        _ => {
+            while let Some(place) = next(0) {
+                ended(place, pursue_alone(model, &pursuits[place], request));
+            }
+        }
+    }
+}
+
+/// Pursuits, each by its place.
+struct Pursuits<'r, P> {
+    prepared: P,
+    next: &'r mut dyn FnMut(usize) -> Option<usize>,
+    ended: &'r mut dyn FnMut(usize, Arrival),
+}
+
+impl<'a, P: Fn(usize) -> Prepared<'a>> Source<'a> for Pursuits<'_, P> {
+    fn next(&mut self, under_way: usize) -> Option<Prepared<'a>> {
+        (self.next)(under_way).map(&self.prepared)
+    }
+
+    fn ended(&mut self, own: &Prepared<'a>, motion: LaneMotion<'a>, begun: &Begun<f64>, outcome: Outcome) {
+        (self.ended)(own.place, motion.arrived(own.model, begun, outcome));
+    }
 }
 
 /// Whether the processor at hand has so many lanes.
@@ -146,26 +222,23 @@ fn has_lanes(width: usize) -> bool {
     }
 }
 
-/// Runs models of one tolerance in as many lanes as the processor has, at most `most`.
-fn run_batch(prepared: &[Prepared], request: &Request, most: usize, ended: &mut Ended) {
+/// Runs what a source gives in as many lanes as the processor has, at most `most`.
+fn run_batch<'a>(source: &mut dyn Source<'a>, most: usize) {
     debug_assert!(most >= 4, "every processor has 4 lanes");
-    if prepared.len() == 1 {
-        return; // alone
-    }
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         if most >= WIDEST
             && let Some(wide) = pulp::x86::V4::try_new()
         {
-            return wide.vectorize(Wide(Batch::<WIDEST>::new(prepared, request, ended)));
+            return wide.vectorize(Wide(Batch::<WIDEST>::new(source)));
         }
         if most >= 8
             && let Some(wide) = pulp::x86::V3::try_new()
         {
-            return wide.vectorize(Wide(Batch::<8>::new(prepared, request, ended)));
+            return wide.vectorize(Wide(Batch::<8>::new(source)));
         }
     }
-    Batch::<4>::new(prepared, request, ended).run();
+    Batch::<4>::new(source).run();
 }
 
 /// What is run by instructions that not every processor has. (A type of its own and no closure: a closure's

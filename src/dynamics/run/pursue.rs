@@ -34,32 +34,29 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D, false> {
     }
 }
 
-/// Pursues each motion alone.
-pub(crate) fn pursue_alone(model: &Model, pursuits: &[Pursuit], request: &Request) -> Vec<Arrival> {
+/// Pursues a motion alone.
+pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) -> Arrival {
     let unit = model.scales.unit();
     let (equation, clock) = (Equation::new(model, unit), clock(model, unit));
     match form(model, &clock) {
-        Form::Still(drive) => with_drive(model, pursuits, request, &equation, clock, &drive),
-        Form::Sine(drive) => with_drive(model, pursuits, request, &equation, clock, &drive),
-        Form::Composite(drive) => with_drive(model, pursuits, request, &equation, clock, &drive),
-        Form::Coupled(drive) => with_drive(model, pursuits, request, &equation, clock, &drive),
+        Form::Still(drive) => with_drive(model, pursuit, request, &equation, clock, &drive),
+        Form::Sine(drive) => with_drive(model, pursuit, request, &equation, clock, &drive),
+        Form::Composite(drive) => with_drive(model, pursuit, request, &equation, clock, &drive),
+        Form::Coupled(drive) => with_drive(model, pursuit, request, &equation, clock, &drive),
     }
 }
 
 fn with_drive<D: Drive<f64>>(
     model: &Model,
-    pursuits: &[Pursuit],
+    pursuit: &Pursuit,
     request: &Request,
     equation: &Equation<f64>,
     clock: Clock<f64>,
     drive: &D,
-) -> Vec<Arrival> {
-    let pursue = |pursuit: &Pursuit| {
-        let motion = Motion::<f64, D, false>::new(model, request, model.tolerance, equation, clock, drive);
-        let mut motion = motion.pursuing(pursuit, model);
-        let begun = motion.begin(model);
-        let outcome = motion.go_on();
-        motion.arrived(model, &begun, outcome)
-    };
-    pursuits.iter().map(pursue).collect()
+) -> Arrival {
+    let motion = Motion::<f64, D, false>::new(model, request, model.tolerance, equation, clock, drive);
+    let mut motion = motion.pursuing(pursuit, model);
+    let begun = motion.begin(model);
+    let outcome = motion.go_on();
+    motion.arrived(model, &begun, outcome)
 }

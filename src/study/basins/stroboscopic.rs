@@ -1,17 +1,13 @@
 //! The stroboscopic map of a model by runs of whole forcing periods.
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::dynamics::{Arrival, Model, Outcome, Pursuit, Request};
 use crate::study::exponents::{ExponentOptions, average_exponents};
-use crate::system::threads::Pool;
+use crate::system::threads::{Pool, share};
 
 /// A displacement and a velocity in units of the scene's scales.
 type Point = [f64; 2];
-
-/// Motions that a thread follows together, at most and at least: several times the lanes of any processor.
-const TOGETHER: usize = 128;
-const FEWEST: usize = 16;
 
 /// A model, its range, and the threads that run it.
 pub(super) struct Stroboscope<'a> {
@@ -111,14 +107,20 @@ impl Stroboscope<'_> {
 
     /// What pursuits come to, in their order; `tick` is called for each. None where it was cancelled.
     pub fn pursue(&self, pursuits: &[Pursuit], tick: &(dyn Fn(&Pursuit) + Sync)) -> Option<Vec<Arrival>> {
-        let share = pursuits.len().div_ceil(4 * self.pool.count()).clamp(FEWEST, TOGETHER);
-        let parts: Vec<&[Pursuit]> = pursuits.chunks(share).collect();
-        let part = |(): &mut (), own: usize| {
-            let arrivals = self.model.pursue(parts[own], Some(self.cancel));
-            parts[own].iter().for_each(tick);
-            let cancelled = self.cancel.load(std::sync::atomic::Ordering::Relaxed);
-            if cancelled { Err(()) } else { Ok(arrivals) }
+        let work = |next: &dyn Fn(usize) -> Option<usize>| {
+            let mut arrivals = Vec::new();
+            let mut ended = |place: usize, arrival| {
+                tick(&pursuits[place]);
+                arrivals.push((place, arrival));
+            };
+            let mut next = |held: usize| next(held).filter(|_| !self.is_cancelled());
+            self.model.pursue(pursuits, Some(self.cancel), &mut next, &mut ended);
+            if self.is_cancelled() { Err(()) } else { Ok(arrivals) }
         };
-        self.pool.map(parts.len(), || (), part).ok().map(|all| all.concat())
+        share(Some(self.pool), pursuits.len(), work).ok()
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
     }
 }

@@ -3,15 +3,13 @@
 use std::sync::Arc;
 
 use super::design::{BestQuestion, NoBest, Optimum, apply};
-use crate::dynamics::{Model, Request, Summary};
+use crate::dynamics::{Model, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, FieldPath, Scene, check};
 use crate::study::Task;
 use crate::study::fields::{Read, SummaryField};
+use crate::study::shared_runs::shared_runs;
 use crate::system::threads::Pool;
-
-/// Runs that a thread makes together, at most.
-const BATCH: usize = 16;
 
 /// What one design came to.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +41,7 @@ impl Judged {
 pub(super) type Design = (Vec<f64>, Vec<f64>);
 
 /// The summary of a run, or what is wrong with its scene.
-type Ran = Result<Summary, Vec<Fault>>;
+type Ran = Result<Box<Summary>, Vec<Fault>>;
 
 /// What evaluates designs.
 pub(super) struct Evaluator<'a> {
@@ -97,42 +95,20 @@ impl<'a> Evaluator<'a> {
     /// The same of designs in which what varies has values of its own.
     pub fn judge_varied(&self, designs: &[Design]) -> Result<Vec<Judged>, NoBest> {
         let each = self.question.environments.len();
-        let runs = designs.len() * each;
-        // few runs are shared out, so that no thread waits
-        let batch = runs.div_ceil(self.pool.count()).clamp(1, BATCH);
-        let part = |_: &mut (), part: usize| {
-            let jobs = part * batch..((part + 1) * batch).min(runs);
-            self.run(jobs.map(|job| (&designs[job / each], job % each)))
-        };
-        let parts: Vec<Vec<Ran>> = self.pool.map(runs.div_ceil(batch), || (), part)?;
-        let summaries = parts.concat();
-        Ok(summaries.chunks(each).map(|own| self.judged(own)).collect())
-    }
-
-    fn run<'b>(&self, jobs: impl Iterator<Item = (&'b Design, usize)>) -> Result<Vec<Ran>, NoBest> {
-        let mut models = Vec::new();
-        let mut found: Vec<Result<usize, Vec<Fault>>> = Vec::new();
-        for (design, environment) in jobs {
-            if self.task.is_cancelled() {
-                return Err(NoBest::Cancelled);
-            }
-            found.push(self.model(design, environment).map(|model| {
-                models.push(model);
-                models.len() - 1
-            }));
-        }
         let constraints = self.question.subject_to.iter().map(|own| own.of);
         let ledger = constraints.chain([self.question.maximise]).any(|field| field.needs_ledger);
-        let request = Request { cancel: Some(self.task.cancel), ledger, ..Request::default() };
-        let runs = Model::run_together(&models, &request);
-        if self.task.is_cancelled() {
-            return Err(NoBest::Cancelled);
-        }
-        let ran = found.into_iter().map(|own| {
+        let told = |own: Ran| {
             (self.task.tick)();
-            own.map(|place| runs[place].summary)
-        });
-        Ok(ran.collect())
+            own
+        };
+        let model = |job: usize| {
+            let model = self.model(&designs[job / each], job % each).map_err(|faults| told(Err(faults)))?;
+            Ok((model, Request { ledger, ..Request::default() }))
+        };
+        let summary = |run: &Run| told(Ok(Box::new(run.summary)));
+        let runs = shared_runs(Some(self.pool), self.task, designs.len() * each, model, summary);
+        let summaries = runs.ok_or(NoBest::Cancelled)?;
+        Ok(summaries.chunks(each).map(|own| self.judged(own)).collect())
     }
 
     fn model(&self, (at, varied): &Design, environment: usize) -> Result<Model, Vec<Fault>> {

@@ -1,6 +1,6 @@
 //! Exponents of every cell of a grid, a row a cell.
 
-use super::result::{ExponentOptions, Exponents, NoExponents};
+use super::result::{ExponentOptions, Exponents};
 use super::settle::exponents;
 use crate::dynamics::Model;
 use crate::scene::{Fault, Files, Scene};
@@ -76,7 +76,7 @@ impl ExponentCells {
         pool.find_first(self.cells.grid.cells(), || self.cells.base.clone(), faults).map_or(Ok(()), Err)
     }
 
-    /// Measures every cell on `pool` and hands the rows to `write`, one by one in order. `write` answers
+    /// Measures every cell on `pool` and hands the rows to `write`, some at a time, in order. `write` answers
     /// whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
     pub fn run<E>(
         &self,
@@ -85,34 +85,33 @@ impl ExponentCells {
         task: &Task,
         mut write: impl FnMut(&Table) -> Result<bool, E>,
     ) -> Result<ExponentTally, SweepEnd<E>> {
-        let cell = |scene: &mut Scene, index: u64| {
-            let model = self.cells.model(index, scene, task).and_then(Result::ok);
-            let found = match model.map(|model| exponents(&model, options, task.cancel)) {
-                Some(Err(NoExponents::Cancelled)) => return None,
-                Some(Ok(found)) => Some(found),
-                Some(Err(_)) | None => None,
-            };
-            (task.tick)();
-            (!task.is_cancelled()).then_some(found)
+        let cells = self.cells.grid.cells() as usize;
+        let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, Found)| {
+            let mut scene = self.cells.base.clone();
+            while let Some(number) = next(0) {
+                let model = self.cells.model(number as u64, &mut scene, task).and_then(Result::ok);
+                let found = model.map(|model| exponents(&model, options, task.cancel));
+                if task.is_cancelled() {
+                    return;
+                }
+                done(number, found.and_then(Result::ok));
+                (task.tick)();
+            }
         };
         let (mut tally, mut end) = (ExponentTally::default(), None);
-        let take = |found: Option<Found>| {
-            let Some(found) = found else {
-                end = Some(SweepEnd::Cancelled);
-                return false;
-            };
-            let table = self.table(tally.cells, &[found]);
-            tally.cells += 1;
-            tally.missing += u64::from(found.is_none());
-            tally.resting += u64::from(found.is_some_and(|own| own.rests()));
+        let leave = |found: Vec<Found>| {
+            let table = self.table(tally.cells, &found);
+            tally.cells += found.len() as u64;
+            tally.missing += found.iter().filter(|own| own.is_none()).count() as u64;
+            tally.resting += found.iter().flatten().filter(|own| own.rests()).count() as u64;
             write(&table).unwrap_or_else(|error| {
                 end = Some(SweepEnd::Write(error));
                 false
             })
         };
-        let ahead = AHEAD * pool.count();
-        pool.in_order(ahead, 0..self.cells.grid.cells(), || self.cells.base.clone(), cell, take);
-        end.map_or(Ok(tally), Err)
+        pool.in_order((cells, 1, AHEAD * pool.count()), work, leave);
+        let cancelled = task.is_cancelled() && tally.cells < cells as u64;
+        end.or(cancelled.then_some(SweepEnd::Cancelled)).map_or(Ok(tally), Err)
     }
 
     fn table(&self, begin: u64, found: &[Found]) -> Table {

@@ -1,0 +1,37 @@
+//! Runs that the threads of a pool take from each other, many at once where the processor can.
+
+use std::cell::RefCell;
+
+use super::Task;
+use crate::dynamics::{Model, Request, Run};
+use crate::system::threads::{Pool, share};
+
+/// The answers of `count` runs, in order, by the threads of a pool or by this one. `model` gives the model of
+/// a number with what is asked of it, or the answer where there is nothing to run, and `answer` is read off
+/// its run. None where the task was cancelled.
+pub(super) fn shared_runs<'q, R: Send>(
+    pool: Option<&Pool>,
+    task: &'q Task,
+    count: usize,
+    model: impl Fn(usize) -> Result<(Model, Request<'q>), R> + Sync,
+    answer: impl Fn(&Run) -> R + Sync,
+) -> Option<Vec<R>> {
+    let work = |take: &dyn Fn(usize) -> Option<usize>| {
+        let answers = RefCell::new(Vec::new());
+        let mut next = |under_way: usize| loop {
+            let number = take(under_way).filter(|_| !task.is_cancelled())?;
+            match model(number) {
+                Ok((model, request)) => {
+                    return Some((number, model, Request { cancel: Some(task.cancel), ..request }));
+                }
+                Err(answer) => answers.borrow_mut().push((number, answer)),
+            }
+        };
+        let mut ended = |number: usize, _: &Model, run: Run| {
+            answers.borrow_mut().push((number, answer(&run)));
+        };
+        Model::run_from(&mut next, &mut ended);
+        if task.is_cancelled() { Err(()) } else { Ok(answers.into_inner()) }
+    };
+    share(pool, count, work).ok()
+}
