@@ -12,25 +12,39 @@ use super::number::Number;
 /// `W` numbers side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
-pub struct Lanes<const W: usize>(pub [f64; W]);
+pub struct Lanes<const W: usize, T = f64>(pub [T; W]);
 
-impl<const W: usize> Lanes<W> {
+impl<const W: usize, T: Number> Lanes<W, T> {
     /// The number of each lane.
     #[inline(always)]
-    pub fn from_fn(of: impl FnMut(usize) -> f64) -> Self {
+    pub fn from_fn(of: impl FnMut(usize) -> T) -> Self {
         Self(std::array::from_fn(of))
+    }
+
+    /// The same number in all.
+    #[inline(always)]
+    pub fn all(value: T) -> Self {
+        Self([value; W])
+    }
+}
+
+impl<const W: usize, T> Lanes<W, T> {
+    /// The same with each number.
+    #[inline(always)]
+    pub fn map<U>(self, of: impl FnMut(T) -> U) -> Lanes<W, U> {
+        Lanes(self.0.map(of))
     }
 }
 
 macro_rules! lane_by_lane {
     ($trait:ident, $method:ident, $operator:tt) => {
-        impl<const W: usize> $trait for Lanes<W> {
+        impl<const W: usize, T: Number> $trait for Lanes<W, T> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 let mut result = self;
-                for (own, other) in result.0.iter_mut().zip(&other.0) {
-                    *own $operator *other;
+                for (result, (own, other)) in result.0.iter_mut().zip(self.0.iter().zip(&other.0)) {
+                    *result = *own $operator *other;
                 }
                 result
             }
@@ -38,12 +52,12 @@ macro_rules! lane_by_lane {
     };
 }
 
-lane_by_lane!(Add, add, +=);
-lane_by_lane!(Sub, sub, -=);
-lane_by_lane!(Mul, mul, *=);
-lane_by_lane!(Div, div, /=);
+lane_by_lane!(Add, add, +);
+lane_by_lane!(Sub, sub, -);
+lane_by_lane!(Mul, mul, *);
+lane_by_lane!(Div, div, /);
 
-impl<const W: usize> Neg for Lanes<W> {
+impl<const W: usize, T: Number> Neg for Lanes<W, T> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -55,30 +69,30 @@ impl<const W: usize> Neg for Lanes<W> {
     }
 }
 
-impl<const W: usize> AddAssign for Lanes<W> {
+impl<const W: usize, T: Number> AddAssign for Lanes<W, T> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl<const W: usize> SubAssign for Lanes<W> {
+impl<const W: usize, T: Number> SubAssign for Lanes<W, T> {
     #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-impl<const W: usize> Number for Lanes<W> {
-    const QUICK: bool = true;
+impl<const W: usize, T: Number> Number for Lanes<W, T> {
+    const QUICK: bool = T::QUICK;
 
     #[inline(always)]
     fn of(value: f64) -> Self {
-        Self([value; W])
+        Self([T::of(value); W])
     }
     #[inline(always)]
     fn ratio(over: f64, under: f64) -> Self {
-        Self([over / under; W])
+        Self([T::ratio(over, under); W])
     }
     #[inline(always)]
     fn abs(self) -> Self {

@@ -1,6 +1,7 @@
 //! Mathematics without mechanics: number types, roots, fits, sums, decimals.
 
 mod bisect;
+mod collocation;
 mod correlation;
 mod decay;
 mod decimal;
@@ -24,6 +25,7 @@ mod sum;
 mod wide;
 
 pub use bisect::bisect;
+pub(crate) use collocation::{Collocation, GROUP, MOST_GROUPS, Values};
 pub use correlation::{Alignment, alignment};
 pub(crate) use decay::decay;
 pub use decimal::Decimal;

@@ -2,6 +2,7 @@
 
 mod command_line;
 mod impact;
+mod one_step;
 mod phases;
 mod quasi_static;
 mod together;

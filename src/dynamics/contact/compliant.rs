@@ -8,7 +8,10 @@
 //! Resting on such a stop is an oscillation of some kilohertz about a depth of a tenth of a micrometre, and
 //! it is followed as long as it shows: on the prototype's stops at tolerance 1e-9 some 36 steps a period
 //! where it reaches up to the surface, and one or two where it is small. Once it is below the tolerance, the
-//! mass follows its load (`quasi_static`). One impact takes 12 to 18 steps from tolerance 1e-3 to 1e-14.
+//! mass follows its load (`quasi_static`).
+//!
+//! Most impacts are over before anything but the stop changes much. Such a one is a single step (`impact`);
+//! any other takes 12 to 18 from tolerance 1e-3 to 1e-14.
 
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{Compliant, End, EndKind};
@@ -17,6 +20,7 @@ use crate::dynamics::result::Outcome;
 use crate::dynamics::state::{BY_SPEED, Contact, Depth, Flow, HELD, Touch};
 use crate::dynamics::step::choose_quasi_static::QuasiStaticStep;
 use crate::dynamics::step::contact::{ContactStep, Reached};
+use crate::dynamics::step::impact::{Impact, Separation};
 use crate::dynamics::step::path::StepView;
 use crate::dynamics::step::penetration::Penetration;
 use crate::dynamics::step::quasi_static::QuasiStatic;
@@ -38,10 +42,12 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             };
             self.state.depth = Depth { root: depth.sqrt(), clip_changed: false };
             self.record.touch(&self.state.at, end.side(), self.state.v, false);
+            let Some(stop) = self.stepper.equation.compliant else { return true };
             if self.state.contact == Contact::Free {
-                let stop = self.stepper.equation.compliant;
-                let clipped = stop.is_some_and(|stop| stop.is_clipped(sign * self.state.v));
+                let clipped = stop.is_clipped(sign * self.state.v);
                 self.state.contact = if clipped { Contact::Clipped(end) } else { Contact::Compressing(end) };
+            } else {
+                self.record.peak_contact = stop.force(self.state.depth.root, T::zero());
             }
             return true;
         }
@@ -85,7 +91,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return None;
         }
         let stop = self.stepper.equation.compliant?;
-        if self.take_quasi_static_step(end, left, stop) {
+        if self.take_quasi_static_step(end, left, stop) || self.take_impact(end, left, stop) {
             return None;
         }
         let new = || Box::new(Penetration::new(stop, self.stepper.equation.most_products()));
@@ -93,6 +99,37 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let flow = self.take_contact_step(end, left, &mut path);
         self.stepper.penetration = Some(path);
         flow
+    }
+
+    /// A whole impact as one step; whether it was taken.
+    fn take_impact(&mut self, end: End, left: T, stop: Compliant<T>) -> bool {
+        let mut path = self.stepper.impact.take().unwrap_or_else(|| Box::new(Impact::new(stop)));
+        let barrier = self.record.barrier;
+        let found = self.stepper.choose_impact(&self.state, end, left, barrier, &mut path);
+        if let Some(Separation { time, speed }) = found {
+            let (mode, whole) = (self.stepper.mode(&self.state), T::of(2.0));
+            let (x, v) = (self.state.x, end.sign::<T>() * speed);
+            self.steps += 1;
+            let view = StepView {
+                path: &*path,
+                origin: mode.origin,
+                at: self.state.at,
+                whole,
+                length: whole,
+                duration: time,
+                bound: path.most * path.most,
+                limits: (mode.low, mode.high),
+                x,
+                v,
+            };
+            self.record.step(&view, self.stepper.base(self.state.segment));
+            self.record.contact(&view);
+            self.state.at = self.stepper.clock.advance(&self.state.at, time);
+            self.state.v = v;
+            self.leave_stop(end);
+        }
+        self.stepper.impact = Some(path);
+        found.is_some()
     }
 
     /// A step of quasi-static motion, where the mass does not ring; whether it was taken.

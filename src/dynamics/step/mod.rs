@@ -2,12 +2,15 @@
 //! are read.
 
 mod choose;
+mod choose_impact;
 pub(crate) mod choose_quasi_static;
 pub(crate) mod chord;
 pub(crate) mod circuit;
 pub(crate) mod contact;
 mod contact_path;
 mod exit;
+pub(crate) mod impact;
+mod impact_path;
 pub(crate) mod path;
 pub(crate) mod penetration;
 pub(crate) mod quasi_static;

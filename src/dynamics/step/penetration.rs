@@ -282,34 +282,15 @@ impl<T: Scalar> Penetration<T> {
         if log2 < 1000.0 { fast_exp2(log2).min(cap) } else { cap }
     }
 
-    /// Speed that what is not composed of drive and force would make over `time` at up to this depth: the
-    /// first such terms of the drive, all those of the force.
-    pub fn neglected<D: Drive<T>>(
-        &mut self,
-        drive: &D,
-        cursor: &mut D::Cursor,
-        (time, deepest): (T, T),
-    ) -> T {
+    /// Speed that what is not composed of drive and force would make over `time` at up to this depth.
+    pub fn neglected<D: Drive<T>>(&mut self, drive: &D, cursor: &mut D::Cursor, whole: (T, T)) -> T {
         let levels = self.terms.of_drive();
-        let mut made = T::zero();
         if levels < D::ZERO_FROM {
-            let mut power = T::of(1.0);
-            for _ in 0..levels {
-                power = power * time;
-            }
             self.extend_drive(levels + 2, drive, cursor);
-            for k in levels..levels + 2 {
-                power = power * time;
-                made = made.larger(self.inner.a[k].abs() * power / T::of((k + 1) as f64));
-            }
         }
         let first = if self.terms == Terms::Few { 3 } else { 5 };
-        if first < self.about.len() {
-            let rest = self.about[first..].iter().rev().fold(T::zero(), |sum, c| sum * deepest + c.abs());
-            let power = (0..first).fold(time, |power, _| power * deepest);
-            made += rest * power;
-        }
-        made
+        let levels = if levels < D::ZERO_FROM { levels } else { ROOM };
+        neglected(&self.inner.a, levels, (&self.about, first), whole)
     }
 
     pub(super) fn at(&self, c: &[T; ROOM], s: T) -> T {
@@ -336,4 +317,26 @@ impl<T: Scalar> Penetration<T> {
         }
         scaled
     }
+}
+
+/// Speed that drive and force beyond their first terms would make over `time` at up to this depth: the first
+/// two of those of the drive over time `a` from `levels` on, all those of the force over depth from `first`
+/// on.
+pub(super) fn neglected<T: Scalar>(
+    a: &[T],
+    levels: usize,
+    (about, first): (&[T], usize),
+    (time, deepest): (T, T),
+) -> T {
+    let mut made = T::zero();
+    let mut power = (0..levels).fold(T::of(1.0), |power, _| power * time);
+    for (k, a) in (levels..levels + 2).zip(a.iter().skip(levels)) {
+        power = power * time;
+        made = made.larger(a.abs() * power / T::of((k + 1) as f64));
+    }
+    if first < about.len() {
+        let rest = about[first..].iter().rev().fold(T::zero(), |sum, c| sum * deepest + c.abs());
+        made += rest * (0..first).fold(time, |power, _| power * deepest);
+    }
+    made
 }

@@ -1,5 +1,6 @@
 //! Stepper: equation, drive and clock, and the series of the present step.
 
+use super::impact::Impact;
 use super::path::StepView;
 use super::penetration::Penetration;
 use super::quasi_static::QuasiStatic;
@@ -25,6 +26,8 @@ pub(crate) struct Stepper<'a, T: Scalar, D: Drive<T>> {
     pub cursor: D::Cursor,
     /// Workspace of contact with a compliant stop, made at the first.
     pub penetration: Option<Box<Penetration<T>>>,
+    /// The same of a contact from touch to separation.
+    pub impact: Option<Box<Impact<T>>>,
     /// The same of a mass that is pressed into it by a slow load.
     pub quasi_static: Option<Box<QuasiStatic<T>>>,
     /// The end of the run.
@@ -61,6 +64,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
             series: Series::new(equation.most_products()),
             cursor: D::Cursor::default(),
             penetration: None,
+            impact: None,
             quasi_static: None,
             end,
             evaluations: 0,

@@ -38,7 +38,7 @@ pub(crate) struct Costs {
     pub step: u64,
     /// The check of a step once more, after it was halved.
     pub check: u64,
-    /// An expansion in contact with a compliant stop.
+    /// An expansion in contact with a compliant stop, or an impact on it as one step.
     pub contact: u64,
     /// A sample of the motion and the base.
     sample: u64,
@@ -54,7 +54,7 @@ impl Costs {
         Self {
             step,
             check: 5 + products + own / 2,
-            contact: step + 120 + order * order / 3,
+            contact: 40 + order * order / 3 + own,
             sample: SAMPLE + own,
         }
     }

@@ -26,6 +26,7 @@ fn a_start_at_rest_is_pressed_in_as_deep_as_the_forces_balance() {
         let depth = run.summary.final_x - 1.5e-3;
         let press = -model.mechanism().curve.force(run.summary.final_x);
         near_relative(stop.stiffness * depth.powf(1.5), press, 1e-10);
+        near_relative(run.summary.peak_contact_force.unwrap(), press, 1e-10);
         assert!(depth > 1e-8 && depth < 1e-6);
         assert!(run.summary.outcome == Outcome::Done && run.summary.steps < 10);
         assert!(run.samples.iter().all(|own| own.phase == Phase::RightStop && own.x == run.summary.final_x));

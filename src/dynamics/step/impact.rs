@@ -1,0 +1,334 @@
+//! An impact on a compliant stop in one step, from touch to separation.
+//!
+//! Depth d in the stop and inward speed w obey d' = w and w' = A - k d^1.5 (1 + a w), A what everything but
+//! the stop does, A0 at touch. With G(w) = w/a - ln(1 + a w)/a^2, which is w^2/2 without loss,
+//!
+//! ```text
+//! J = G(w) + (2/5) k d^2.5 - A0 d
+//! ```
+//!
+//! would stay what it is if A were A0 (1 + a w) (Hunt and Crossley 1975, for A0 = 0). So it changes little,
+//! however slow the impact:
+//!
+//! ```text
+//! dJ/dt = w B,    B = (A - A0 - a w A0)/(1 + a w).
+//! ```
+//!
+//! Let m be the root of the depth at which the mass would turn with this J, J = (2/5) k m^5 - A0 m^2, and y
+//! from -1 at touch to 1 at separation be such that the root of the depth is m c, c = 1 - y^2. Then w is a
+//! function of m and y,
+//!
+//! ```text
+//! G(w) = q^2/2,    q = -y m r,    r^2 = (4/5) k m^3 (1 + c + c^2 + c^3 + c^4) - 2 A0 (1 + c),
+//! ```
+//!
+//! and with D = k m^3 - A0
+//!
+//! ```text
+//! dt/dy = -y 4 m^2 c/(w (1 - c^2 B/D)),    dm/dy = w B/(2 m D) dt/dy,
+//! ```
+//!
+//! both analytic from end to end. m is nearly constant, and found by iteration: each sweep integrates the
+//! slopes that the last m and t give, by collocation at Gauss-Legendre points, and takes the error to some
+//! hundredths or less. (Picard iteration at these points: Clenshaw and Norton 1963, "The solution of
+//! nonlinear ordinary differential equations in Chebyshev series".) The singularities of an elastic
+//! impact, where c^5 = 1, lie on an ellipse about -1 and 1 with half axes of sum 2, whatever the speed.
+
+use crate::dynamics::equation::Compliant;
+use crate::dynamics::series::Series;
+use crate::numeric::{
+    Collocation, GROUP, Lanes, MOST_GROUPS, Number, Scalar, Values, fast_exp2, fast_log2, widest,
+};
+
+/// w/q as a series in p = a q: G(w) = q^2/2 is p^2/2 = z - ln(1 + z) for z = a w. It converges up to
+/// |p| = 2 sqrt(pi), where 1 + z is 1 again, once around 0.
+const STRETCH: [f64; 40] = stretch();
+const STRETCH_RADIUS: f64 = 3.544;
+
+/// From z z' = p (1 + z).
+const fn stretch() -> [f64; 40] {
+    let mut c = [0.0; 40];
+    c[0] = 1.0;
+    let mut n = 1;
+    while n < c.len() {
+        let (mut sum, mut k) = (c[n - 1], 1);
+        while k < n {
+            sum -= c[k] * (n + 1 - k) as f64 * c[n - k];
+            k += 1;
+        }
+        c[n] = sum / (n + 2) as f64;
+        n += 1;
+    }
+    c
+}
+
+/// The most sweeps before it is given up.
+const MOST_SWEEPS: usize = 12;
+
+/// The largest share of the elastic force that may press at the turn, times 5/2: beyond it is not an impact
+/// but a mass that trembles on its stop.
+const MOST_PRESSED: f64 = 0.8;
+
+/// Terms that count of the base's acceleration over time, and of the mechanism's force over depth.
+pub(crate) const DRIVE_TERMS: usize = 6;
+pub(crate) const FORCE_TERMS: usize = 5;
+
+/// The most by which a mass may leave faster than it came, for which the series of its speed is still known.
+const MOST_GAIN: f64 = 1.1;
+
+/// An impact from touch to separation in y, and the workspace.
+#[derive(Debug, Clone)]
+pub(crate) struct Impact<T> {
+    /// The base's acceleration over time.
+    pub series: Series<T>,
+    /// The mechanism's force about the surface, and the mode that it is of.
+    pub about: Vec<T>,
+    pub about_mode: Option<usize>,
+    pub stop: Compliant<T>,
+    pub sign: T,
+    /// Displacement of the untouched stop from the piece's origin.
+    pub surface: T,
+    pub damping: T,
+    pub rule: &'static Collocation,
+    /// Inward acceleration by everything but the stop at touch, A0.
+    pub pressing: T,
+    /// Speed at touch.
+    pub struck: T,
+    /// m at touch, and what no m is above.
+    first: T,
+    pub most: T,
+    /// Terms of [`STRETCH`].
+    terms: usize,
+    amplitude: Values<T>,
+    /// At the points: root of the depth, inward speed, time, and what m and t change by over y.
+    pub root: Values<T>,
+    pub speed: Values<T>,
+    pub time: Values<T>,
+    amplitude_slope: Values<T>,
+    pub time_slope: Values<T>,
+    /// By how much the last sweep changed them, over m and the time that the impact takes.
+    change: Values<T>,
+}
+
+/// How an impact ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Separation<T> {
+    pub time: T,
+    /// Inward speed, below 0.
+    pub speed: T,
+}
+
+impl<T: Scalar> Impact<T> {
+    pub fn new(stop: Compliant<T>) -> Self {
+        let zeros = [Lanes::zero(); MOST_GROUPS];
+        Self {
+            series: Series::new(0),
+            about: Vec::new(),
+            about_mode: None,
+            stop,
+            sign: T::of(1.0),
+            surface: T::zero(),
+            damping: T::zero(),
+            rule: Collocation::of(1),
+            pressing: T::zero(),
+            struck: T::zero(),
+            first: T::zero(),
+            most: T::zero(),
+            terms: 1,
+            amplitude: zeros,
+            root: zeros,
+            speed: zeros,
+            time: zeros,
+            amplitude_slope: zeros,
+            time_slope: zeros,
+            change: zeros,
+        }
+    }
+
+    /// Solves for the impact that begins at `speed`, to the share `tolerance` of its speed and, between its
+    /// ends, `between` of it; none where it is no such impact, or not resolved.
+    pub fn solve(&mut self, speed: T, (tolerance, between): (T, T)) -> Option<Separation<T>> {
+        let stiffness = self.stop.stiffness;
+        self.pressing = -(self.sign * (self.about[0] + self.series.a[0]));
+        self.struck = speed;
+        let q = self.begin(speed, tolerance)?;
+        self.first = self.turn_of(q * q * T::of(0.5))?;
+        let cube = self.first * self.first * self.first;
+        if !(self.pressing < stiffness * cube * T::of(0.4 * MOST_PRESSED)) {
+            return None;
+        }
+        let (amplitude, time) = widest(
+            #[inline(always)]
+            || self.iterate(tolerance),
+        )?;
+        let unresolved = self.rule.unresolved(&self.time_slope);
+        if !(unresolved <= between * time && unresolved * unresolved <= tolerance * (time * time)) {
+            return None;
+        }
+        let (_, end) = self.speed_of(amplitude, T::of(1.0));
+        let groups = self.amplitude[..self.rule.groups()].iter();
+        // (between the points too)
+        self.most = groups.flat_map(|own| own.0).fold(self.first, T::larger) * T::of(1.001);
+        (end < T::zero() && -end <= speed * T::of(MOST_GAIN)).then_some(Separation { time, speed: end })
+    }
+
+    /// |q| at touch, and how many terms of the series tell speeds up to there.
+    fn begin(&mut self, speed: T, tolerance: T) -> Option<T> {
+        // p^2 = 2 (z - ln(1 + z)) is near z^2/(1 + 2z/3), and below z^2/(1 + z/2).
+        let own = self.stop.loss * speed;
+        let near = |share: f64| own / (T::of(1.0) + own * T::of(share)).sqrt();
+        let size = near(0.5).to_f64().max(1e-9) * MOST_GAIN;
+        let needed = fast_log2(tolerance.to_f64() * 1e-3) / (fast_log2(size) - fast_log2(STRETCH_RADIUS));
+        self.terms = needed as usize + 2;
+        if !(needed >= 0.0 && self.terms <= STRETCH.len()) {
+            return None;
+        }
+        if !(self.stop.loss > T::zero()) {
+            return Some(speed);
+        }
+        let mut p = near(2.0 / 3.0);
+        for _ in 0..6 {
+            // z' = p (1 + z)/z
+            let z = p * self.stretch(p);
+            let change = (own - z) * z / (p * (T::of(1.0) + z));
+            p += change;
+            if change.abs() <= p * T::of(T::ROUGH) {
+                break;
+            }
+        }
+        Some(p / self.stop.loss)
+    }
+
+    /// m for this J.
+    fn turn_of(&self, stored: T) -> Option<T> {
+        let fifth = self.stop.stiffness * T::of(0.4);
+        let power = |x: T, exponent: f64| T::of(fast_exp2(fast_log2(x.to_f64()) * exponent));
+        let mut m = power(stored / fifth, 0.2);
+        if self.pressing > T::zero() {
+            m += power(self.pressing / fifth, 1.0 / 3.0) * T::of(0.5);
+        }
+        for _ in 0..20 {
+            let cube = fifth * m * m * m;
+            let value = (cube - self.pressing) * (m * m) - stored;
+            let slope = m * (T::of(5.0) * cube - T::of(2.0) * self.pressing);
+            let change = value / slope;
+            m -= change;
+            if change.abs() <= m * T::of(T::ROUGH) {
+                let cube = fifth * m * m * m;
+                let value = (cube - self.pressing) * (m * m) - stored;
+                return Some(m - value / (m * (T::of(5.0) * cube - T::of(2.0) * self.pressing)));
+            }
+        }
+        None
+    }
+
+    /// Sweeps until m and t at the end stand still; both.
+    #[inline(always)]
+    fn iterate(&mut self, tolerance: T) -> Option<(T, T)> {
+        let groups = self.rule.groups();
+        self.amplitude[..groups].fill(Lanes::all(self.first));
+        self.time[..groups].fill(Lanes::zero());
+        self.amplitude_slope[..groups].fill(Lanes::zero());
+        self.time_slope[..groups].fill(Lanes::zero());
+        // About the time that it takes.
+        let (mut m, mut t) = (self.first, self.first * self.first / self.struck * T::of(3.0));
+        let (mut last, mut rate) = (T::of(1.0), T::zero());
+        for sweep in 0..MOST_SWEEPS {
+            self.sweep((m, t));
+            m = self.first + self.rule.total(&self.amplitude_slope);
+            t = self.rule.total(&self.time_slope);
+            let change = self.rule.total(&self.change);
+            if sweep > 0 {
+                rate = rate.larger(change / last);
+                if change * rate <= tolerance {
+                    return Some((m, t));
+                }
+                if !(rate < T::of(0.5)) {
+                    return None;
+                }
+            }
+            last = change;
+            self.rule.integrals(self.first, &self.amplitude_slope, &mut self.amplitude);
+            self.rule.integrals(T::zero(), &self.time_slope, &mut self.time);
+        }
+        None
+    }
+
+    /// The slopes that m and t give, at all points.
+    #[inline(always)]
+    fn sweep(&mut self, (m, t): (T, T)) {
+        let all = Lanes::<GROUP, T>::all;
+        let (one, two, four) = (Lanes::of(1.0), Lanes::of(2.0), Lanes::of(4.0));
+        let (stiffness, loss) = (all(self.stop.stiffness), all(self.stop.loss));
+        let pressing = all(self.pressing);
+        let (inverse_time, inverse_amplitude) = (all(T::of(1.0) / t), all(T::of(3.0) / m));
+        for group in 0..self.rule.groups() {
+            let y = self.rule.places(group);
+            let (m, t) = (self.amplitude[group], self.time[group]);
+            let c = one - y * y;
+            let elastic = stiffness * (m * m * m);
+            let r = self.r_of(elastic, c, pressing).map(T::sqrt);
+            let q = -(y * m * r);
+            let stretch = self.stretch(loss * q);
+            let (w, u) = (q * stretch, m * c);
+            let changed = self.changed(all, [t, u * u, w]);
+            let z = loss * w;
+            let b = (changed - z * pressing) / (one + z);
+            let net = elastic - pressing;
+            let slope = four * u / (r * stretch * (one - c * c * b / net));
+            let amplitude_slope = w * b * slope / (two * m * net);
+            self.change[group] = (slope - self.time_slope[group]).abs() * inverse_time
+                + (amplitude_slope - self.amplitude_slope[group]).abs() * inverse_amplitude;
+            self.root[group] = u;
+            self.speed[group] = w;
+            self.time_slope[group] = slope;
+            self.amplitude_slope[group] = amplitude_slope;
+        }
+    }
+
+    /// Change of the inward acceleration by everything but the stop since touch, at a time, a depth and a
+    /// speed.
+    #[inline(always)]
+    pub fn changed<N: Number>(&self, all: impl Fn(T) -> N, [t, d, w]: [N; 3]) -> N {
+        let outward =
+            |k: usize| all(if k.is_multiple_of(2) { self.sign * self.about[k] } else { self.about[k] });
+        let [f1, f2, f3, f4] = [1, 2, 3, 4].map(outward);
+        let [a1, a2, a3, a4, a5] = [1, 2, 3, 4, 5].map(|k| all(self.sign * self.series.a[k]));
+        let force = d * (f1 + d * (f2 + d * (f3 + d * f4)));
+        let base = t * (a1 + t * (a2 + t * (a3 + t * (a4 + t * a5))));
+        -(force + base + all(self.damping) * w)
+    }
+
+    /// The square of r, `elastic` being k m^3.
+    #[inline(always)]
+    fn r_of<N: Number>(&self, elastic: N, c: N, pressing: N) -> N {
+        let (one, square) = (N::of(1.0), c * c);
+        let sum = (one + c) * (one + square) + square * square;
+        N::of(0.8) * elastic * sum - N::of(2.0) * pressing * (one + c)
+    }
+
+    /// w/q at p = a q.
+    #[inline(always)]
+    fn stretch<N: Number>(&self, p: N) -> N {
+        STRETCH[..self.terms].iter().rev().fold(N::zero(), |sum, c| sum * p + N::of(*c))
+    }
+
+    /// c and w at m and y.
+    fn speed_of(&self, m: T, y: T) -> (T, T) {
+        let c = T::of(1.0) - y * y;
+        let q = -(y * m * self.r_of(self.stop.stiffness * (m * m * m), c, self.pressing).sqrt());
+        (c, q * self.stretch(self.stop.loss * q))
+    }
+
+    /// Root of the depth and inward speed at `y`.
+    pub fn at(&self, y: T) -> (T, T) {
+        let m = self.first + self.rule.integral(&self.amplitude_slope, y).0;
+        let (c, w) = self.speed_of(m, y);
+        (m * c, w)
+    }
+
+    /// The base's acceleration.
+    pub fn base(&self, t: T) -> T {
+        self.series.a[..DRIVE_TERMS].iter().rev().fold(T::zero(), |sum, c| sum * t + *c)
+    }
+}

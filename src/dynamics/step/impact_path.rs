@@ -1,0 +1,121 @@
+//! Reading of an impact that was solved in one step: position, time, integrals, dissipation, largest force.
+
+use super::impact::Impact;
+use super::path::{InStop, Path};
+use crate::dynamics::result::Phase;
+use crate::dynamics::series::ROOM;
+use crate::numeric::{GROUP, GaussLegendre, Lanes, MOST_GROUPS, Number, Scalar, Values, bisect};
+
+/// Numbers at the points of a group.
+type Group<T> = Lanes<GROUP, T>;
+
+/// Halvings that find the largest force: it changes by the square of what is left.
+const HALVINGS: u32 = 30;
+
+/// The most steps to the place of a time; each takes the error to its square.
+const MOST_STEPS: usize = 60;
+
+impl<T: Scalar> Impact<T> {
+    /// The integral over time of a function of time, root of the depth and inward speed, between two
+    /// parameters.
+    fn integral(&self, (from, to): (T, T), of: impl Fn(Group<T>, Group<T>, Group<T>) -> Group<T>) -> T {
+        let (one, whole) = (T::of(1.0), from == T::zero() && to == T::of(2.0));
+        let half = if whole { one } else { (to - from) * T::of(0.5) };
+        let mut values: Values<T> = [Lanes::zero(); MOST_GROUPS];
+        for (group, value) in values[..self.rule.groups()].iter_mut().enumerate() {
+            let (t, u, w, slope) = if whole {
+                (self.time[group], self.root[group], self.speed[group], self.time_slope[group])
+            } else {
+                let y = self.rule.places(group).map(|place| (from - one) + half * (one + place));
+                let (time, at) = (y.map(|y| self.rule.integral(&self.time_slope, y)), y.map(|y| self.at(y)));
+                (time.map(|t| t.0), at.map(|at| at.0), at.map(|at| at.1), time.map(|t| t.1))
+            };
+            *value = of(t, u, w) * slope;
+        }
+        self.rule.total(&values) * half
+    }
+}
+
+/// The parameter is y + 1, from 0 to 2.
+impl<T: Scalar> Path<T> for Impact<T> {
+    const IN_CONTACT: bool = true;
+
+    fn phase(&self) -> Phase {
+        if self.sign < T::zero() { Phase::LeftStop } else { Phase::RightStop }
+    }
+    fn known(&self) -> usize {
+        3
+    }
+    fn start(&self) -> T {
+        self.surface
+    }
+    /// The parabola through touch, turn and separation: it turns where the motion does, and nothing else is
+    /// read of it, since an impact that reaches the barrier is no such step.
+    fn scaled(&self, _: T) -> [T; ROOM] {
+        let (most, _) = self.at(T::zero());
+        let height = self.sign * (most * most) * T::of(4.0);
+        let mut scaled = [T::zero(); ROOM];
+        (scaled[0], scaled[1], scaled[2]) = (self.surface, height, -height);
+        scaled
+    }
+    fn position(&self, parameter: T) -> T {
+        let (root, _) = self.at(parameter - T::of(1.0));
+        self.surface + self.sign * (root * root)
+    }
+    fn velocity(&self, parameter: T) -> T {
+        self.sign * self.at(parameter - T::of(1.0)).1
+    }
+    fn time(&self, parameter: T) -> T {
+        self.rule.integral(&self.time_slope, parameter - T::of(1.0)).0
+    }
+    fn parameter(&self, time: T, length: T) -> T {
+        let (mut low, mut high) = (T::zero(), length);
+        let mut parameter = length * T::of(0.5);
+        for _ in 0..MOST_STEPS {
+            let (value, slope) = self.rule.integral(&self.time_slope, parameter - T::of(1.0));
+            let late = value - time;
+            *(if late > T::zero() { &mut high } else { &mut low }) = parameter;
+            let newton = parameter - late / slope;
+            let inside = newton > low && newton < high;
+            let next = if inside { newton } else { (low + high) * T::of(0.5) };
+            let change = (next - parameter).abs();
+            parameter = next;
+            if change <= length * T::of(T::EPSILON) {
+                break;
+            }
+        }
+        parameter
+    }
+    fn integrals<const WORK: bool>(&self, _: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
+        let squared = self.integral((from, to), |_, _, w| w * w);
+        let sign = Lanes::all(self.sign);
+        let power = |t: Group<T>, _: Group<T>, w: Group<T>| t.map(|t| self.base(t)) * (sign * w);
+        (squared, if WORK { self.integral((from, to), power) } else { T::zero() })
+    }
+    fn moment(&self, _: &GaussLegendre<T>, from: T, to: T) -> T {
+        let (surface, sign) = (Lanes::all(self.surface), Lanes::all(self.sign));
+        self.integral((from, to), |_, u, _| surface + sign * (u * u))
+    }
+}
+
+impl<T: Scalar> InStop<T> for Impact<T> {
+    fn loss(&self, _: &GaussLegendre<T>, from: T, to: T) -> T {
+        self.stop.stiffness * self.stop.loss * self.integral((from, to), |_, u, w| u * u * u * (w * w))
+    }
+
+    /// (On the way in, where the loss adds to it.)
+    fn peak(&self, _: T, _: T, known: T) -> T {
+        if !(self.stop.force(self.most, self.struck) > known) {
+            return known;
+        }
+        let grows = |y: T| {
+            let (u, w) = self.at(y);
+            let t = self.rule.integral(&self.time_slope, y).0;
+            let net = self.stop.force(u, w) - self.pressing - self.changed(|own| own, [t, u * u, w]);
+            T::of(1.5) * w * (T::of(1.0) + self.stop.loss * w) > self.stop.loss * (u * u) * net
+        };
+        let (_, place) = bisect(T::of(-1.0), T::zero(), HALVINGS, grows);
+        let (u, w) = self.at(place);
+        known.larger(self.stop.force(u, w))
+    }
+}

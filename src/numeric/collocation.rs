@@ -1,0 +1,179 @@
+//! Collocation at Gauss-Legendre points: integrals of a function up to each point, from its values there.
+
+use std::sync::OnceLock;
+
+use super::lanes::Lanes;
+use super::number::Number;
+use super::quadrature::even_half;
+use super::scalar::Scalar;
+
+/// Points come in groups of so many, as many as the widest registers hold.
+pub const GROUP: usize = 8;
+
+/// The most groups.
+pub const MOST_GROUPS: usize = 6;
+
+/// Values at the points, group by group; those beyond the last are not used.
+pub type Values<T> = [Lanes<GROUP, T>; MOST_GROUPS];
+
+/// Gauss-Legendre points on \[-1, 1], ascending, and what integrates over them.
+///
+/// A function that is analytic in the ellipse about -1 and 1 with half axes of sum r is interpolated with an
+/// error that falls like r^-points, and integrated from -1 to 1 with one that falls like its square.
+#[derive(Debug)]
+pub struct Collocation {
+    groups: usize,
+    places: Values<f64>,
+    weights: Values<f64>,
+    /// Legendre polynomial k at each point, times half the weight.
+    legendre: Vec<Values<f64>>,
+    /// Integrals from -1 to each point of the interpolating polynomial that is 1 at point k, 0 at the others.
+    integrals: Vec<Values<f64>>,
+}
+
+impl Collocation {
+    /// At least this many points, up to the most; made once each.
+    pub fn of(points: usize) -> &'static Self {
+        static ALL: [OnceLock<Collocation>; MOST_GROUPS] = [const { OnceLock::new() }; MOST_GROUPS];
+        let groups = points.div_ceil(GROUP).clamp(1, MOST_GROUPS);
+        ALL[groups - 1].get_or_init(|| Self::new(groups))
+    }
+
+    fn new(groups: usize) -> Self {
+        let none = [Lanes([0.0; GROUP]); MOST_GROUPS];
+        let points = groups * GROUP;
+        let all = || vec![none; points];
+        let mut own = Self { groups, places: none, weights: none, legendre: all(), integrals: all() };
+        for (i, (place, weight)) in even_half(points / 2).into_iter().enumerate() {
+            for (i, place) in [(i, -place), (points - 1 - i, place)] {
+                own.places[i / GROUP].0[i % GROUP] = place;
+                own.weights[i / GROUP].0[i % GROUP] = weight;
+            }
+        }
+        for group in 0..groups {
+            let (mut before, mut value) = (Lanes::zero(), Lanes::of(1.0));
+            for k in 0..points {
+                own.legendre[k][group] = value * own.weights[group] * Lanes::of(0.5);
+                (before, value) = (value, next(k, own.places[group], (before, value)));
+            }
+        }
+        for k in 0..points {
+            let mut one = none;
+            one[k / GROUP].0[k % GROUP] = 1.0;
+            for group in 0..groups {
+                own.integrals[k][group] = own.places[group].map(|place| own.integral(&one, place).0);
+            }
+        }
+        own
+    }
+
+    /// Groups of points.
+    #[inline(always)]
+    pub fn groups(&self) -> usize {
+        self.groups
+    }
+
+    /// The points of a group.
+    #[inline(always)]
+    pub fn places<T: Scalar>(&self, group: usize) -> Lanes<GROUP, T> {
+        self.places[group].map(T::of)
+    }
+
+    /// The integral from -1 to 1.
+    #[inline(always)]
+    pub fn total<T: Scalar>(&self, values: &Values<T>) -> T {
+        self.product(&self.weights, values)
+    }
+
+    /// What is `first` at -1 and has these slopes, at each point.
+    #[inline(always)]
+    pub fn integrals<T: Scalar>(&self, first: T, slopes: &Values<T>, into: &mut Values<T>) {
+        for (group, into) in into[..self.groups].iter_mut().enumerate() {
+            let mut sum = Lanes::all(first);
+            for (rows, slopes) in self.integrals.chunks_exact(GROUP).zip(slopes) {
+                for (row, slope) in rows.iter().zip(slopes.0) {
+                    sum += Lanes::all(slope) * row[group].map(T::of);
+                }
+            }
+            *into = sum;
+        }
+    }
+
+    /// The integral of the interpolating polynomial from -1 to `place`, and its value there.
+    pub fn integral<T: Scalar>(&self, values: &Values<T>, place: T) -> (T, T) {
+        let (mut sum, mut value) = (T::zero(), T::zero());
+        let (mut before, mut now) = (T::of(-1.0), T::of(1.0));
+        for (k, row) in self.legendre.iter().enumerate() {
+            let share = self.product(row, values);
+            let after = next(k, place, (before, now));
+            sum += share * (after - before);
+            value += share * T::whole(2 * k + 1) * now;
+            (before, now) = (now, after);
+        }
+        (sum, value)
+    }
+
+    /// The error of the interpolating polynomial's integrals, by the larger one of the last two coefficients
+    /// in the polynomials of Legendre.
+    #[inline(always)]
+    pub fn unresolved<T: Scalar>(&self, values: &Values<T>) -> T {
+        let last = |k: usize| self.product(&self.legendre[k], values).abs();
+        let points = self.legendre.len();
+        last(points - 1).larger(last(points - 2)) * T::of(2.0)
+    }
+
+    /// The scalar product of a row and the values, in as many sums as a group has points.
+    #[inline(always)]
+    fn product<T: Scalar>(&self, row: &Values<f64>, values: &Values<T>) -> T {
+        let mut sums = Lanes::all(T::zero());
+        for (row, values) in row[..self.groups].iter().zip(values) {
+            sums += *values * row.map(T::of);
+        }
+        let [a, b, c, d, e, f, g, h] = sums.0;
+        ((a + b) + (c + d)) + ((e + f) + (g + h))
+    }
+}
+
+/// The Legendre polynomial of degree `k` + 1 at `x`, from those of degrees `k` - 1 and `k`.
+#[inline(always)]
+fn next<T: Number>(k: usize, x: T, (before, value): (T, T)) -> T {
+    (T::whole(2 * k + 1) * x * value - T::whole(k) * before) * T::ratio(1.0, (k + 1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integrals_of_powers_are_exact_and_those_of_a_pole_fall_with_its_ellipse() {
+        for points in [8, 16, 24, 48] {
+            let own = Collocation::of(points);
+            assert_eq!(own.groups() * GROUP, points);
+            let at = |of: &dyn Fn(f64) -> f64| own.places.map(|places| places.map(of));
+            for power in [0, 1, 2, points as i32 - 1] {
+                let values = at(&|x| x.powi(power));
+                let exact = |x: f64| (x.powi(power + 1) - (-1.0_f64).powi(power + 1)) / f64::from(power + 1);
+                let mut sums = values;
+                own.integrals(0.5, &values, &mut sums);
+                for i in 0..points {
+                    let (sum, place) = (sums[i / GROUP].0[i % GROUP], own.places[i / GROUP].0[i % GROUP]);
+                    assert!((sum - 0.5 - exact(place)).abs() < 1e-14, "{points} {power} {i}");
+                }
+                assert!((own.total(&values) - exact(1.0)).abs() < 1e-14);
+                let (integral, value) = own.integral(&values, 0.3);
+                assert!((integral - exact(0.3)).abs() < 1e-14 && (value - 0.3_f64.powi(power)).abs() < 1e-13);
+            }
+            // 1/(1 + x^2), whose pole i lies on the ellipse of sum 1 + sqrt 2
+            let values = at(&|x| 1.0 / (1.0 + x * x));
+            let fall = (1.0 + 2.0_f64.sqrt()).powi(-(points as i32));
+            let off = (own.total(&values) - std::f64::consts::FRAC_PI_2).abs();
+            assert!(off < 10.0 * fall * fall + 1e-15, "{points} {off:e}");
+            let (unresolved, one) = (own.unresolved(&values), fall / points as f64);
+            assert!(unresolved < 10.0 * one + 1e-15 && unresolved > 0.1 * one - 1e-15);
+            let (integral, value) = own.integral(&values, 0.4);
+            let off = integral - (0.4_f64.atan() + std::f64::consts::FRAC_PI_4);
+            assert!(off.abs() < 10.0 * one + 1e-15, "{points} {off:e}");
+            assert!((value - 1.0 / 1.16).abs() < 10.0 * fall + 1e-14);
+        }
+    }
+}
