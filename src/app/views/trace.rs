@@ -310,8 +310,7 @@ pub(in crate::app) fn stretch(model: &Model) -> f64 {
 }
 
 /// The path as lines, without what is not known. A line that turns on the spot is drawn with a tip that
-/// reaches beyond it: between stops
-/// each flight is a line of its own, so that none is seen to go through.
+/// reaches beyond it: between stops each flight is a line of its own, so that none is seen to go through.
 fn paths(samples: &[Sample], flights: bool, point: impl Fn(&Sample) -> PlotPoint) -> Vec<Vec<PlotPoint>> {
     let turns = |pair: &&[Sample]| pair[0].t == pair[1].t;
     let line = |part: &[Sample]| part.iter().map(&point).filter(|own| !own.y.is_nan()).collect();
