@@ -208,7 +208,11 @@ fn a_budget_spent_on_contacts_is_said_to_be() {
     assert_eq!(said("1e-9", inaccurate), "use a smaller tolerance");
     assert!(said("1e-14", inaccurate).starts_with("1e-14 is the smallest tolerance"));
     assert_eq!(ended_remedy(&model("1e3", "1e-9"), Outcome::Done), None);
-    let runaway = pressed(1.0, "stiffness_n_per_m1_5: 1, loss_s_per_m: 0", "run: (duration_s: 1)");
+    let runaway = pressed(
+        1.0,
+        "stiffness_n_per_m1_5: 1, loss_s_per_m: 0",
+        "start: At(x_mm: 0, v_m_per_s: 0), run: (duration_s: 1)",
+    );
     let no_number = Outcome::NotFinite { at: 1.0 };
     assert!(ended_remedy(&runaway, no_number).unwrap().starts_with("smaller numbers in the scene"));
     let open = preset("nominal-cubic", &["stops=None"]);
