@@ -1,6 +1,8 @@
 //! Basins of attraction: the start plane in the colours of where the motion goes.
 
-use eframe::egui::{self, Color32, Mesh, Painter, RichText, Sense, Shape, Stroke, Ui, UiBuilder};
+use eframe::egui::{
+    self, Align2, Color32, Mesh, Painter, RichText, Sense, Shape, Stroke, Ui, UiBuilder, vec2,
+};
 
 use crate::app::session::explore::Level;
 use crate::app::ui::style::Style;
@@ -10,7 +12,7 @@ use crate::study::{Attractor, Edges};
 
 use super::chart::Chart;
 use super::hand::hand;
-use super::labels::rests;
+use super::labels::{plated, rests};
 use super::legend::Sign;
 use super::stops::stops_ui;
 use super::view::Axis;
@@ -125,7 +127,7 @@ fn said(attractor: &Attractor) -> String {
     format!("{}: {} %", attractor.words(), short((1e2 * attractor.share.share).round()))
 }
 
-/// What is under the pointer, below the picture, and a click that begins there.
+/// What is under the pointer, in the lower corner of the picture, and a click that begins there.
 fn hand_ui(
     ui: &Ui,
     response: &egui::Response,
@@ -148,7 +150,8 @@ fn hand_ui(
     });
     let coarse = if whole { "" } else { " (coarse)" };
     let text = format!("{} mm, {} mm/s: {goes}{coarse}", three(x * 1e3), three(v * 1e3));
-    chart.readout(ui, &context.style, &text);
+    let at = (chart.rect.right_bottom() - vec2(6.0, 4.0), Align2::RIGHT_BOTTOM);
+    plated(ui.painter(), &context.style, at, &text, (context.style.small(), context.style.ink()));
     if response.clicked() {
         context.session.start_at(x, v);
     }
