@@ -187,13 +187,13 @@ fn what_a_row_cannot_say_is_said() {
     assert!(both.contains("single.ron: no barrier between two wells, so nothing to cross"), "{both}");
     assert!(!both.contains("only scene") && !both.contains("with the run of"), "{both}");
     // every empty cell of a row has a reason, one line for all that it is the same of
-    let [still, single] = [&paths[0], &paths[1]].map(|own| own.display().to_string());
+    let [first, second] = [&paths[0], &paths[1]].map(|own| own.display().to_string());
     for line in [
-        format!("{still}, {single}: no transducer, so no power\n"),
-        format!("{still}: no frequency that was tried makes its settled motion cross at 0.6 g\n"),
-        format!("{still}: its mechanism has no length, thickness or gap to change\n"),
-        format!("{single}: rests on no stop, so nothing to release\n"),
-        format!("{single}: no stops, so no impacts\n"),
+        format!("{first}, {second}: no transducer, so no power\n"),
+        format!("{first}: no frequency that was tried makes its settled motion cross at 0.6 g\n"),
+        format!("{first}: its mechanism has no length, thickness or gap to change\n"),
+        format!("{second}: rests on no stop, so nothing to release\n"),
+        format!("{second}: no stops, so no impacts\n"),
     ] {
         assert!(both.contains(&line), "{line}{both}");
     }
