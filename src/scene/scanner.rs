@@ -1,7 +1,7 @@
 //! Scanner of RON texts: fields, comments and numbers by their places.
 //!
-//! A second parser would be a second truth: this one only follows brackets, strings, comments and `name:`, and
-//! never fails. One pass, linear in the text.
+//! A second parser would be a second truth: this one only follows brackets, strings, comments and `name:`,
+//! and never fails. One pass, linear in the text.
 
 use std::ops::Range;
 

@@ -112,9 +112,9 @@ const PATIENCE: Duration = Duration::from_secs(1);
 const WANTED: [f64; 4] = [0.8, 0.5, 0.36, 0.2];
 
 /// What the speed at which the stops of `model` are struck means for compliant stops, in one sentence: their
-/// restitution at that speed and the loss for others; of rigid stops of `scene`, which `model` is of, the loss
-/// with their restitution, or why there can be no compliant ones. None where nothing is struck, or where the
-/// run takes longer than a second.
+/// restitution at that speed and the loss for others; of rigid stops of `scene`, which `model` is of, the
+/// loss with their restitution, or why there can be no compliant ones. None where nothing is struck, or where
+/// the run takes longer than a second.
 pub fn strikes_in_words(model: &Model, scene: &Scene) -> Option<String> {
     let stops = &scene.stops;
     if *stops == Stops::None {

@@ -43,8 +43,8 @@ fn short_contact(model: &Model) -> Option<String> {
     let contact = model.compliant()?.contact_time(model.mass(), speed);
     (contact * SHORT < time).then(|| {
         format!(
-            "a contact with a stop lasts {} s at {} m/s and takes steps of its own, where the motion takes {} s; \
-             softer stops, rigid ones (`Rigid`) or a shorter run take fewer",
+            "a contact with a stop lasts {} s at {} m/s and takes steps of its own, where the motion takes \
+             {} s; softer stops, rigid ones (`Rigid`) or a shorter run take fewer",
             short(contact),
             short(speed),
             short(time)

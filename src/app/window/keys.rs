@@ -12,7 +12,8 @@ use super::command::{Command, Listed, Part, parts};
 pub(super) const SPEED_KEYS: [Key; SPEEDS.len()] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
 
-/// Headings of the list of keys in two columns, and the width in points from which on these stand side by side.
+/// Headings of the list of keys in two columns, and the width in points from which on these stand side by
+/// side.
 const GROUPS: [&[&str]; 2] = [&["Time", "Hands", "Lesson"], &["Views", "Scene"]];
 const SIDE_BY_SIDE: f32 = 800.0;
 

@@ -3,8 +3,8 @@
 //! The spring lies between the frame on the left and the mass. The magnets face each other across their gap
 //! where the mass is at x = 0, one below the mass and one on a post; along the flexures the gap has their
 //! scale where there is room for that. A coil lies on the lower clamp, cut through, around the feet of the
-//! flexures; its magnet hangs below the mass. Piezoelectric patches lie on the flexures there. Their load is to
-//! the right, where the flexures do not get to.
+//! flexures; its magnet hangs below the mass. Piezoelectric patches lie on the flexures there. Their load is
+//! to the right, where the flexures do not get to.
 
 use eframe::egui::layers::ShapeIdx;
 use eframe::egui::{Align2, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};

@@ -15,7 +15,8 @@ const TURNS: usize = 5;
 /// How far to the right of x = 0 a layer is that lies on no flexures.
 const ASIDE: f32 = 38.0;
 
-/// Heights over the clamp of the two wires of a load, and how high it reaches; room beside the foot of a flexure.
+/// Heights over the clamp of the two wires of a load, and how high it reaches; room beside the foot of a
+/// flexure.
 const WIRES: [f32; 2] = [13.0, 4.0];
 const LOAD_TOP: f32 = 19.0;
 const FOOT: f32 = 11.0;
@@ -38,7 +39,7 @@ impl Pen<'_> {
                 let part = Rect::from_min_size(corner, vec2(WINDING, WOUND));
                 self.coil(part, shapes);
                 let words = format!(
-                    "A coil at the frame, cut through. The magnet below the mass induces {} V in it at 1 m/s.",
+                    "A coil at the frame, cut through. The magnet at the mass induces {} V in it at 1 m/s.",
                     short(coupling_v_s_per_m.abs())
                 );
                 ("coil", part, coupling_v_s_per_m, (load_ohm, "ohm"), words)
@@ -63,8 +64,9 @@ impl Pen<'_> {
         self.load(part, load, (name, right), shapes);
     }
 
-    /// How far from x = 0 the flexures below the mass get at a height over the clamp, with the mass at an end of
-    /// the picture: they leave it and come to the mass upright. Without flexures the room that a foot takes.
+    /// How far from x = 0 the flexures below the mass get at a height over the clamp, with the mass at an end
+    /// of the picture: they leave it and come to the mass upright. Without flexures the room that a foot
+    /// takes.
     fn reach_at(&self, height: f32) -> f32 {
         let Bench { rect, bottom, body, ref below, .. } = *self.bench;
         let share = (height / (bottom - body.bottom()).max(1.0)).min(1.0);
