@@ -215,7 +215,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let edge = 0.02 * (high - low);
     let is_low = ui.available_height() < LOW;
     // a name that is longer than its axis would run into the legend
-    let name = ui.painter().layout_no_wrap(axis.clone(), style.body(), style.ink()).size().x;
+    let name = ui.painter().layout_no_wrap(axis.clone(), style.small(), style.ink()).size().x;
     let is_long = name > ui.available_height() - LEGEND - BELOW;
     let axis = if is_low || is_long { quantity.unit().to_owned() } else { axis };
     let time_label = if is_low { "" } else { "time (s)" };
