@@ -7,7 +7,7 @@ use interwell::dynamics::{Model, Regime};
 use interwell::mechanics::Mechanism;
 use interwell::numeric::short;
 use interwell::output::{ComparisonPicture, comparison_figure};
-use interwell::scene::{Document, Excitation, Scene, Start};
+use interwell::scene::{Document, Excitation, RunSettings, Scene, Start, Stops, Transducer};
 use interwell::study::{Alternative, Rated, Task, alternatives, comparison_parts, comparison_table};
 
 use super::failure::Failure;
@@ -63,10 +63,14 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let (mut all, mut files, mut shaken) = (Vec::new(), Vec::new(), Vec::new());
     for spec in &options.scenes {
         let (mut document, warnings) = load(spec, common, None)?;
-        let own = (&document.scene.excitation, document.scene.run);
-        if own != (&environment.scene.excitation, environment.scene.run) {
-            shaken.push(plain(spec));
-        }
+        let (own, lent) = (&document.scene, &environment.scene);
+        let how = match (own.excitation != lent.excitation, window(&own.run) != window(&lent.run)) {
+            (true, true) => Some("under the excitation and with the run of"),
+            (true, false) => Some("under the excitation of"),
+            (false, true) => Some("with the run of"),
+            (false, false) => None,
+        };
+        shaken.extend(how.map(|how| (plain(spec), format!("{how} {}", environment.name))));
         document.scene.excitation = environment.scene.excitation.clone();
         document.scene.run = environment.scene.run;
         document.scene.sweep.clear(); // its fields may not be those of another excitation
@@ -82,10 +86,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         if let [only] = &options.scenes[..] {
             say(&format!("{only}: the only scene; name others to set beside it"));
         }
-        if !shaken.is_empty() {
-            let names = shaken.join(", ");
-            say(&format!("{names}: under the excitation and with the run of {}", environment.name));
-        }
+        grouped(shaken).iter().for_each(|line| say(line));
     }
     let pool = pool(common)?;
     let [plot, data] = Picture::outputs(picture);
@@ -97,8 +98,11 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let rated = rated.ok_or_else(Failure::interrupted)?;
     write_table(&mut sinks[0], &comparison_table(&rated))?;
     if !common.quiet {
-        let remarks = all.iter().zip(&rated).flat_map(|(own, rated)| remarks(own, rated, amplitude_g));
-        remarks.for_each(|words| say(&words));
+        let remarks = all.iter().zip(&rated).flat_map(|(own, rated)| {
+            let said = remarks(own, rated, amplitude_g).into_iter();
+            said.map(|words| (rated.name.clone(), words))
+        });
+        grouped(remarks.collect()).iter().for_each(|line| say(line));
     }
     if let Some(picture) = picture {
         let mut caption = caption(&environment);
@@ -111,20 +115,64 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     finish(sinks)
 }
 
+/// What a run is over and how closely it is computed: duration, begin of the settled window, tolerance.
+fn window(run: &RunSettings) -> [f64; 3] {
+    [run.duration_s, run.settle_s.unwrap_or(0.5 * run.duration_s), run.tolerance]
+}
+
+/// Lines of what is said of scenes, one for all of which the same is said.
+fn grouped(said: Vec<(String, String)>) -> Vec<String> {
+    let mut lines: Vec<(Vec<String>, String)> = Vec::new();
+    for (name, words) in said {
+        match lines.iter_mut().find(|own| own.1 == words) {
+            Some((names, _)) => names.push(name),
+            None => lines.push((vec![name], words)),
+        }
+    }
+    lines.into_iter().map(|(names, words)| format!("{}: {words}", names.join(", "))).collect()
+}
+
 /// What empty or infinite cells of a row mean, and a speed of 0.
 fn remarks(own: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> {
-    let name = &rated.name;
     let mut all = Vec::new();
-    if rated.summary.regime == Regime::Rest {
-        all.push(format!("{name}: {} g does not move it", short(amplitude_g)));
+    let (summary, barrier) = (&rated.summary, own.mechanism.landscape.barrier.is_some());
+    let given = short(amplitude_g);
+    if let Some(at) = summary.outcome.ended_at() {
+        let outcome = summary.outcome.name();
+        all.push(format!(
+            "its run ended early at {} s ({outcome}): nothing is known of its settled motion",
+            short(at)
+        ));
+    } else if summary.regime == Regime::Rest {
+        all.push(format!("{given} g does not move it"));
+    } else if summary.impact_speed_max.is_none() && own.scene.stops != Stops::None {
+        all.push("strikes no stop".to_owned());
     }
-    if own.mechanism.landscape.barrier.is_none() {
-        all.push(format!("{name}: no barrier between two wells, so nothing to cross"));
+    if rated.release_g.is_none() {
+        all.push("rests on no stop, so nothing to release".to_owned());
+    }
+    if !barrier {
+        all.push("no barrier between two wells, so nothing to cross".to_owned());
     } else if rated.crossing_g.is_none() {
-        all.push(format!("{name}: no amplitude that was tried makes its settled motion cross"));
+        all.push("no amplitude that was tried makes its settled motion cross".to_owned());
     }
-    if let Some((_, size)) = rated.sensitivity.as_ref().filter(|own| own.0.is_infinite()) {
-        all.push(format!("{name}: with {size} changed by 1 % nothing is left to cross, or nothing crosses"));
+    if barrier && rated.crosses_hz.is_none() {
+        all.push(format!("no frequency that was tried makes its settled motion cross at {given} g"));
+    }
+    match &rated.sensitivity {
+        Some((change, size)) if change.is_infinite() => {
+            all.push(format!("with {size} changed by 1 % nothing is left to cross, or nothing crosses"));
+        }
+        None if rated.crossing_g.is_some() => {
+            all.push("its mechanism has no length, thickness or gap to change".to_owned());
+        }
+        _ => {}
+    }
+    if own.scene.transducer == Transducer::None {
+        all.push("no transducer, so no power".to_owned());
+    }
+    if own.scene.stops == Stops::None {
+        all.push("no stops, so no impacts".to_owned());
     }
     all
 }

@@ -114,7 +114,7 @@ impl MeasuredOptions {
         let name = path.display().to_string();
         let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
         let record = read_measured(path, &[self.columns.times(), self.columns.values(&any)])
-            .map_err(|problem| Failure::argument(format!("{name}: {problem}")))?;
+            .map_err(|problem| Failure::argument(format!("--measured {name}: {problem}")))?;
         if self.offset_mm.is_some() && record.channels[1].quantity != Quantity::Displacement {
             let what = record.channels[1].quantity.name();
             return Err(Failure::argument(format!("--offset-mm: {name} has a {what}, no displacement")));

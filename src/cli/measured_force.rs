@@ -60,7 +60,8 @@ impl MeasuredForceOptions {
         let name = path.display();
         let (column, unit) = (self.column.clone(), self.unit.clone());
         let force = Ask { quantities: vec![Quantity::Force], column, unit, options: ("--column", "--unit") };
-        let about = |problem: &dyn std::fmt::Display| Failure::argument(format!("{name}: {problem}"));
+        let about =
+            |problem: &dyn std::fmt::Display| Failure::argument(format!("--measured {name}: {problem}"));
         let record =
             read_measured(path, &[self.positions.positions(), force]).map_err(|problem| about(&problem))?;
         let commas = if record.decimal_commas { ", with decimal commas" } else { "" };

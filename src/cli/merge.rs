@@ -135,7 +135,7 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
         return Ok(parts);
     }
     let not = if unfinished.is_empty() { String::new() } else { format!("{}; ", unfinished.join(", ")) };
-    Err(Failure::Failed(anyhow::anyhow!(
+    Err(Failure::argument(format!(
         "{not}{} of {count} shards are missing; these commands compute them:\n{}",
         missing.len(),
         missing.join("\n")
@@ -205,7 +205,7 @@ impl Part {
     }
 
     fn changed(&self, how: &str) -> Failure {
-        Failure::Failed(anyhow::anyhow!(
+        Failure::argument(format!(
             "{} is changed since it was written: {how}; nothing was merged. This computes it again:\n{}",
             self.path.display(),
             self.command_of(self.shard)

@@ -6,7 +6,9 @@ use clap::Args;
 use interwell::dynamics::{Model, Outcome};
 use interwell::numeric::short;
 use interwell::output::{Panel, measured_figure, push_number, run_figure, summary};
-use interwell::study::{Keep, Sampling, sample_times, simulate, simulate_with_trace, yield_warning};
+use interwell::study::{
+    Keep, Sampling, ended_remedy, sample_times, simulate, simulate_with_trace, yield_warning,
+};
 
 use super::failure::Failure;
 use super::measured::MeasuredOptions;
@@ -175,19 +177,16 @@ fn spanned(sampling: &Sampling) -> Option<(f64, f64)> {
 
 /// Why a run ended before its duration, or what is wrong with it; none where it is done.
 fn remark(model: &Model, outcome: Outcome) -> Option<String> {
+    let remedy = ended_remedy(model, outcome).unwrap_or_default();
     let reason = match outcome {
         Outcome::Done => return None,
         Outcome::LeftTable { .. } => "the mass left the range of the force curve".to_owned(),
         Outcome::ImpactBudget { count, .. } => format!("{count} impacts are all that one run may make"),
         Outcome::StepBudget { count, .. } => {
-            let remedy = model
-                .fast_circuit()
-                .unwrap_or_else(|| "a larger tolerance or a shorter run takes fewer".to_owned());
             format!("{count} steps took all the work that one run may take; {remedy}")
         }
-        Outcome::NotFinite { .. } => "a number was no longer finite".to_owned(),
+        Outcome::NotFinite { .. } => format!("a number was no longer finite; {remedy}"),
         Outcome::Inaccurate { residual } => {
-            let remedy = model.fast_circuit().unwrap_or_else(|| "use a smaller tolerance".to_owned());
             return Some(format!(
                 "the energy does not balance ({}): the residual is {} times the energy that was moved; \
                  {remedy}",

@@ -42,7 +42,11 @@ impl Axis {
         let read = |text: &str| {
             let text = text.trim();
             let finite = Decimal::parse(text).filter(|own| own.value().is_finite());
-            finite.ok_or_else(|| format!("`{}` is not a finite decimal number", clip(text)))
+            let endless = if spec.range.high == f64::INFINITY { "; inf stands in a list alone" } else { "" };
+            finite.ok_or_else(|| {
+                let text = clip(text);
+                format!("`{text}` is not a finite decimal number; {}{endless}", spec.remedy)
+            })
         };
         let mut steps = None;
         let values = if values.contains(':') {

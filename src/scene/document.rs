@@ -2,19 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
+use super::assign::replace;
 use super::axis::{Axis, LARGEST_AXIS, MOST_AXES, repeated, unknown};
 use super::check::{check, corners};
 use super::clip::clip;
 use super::data::Scene;
 use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
-use super::fields::{Field, FieldPath, Slot, all_fields};
+use super::fields::{FieldPath, all_fields};
 use super::files::{Files, ReadError, read_from, read_text};
 use super::locate::Places;
 use super::manifest::{self, Swept};
 use super::presets::{self, PRESETS};
 use super::ranges::number_text;
 use super::record;
-use super::text::{self, LARGEST_SCENE, explain};
+use super::text::{self, LARGEST_SCENE};
 use crate::system::files;
 
 /// How many faults an error names; the rest it counts. A list may hold a million NaN.
@@ -26,6 +27,7 @@ const MOST_VALUES: usize = 2 * LARGEST_AXIS;
 
 /// How messages call a scene that came through a pipe.
 const STANDARD_INPUT: &str = "standard input";
+
 /// Where a scene came from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Source {
@@ -352,38 +354,6 @@ pub(super) fn unreadable(
 /// The paths of the files that a scene names, as written: its table and its records.
 pub fn named_paths(scene: &mut Scene) -> Vec<&mut String> {
     scene.mechanism.paths_mut().into_iter().chain(record::paths_mut(&mut scene.excitation)).collect()
-}
-
-/// Replaces a field from its text; the error is a sentence.
-fn replace(found: Field<'_>, value: &str) -> Result<(), String> {
-    let refused = |error: ron::error::SpannedError| format!("`{}`: {}", clip(value), explain(&error));
-    match found {
-        Field::Number(_, Slot::Required(number)) => {
-            *number = parse_number(value).ok_or_else(|| format!("`{}` is not a number", clip(value)))?;
-            Ok(())
-        }
-        Field::Number(_, Slot::Optional(number)) => {
-            let written = parse_number(value).map(Some).or_else(|| text::options().from_str(value).ok());
-            *number = written.ok_or_else(|| format!("`{}` is neither a number nor None", clip(value)))?;
-            Ok(())
-        }
-        Field::Number(_, Slot::Whole(number)) => {
-            let whole = value.trim().parse().ok();
-            *number = whole.ok_or_else(|| format!("`{}` is not a whole number from 0 up", clip(value)))?;
-            Ok(())
-        }
-        Field::Text(text) => {
-            let quoted = ["\"", "r\"", "r#"].iter().any(|first| value.starts_with(first));
-            *text = if quoted { text::options().from_str(value).map_err(refused)? } else { value.to_owned() };
-            Ok(())
-        }
-        Field::Value(whole) => whole.assign(value).map_err(refused),
-    }
-}
-
-/// A number as RON writes it or as Rust does: `4`, `.5`, `1e-9`, `-inf`.
-fn parse_number(text: &str) -> Option<f64> {
-    text.parse().ok().or_else(|| text::options().from_str(text).ok())
 }
 
 /// Whether there is a scene at `path`: a file whose name ends in `.ron`, mistaken or not, or whose text is

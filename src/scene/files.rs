@@ -26,9 +26,9 @@ pub struct Files {
 pub enum FileError {
     /// No file there.
     #[error(
-        "no such file: {path}{}",
-        if *.embedded { "; a scene file takes its tables from its own folder: `presets --write` puts this \
-                         one there" } else { "" }
+        "no such file: {path}; {}",
+        if *.embedded { "a scene file takes its tables from its own folder: `presets --write` puts this one \
+                         there" } else { "give the path of one, absolute or from the folder of the scene" }
     )]
     Missing {
         /// The path that was tried.

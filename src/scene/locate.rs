@@ -1,11 +1,12 @@
 //! Places of the fields in a scene's text.
 //!
-//! serde keeps no positions, and a second parser would be a second truth: this scanner only follows
-//! brackets, strings, comments and `name:`, and never fails. On text that RON accepts it names every
-//! field by the same path as the walk in `fields`; on other text it names what it can, which is enough
-//! to say near which field a parser stopped. One pass, linear in the text.
+//! serde keeps no positions. On text that RON accepts the [scanner](super::scanner) names every field by the
+//! same path as the walk in `fields`; on other text it names what it can, which is enough to say near which
+//! field a parser stopped.
 
 use std::ops::Range;
+
+use super::scanner::{Found, Part, Scanner};
 
 /// A place in a text, both counted from 1, the column in characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,22 +34,6 @@ struct Named {
     /// Its bytes, name and value.
     bytes: Range<usize>,
 }
-
-/// The last part of a path.
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum Part {
-    Name(String),
-    Index(usize),
-}
-
-impl Part {
-    fn of(text: &str) -> Self {
-        text.parse().map_or_else(|_| Self::Name(text.to_owned()), Self::Index)
-    }
-}
-
-/// RON gives up at 128 levels; what lies deeper is skipped.
-const DEEPEST: usize = 200;
 
 impl Places {
     /// Scans a text.
@@ -107,214 +92,6 @@ impl Places {
                 Some(index) => self.is_at(&self.0[index], around),
                 None => around.is_empty(),
             }
-    }
-}
-
-/// Whether a scene's text has comments: `//` or `/*` outside of its strings, raw ones included.
-pub fn has_comments(text: &str) -> bool {
-    Scanner::over(text).comments
-}
-
-/// A field of the scanner, with the byte at which it begins.
-struct Found {
-    around: Option<usize>,
-    part: Part,
-    at: usize,
-    end: usize,
-}
-
-struct Scanner<'t> {
-    text: &'t [u8],
-    at: usize,
-    /// In the order of the text.
-    found: Vec<Found>,
-    /// Whether a comment was passed.
-    comments: bool,
-}
-
-impl<'t> Scanner<'t> {
-    /// Scans a text to its end.
-    fn over(text: &'t str) -> Self {
-        let mut own = Self { text: text.as_bytes(), at: 0, found: Vec::new(), comments: false };
-        own.header();
-        own.value(None, 0);
-        own.blank();
-        own
-    }
-
-    fn peek(&self) -> Option<u8> {
-        self.text.get(self.at).copied()
-    }
-
-    fn starts(&self, with: &[u8]) -> bool {
-        self.text[self.at..].starts_with(with)
-    }
-
-    fn skip_to(&mut self, end: &[u8]) {
-        while self.at < self.text.len() && !self.starts(end) {
-            self.at += 1;
-        }
-        self.at = (self.at + end.len()).min(self.text.len());
-    }
-
-    /// `#![enable(..)]`, the one attribute that RON knows.
-    fn header(&mut self) {
-        loop {
-            self.blank();
-            if !self.starts(b"#!") {
-                return;
-            }
-            self.skip_to(b"]");
-        }
-    }
-
-    fn blank(&mut self) {
-        while let Some(byte) = self.peek() {
-            if byte.is_ascii_whitespace() {
-                self.at += 1;
-            } else if self.starts(b"//") {
-                self.comments = true;
-                self.skip_to(b"\n");
-            } else if self.starts(b"/*") {
-                self.comments = true;
-                self.at += 2;
-                let mut open = 1;
-                while open > 0 && self.at < self.text.len() {
-                    match (self.starts(b"/*"), self.starts(b"*/")) {
-                        (true, _) => (open, self.at) = (open + 1, self.at + 2),
-                        (_, true) => (open, self.at) = (open - 1, self.at + 2),
-                        _ => self.at += 1,
-                    }
-                }
-            } else {
-                return;
-            }
-        }
-    }
-
-    fn string(&mut self) {
-        self.at += 1;
-        while let Some(byte) = self.peek() {
-            self.at += 1;
-            match byte {
-                b'"' => return,
-                b'\\' => self.at = (self.at + 1).min(self.text.len()),
-                _ => {}
-            }
-        }
-    }
-
-    /// `r"..."`, `r#"..."#` and so on; false where none begins here.
-    fn raw_string(&mut self) -> bool {
-        let hashes = self.text[self.at + 1..].iter().take_while(|byte| **byte == b'#').count();
-        if self.text.get(self.at + 1 + hashes) != Some(&b'"') {
-            return false;
-        }
-        self.at += hashes + 2;
-        let end: Vec<u8> = std::iter::once(b'"').chain(std::iter::repeat_n(b'#', hashes)).collect();
-        self.skip_to(&end);
-        true
-    }
-
-    fn identifier(&mut self) -> Option<String> {
-        if self.starts(b"r#") {
-            self.at += 2;
-        }
-        let begin = self.at;
-        if self.peek().is_some_and(|byte| byte.is_ascii_digit()) {
-            return None;
-        }
-        while self.peek().is_some_and(|byte| byte.is_ascii_alphanumeric() || byte == b'_' || byte >= 0x80) {
-            self.at += 1;
-        }
-        let name = String::from_utf8_lossy(&self.text[begin..self.at]).into_owned();
-        (!name.is_empty()).then_some(name)
-    }
-
-    fn value(&mut self, around: Option<usize>, depth: usize) {
-        self.blank();
-        match self.peek() {
-            None => {}
-            Some(b'"') => self.string(),
-            Some(b'r') if self.raw_string() => {}
-            Some(b'(') => self.inside(b')', "", around, depth),
-            Some(b'[') => self.inside(b']', "", around, depth),
-            Some(b'{') => self.inside(b'}', "", around, depth),
-            Some(_) => {
-                if let Some(variant) = self.identifier() {
-                    self.blank();
-                    if self.peek() == Some(b'(') {
-                        self.inside(b')', &variant, around, depth);
-                    }
-                } else {
-                    while self.peek().is_some_and(|byte| !b",()[]{}/\" \t\r\n".contains(&byte)) {
-                        self.at += 1;
-                    }
-                }
-            }
-        }
-    }
-
-    fn inside(&mut self, close: u8, variant: &str, around: Option<usize>, depth: usize) {
-        self.at += 1;
-        let mut index = 0;
-        loop {
-            self.blank();
-            let begin = self.at;
-            match self.peek() {
-                None => return,
-                Some(byte) if byte == close => {
-                    self.at += 1;
-                    return;
-                }
-                Some(b',') => {
-                    self.at += 1;
-                    continue;
-                }
-                Some(_) => {}
-            }
-            if depth >= DEEPEST {
-                self.at += 1;
-                continue;
-            }
-            let part = if close == b']' {
-                Some(Part::Index(index))
-            } else if let Some(name) = self.key() {
-                Some(Part::Name(name))
-            } else {
-                // The only positional number; in `Sum([..])` and `Some(..)` the bracket adds nothing.
-                (variant == "Ratio").then(|| Part::Name("xi".to_owned()))
-            };
-            let mut own = around;
-            if let Some(part) = part {
-                own = Some(self.found.len());
-                self.found.push(Found { around, part, at: begin, end: begin });
-            }
-            self.value(own, depth + 1);
-            if own != around
-                && let Some(own) = own
-            {
-                self.found[own].end = self.at;
-            }
-            index += 1;
-            if self.at == begin {
-                self.at += 1;
-            }
-        }
-    }
-
-    /// A `name:`, or nothing consumed.
-    fn key(&mut self) -> Option<String> {
-        let begin = self.at;
-        if let Some(name) = self.identifier() {
-            self.blank();
-            if self.peek() == Some(b':') {
-                self.at += 1;
-                return Some(name);
-            }
-        }
-        self.at = begin;
-        None
     }
 }
 
@@ -382,18 +159,5 @@ mod tests {
         for open in ["(", "[", "{", "a(", "(a:", "\"", "/*", "r#", "'"] {
             Places::of(&open.repeat(300_000));
         }
-    }
-
-    #[test]
-    fn comments_are_told_from_text() {
-        assert!(has_comments("( // what\n)") && has_comments("(/* what */)"));
-        assert!(!has_comments("(notes: \"http://a \\\" // b\", mass_g: 1)"));
-        assert!(has_comments("(notes: \"a\\\\\") // b"));
-        assert!(!has_comments(r#"(notes: r"C:\" , title: "http://a")"#));
-        assert!(!has_comments("(notes: r#\"she said \"no\" // not a comment\"#, mass_g: 1)"));
-        assert!(has_comments(r#"(notes: r"C:\" /* here */)"#));
-        assert!(has_comments("(notes: r##\"a \"# b\"## // here\n)"));
-        // a name that ends in r is no raw string
-        assert!(has_comments("(r: \"a\\\"b\", // here\n)"));
     }
 }

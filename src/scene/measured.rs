@@ -141,7 +141,9 @@ pub fn read_measured<const N: usize>(path: &Path, asks: &[Ask; N]) -> Result<Mea
 fn text_of(path: &Path) -> Result<String, MeasuredError> {
     read_text(path, LARGEST_MEASURED).map_err(|error| {
         MeasuredError::Unreadable(match error {
-            ReadError::Missing => "no such file".to_owned(),
+            ReadError::Missing => {
+                "is not there (no such file); give the path of a CSV with a header".to_owned()
+            }
             ReadError::Unusable(problem) => problem,
         })
     })

@@ -17,6 +17,7 @@
 //! ```
 
 mod arguments;
+mod assign;
 mod axis;
 mod check;
 mod clip;
@@ -34,6 +35,7 @@ mod mechanism;
 mod presets;
 mod ranges;
 mod record;
+mod scanner;
 mod shape;
 mod steps;
 mod stops;
@@ -52,7 +54,7 @@ pub use document::{Document, Source, is_scene_file, named_paths};
 pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 pub use fields::{FieldPath, all_fields, numeric_fields};
 pub use files::{FileError, Files, LARGEST_TABLE};
-pub use locate::{Place, Places, has_comments};
+pub use locate::{Place, Places};
 pub use manifest::{PROGRAM, Swept, is_manifest};
 pub use measured::{
     Ask, Channel, ChosenColumn, LARGEST_MEASURED, MOST_MEASURED, Measured, MeasuredError, MeasuredText,
@@ -60,8 +62,9 @@ pub use measured::{
 };
 pub use mechanism::{FlexureGroup, Mechanism};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
-pub use ranges::MAX_COEFFICIENTS;
+pub use ranges::{MAX_COEFFICIENTS, TOLERANCES};
 pub use record::{Record, RecordError, read_record};
+pub use scanner::has_comments;
 pub use stops::Stops;
 pub use text::{LARGEST_SCENE, write};
 pub use timing::Timing;

@@ -7,6 +7,9 @@ use std::fmt;
 /// The most coefficients that a `Polynomial` may have; the force curve's own limit.
 pub const MAX_COEFFICIENTS: usize = 16;
 
+/// The smallest and the largest tolerance of a run.
+pub const TOLERANCES: (f64, f64) = (1e-14, 1e-3);
+
 /// A closed range: both ends are valid, NaN never is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Range {
@@ -160,7 +163,7 @@ specs! {
     DURATION = "duration_s", 1e-15, 1e9, "give how long to run in s, such as 10";
     SETTLE = "settle_s", 0.0, 1e9, "give when the settled window begins in s, or leave it out for half the \
                                     duration";
-    TOLERANCE = "tolerance", 1e-14, 1e-3, "1e-9 suits most runs and 1e-6 most maps";
+    TOLERANCE = "tolerance", TOLERANCES.0, TOLERANCES.1, "1e-9 suits most runs and 1e-6 most maps";
     FROM = "from", COEFFICIENT.0, COEFFICIENT.1, "give the first value of the axis";
     TO = "to", COEFFICIENT.0, COEFFICIENT.1, "give the last value of the axis";
     STEP = "step", 1e-200, 1e200, "an axis goes upwards in steps above 0";

@@ -11,6 +11,7 @@ use super::clip::clip;
 use super::data::*;
 use super::locate::{Place, Places};
 use super::mechanism::Mechanism;
+use super::scanner::Scanner;
 use super::stops::Stops;
 
 /// The largest scene text that is read: some thousand times a long scene, and parsed at once.
@@ -71,32 +72,63 @@ pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Refusal> {
         let problem = format!("{} bytes are more than are read ({LARGEST_SCENE})", text.len());
         return Err(Refusal { place: Place { line: 1, column: 1 }, problem, unknown: None });
     }
-    options().from_str(text).map_err(|error| {
-        let trailing = error.code == Ron::TrailingCharacters;
-        let place = Place { line: error.span.start.line, column: error.span.start.col };
-        let place = token_at(text, place, trailing);
-        let named = matches!(
-            error.code,
-            Ron::NoSuchStructField { .. } | Ron::MissingStructField { .. } | Ron::DuplicateStructField { .. }
-        );
-        let places = Places::of(text);
-        let field = if named || trailing { None } else { places.last_before(place) };
-        let problem = match (&error.code, field.as_deref().and_then(choices)) {
-            (Ron::ExpectedIdentifier | Ron::SuggestRawIdentifier(_), Some(known)) => {
-                format!("expected one of {}", names(known))
-            }
-            _ => explain(&error),
-        };
-        let unknown = match &error.code {
-            Ron::NoSuchStructField { found, .. } => Some(found.clone()),
-            _ => None,
-        };
-        Refusal {
-            unknown,
-            place,
-            problem: field.map_or(problem.clone(), |field| format!("{}: {problem}", clip(&field))),
+    let read = options().from_str(text).map_err(|error| refusal(text, &error))?;
+    beyond(text).map_or(Ok(read), Err)
+}
+
+/// What is said of a number in digits that a double cannot hold.
+pub(super) const BEYOND: &str = "is beyond the largest number, 1.8e308";
+
+/// The refusal of a text that is read, but for a number in digits that would be infinite; none of another.
+pub(super) fn beyond(text: &str) -> Option<Refusal> {
+    let bytes = Scanner::over(text).beyond?;
+    let before = &text[..bytes.start];
+    let line = 1 + before.matches('\n').count();
+    let column = 1 + before.rsplit('\n').next().unwrap_or_default().chars().count();
+    let place = Place { line, column };
+    let field = Places::of(text).last_before(place).map_or(String::new(), |own| format!("{}: ", clip(&own)));
+    let number = clip(&text[bytes]);
+    let problem = format!("{field}{number} {BEYOND}; write a smaller one, or inf where a field takes that");
+    Some(Refusal { place, problem, unknown: None })
+}
+
+/// The refusal of a text, from the parser's error.
+pub(super) fn refusal(text: &str, error: &SpannedError) -> Refusal {
+    let trailing = error.code == Ron::TrailingCharacters;
+    let place = Place { line: error.span.start.line, column: error.span.start.col };
+    let place = token_at(text, place, trailing);
+    let named = matches!(
+        error.code,
+        Ron::NoSuchStructField { .. } | Ron::MissingStructField { .. } | Ron::DuplicateStructField { .. }
+    );
+    let places = Places::of(text);
+    let field = if named || trailing { None } else { places.last_before(place) };
+    let problem = match (&error.code, field.as_deref().and_then(choices)) {
+        (Ron::ExpectedIdentifier | Ron::SuggestRawIdentifier(_), Some(known)) => {
+            format!("expected one of {}", names(known))
         }
-    })
+        (Ron::ExpectedComma, _) if is_unit(text, place) => {
+            format!("{}; a unit stands in the name of its field, not behind the number", explain(error))
+        }
+        _ => explain(error),
+    };
+    let unknown = match &error.code {
+        Ron::NoSuchStructField { found, .. } => Some(found.clone()),
+        _ => None,
+    };
+    let problem = field.map_or(problem.clone(), |field| format!("{}: {problem}", clip(&field)));
+    Refusal { unknown, place, problem }
+}
+
+/// Whether a word stands at a place, behind a number, that is no name of a field.
+fn is_unit(text: &str, place: Place) -> bool {
+    let line = text.lines().nth(place.line - 1).unwrap_or_default();
+    let at = line.char_indices().nth(place.column - 1).map_or(line.len(), |own| own.0);
+    let (before, word) = line.split_at(at);
+    let after = word.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_');
+    before.trim_end().ends_with(|c: char| c.is_ascii_digit() || c == '.')
+        && word.starts_with(|c: char| c.is_alphabetic() || c == '%')
+        && !after.trim_start().starts_with(':')
 }
 
 /// Whether a text begins as JSON does, and no scene.

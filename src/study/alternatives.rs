@@ -7,6 +7,7 @@ use super::Task;
 use super::amplitudes::thresholds_on;
 use super::family::Family;
 use super::fields::{Read, SummaryField};
+use super::push::frees_at;
 use super::settled::settled;
 use super::shared_runs::shared_runs;
 use super::table::{Table, Values};
@@ -141,7 +142,7 @@ fn rate(own: &Alternative, pool: &Pool, task: &Task) -> Option<Rated> {
     let model = Model::build(&trial, Arc::clone(&own.mechanism)).ok()?;
     Some(Rated {
         name: own.name.clone(),
-        release_g: found.and_then(|own| own.frees_at),
+        release_g: frees_at(&trial, &own.mechanism),
         crossing_g: found.and_then(|own| own.crosses_from),
         summary: settled(&model, task.cancel)?,
         crosses_hz: band(own, &trial, pool, task)?,

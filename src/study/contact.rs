@@ -8,7 +8,7 @@ use crate::dynamics::{EventKind, Model, Outcome, Request, Summary};
 use crate::mechanics::Hertz;
 use crate::numeric::round::{ONE_TWO_FIVE, round_up};
 use crate::numeric::{bisect, short};
-use crate::scene::Stops;
+use crate::scene::{Scene, Stops};
 use crate::system::threads;
 
 /// Positions of the speed on a table: more than a picture needs.
@@ -112,9 +112,11 @@ const PATIENCE: Duration = Duration::from_secs(1);
 const WANTED: [f64; 4] = [0.8, 0.5, 0.36, 0.2];
 
 /// What the speed at which the stops of `model` are struck means for compliant stops, in one sentence: their
-/// restitution at that speed and the loss for others; of rigid stops, which `stops` describes, the loss with
-/// their restitution. None where nothing is struck, or where the run takes longer than a second.
-pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
+/// restitution at that speed and the loss for others; of rigid stops of `scene`, which `model` is of, the
+/// loss with their restitution, or why there can be no compliant ones. None where nothing is struck, or where
+/// the run takes longer than a second.
+pub fn strikes_in_words(model: &Model, scene: &Scene) -> Option<String> {
+    let stops = &scene.stops;
     if *stops == Stops::None {
         return None;
     }
@@ -126,6 +128,10 @@ pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
             let wanted = WANTED.map(|e| format!("{e} takes {} s/m", loss(e).unwrap_or_default()));
             format!("restitution {} there; {}", short(stop.restitution(speed)), wanted.join(", "))
         }
+        None if scene.transducer.has_state() => {
+            "compliant ones (`Hertz`) are not followed beside a current or voltage with a state of its own"
+                .to_owned()
+        }
         None => {
             let there = stops.limits_mm().into_iter().zip(stops.restitutions());
             let mut own: Vec<f64> = there.filter_map(|(limit, own)| limit.and(own)).collect();
@@ -134,7 +140,12 @@ pub fn strikes_in_words(model: &Model, stops: &Stops) -> Option<String> {
                 Some(loss) => format!("a restitution of {e} there takes loss_s_per_m: {loss}"),
                 None => format!("no loss gives a restitution of {e}"),
             });
-            format!("compliant in their place (`Hertz`), {}", own.collect::<Vec<_>>().join(", "))
+            let [left, right] = stops.limits_mm();
+            let which = match left == right {
+                true => "compliant in their place (`Hertz`)",
+                false => "compliant ones (`Hertz`), which stand equally far out on both sides",
+            };
+            format!("{which}, {}", own.collect::<Vec<_>>().join(", "))
         }
     };
     let flights = if count == 1 { "one flight".to_owned() } else { format!("{count} flights") };

@@ -31,7 +31,7 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     }
     lines.extend(damping(scene, &model));
     lines.extend(landscape(&mechanism.landscape, model.mass()));
-    lines.extend(strikes_in_words(&model, &scene.stops));
+    lines.extend(strikes_in_words(&model, scene));
     Ok(lines)
 }
 

@@ -17,6 +17,7 @@ mod curve;
 mod dense_output;
 mod distance;
 mod edges;
+mod ended;
 mod exponents;
 mod family;
 mod fields;
@@ -69,6 +70,7 @@ pub use curve::{
 pub use dense_output::between;
 pub use distance::distances;
 pub use edges::{Edges, first_crossing_edge, line_meets};
+pub use ended::ended_remedy;
 pub use exponents::{
     Estimate, ExponentCells, ExponentOptions, ExponentTally, Exponents, NoExponents, average_exponents,
     drive_fault, exponents, exponents_row,

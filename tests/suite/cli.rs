@@ -153,3 +153,34 @@ fn check_says_what_is_modelled() {
     check.stderr(contains("no-such-scene").and(contains("also-none")));
     refused(headless("check --set stops.restitution=1.2"), &["stops.restitution", "1.2"]);
 }
+
+#[test]
+fn check_advises_compliant_stops_only_where_the_scene_takes_them() {
+    let line = "check paper --set run.duration_s=2 --set run.settle_s=1";
+    let coil = "coupling_v_s_per_m:5,coil_ohm:40,load_ohm:60";
+    let said = |more: &str| {
+        // `check` runs the scene for no more than a second, in which a busy machine may not get there
+        let once = |_| {
+            let text = stdout(&format!("{line} {more}"));
+            text.lines().find(|line| line.contains("stops are struck at")).map(str::to_owned)
+        };
+        (0..1000).find_map(once).unwrap()
+    };
+    let advice = "compliant in their place (`Hertz`), a restitution of 0.36 there takes loss_s_per_m: ";
+    assert!(said("").contains(advice), "{}", said(""));
+    assert!(said(&format!("--set transducer=Electromagnetic({coil})")).contains(advice));
+    let with_state = said(&format!("--set transducer=Electromagnetic({coil},inductance_mh:10)"));
+    assert!(
+        with_state.ends_with(
+            "compliant ones (`Hertz`) are not followed beside a current or voltage with a state of its own"
+        ),
+        "{with_state}"
+    );
+    let uneven = said("--set stops=Uneven(left_mm:1.5,right_mm:1.4,restitution_left:0.36)");
+    assert!(
+        uneven.contains("compliant ones (`Hertz`), which stand equally far out on both sides, a"),
+        "{uneven}"
+    );
+    let even = said("--set stops=Uneven(left_mm:1.5,right_mm:1.5,restitution_left:0.36)");
+    assert!(even.contains(advice), "{even}");
+}

@@ -216,7 +216,9 @@ const PINNED: f64 = 10.462_674_754_873_87;
 fn a_record_is_linear_between_samples_and_zero_after_its_end() {
     let (_folder, path) = record("t_s,extra,accel_m_per_s2\n-1,9,2\n1,9,4\n2,9,-4\n");
     let m = free_mass(&format!("Recorded(path: {path:?})"), "duration_s: 5, tolerance: 1e-12");
-    for (t, a) in [(0.0, 3.0), (0.5, 3.5), (1.0, 4.0), (1.25, 2.0), (1.75, -2.0), (2.0, 0.0), (3.0, 0.0)] {
+    for (t, a) in
+        [(0.0, 3.0), (0.5, 3.5), (1.0, 4.0), (1.25, 2.0), (1.75, -2.0), (2.0, -4.0), (2.1, 0.0), (3.0, 0.0)]
+    {
         near(m.base_acceleration(t), a, 1e-14);
     }
     // x'' = -a: v(2) = -(7/2) - 0, x by integrating the two parabolas; then it coasts
@@ -226,6 +228,37 @@ fn a_record_is_linear_between_samples_and_zero_after_its_end() {
     near(run.samples[1].v, -3.5, 1e-13);
     near(run.samples[2].v, -3.5, 1e-13);
     near(run.samples[2].x - run.samples[1].x, -7.0, 1e-12);
+}
+
+#[test]
+fn the_last_sample_of_a_record_is_within_it_where_the_run_ends_with_it_and_where_it_goes_on() {
+    let rows: String =
+        (0..=40).map(|i| format!("{},{}\n", f64::from(i) / 40.0, 3.0 - f64::from(i) / 80.0)).collect();
+    let (_folder, path) = record(&format!("t_s,accel_m_per_s2\n{rows}"));
+    let recorded = format!("Recorded(path: {path:?})");
+    for excitation in [recorded.clone(), format!("Sum([Constant(accel_g: 0), {recorded}])")] {
+        // flying over polynomials, over lines, and resting on a stop
+        for (stops, start) in [
+            ("None", 0.0),
+            ("Rigid(travel_limit_mm: 1e6, restitution: 0.3)", 0.0),
+            ("Rigid(travel_limit_mm: 5, restitution: 0.3)", -5.0),
+        ] {
+            for duration in [1.0, 1.2] {
+                let m = model(&format!(
+                    "mass_g: 1000, mechanism: Linear(n_per_m: 2), stops: {stops},
+                     start: At(x_mm: {start}, v_m_per_s: 0), excitation: {excitation},
+                     run: (duration_s: {duration}, settle_s: 0, tolerance: 1e-6)"
+                ));
+                let run = run_at(&m, &[0.5, 1.0, duration]);
+                let told: Vec<f64> = run.samples.iter().map(|own| own.base_accel).collect();
+                let last = if duration > 1.0 { 0.0 } else { 2.5 };
+                for (told, known) in told.iter().zip([2.75, 2.5, last]) {
+                    near(*told, known, 1e-14);
+                }
+                near(m.base_acceleration(1.0), 2.5, 1e-14);
+            }
+        }
+    }
 }
 
 #[test]

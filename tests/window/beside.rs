@@ -53,7 +53,12 @@ fn a_scene_is_drawn_with_what_it_has_and_with_nothing_else() {
             for name in NAMES {
                 assert_eq!(is_painted(&harness, name), own.contains(&name), "{}: {name}", preset.name);
             }
-            assert_eq!(poles(&harness).len(), if preset.name == "magnet" { 4 } else { 0 });
+            let count = match preset.name {
+                "magnet" => 4,
+                "harvester" => 2, // over the coil
+                _ => 0,
+            };
+            assert_eq!(poles(&harness).len(), count);
             assert_eq!(sliced(&harness), [""; 0], "{}", preset.name);
         }
     }
@@ -123,6 +128,15 @@ fn a_load_is_drawn_from_a_short_circuit_to_an_open_one() {
     });
     harness.run_steps(3);
     assert!(is_painted(&harness, "piezo, load 100 kohm") && !is_painted(&harness, "coil, "));
+}
+
+#[test]
+fn a_load_has_its_name_where_the_mechanism_shares_a_projected_window() {
+    let mut harness = window("harvester", PROJECTED, Settings::default());
+    harness.run_steps(3);
+    let all = painted(&harness);
+    let own = all.iter().find(|own| own.0.contains("load 60 ohm"));
+    assert!(own.is_some_and(|own| own.2.contains_rect(own.1)), "{own:?} {all:?}");
 }
 
 #[test]

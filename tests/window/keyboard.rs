@@ -1,11 +1,13 @@
 //! Hold, move and change by the keyboard alone.
 
 use eframe::egui::{Key, Modifiers, accesskit::Role};
+use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use interwell::app::ui::settings::Settings;
-use interwell::scene::Stops;
+use interwell::app::window::{Command, Window};
+use interwell::scene::{Layout, Stops};
 
-use crate::support::{WIDE, says, window};
+use crate::support::{WIDE, command, is_painted, painted, says, wait_until, window};
 
 #[test]
 fn the_mass_is_held_moved_and_let_go() {
@@ -73,4 +75,58 @@ fn the_keys_are_listed() {
     harness.key_press(Key::F1);
     harness.run_steps(3);
     assert!(harness.query_by_label("let go of the mass").is_none());
+}
+
+#[test]
+fn the_projector_keeps_the_view_over_the_window_and_is_light() {
+    let mut harness = window("first-look", WIDE, Settings { dark: true, ..Settings::default() });
+    command(&mut harness, Command::Fill);
+    harness.get_by_label("all views");
+    // to the projector and back, each another room for the views
+    for _ in 0..2 {
+        harness.key_press(Key::P);
+        harness.run_steps(4);
+        harness.get_by_label("all views");
+    }
+    let listed = |harness: &mut Harness<'static, Window>| {
+        command(harness, Command::Shortcuts);
+        let listed = harness.query_by_label("light letters on a dark ground").is_some();
+        harness.key_press(Key::F1);
+        harness.run_steps(3);
+        listed
+    };
+    assert!(listed(&mut harness));
+    harness.key_press(Key::P);
+    harness.run_steps(4);
+    assert!(!listed(&mut harness));
+    harness.key_press(Key::D);
+    harness.run_steps(3);
+    assert!(harness.state().settings.dark && harness.state().settings.projector);
+    assert!(harness.state().told().is_some_and(|text| text.contains("The projector is light")));
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    harness.key_press(Key::Z);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("all views").is_some());
+    // an arrangement that is asked for has all views
+    command(&mut harness, Command::Arrange(Layout::Study));
+    assert!(harness.query_by_label("all views").is_none());
+}
+
+#[test]
+fn the_bar_of_time_says_what_its_signs_are_in_two_lines() {
+    let mut harness = window("first-look", WIDE, Settings::default());
+    let bar = harness.get_by_label("time").rect();
+    harness.hover_at(bar.center());
+    harness.run_steps(3);
+    wait_until("the hover text is there", || {
+        harness.run_steps(20);
+        is_painted(&harness, "What has been seen")
+    });
+    let all = painted(&harness);
+    let hover = all.iter().find(|own| own.0.starts_with("What has been seen")).unwrap();
+    assert_eq!(hover.0.lines().count(), 2, "{}", hover.0);
+    // neither is wrapped
+    let line = all.iter().find(|own| own.0 == "Shaking").unwrap().1.height();
+    assert!(hover.1.height() < 3.0 * line, "{hover:?}");
 }

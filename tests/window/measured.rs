@@ -172,7 +172,7 @@ fn a_fault_is_one_sentence_and_loses_nothing() {
     assert!(harness.state().session.measured.over.is_none());
     harness.state_mut().open_measured(&folder.path().join("not-there.csv"));
     read(&mut harness);
-    harness.get_by_label_contains("The file no such file.");
+    harness.get_by_label_contains("The file is not there (no such file)");
 }
 
 #[test]

@@ -59,6 +59,30 @@ fn the_view_says_what_the_load_takes() {
 }
 
 #[test]
+fn a_tile_among_others_has_the_mean_and_its_axis_fits() {
+    let mut harness = window("harvester", WIDE, Settings::default());
+    command(&mut harness, Command::Show(View::Power, true));
+    harness.state_mut().session.wait_settled(LONG);
+    harness.run_steps(3);
+    assert!(harness.state().tiling().place_of(View::Power).unwrap().height() < 250.0);
+    assert!(is_painted(&harness, "Into the load: mean 326 µW"));
+    assert_eq!(sliced(&harness), [""; 0]);
+    // the name of the axis would reach into the legend
+    assert!(!is_painted(&harness, "power into the load (mW)") && is_painted(&harness, "mW"));
+}
+
+#[test]
+fn without_power_the_axis_goes_to_a_milliwatt() {
+    let mut harness = alone("harvester", WIDE);
+    harness.state_mut().session.set_number(LOAD, f64::INFINITY).unwrap();
+    harness.state_mut().session.end_gesture();
+    harness.state_mut().session.restart();
+    harness.state_mut().session.wait_settled(LONG);
+    harness.run_steps(3);
+    assert!(is_painted(&harness, "power into the load (mW)"));
+}
+
+#[test]
 fn its_sentences_hold_for_every_transducer() {
     let coil = |coupling_v_s_per_m, load_ohm| Transducer::Electromagnetic {
         coupling_v_s_per_m,

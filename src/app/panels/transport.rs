@@ -10,7 +10,7 @@ use crate::app::session::Session;
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::{Icon, arrows, icon_button_ui};
-use crate::app::words::meanings::{explained, meaning};
+use crate::app::words::meanings::explained;
 use crate::app::words::status::{Kind, speed};
 use crate::dynamics::{Event, EventKind};
 
@@ -184,11 +184,9 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     if let Some(t) = wanted {
         session.player.seek(t);
     }
-    let mut hover = "What has been seen: drag, or move with the arrow keys, to look at it again.".to_owned();
+    let mut hover = "What has been seen: drag, or press the arrow keys, to look back.".to_owned();
     if !covered {
-        for (sign, name) in [("A line", "impact"), ("A triangle", "release"), ("A diamond", "crossing")] {
-            hover += &format!("\n{sign} stands for {name}: {}", meaning(name).unwrap_or_default());
-        }
+        hover += "\nA line is an impact, a triangle a release, a diamond a crossing.";
     }
     response.on_hover_text(hover);
 }

@@ -12,8 +12,8 @@ use crate::study::{Attractor, Edges};
 
 use super::chart::Chart;
 use super::hand::hand;
-use super::labels::{haloed, rests};
-use super::legend::{LEGEND, Sign};
+use super::labels::{plated, rests};
+use super::legend::Sign;
 use super::stops::stops_ui;
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
@@ -61,12 +61,11 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let edges = (chart.rect.top(), chart.rect.bottom());
     stops_ui(ui, context, chart.rect, edges, 0.0);
     chart.numbers(ui, &style, "velocity at the start (mm/s)", 1e-3);
-    let right = match &level {
-        Some(Ok(level)) => hand_ui(ui, &response, context, (&chart, level, whole)),
-        _ => area.right(),
-    };
+    if let Some(Ok(level)) = &level {
+        hand_ui(ui, &response, context, (&chart, level, whole));
+    }
     let entries: Vec<(Sign, &str)> = legend.iter().map(|(sign, words)| (*sign, words.as_str())).collect();
-    chart.legend(ui, &style, right, &entries);
+    chart.legend(ui, &style, area.right(), &entries);
 }
 
 /// The starts in the colours of their attractors; those that go to none that is known are left as the ground.
@@ -128,18 +127,17 @@ fn said(attractor: &Attractor) -> String {
     format!("{}: {} %", attractor.words(), short((1e2 * attractor.share.share).round()))
 }
 
-/// What is under the pointer, in the row of the legend, and a click that begins there. Its left end.
+/// What is under the pointer, in the lower corner of the picture, and a click that begins there.
 fn hand_ui(
     ui: &Ui,
     response: &egui::Response,
     context: &mut ViewContext<'_>,
     (chart, level, whole): (&Chart, &Level, bool),
-) -> f32 {
-    let right = chart.area.right();
-    let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return right };
+) {
+    let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return };
     let (x, v) = chart.world_from_screen(pointer);
     if !(x >= level.room.0 && x <= level.room.1) {
-        return right; // nothing begins beyond the stops
+        return; // nothing begins beyond the stops
     }
     let (across, up) = (Edges::new(&level.axes.0), Edges::new(&level.axes.1));
     let cell = across.cell(x * 1e3).zip(up.cell(v));
@@ -152,15 +150,12 @@ fn hand_ui(
     });
     let coarse = if whole { "" } else { " (coarse)" };
     let text = format!("{} mm, {} mm/s: {goes}{coarse}", three(x * 1e3), three(v * 1e3));
-    let painter = ui.painter().with_clip_rect(chart.area);
-    let at = (chart.area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
-    let font = (context.style.small(), context.style.ink());
-    let left = haloed(&painter, &context.style, at, &text, font).left();
+    let at = (chart.rect.right_bottom() - vec2(6.0, 4.0), Align2::RIGHT_BOTTOM);
+    plated(ui.painter(), &context.style, at, &text, (context.style.small(), context.style.ink()));
     if response.clicked() {
         context.session.start_at(x, v);
     }
     if rests(ui) {
         response.clone().on_hover_text_at_pointer("Click: the scene begins here.");
     }
-    left
 }

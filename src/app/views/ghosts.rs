@@ -22,6 +22,9 @@ const NEAR: f32 = 1.0;
 /// What the lines of the pins are called.
 pub(super) const PINNED: [&str; 3] = ["A", "B", "C"];
 
+/// Room in points for a letter.
+const LETTER: f32 = 10.0;
+
 /// Pieces of a dashed circle.
 const ROUND: usize = 32;
 
@@ -35,6 +38,8 @@ pub(super) struct Ghost {
     pub state: Sample,
     /// The model by which it moves.
     pub model: Arc<Model>,
+    /// How far in points its letter stands beside its middle: those of motions at one place stand in a row.
+    aside: f32,
 }
 
 /// The pinned motions at the time that is shown, where they are drawn over the present one.
@@ -49,8 +54,24 @@ pub(super) fn ghosts(context: &ViewContext<'_>) -> Vec<Ghost> {
         letter: pin.letter(),
         state: pin.state_at(t),
         model: Arc::clone(pin.watch().model_at(t)),
+        aside: 0.0,
     };
-    session.pins.all().iter().map(ghost).collect()
+    let mut all: Vec<Ghost> = session.pins.all().iter().map(ghost).collect();
+    let places: Vec<f64> = all.iter().map(|own| own.state.x).collect();
+    for (own, aside) in all.iter_mut().zip(asides(&places)) {
+        own.aside = aside;
+    }
+    all
+}
+
+/// How far letters are moved aside, in the order of their places, so that no two are nearer than one is wide.
+fn asides(places: &[f64]) -> Vec<f32> {
+    let middle = 0.5 * (places.len().max(1) - 1) as f32;
+    let before = |i: usize| {
+        let is_before = |j: &usize| (places[*j], *j) < (places[i], i);
+        (0..places.len()).filter(is_before).count() as f32
+    };
+    (0..places.len()).map(|i| LETTER * (before(i) - middle)).collect()
 }
 
 /// A path with the dashes of a pin; what turns within a point is drawn straight.
@@ -99,7 +120,7 @@ impl Ghost {
     fn outline(&self, painter: &Painter, style: &Style, path: &[Pos2], top: Pos2) {
         painter.add(Shape::line(path.to_vec(), Stroke::new(4.0, style.ground().gamma_multiply(0.7))));
         painter.extend(dashed(path, self.place, style.ghost_mass_stroke()));
-        let at = (top - vec2(0.0, 2.0), Align2::CENTER_BOTTOM);
+        let at = (top + vec2(self.aside, -2.0), Align2::CENTER_BOTTOM);
         haloed(painter, style, at, &self.letter.to_string(), (style.small(), style.mass_ink()));
     }
 
@@ -118,6 +139,18 @@ impl Ghost {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn letters_of_motions_at_one_place_stand_in_a_row() {
+        assert_eq!(asides(&[]), [0.0; 0]);
+        assert_eq!(asides(&[0.3]), [0.0]);
+        assert_eq!(asides(&[0.3, 0.3]), [-5.0, 5.0]);
+        assert_eq!(asides(&[0.3, 0.2, 0.3]), [0.0, -10.0, 10.0]);
+        // wherever they are, no two get nearer
+        let places = [0.7, -0.1, 0.69];
+        let moved: Vec<f64> = places.iter().zip(asides(&places)).map(|(x, by)| x + f64::from(by)).collect();
+        assert!((moved[0] - moved[2]).abs() >= 10.0 && (moved[1] - moved[2]).abs() >= 10.0, "{moved:?}");
+    }
 
     #[test]
     fn a_long_path_has_few_dashes_that_reach_to_its_end() {

@@ -1,6 +1,6 @@
 //! View of the power: what the load of a transducer takes, and the work of the base where there is none.
 
-use eframe::egui::{Label, Rect, RichText, Ui, UiBuilder, pos2, vec2};
+use eframe::egui::{self, Label, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
 use crate::app::session::Session;
 use crate::app::words::numbers::{power, power_unit, three};
@@ -11,8 +11,10 @@ use super::ViewContext;
 use super::ranges::axis_end;
 use super::trace::{TraceQuantity, trace_ui};
 
-/// Height in points that the trace is left at least; a lower view has the trace alone.
+/// Height in points that the trace is left at least below all that is said, and below its first line; a lower
+/// view has the trace alone.
 const TRACE: f32 = 110.0;
+const LOW_TRACE: f32 = 70.0;
 
 /// What stands in place of the numbers where nothing gives power.
 const NONE: &str = "The work of the base. This scene has no transducer: add one to its file, such as \
@@ -31,15 +33,27 @@ pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         galley.size().y + ui.spacing().item_spacing.y
     };
     let height = words.iter().map(|line| wrapped(line)).sum::<f32>() + 6.0;
+    let first = ui.text_style_height(&egui::TextStyle::Body) + 12.0;
+    let coloured = |i: usize, line: &str| {
+        let colour = if i == 0 && has_transducer { style.ink() } else { style.faint() };
+        RichText::new(line).font(style.body()).color(colour)
+    };
+    let card = |height: f32| {
+        let card = Rect::from_min_max(place.min, pos2(place.right(), area.top() + height));
+        UiBuilder::new().max_rect(card)
+    };
     let mut top = area.top();
     if area.height() - height >= TRACE {
         top += height;
-        let card = Rect::from_min_max(place.min, pos2(place.right(), top));
-        ui.scope_builder(UiBuilder::new().max_rect(card), |ui| {
-            for (i, line) in words.into_iter().enumerate() {
-                let colour = if i == 0 && has_transducer { style.ink() } else { style.faint() };
-                ui.add(Label::new(RichText::new(line).font(style.body()).color(colour)).wrap());
+        ui.scope_builder(card(height), |ui| {
+            for (i, line) in words.iter().enumerate() {
+                ui.add(Label::new(coloured(i, line)).wrap());
             }
+        });
+    } else if area.height() - first >= LOW_TRACE {
+        top += first;
+        ui.scope_builder(card(first), |ui| {
+            ui.add(Label::new(coloured(0, &words[0])).truncate()).on_hover_text(words.join("\n"));
         });
     }
     let quantity = match has_transducer {

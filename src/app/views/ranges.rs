@@ -158,9 +158,10 @@ impl Ranges {
         axis_end(ROOM * self.whole().power)
     }
 
-    /// The end of an axis of power into a load in W.
+    /// The end of an axis of power into a load in W; a milliwatt where there is none.
     pub fn load_power(&self) -> f64 {
-        axis_end(ROOM * self.whole().load)
+        let load = self.whole().load;
+        if load > 0.0 { axis_end(ROOM * load) } else { 1e-3 }
     }
 
     /// The largest kinetic energy in J to be shown.

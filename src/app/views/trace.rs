@@ -34,6 +34,9 @@ const MOST_SWINGS: f64 = 200.0;
 /// Where in the window the present is.
 const PRESENT: f64 = 0.94;
 
+/// Height in points of the numbers and the name below a plot.
+const BELOW: f32 = 40.0;
+
 /// Share of the stretch at its end where a number would be cut off.
 const NO_NUMBER: f64 = 0.05;
 
@@ -211,7 +214,11 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     // a number at the very end of the axis would be cut off
     let edge = 0.02 * (high - low);
     let is_low = ui.available_height() < LOW;
-    let (time_label, axis) = if is_low { ("", quantity.unit().to_owned()) } else { ("time (s)", axis) };
+    // a name that is longer than its axis would run into the legend
+    let name = ui.painter().layout_no_wrap(axis.clone(), style.small(), style.ink()).size().x;
+    let is_long = name > ui.available_height() - LEGEND - BELOW;
+    let axis = if is_low || is_long { quantity.unit().to_owned() } else { axis };
+    let time_label = if is_low { "" } else { "time (s)" };
     let digits = 1 + decimals_for(high - low);
     let (read, unit) = (|t: f64| quantity.seen(watch, &watch.state_at(t)), quantity.unit());
     let at_each = |t: f64| format!("{:.digits$} {unit}", read(t));
@@ -310,8 +317,7 @@ pub(in crate::app) fn stretch(model: &Model) -> f64 {
 }
 
 /// The path as lines, without what is not known. A line that turns on the spot is drawn with a tip that
-/// reaches beyond it: between stops
-/// each flight is a line of its own, so that none is seen to go through.
+/// reaches beyond it: between stops each flight is a line of its own, so that none is seen to go through.
 fn paths(samples: &[Sample], flights: bool, point: impl Fn(&Sample) -> PlotPoint) -> Vec<Vec<PlotPoint>> {
     let turns = |pair: &&[Sample]| pair[0].t == pair[1].t;
     let line = |part: &[Sample]| part.iter().map(&point).filter(|own| !own.y.is_nan()).collect();

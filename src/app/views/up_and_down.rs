@@ -167,9 +167,13 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         }
     };
     let (up, down) = (style.motion(), style.base());
+    let [sign_up, sign_down] = match quantity {
+        WalkQuantity::Strobes => [Sign::Dots(up), Sign::Pluses(down)],
+        _ => [Sign::Line(style.motion_stroke()), Sign::Dashed(style.base_stroke())],
+    };
     let entries = [
-        (Sign::Line(style.motion_stroke()), "turned up"),
-        (Sign::Dashed(style.base_stroke()), "turned down"),
+        (sign_up, "turned up"),
+        (sign_down, "turned down"),
         (Sign::Shade(style.rest_shade()), "the two differ"),
     ];
     let vertical = match quantity {

@@ -60,6 +60,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     clipped.extend(Shape::dashed_line(&line(tilt), style.ghost_stroke(), 5.0, 5.0));
     clipped.add(Shape::line(reachable, style.tray_stroke()));
 
+    let mut balls = Vec::new();
     for ghost in ghosts(context) {
         let (state, tilted) = (ghost.state, ghost.model.mass() * ghost.state.base_accel);
         let curve = &ghost.model.mechanism().curve;
@@ -74,12 +75,14 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             clipped.extend(dashed(&own, ghost.place, style.ghost_stroke()));
         }
         ghost.stops(&clipped, context, rect, 0.0);
-        ghost.ball(&clipped, &style, height(state.x) - vec2(0.0, BALL), BALL);
+        balls.push((height(state.x) - vec2(0.0, BALL), ghost));
     }
     landmarks(&clipped, context, rect);
     let ball = height(state.x, tilt) - vec2(0.0, BALL);
     stops_ui(ui, context, rect, (rect.top() + 4.0, rect.bottom()), 0.0);
     mass_ui(ui, context, ball, rect);
+    // their letters may stand before a stop
+    balls.iter().for_each(|(at, ghost)| ghost.ball(&clipped, &style, *at, BALL));
     let painter = ui.painter().with_clip_rect(rect);
     painter.circle(ball, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     legend(ui, context, area);

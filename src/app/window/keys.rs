@@ -3,6 +3,7 @@
 use eframe::egui::{self, Context, Grid, Key, KeyboardShortcut, Modifiers, Popup, RichText, Ui};
 
 use crate::app::session::player::SPEEDS;
+use crate::app::ui::settings::Setting;
 use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
 
 use super::command::{Command, Listed, Part, parts};
@@ -11,8 +12,9 @@ use super::command::{Command, Listed, Part, parts};
 pub(super) const SPEED_KEYS: [Key; SPEEDS.len()] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
 
-/// Headings of the list of keys, and the width in points from which on they stand in two columns.
-const GROUPS: [&str; 5] = ["Time", "Hands", "Views", "Scene", "Lesson"];
+/// Headings of the list of keys in two columns, and the width in points from which on these stand side by
+/// side.
+const GROUPS: [&[&str]; 2] = [&["Time", "Hands", "Lesson"], &["Views", "Scene"]];
 const SIDE_BY_SIDE: f32 = 800.0;
 
 /// What the keyboard asks for; nothing while something is typed. To be called only where no dialog is open.
@@ -54,10 +56,12 @@ fn is_free(ctx: &Context, key: &KeyboardShortcut, command: &Command, filled: boo
 }
 
 /// The rows of the list under a heading: keys, and what they do.
-fn rows(ctx: &Context, heading: &str) -> Vec<(String, &'static str)> {
+fn rows(ctx: &Context, heading: &str, projector: bool) -> Vec<(String, &'static str)> {
     let mut rows: Vec<(&str, String, &str)> = Vec::new();
     for part in parts() {
         match (part, rows.last_mut()) {
+            // the projector is light
+            (Part::Item(_, _, Command::Toggle(Setting::Dark), _), _) if projector => {}
             (Part::Row(group, keys, text), _) => rows.push((group, (*keys).to_owned(), text)),
             (Part::Item(_, Some(key), _, Listed::As(group, text)), _) => {
                 rows.push((group, ctx.format_shortcut(key), text));
@@ -72,10 +76,10 @@ fn rows(ctx: &Context, heading: &str) -> Vec<(String, &'static str)> {
 }
 
 /// A group of the list with its heading.
-fn group_ui(ui: &mut Ui, group: &str) {
+fn group_ui(ui: &mut Ui, group: &str, projector: bool) {
     ui.label(RichText::new(group).heading());
     Grid::new(group).num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
-        for (keys, does) in rows(ui.ctx(), group) {
+        for (keys, does) in rows(ui.ctx(), group, projector) {
             ui.label(keys);
             ui.label(does);
             ui.end_row();
@@ -85,7 +89,7 @@ fn group_ui(ui: &mut Ui, group: &str) {
 }
 
 /// Shows the list of keys, which was opened at the time `opened` in s; false once it is to be closed.
-pub fn list_ui(ui: &Ui, opened: f64) -> bool {
+pub fn list_ui(ui: &Ui, opened: f64, projector: bool) -> bool {
     let answer = dialog(ui.ctx(), "shortcuts").show(ui.ctx(), |ui| {
         ui.set_max_width(dialog_width(ui, 960.0));
         ui.heading("Keys");
@@ -95,11 +99,11 @@ pub fn list_ui(ui: &Ui, opened: f64) -> bool {
         let list = egui::ScrollArea::vertical().id_salt(opened.to_bits());
         list.max_height(room).min_scrolled_height(room).show(ui, |ui| {
             if ui.available_width() < SIDE_BY_SIDE {
-                return GROUPS.iter().for_each(|group| group_ui(ui, group));
+                return GROUPS.concat().iter().for_each(|group| group_ui(ui, group, projector));
             }
             ui.horizontal_top(|ui| {
-                for groups in [&GROUPS[..2], &GROUPS[2..]] {
-                    ui.vertical(|ui| groups.iter().for_each(|group| group_ui(ui, group)));
+                for groups in GROUPS {
+                    ui.vertical(|ui| groups.iter().for_each(|group| group_ui(ui, group, projector)));
                     ui.add_space(24.0);
                 }
             });

@@ -170,7 +170,9 @@ fn settings_ui(ui: &mut Ui, asked: &mut Vec<Command>, mut settings: Settings) {
         (Setting::Dark, "Dark", "Light letters on a dark ground (D)"),
         (Setting::ReduceMotion, "Reduce motion", "No rings at impacts"),
     ] {
-        if ui.checkbox(settings.of(setting), name).on_hover_text(hover).clicked() {
+        let is_free = setting != Setting::Dark || !settings.projector;
+        let own = egui::Checkbox::new(settings.of(setting), name);
+        if ui.add_enabled(is_free, own).on_hover_text(hover).clicked() {
             asked.push(Command::Toggle(setting));
         }
     }

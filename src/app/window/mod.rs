@@ -219,7 +219,8 @@ impl Window {
         self.take_figure();
         self.figure_ui(ui);
         self.glossary = self.glossary && glossary_ui(ui);
-        self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened));
+        let projector = self.settings.projector;
+        self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened, projector));
         self.messages.ui(ui);
         focus_ui(&ctx, &style);
     }

@@ -8,6 +8,7 @@ use crate::app::panels::transport::EVENT_AHEAD;
 use crate::app::session::measured::MeasuredData;
 use crate::app::session::pins::PinKind;
 use crate::app::session::player::{Goal, SPEEDS};
+use crate::app::ui::settings::Setting;
 use crate::app::views::{Memory, View};
 use crate::dynamics::EventKind;
 
@@ -123,6 +124,7 @@ impl Window {
             }
             Command::Arrange(layout) => {
                 self.arrangement = Arrangement::Layout(layout);
+                self.filled = None;
                 self.arrange(self.tiling.room());
             }
             Command::ArrangeOwn => {
@@ -131,6 +133,7 @@ impl Window {
                     self.own = self.tiling.kept().cloned();
                 }
                 self.arrangement = Arrangement::Own;
+                self.filled = None;
                 self.arrange(self.tiling.room());
             }
             Command::KeepOwn => {
@@ -167,6 +170,9 @@ impl Window {
             Command::FullScreen => {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!full));
+            }
+            Command::Toggle(Setting::Dark) if self.settings.projector => {
+                self.messages.tell("The projector is light: P leaves it");
             }
             Command::Toggle(setting) => {
                 let own = self.settings.of(setting);

@@ -228,7 +228,6 @@ impl Window {
 
     /// Puts the views where the arrangement has them.
     pub(super) fn arrange(&mut self, room: Room) {
-        self.filled = None;
         if let Some(lesson) = &self.lessons.open {
             let views: Vec<View> = lesson.lesson().views.iter().map(|view| View::from(*view)).collect();
             self.tiling = Tiling::of_lesson(&views, room);

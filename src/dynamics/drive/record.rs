@@ -86,12 +86,21 @@ impl<T: Scalar> Record<T> {
         }
     }
 
-    /// The value by the lines.
+    /// The value by the lines; at the last sample that one, and zero from there on.
     pub fn exact(&self, at: &Instant<T>, segment: usize) -> T {
         match self.place(at, segment) {
+            Place::Line(_) if self.is_last_sample(at) => {
+                T::of(self.source.accelerations.last().copied().unwrap_or_default())
+                    * T::of(self.clock.unit() * self.clock.unit())
+            }
             Place::Piece(piece, ..) => self.by_line(at, piece),
             _ => self.value(at, segment),
         }
+    }
+
+    fn is_last_sample(&self, at: &Instant<T>) -> bool {
+        let end = self.source.times.last().filter(|end| **end >= 0.0);
+        end.is_some_and(|end| self.clock.at(*end) == *at)
     }
 
     /// The value of the line that a piece stands for at an instant.

@@ -186,9 +186,31 @@ fn what_a_row_cannot_say_is_said() {
     assert!(both.contains("still.ron: 0.6 g does not move it"), "{both}");
     assert!(both.contains("single.ron: no barrier between two wells, so nothing to cross"), "{both}");
     assert!(!both.contains("only scene") && !both.contains("with the run of"), "{both}");
+    // every empty cell of a row has a reason, one line for all that it is the same of
+    let [first, second] = [&paths[0], &paths[1]].map(|own| own.display().to_string());
+    for line in [
+        format!("{first}, {second}: no transducer, so no power\n"),
+        format!("{first}: no frequency that was tried makes its settled motion cross at 0.6 g\n"),
+        format!("{first}: its mechanism has no length, thickness or gap to change\n"),
+        format!("{second}: rests on no stop, so nothing to release\n"),
+        format!("{second}: no stops, so no impacts\n"),
+    ] {
+        assert!(both.contains(&line), "{line}{both}");
+    }
     let alone = said(&paths[1..], "");
     assert!(alone.contains("single.ron: the only scene; name others to set beside it"), "{alone}");
     let lent = said(&paths[1..], "--environment duffing");
     assert!(lent.contains("single.ron: under the excitation and with the run of built-in duffing"), "{lent}");
+    let text = |name: &str, run: &str| {
+        let path = folder.path().join(name);
+        let shaken = "excitation: Sine(frequency_hz: 3.0, amplitude_g: 0.5)";
+        fs::write(&path, format!("(title: \"t\", mass_g: 15.2, {single}, {shaken}, {run})")).unwrap();
+        path
+    };
+    // a settled window that is left out begins in the middle: the runs are the same
+    let weak = text("weak.ron", "run: (duration_s: 4.0)");
+    let lent = said(&[paths[1].clone(), weak], "");
+    let own = paths[1].display();
+    assert!(lent.contains(&format!("weak.ron: under the excitation of {own}\n")), "{lent}");
     assert_eq!(said(&paths, "--quiet"), "");
 }

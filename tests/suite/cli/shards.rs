@@ -59,7 +59,7 @@ fn five_shards_are_the_bytes_of_one_process() {
 fn a_missing_shard_is_named_with_the_command_that_computes_it() {
     let folder = tempfile::tempdir().unwrap();
     shards(folder.path(), MAP, &[1, 2, 4], 5);
-    let assert = merge(folder.path(), &["p1.csv", "p2.csv", "p4.csv", "p5.csv"], "map.csv").assert().code(1);
+    let assert = merge(folder.path(), &["p1.csv", "p2.csv", "p4.csv", "p5.csv"], "map.csv").assert().code(2);
     let text = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
     assert!(text.contains("p5.csv: no such file; 2 of 5 shards are missing"), "{text}");
     let commands: Vec<&str> = text.lines().skip(1).collect();
@@ -105,7 +105,7 @@ fn what_does_not_fit_together_is_refused() {
     for wrong in [&flipped[..], &rows[..rows.len() / 2], &[&rows[..], b"1,2\n"].concat()] {
         fs::write(own("p2.csv"), wrong).unwrap();
         let words = contains("p2.csv is changed");
-        merge(folder, &["p1.csv", "p2.csv"], "map.csv").assert().code(1).stderr(words);
+        merge(folder, &["p1.csv", "p2.csv"], "map.csv").assert().code(2).stderr(words);
         assert!(!folder.join("map.csv").exists() && !folder.join("map.csv.json").exists());
     }
     fs::write(own("p2.csv"), &rows).unwrap();

@@ -2,6 +2,8 @@
 //! inside it.
 
 use interwell::dynamics::{Model, Outcome, Phase, Request, Side};
+use interwell::numeric::short;
+use interwell::study::ended_remedy;
 
 use super::*;
 
@@ -180,4 +182,40 @@ fn a_quiet_rest_is_followed_and_its_small_energies_add_up() {
         assert_eq!((run.summary.regime.name(), run.summary.rested_share), ("rest", Some(1.0)));
         assert!(run.summary.steps < 100_000, "{}", run.summary.steps);
     }
+}
+
+#[test]
+fn a_budget_spent_on_contacts_is_said_to_be() {
+    let model = |stiffness: &str, tolerance: &str| {
+        let stop =
+            format!("stops=Hertz(travel_limit_mm: 1.5, stiffness_n_per_m1_5: {stiffness}, loss_s_per_m: 0)");
+        prototype(&[&stop, &format!("run.tolerance={tolerance}")])
+    };
+    let spent = Outcome::StepBudget { at: 1.0, count: 1 };
+    let said = ended_remedy(&model("1e21", "1e-3"), spent).unwrap();
+    let contact = model("1e21", "1e-3").compliant().unwrap();
+    let speed = model("1e21", "1e-3").scales().speed;
+    let time = short(contact.contact_time(15.2e-3, speed));
+    assert!(
+        said.starts_with(&format!("a contact with a stop lasts {time} s at {} m/s", short(speed))),
+        "{said}"
+    );
+    assert!(said.contains("rigid ones (`Rigid`)") && !said.contains("tolerance"), "{said}");
+    // of other scenes, a larger tolerance where there is one
+    let said = |tolerance: &str, outcome| ended_remedy(&model("1e3", tolerance), outcome).unwrap();
+    assert_eq!(said("1e-9", spent), "a larger tolerance or a shorter run takes fewer");
+    assert_eq!(said("1e-3", spent), "a shorter run takes fewer; 0.001 is the largest tolerance");
+    let inaccurate = Outcome::Inaccurate { residual: 1.0 };
+    assert_eq!(said("1e-9", inaccurate), "use a smaller tolerance");
+    assert!(said("1e-14", inaccurate).starts_with("1e-14 is the smallest tolerance"));
+    assert_eq!(ended_remedy(&model("1e3", "1e-9"), Outcome::Done), None);
+    let runaway = pressed(
+        1.0,
+        "stiffness_n_per_m1_5: 1, loss_s_per_m: 0",
+        "start: At(x_mm: 0, v_m_per_s: 0), run: (duration_s: 1)",
+    );
+    let no_number = Outcome::NotFinite { at: 1.0 };
+    assert!(ended_remedy(&runaway, no_number).unwrap().starts_with("smaller numbers in the scene"));
+    let open = preset("nominal-cubic", &["stops=None"]);
+    assert!(ended_remedy(&open, no_number).unwrap().starts_with("stops, or a force that holds the mass"));
 }

@@ -124,5 +124,9 @@ fn the_commands_say_what_is_wrong() {
     refused(line("simulate paper --offset-mm much --measured"), &["--offset-mm much"]);
     refused(line("simulate paper --shift-s soon --measured"), &["--shift-s soon", "auto"]);
     refused(line("simulate paper --time-scale 0 --measured"), &["--time-scale 0", "above 0"]);
-    refused(headless("identify nothere.csv --of damping"), &["nothere.csv", "no such file"]);
+    refused(headless("identify nothere.csv --of damping"), &["nothere.csv", "no such file", "give the path"]);
+    for command in ["simulate", "curve"] {
+        let missing = headless(&format!("{command} paper --measured nothere.csv"));
+        refused(missing, &["--measured nothere.csv", "no such file", "give the path"]);
+    }
 }

@@ -1,6 +1,6 @@
 //! Scenes with another way to a low barrier than stops.
 
-use interwell::study::Onset;
+use interwell::study::{Onset, thresholds};
 
 use super::super::support::*;
 use super::*;
@@ -32,6 +32,15 @@ fn low_barrier(text: &mut Text, name: &str, range: std::ops::Range<f64>) {
 
 pub fn balanced(text: &mut Text) {
     low_barrier(text, "balanced", 0.15..0.25);
+    // with the run of `paper`, and as long as a motion is followed for a threshold
+    let compared = changed("balanced", &["run.duration_s=10", "run.settle_s=5"]);
+    let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+    let found = thresholds(&compared.scene, &mechanism(&compared), &task).unwrap().crosses_from.unwrap();
+    let followed = 10.0 + 250.0 / 3.0;
+    text.says(&format!("follows it for {followed:.0} s, takes that for crossing and gives {found:.3} g"));
+    // what crosses so long below the threshold is kept by one well in the end
+    let changes = [format!("excitation.amplitude_g={found}")];
+    assert_eq!(settled("balanced", &[&changes[0]]).regime, Regime::Intrawell);
     let stiffness = 50.489_568_209_863_194;
     text.says(&format!("A spring of {stiffness:.2} N/m"));
     let other = |share: f64| height("balanced", &[&format!("mechanism.1.n_per_m={}", share * stiffness)]);

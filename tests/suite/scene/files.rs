@@ -35,7 +35,10 @@ fn tables_are_found_beside_the_scene_or_for_a_preset_among_the_embedded_ones() {
     assert!(error(&beside, "force_dl2.7.csv").contains("takes its tables from its own folder"));
     std::fs::write(folder.path().join("force_dl2.7.csv"), "mine").unwrap();
     assert_eq!(beside.read("force_dl2.7.csv").unwrap(), "mine");
-    assert!(error(&beside, "gone.csv").ends_with("gone.csv"));
+    assert!(
+        error(&beside, "gone.csv")
+            .ends_with("gone.csv; give the path of one, absolute or from the folder of the scene")
+    );
     assert!(error(&beside, ".").contains("is a directory"));
     std::fs::write(folder.path().join("bin.csv"), b"\xff").unwrap();
     assert!(error(&beside, "bin.csv").contains("bin.csv: is not text"));

@@ -112,7 +112,22 @@ fn a_wrong_set_names_the_argument_and_changes_nothing() {
         ("stops=Rigid(travel_limit_mm: 1)", "`restitution` is missing in Rigid"),
         ("mass_g", "--set mass_g: write FIELD=VALUE"),
         ("mass_g=", "`` is not a number"),
-        ("mass_g=None", "`None` is not a number"),
+        ("mass_g=None", "`None` is not a number; give the proof mass in grams"),
+        (
+            "mass_g=15g",
+            "`15g` is not a number: its unit stands in the name of the field; give the proof mass",
+        ),
+        ("run.settle_s=2s", "neither a number nor None: its unit stands in the name of the field; give when"),
+        ("mass_g=1e400", "`1e400` is beyond the largest number, 1.8e308; give the proof mass in grams"),
+        ("run.settle_s=-1e309", "`-1e309` is beyond the largest number"),
+        (
+            "stops=Rigid(travel_limit_mm: 1 mm, restitution: 0)",
+            "travel_limit_mm: expected a comma before this; a unit",
+        ),
+        (
+            "stops=Rigid(travel_limit_mm: 1e400, restitution: 0)",
+            "travel_limit_mm: 1e400 is beyond the largest",
+        ),
         ("run.settle_s=soon", "`soon` is neither a number nor None"),
         ("=3", "the scene has no field ``"),
         ("run.recurrence=maybe", "expected boolean"),

@@ -70,6 +70,32 @@ fn infinity_is_a_load_of_scene_argument_and_axis() {
 }
 
 #[test]
+fn a_load_beyond_the_largest_number_is_no_open_circuit() {
+    let mut document = changed("paper", &[COIL]);
+    let before = document.scene.clone();
+    let whole = "transducer=Electromagnetic(coupling_v_s_per_m: 5, coil_ohm: 40, load_ohm: 1e400)";
+    for (argument, said) in [
+        (
+            "transducer.load_ohm=1e400",
+            "load_ohm=1e400: `1e400` is beyond the largest number, 1.8e308; give the",
+        ),
+        (whole, ": load_ohm: 1e400 is beyond the largest number"),
+    ] {
+        let error = document.set(argument).unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+        assert!(document.scene == before);
+    }
+    let text = interwell::scene::write(&before).unwrap();
+    let open = text.replacen("load_ohm:", "load_ohm: 1e400, //", 1);
+    assert!(open != text);
+    let error = Document::from_text("s.ron", &open, document.files.clone()).unwrap_err().to_string();
+    assert!(error.starts_with("s.ron:") && error.contains("transducer.load_ohm: 1e400 is beyond"), "{error}");
+    let with_unit = text.replacen("load_ohm:", "load_ohm: 60ohm, //", 1);
+    let error = Document::from_text("s.ron", &with_unit, document.files.clone()).unwrap_err().to_string();
+    assert!(error.contains("transducer.load_ohm: expected a comma before this; a unit stands in"), "{error}");
+}
+
+#[test]
 fn studies_of_displacement_and_velocity_alone_refuse_a_third_state() {
     let model = preset("paper", &[COIL]);
     let cancel = std::sync::atomic::AtomicBool::new(false);

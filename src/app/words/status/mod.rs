@@ -8,7 +8,7 @@ mod numbers;
 mod remedy;
 
 use crate::dynamics::{Model, Outcome, Phase, Sample, Side};
-use crate::study::{Standing, standing};
+use crate::study::{Standing, ended_remedy, standing};
 
 pub use super::kind::Kind;
 pub use driven::{Told, driven};
@@ -79,6 +79,7 @@ pub fn held(model: &Model, state: &Sample) -> Sentence {
 pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
     let at = outcome.ended_at().unwrap_or(0.0);
     let domain = model.mechanism().curve.domain();
+    let remedy = ended_remedy(model, outcome).unwrap_or_default();
     let why = match outcome {
         Outcome::LeftTable { .. } => {
             let end = mm(domain.0.abs().min(domain.1));
@@ -99,18 +100,10 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
         Outcome::ImpactBudget { count, .. } => {
             format!("{count} impacts are more than it may make. Lower the restitution.")
         }
-        Outcome::StepBudget { .. } => match model.fast_circuit() {
-            Some(why) => format!("it took more work than it may take; {why}."),
-            None => "it took more work than it may take. Use a larger tolerance.".to_owned(),
-        },
-        Outcome::NotFinite { .. } => {
-            "the mass went beyond all bounds. Set stops, or a force that holds it.".to_owned()
-        }
+        Outcome::StepBudget { .. } => format!("it took more work than it may take; {remedy}."),
+        Outcome::NotFinite { .. } => format!("a number was no longer finite; {remedy}."),
         Outcome::Inaccurate { .. } => {
-            let remedy = model.fast_circuit().map(|why| format!("The energy does not balance: {why}."));
-            let text =
-                remedy.unwrap_or_else(|| "The energy does not balance. Use a smaller tolerance.".into());
-            return Sentence::new(Kind::Fault, text);
+            return Sentence::new(Kind::Fault, format!("The energy does not balance; {remedy}."));
         }
         Outcome::Cancelled { .. } | Outcome::Done => "it was stopped.".to_owned(),
     };

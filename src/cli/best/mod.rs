@@ -1,13 +1,16 @@
 //! `best`: the best design for an environment, one row, with its margins.
 
 use clap::Args;
-use interwell::numeric::short;
-use interwell::scene::{Axis, Document, FieldPath, RunSettings, Transducer, column_names};
+use interwell::scene::{Axis, Document, FieldPath, RunSettings, Transducer};
 use interwell::study::{
-    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Optimum,
-    Read, SAMPLES, SUMMARY_FIELDS, SummaryField, Task, Variation, best, scan_runs,
+    BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Read, SUMMARY_FIELDS,
+    SummaryField, Task, Variation, best, scan_runs,
 };
 use interwell::system::files::{canonical, is_file};
+
+mod words;
+
+use words::{names, place, quantity, words};
 
 use super::failure::Failure;
 use super::options::Common;
@@ -93,7 +96,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     if let (Err(NoBest::Cancelled), Some(own)) = (&found, &so_far) {
         let maximised = question.maximise.name;
         let at = place(&names(&question), own);
-        say(&format!("{}: best so far at {at}: {maximised} {}", document.name, short(own.value)));
+        let value = quantity(own.value, maximised);
+        say(&format!("{}: best so far at {at}: {maximised} {value}", document.name));
     }
     let design = found.map_err(|why| failure(why, options, &question, &document))?;
     write_table(&mut sinks[0], &design.table(&question))?;
@@ -117,73 +121,6 @@ fn has_fields(question: &BestQuestion) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// The answer in sentences.
-fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
-    let names = names(question);
-    let maximised = question.maximise.name;
-    let at = place(&names, &design.optimum);
-    let mean = if question.environments.len() > 1 { "the mean of " } else { "" };
-    let mut lines = vec![format!("{mean}{maximised} is largest at {at}: {}", short(design.optimum.value))];
-    if design.flat {
-        lines.push(format!("{maximised} is the same wherever it was looked, so that no place is better"));
-    }
-    for (i, name) in names.iter().enumerate() {
-        let (range, unit) = (&question.over[i], short(design.resolution[i]));
-        let side = |margin: Option<f64>, way: &str, end: f64| match margin {
-            Some(margin) => format!("{} {way}", short(margin)),
-            None => format!("nowhere {way}, as far as the range goes to {end}"),
-        };
-        let [low, high] = design.margins[i];
-        let (low, high) = (side(low, "below", range.low), side(high, "above", range.high));
-        lines.push(format!(
-            "{name}: a tenth of it is lost, or a constraint broken, {low}, and {high}; located to {unit}"
-        ));
-        if design.at_border[i] && !design.flat {
-            lines.push(format!("{name} is best at an end of its range: a wider range may hold better"));
-        }
-    }
-    if question.environments.len() > 1 {
-        for (own, value) in question.environments.iter().zip(&design.optimum.of_each) {
-            lines.push(format!("{}: {}", own.name, short(*value)));
-        }
-    }
-    if !question.vary.is_empty() {
-        let number = |value: f64| if value.is_nan() { "no result".to_owned() } else { short(value) };
-        let spread = &design.spread;
-        lines.push(format!(
-            "of {SAMPLES} samples of what varies the worst gives {}, one in twenty less than {}",
-            number(spread.worst),
-            number(spread.quantile_5)
-        ));
-        lines.push(match &design.stepped_back {
-            None => {
-                "no place beside it along the first field, of those tried, has a better worst case".into()
-            }
-            Some((own, spread)) => format!(
-                "at {} = {} the worst gives {}, one in twenty less than {}; the value there is {}, {} % less",
-                names[0],
-                own.at[0],
-                number(spread.worst),
-                number(spread.quantile_5),
-                short(own.value),
-                short(100.0 * (1.0 - own.value / design.optimum.value))
-            ),
-        });
-    }
-    lines
-}
-
-/// A place as `field = value`, field by field.
-fn place(names: &[String], own: &Optimum) -> String {
-    let each = names.iter().zip(&own.at).map(|(name, value)| format!("{name} = {value}"));
-    each.collect::<Vec<_>>().join(", ")
-}
-
-fn names(question: &BestQuestion) -> Vec<String> {
-    let fields: Vec<&str> = question.over.iter().map(|range| range.field.as_str()).collect();
-    column_names(&fields)
 }
 
 fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: &Document) -> Failure {
@@ -212,7 +149,8 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
             let at =
                 names(question).into_iter().zip(nearest).map(|(name, value)| format!("{name} = {value}"));
             let results = question.subject_to.iter().zip(results);
-            let results = results.map(|(own, value)| format!("{} is {}", own.of.name, short(value)));
+            let results =
+                results.map(|(own, value)| format!("{} is {}", own.of.name, quantity(value, own.of.name)));
             Failure::argument(format!(
                 "--subject-to {}: nothing that was tried in the range keeps to it; nearest is {}, where {}",
                 options.subject_to.join(", "),

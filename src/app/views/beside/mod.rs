@@ -2,8 +2,9 @@
 //!
 //! The spring lies between the frame on the left and the mass. The magnets face each other across their gap
 //! where the mass is at x = 0, one below the mass and one on a post; along the flexures the gap has their
-//! scale where there is room for that. A coil stands at the lower clamp; piezoelectric patches lie on the
-//! flexures there. Their load is to the right.
+//! scale where there is room for that. A coil lies on the lower clamp, cut through, around the feet of the
+//! flexures; its magnet hangs below the mass. Piezoelectric patches lie on the flexures there. Their load is
+//! to the right, where the flexures do not get to.
 
 use eframe::egui::layers::ShapeIdx;
 use eframe::egui::{Align2, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
@@ -14,6 +15,8 @@ use crate::dynamics::Model;
 use crate::mechanics::Element;
 use crate::numeric::short;
 use crate::scene::Transducer;
+
+mod transducer;
 
 use super::labels::plated;
 
@@ -34,17 +37,6 @@ const POLE: f32 = 12.0;
 const LETTERED: f32 = 10.5;
 const LEAST_POLE: f32 = 4.5;
 
-/// Width of a coil, how far to the right of x = 0 its middle is, and its turns.
-const WINDING: f32 = 28.0;
-const ASIDE: f32 = 38.0;
-const TURNS: usize = 5;
-
-/// Thickness of a flexure with patches on both of its faces.
-const PATCHES: f32 = 7.0;
-
-/// Width of a load, and of the room to the right that it leaves to the scale of the drawing and to its name.
-const LOAD: f32 = 34.0;
-const SCALE_ROOM: f32 = 67.0;
 /// Room on the left for what is said of the flexures.
 const WORDS_ROOM: f32 = 120.0;
 
@@ -131,7 +123,8 @@ impl Beside {
         let mut shapes = Vec::new();
         let named = bench.rect.width() >= NAMED.x && bench.rect.height() >= NAMED.y;
         let is_free_on_the_right = self.transducer == Transducer::None;
-        let pen = Pen { ui, painter, style, bench, named, is_free_on_the_right };
+        let has_magnets = self.has_magnets();
+        let pen = Pen { ui, painter, style, bench, named, is_free_on_the_right, has_magnets };
         pen.spring(self.stiffness, &mut shapes);
         if let Some(magnets) = self.magnets {
             pen.magnets(magnets, self.pairs, &mut shapes);
@@ -153,6 +146,8 @@ struct Pen<'a> {
     named: bool,
     /// Whether there is no load.
     is_free_on_the_right: bool,
+    /// Whether magnets hang below the mass.
+    has_magnets: bool,
 }
 
 impl Pen<'_> {
@@ -266,113 +261,6 @@ impl Pen<'_> {
                 self.painter.text(place.center(), Align2::CENTER_CENTER, text, self.style.small(), letter);
             }
         }
-    }
-
-    fn transducer(&self, transducer: &Transducer, shapes: &mut Vec<Shape>) {
-        let Bench { rect, bottom, body, zero, ref below } = *self.bench;
-        let height = (bottom - body.bottom() - 12.0).clamp(8.0, 24.0);
-        // patches lie where the flexures stand
-        let is_patched = below.is_some() && matches!(transducer, Transducer::Piezoelectric { .. });
-        let aside = if is_patched { 0.0 } else { ASIDE };
-        let corner = pos2(zero + aside - 0.5 * WINDING, bottom - 3.0 - height);
-        let part = Rect::from_min_size(corner, vec2(WINDING, height));
-        let (name, coupled, load, words) = match *transducer {
-            Transducer::None => return,
-            Transducer::Electromagnetic { coupling_v_s_per_m, load_ohm, .. } => {
-                self.coil(part, shapes);
-                let words = format!(
-                    "A coil at the frame. The mass has a magnet, which induces {} V in it at 1 m/s.",
-                    short(coupling_v_s_per_m.abs())
-                );
-                ("coil", coupling_v_s_per_m, (load_ohm, "ohm"), words)
-            }
-            Transducer::Piezoelectric { coupling_n_per_v, load_kohm, .. } => {
-                self.patches(part, shapes);
-                let words = format!(
-                    "A piezoelectric layer, which the motion strains: 1 V on it is a force of {} N on the \
-                     mass.",
-                    short(coupling_n_per_v.abs())
-                );
-                ("piezo", coupling_n_per_v, (load_kohm, "kohm"), words)
-            }
-        };
-        let none = if coupled == 0.0 { " Its coupling is 0: it does nothing." } else { "" };
-        self.explain(part, "transducer", &format!("{words}{none}"));
-        let right = rect.right() - if below.is_some() { SCALE_ROOM } else { 8.0 };
-        self.load(part, load, (name, right), shapes);
-    }
-
-    /// A winding, seen from the side.
-    fn coil(&self, part: Rect, shapes: &mut Vec<Shape>) {
-        shapes.push(Shape::rect_filled(part, 2.0, self.style.frame_colour()));
-        let step = part.width() / TURNS as f32;
-        for i in 0..TURNS {
-            let x = part.left() + step * i as f32;
-            let turn = [pos2(x + 0.25 * step, part.bottom()), pos2(x + 0.75 * step, part.top())];
-            shapes.push(Shape::line_segment(turn, Stroke::new(2.2, self.style.ink())));
-        }
-    }
-
-    /// Patches on the flexures; without these a layer between two electrodes.
-    fn patches(&self, part: Rect, shapes: &mut Vec<Shape>) {
-        if let Some(below) = &self.bench.below {
-            let stroke = Stroke::new(PATCHES, self.style.frame_colour());
-            shapes.extend(below.feet.iter().map(|foot| Shape::line(foot.clone(), stroke)));
-            return;
-        }
-        let layer = part.with_min_y(part.bottom() - 8.0);
-        shapes.push(Shape::rect_filled(layer, 0.0, self.style.frame_colour()));
-        for y in [layer.top(), layer.bottom()] {
-            let ends = [pos2(layer.left(), y), pos2(layer.right(), y)];
-            shapes.push(Shape::line_segment(ends, Stroke::new(2.2, self.style.ink())));
-        }
-    }
-
-    /// The load and its two wires: a resistor, a wire for a short circuit, a gap for an open one.
-    fn load(
-        &self,
-        part: Rect,
-        (value, unit): (f64, &str),
-        (name, right): (&str, f32),
-        shapes: &mut Vec<Shape>,
-    ) {
-        let (up, down) = (part.bottom() - part.height().min(18.0) + 2.0, part.bottom() - 2.0);
-        let begin = self.bench.zero + ASIDE + 0.5 * WINDING + 10.0;
-        let (end, y) = (begin + LOAD + 9.0, [up, down]);
-        if end > right {
-            return;
-        }
-        let mut wire = |points: &[Pos2]| shapes.push(Shape::line(points.to_vec(), self.thin()));
-        wire(&[pos2(part.right(), y[0]), pos2(begin, y[0])]);
-        wire(&[pos2(part.right(), y[1]), pos2(end, y[1]), pos2(end, y[0]), pos2(begin + LOAD, y[0])]);
-        let resistor = Rect::from_min_max(pos2(begin, y[0] - 5.0), pos2(begin + LOAD, y[0] + 5.0));
-        let (text, words) = match value {
-            0.0 => {
-                wire(&[pos2(begin, y[0]), pos2(begin + LOAD, y[0])]);
-                let words = "A short circuit: the load is 0 and takes no power.";
-                ("short circuit".to_owned(), words.to_owned())
-            }
-            f64::INFINITY => {
-                for x in [begin, begin + LOAD] {
-                    shapes.push(Shape::circle_filled(pos2(x, y[0]), 2.5, self.style.ink()));
-                }
-                let words = "An open circuit: no current flows through the load, which takes no power.";
-                ("open circuit".to_owned(), words.to_owned())
-            }
-            value => {
-                shapes.push(Shape::rect_filled(resistor, 0.0, self.style.ground()));
-                shapes.push(Shape::rect_stroke(resistor, 0.0, self.thin(), StrokeKind::Inside));
-                let text = format!("load {} {unit}", short(value));
-                let words = format!("The load, {} {unit}, which takes the power.", short(value));
-                (text, words)
-            }
-        };
-        let at = (pos2(end + 6.0, y[1] + 2.0), Align2::LEFT_BOTTOM);
-        let named = self.name(at, &format!("{name}, {text}"), (0.0, right));
-        if !named {
-            self.name(at, &text, (0.0, right));
-        }
-        self.explain(resistor, "load", &words);
     }
 }
 

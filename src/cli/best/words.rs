@@ -1,0 +1,156 @@
+//! What `best` found, in sentences.
+
+use interwell::numeric::short;
+use interwell::scene::column_names;
+use interwell::study::{BestDesign, BestQuestion, Optimum, SAMPLES};
+
+/// The answer in sentences.
+pub fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
+    let names = names(question);
+    let maximised = question.maximise.name;
+    let at = place(&names, &design.optimum);
+    let mean = if question.environments.len() > 1 { "the mean of " } else { "" };
+    let value = |own: f64| quantity(own, maximised);
+    let mut lines = vec![format!("{mean}{maximised} is largest at {at}: {}", value(design.optimum.value))];
+    if design.flat {
+        lines.push(format!("{maximised} is the same wherever it was looked, so that no place is better"));
+    }
+    for (i, name) in names.iter().enumerate() {
+        let (range, resolution) = (&question.over[i], quantity(design.resolution[i], name));
+        let side = |margin: Option<f64>, way: &str, end: f64| match margin {
+            Some(margin) => format!("{} {way}", quantity(margin, name)),
+            None => {
+                format!("nowhere {way}, as far as the range goes to {}", with_unit(&end.to_string(), name))
+            }
+        };
+        let [low, high] = design.margins[i];
+        let (low, high) = (side(low, "below", range.low), side(high, "above", range.high));
+        let broken = if question.subject_to.is_empty() { "" } else { ", or a constraint broken," };
+        lines.push(format!(
+            "{name}: a tenth of it is lost{broken} {low}, and {high}; located to {resolution}"
+        ));
+        if design.at_border[i] && !design.flat {
+            lines.push(format!("{name} is best at an end of its range: a wider range may hold better"));
+        }
+    }
+    if question.environments.len() > 1 {
+        for (own, each) in question.environments.iter().zip(&design.optimum.of_each) {
+            lines.push(format!("{}: {}", own.name, value(*each)));
+        }
+    }
+    if !question.vary.is_empty() {
+        let number = |own: f64| if own.is_nan() { "no result".to_owned() } else { value(own) };
+        let spread = &design.spread;
+        lines.push(format!(
+            "of {SAMPLES} samples of what varies the worst gives {}, one in twenty less than {}",
+            number(spread.worst),
+            number(spread.quantile_5)
+        ));
+        lines.push(match &design.stepped_back {
+            None => {
+                "no place beside it along the first field, of those tried, has a better worst case".into()
+            }
+            Some((own, spread)) => format!(
+                "at {} = {} the worst gives {}, one in twenty less than {}; the value there is {}, {} % less",
+                names[0],
+                own.at[0],
+                number(spread.worst),
+                number(spread.quantile_5),
+                value(own.value),
+                short(100.0 * (1.0 - own.value / design.optimum.value))
+            ),
+        });
+    }
+    lines
+}
+
+/// A place as `field = value`, field by field.
+pub fn place(names: &[String], own: &Optimum) -> String {
+    let each = names.iter().zip(&own.at).map(|(name, value)| format!("{name} = {value}"));
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// The shortest names of the fields of the design.
+pub fn names(question: &BestQuestion) -> Vec<String> {
+    let fields: Vec<&str> = question.over.iter().map(|range| range.field.as_str()).collect();
+    column_names(&fields)
+}
+
+/// A value with the unit that the name of its field or column ends with.
+pub fn quantity(value: f64, name: &str) -> String {
+    with_unit(&short(value), name)
+}
+
+fn with_unit(number: &str, name: &str) -> String {
+    let name = format!("_{}", name.rsplit('.').next().unwrap_or_default());
+    let unit = UNITS.iter().find(|(ending, _)| name.ends_with(ending));
+    unit.map_or_else(|| number.to_owned(), |(_, unit)| format!("{number} {unit}"))
+}
+
+/// Units by the ends of names; of two ends of one name the longer one comes first.
+const UNITS: [(&str, &str); 26] = [
+    ("_v_s_per_m", "V s/m"),
+    ("_n_s_per_m", "N s/m"),
+    ("_n_per_m1_5", "N/m^1.5"),
+    ("_n_per_m3", "N/m^3"),
+    ("_m_per_s", "m/s"),
+    ("_n_per_m", "N/m"),
+    ("_s_per_m", "s/m"),
+    ("_n_per_v", "N/V"),
+    ("_n_mm4", "N mm^4"),
+    ("_kohm", "kohm"),
+    ("_ohm", "ohm"),
+    ("_deg", "degrees"),
+    ("_gpa", "GPa"),
+    ("_pa", "Pa"),
+    ("_hz", "Hz"),
+    ("_mh", "mH"),
+    ("_mj", "mJ"),
+    ("_mm", "mm"),
+    ("_nf", "nF"),
+    ("_g", "g"),
+    ("_j", "J"),
+    ("_m", "m"),
+    ("_n", "N"),
+    ("_s", "s"),
+    ("_v", "V"),
+    ("_w", "W"),
+];
+
+#[cfg(test)]
+mod tests {
+    use interwell::scene::{Document, PRESETS, numeric_fields};
+    use interwell::study::SUMMARY_FIELDS;
+
+    use super::*;
+
+    #[test]
+    fn a_number_has_the_unit_of_its_name() {
+        for (name, said) in [
+            ("travel_limit_mm", "2 mm"),
+            ("n_per_m", "2 N/m"),
+            ("1.n_per_m", "2 N/m"),
+            ("linear_n_per_m", "2 N/m"),
+            ("c_n_s_per_m", "2 N s/m"),
+            ("rms_velocity_m_per_s", "2 m/s"),
+            ("mean_load_power_w", "2 W"),
+            ("impacts", "2"),
+            ("coefficients_si.2", "2"),
+        ] {
+            assert_eq!(quantity(2.0, name), said);
+        }
+    }
+
+    /// A name whose end is one letter of a unit that is longer would be given a wrong one.
+    #[test]
+    fn no_unit_is_part_of_a_longer_one() {
+        let scenes = PRESETS.iter().map(|own| Document::load(own.name).unwrap().scene);
+        let fields = scenes.flat_map(|own| numeric_fields(&own));
+        let columns = SUMMARY_FIELDS.iter().map(|own| own.name.to_owned());
+        for name in fields.chain(columns) {
+            let said = quantity(2.0, &name);
+            let per = name.contains("_per_") || name.contains(".n_per_");
+            assert_eq!(said.contains('/'), per, "{name}: {said}");
+        }
+    }
+}
