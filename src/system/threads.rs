@@ -71,8 +71,9 @@ impl Pool {
     }
 
     /// Has each thread `work` on the numbers from 0 to `count` that it takes by the first argument, as from a
-    /// [`Queue`], and hand over their results by the second one, so many of `each` number, numbered through.
-    /// They leave in order, here, some at a time, while others are still worked on. At most so many numbers
+    /// [`Queue`], and hand over their results by the second one, so many of `each` number, numbered through
+    /// and those of one number in order. They leave in order, here, some at a time and those of a number
+    /// together where they are not very many, while others are still worked on. At most so many numbers
     /// are begun `ahead` of the last one whose results have left. Ends early where `leave` wants no more.
     pub fn in_order<R: Send>(
         &self,
@@ -108,6 +109,7 @@ impl Pool {
                 send();
             });
             let (mut waiting, mut left, mut working) = (BTreeMap::new(), 0, self.count());
+            let step = if each <= MOST { each } else { 1 };
             while working > 0 && !queue.is_stopped() {
                 match news.recv() {
                     Ok(News::Done(results)) => waiting.extend(results),
@@ -115,14 +117,17 @@ impl Pool {
                     // The panic goes on when all threads have ended.
                     Ok(News::Ended { whole: false }) | Err(_) => queue.stop(),
                 }
-                let mut next = Vec::new();
-                while let Some(result) = waiting.remove(&(left + next.len())) {
-                    next.push(result);
-                }
-                left += next.len();
-                if !next.is_empty() {
+                while !queue.is_stopped() {
+                    let ends = (1..=MOST / step).map(|more| left + more * step);
+                    let until = ends.take_while(|end| waiting.contains_key(&(end - 1))).last();
+                    let in_order = (left..until.unwrap_or(left)).map_while(|own| waiting.remove(&own));
+                    let next: Vec<R> = in_order.collect();
+                    if next.is_empty() {
+                        break;
+                    }
+                    left += next.len();
                     queue.leave(left / each);
-                    if !queue.is_stopped() && !leave(next) {
+                    if !leave(next) {
                         queue.stop();
                     }
                 }
@@ -155,6 +160,9 @@ pub fn share<R: Send, E: Send>(
 
 /// Results that come faster than this are handed over some at a time.
 const SOON: Duration = Duration::from_millis(1);
+
+/// The most that leave at once.
+const MOST: usize = 256;
 
 /// Numbers from 0 on that threads take from each other, each of them once.
 #[derive(Debug)]

@@ -61,13 +61,16 @@ fn basins() {
             .map(|run| run.summary)
             .collect::<Vec<_>>()
     };
-    for tolerance in ["run.tolerance=1e-9", "run.tolerance=1e-10", "run.tolerance=1e-11"] {
+    let mut counts = ["run.tolerance=1e-9", "run.tolerance=1e-10", "run.tolerance=1e-11"].map(|tolerance| {
         let ends: Vec<bool> = flicks(&[tolerance]).iter().map(crosses).collect();
-        let count = ends.iter().filter(|own| **own).count();
-        assert!((12..=14).contains(&count), "{count}");
         assert!(ends.windows(2).filter(|pair| pair[0] != pair[1]).count() >= 6, "{ends:?}");
-    }
-    told.says("Of the 31 flicks 12 to 14 cross, with tolerances of 1e-9, 1e-10 and 1e-11");
+        ends.iter().filter(|own| **own).count()
+    });
+    counts.sort_unstable();
+    let [fewest, _, most] = counts;
+    told.says(&format!(
+        "Of the 31 flicks {fewest} to {most} cross, with tolerances of 1e-9, 1e-10 and 1e-11"
+    ));
     told.says("along the list the answer changes again and again");
     let stops = flicks(&[&stopped(2.0), "run.duration_s=20", "run.settle_s=10"]);
     let speeds: Vec<f64> = stops.iter().map(rms).collect();
@@ -104,10 +107,10 @@ fn design() {
     ));
     told.says(&format!("at 0.5 mm stops at 2.3 mm need {wide:.2} g, at 2.0 mm {close:.2} g"));
     let free =
-        told.run(&["sweep=[]", &preloaded(1.0), "stops=None", "run.duration_s=120", "run.settle_s=60"]);
+        told.run(&["sweep=[]", &preloaded(1.0), "stops=None", "run.duration_s=600", "run.settle_s=540"]);
     assert!(crosses(&free));
     let reach = 1e3 * free.max_abs_x.unwrap();
-    told.says(&format!("it crosses at 0.6 g at {:.0} mm/s, with a reach of {reach:.1} mm", rms(&free)));
+    told.says(&format!("crosses twice a period at {:.0} mm/s, with a reach of {reach:.1} mm", rms(&free)));
 }
 
 /// The columns of a walk up and down, with these changes to first-look.
