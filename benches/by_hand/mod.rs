@@ -102,7 +102,7 @@ impl Problem {
             *slot = 1.0 / (k * (k - 1)) as f64;
         }
         let (mut y, mut a) = ([0.0; ROOM], [0.0; ROOM]);
-        let mut row = [0.0; ROOM]; // linear + cubic y^2
+        let mut row = [0.0; ROOM]; // the force over y - x, about x, without what is constant
         let (speed_log2, tolerance_log2) = (fast_log2(self.speed), self.tolerance.log2());
         let (mut cycle, mut phase) = (0, 0.0);
         let mut turned = (0.0, 1.0); // sine and cosine of the drive where a step starts
@@ -123,9 +123,11 @@ impl Problem {
             }
             y[0] = x;
             y[1] = v;
-            row[0] = cubic * (x * x) + linear;
-            let change = cubic * (x + x);
-            let stiffness = row[0] + change * x;
+            // the force about x: linear y + cubic y^3, shifted by Horner's rule
+            let once = x * cubic;
+            let slope = linear + x * once;
+            let twice = once + x * cubic;
+            let (force, stiffness, bending) = (x * slope, slope + x * twice, twice + x * cubic);
             each_order::<0>(
                 order - 1,
                 #[inline(always)]
@@ -135,13 +137,16 @@ impl Problem {
                     }
                     let drag = damping * (k + 1) as f64 * y[k + 1];
                     let sum = if k == 0 {
-                        let force = row[0] * x;
                         if DRIVEN { force + a[k] } else { force }
                     } else {
-                        let rest = cubic * inner_square(&y, k);
-                        row[k] = rest + change * y[k];
-                        let rest = inner_convolve(&row, &y, k) + rest * x;
-                        (if DRIVEN { rest + a[k] } else { rest }) + stiffness * y[k]
+                        let own = stiffness * y[k];
+                        match k {
+                            1 => {}
+                            2 => row[1] = bending * y[1],
+                            _ => row[k - 1] = bending * y[k - 1] + cubic * inner_square(&y, k - 1),
+                        }
+                        let rest = inner_convolve(&y, &row, k);
+                        (if DRIVEN { rest + a[k] } else { rest }) + own
                     };
                     y[k + 2] = -(sum + drag) * inverse[k + 2];
                 },

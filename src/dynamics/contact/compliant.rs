@@ -94,7 +94,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         if self.take_quasi_static_step(end, left, stop) || self.take_impact(end, left, stop) {
             return None;
         }
-        let new = || Box::new(Penetration::new(stop, self.stepper.equation.most_products()));
+        let new = || Box::new(Penetration::new(stop, self.stepper.equation.degree()));
         let mut path = self.stepper.penetration.take().unwrap_or_else(new);
         let flow = self.take_contact_step(end, left, &mut path);
         self.stepper.penetration = Some(path);

@@ -6,13 +6,12 @@ use crate::numeric::{Number, Scalar};
 #[derive(Debug, Clone)]
 pub(crate) struct PieceForce<T> {
     coefficients: Vec<T>,
-    odd: bool,
 }
 
 impl<T: Number> PieceForce<T> {
-    /// Coefficients from the constant up, at least one; `odd` where all even ones are 0.
-    pub fn new(coefficients: Vec<T>, odd: bool) -> Self {
-        Self { coefficients, odd }
+    /// Coefficients from the constant up, at least one.
+    pub fn new(coefficients: Vec<T>) -> Self {
+        Self { coefficients }
     }
 
     /// One of the coefficients.
@@ -27,16 +26,9 @@ impl<T: Number> PieceForce<T> {
         &self.coefficients
     }
 
-    /// Whether all even coefficients are 0.
-    #[inline(always)]
-    pub fn is_odd(&self) -> bool {
-        self.odd
-    }
-
-    /// Products of series that its own series takes beyond the first.
-    pub fn products(&self) -> usize {
-        let count = self.coefficients.len();
-        if self.odd { count / 2 - 1 } else { count - 1 }
+    /// Degree of the polynomial.
+    pub fn degree(&self) -> usize {
+        self.coefficients.len() - 1
     }
 
     /// Force over mass at displacement `y` from the origin.
@@ -49,20 +41,16 @@ impl<T: Number> PieceForce<T> {
         }
         sum
     }
-}
 
-impl<T: Scalar> PieceForce<T> {
     /// Coefficients of force over mass about displacement `y` from the origin, into `terms`.
     pub fn about(&self, y: T, terms: &mut Vec<T>) {
         terms.clear();
         terms.extend_from_slice(&self.coefficients);
-        for first in 0..terms.len() {
-            for k in (first..terms.len() - 1).rev() {
-                terms[k] = terms[k] + y * terms[k + 1];
-            }
-        }
+        shift(terms, y);
     }
+}
 
+impl<T: Scalar> PieceForce<T> {
     /// Force over mass and its slope at displacement `y` from the origin, and a bound of the rounding.
     pub fn value(&self, y: T) -> (T, T, T) {
         let (mut f, mut slope, mut size) = (T::zero(), T::zero(), T::zero());
@@ -72,5 +60,17 @@ impl<T: Scalar> PieceForce<T> {
             size = size * y.abs() + c.abs();
         }
         (f, slope, size * T::of(2.0 * T::EPSILON))
+    }
+}
+
+/// Makes coefficients of powers of a displacement those of powers of its difference from `y`.
+#[inline(always)]
+pub(crate) fn shift<T: Number>(terms: &mut [T], y: T) {
+    for first in 1..terms.len() {
+        let mut above = terms[terms.len() - 1];
+        for term in terms[first - 1..].iter_mut().rev().skip(1) {
+            above = *term + y * above;
+            *term = above;
+        }
     }
 }

@@ -49,9 +49,6 @@ impl<T: Scalar> Equation<T> {
         for (index, piece) in curve.pieces().iter().enumerate() {
             let (left, right) = curve.piece_interval(index);
             let coefficients: Vec<T> = piece.coefficients.iter().map(|c| T::of(*c) * square).collect();
-            let odd = coefficients.len() > 2
-                && coefficients.len().is_multiple_of(2)
-                && piece.coefficients.iter().step_by(2).all(|c| *c == 0.0);
             let end = |x: f64, outermost: bool, stop: Option<StopAt>, inside: bool| match stop {
                 Some(s) if inside => (T::of(s.x), EndKind::Stop),
                 _ if outermost && !x.is_finite() => (T::of(FAR.copysign(x)), EndKind::Unknown),
@@ -65,7 +62,7 @@ impl<T: Scalar> Equation<T> {
                 end(right, last, rigid(right_stop), right_stop.is_some_and(|s| s.x <= right));
             modes.push(Mode {
                 piece: index,
-                force: PieceForce::new(coefficients, odd),
+                force: PieceForce::new(coefficients),
                 origin: T::of(piece.origin),
                 low,
                 high,
@@ -96,9 +93,9 @@ impl<T: Scalar> Equation<T> {
         Self { damping, modes, left, right, compliant, unit }
     }
 
-    /// The most products of series that a piece's force takes beyond the first.
-    pub fn most_products(&self) -> usize {
-        self.modes.iter().map(|mode| mode.force.products()).max().unwrap_or(0)
+    /// The highest degree of a piece's force.
+    pub fn degree(&self) -> usize {
+        self.modes.iter().map(|mode| mode.force.degree()).max().unwrap_or(0)
     }
 
     /// The mode of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant

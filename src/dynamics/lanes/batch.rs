@@ -204,7 +204,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
                         tolerance_log2,
                         rule: motion.record.rule_of_steps().map(|value| Lanes([value; W])),
                         columns: Box::new(Columns::new(force)),
-                        series: Box::new(Series::new(force.products())),
+                        series: Box::new(Series::new(force.degree())),
                         lanes: [None; W],
                         waiting: Vec::new(),
                         rounds: 0,

@@ -162,7 +162,7 @@ impl<const W: usize> Columns<W> {
             steps: zero,
             crossings: zero,
             of: [(usize::MAX, 0); W],
-            force: PieceForce::new(vec![zero; force.coefficients().len()], force.is_odd()),
+            force: PieceForce::new(vec![zero; force.coefficients().len()]),
             origin: zero,
             low_end: zero,
             high_end: zero,
@@ -196,7 +196,7 @@ impl<const W: usize> Columns<W> {
 
     /// Whether a force has the shape of those of the lanes.
     pub fn takes(&self, force: &PieceForce<f64>) -> bool {
-        self.force.coefficients().len() == force.coefficients().len() && self.force.is_odd() == force.is_odd()
+        self.force.degree() == force.degree()
     }
 
     /// Loads a motion, whose force has the lanes' shape, into a lane, as number `index` of the runs.

@@ -1,126 +1,137 @@
 //! Power series in time of the force, from that of the displacement.
 //!
-//! The force is a polynomial of the displacement, so its coefficients are sums of products of those of the
-//! displacement. The newest of these, y\[k\], enters coefficient k of the force by one product only, with the
-//! stiffness where the step begins:
+//! The force is a polynomial of the displacement. About the place where the step begins it is
 //!
 //! ```text
-//! f[k] = f'(y[0]) y[k] + terms of y[0..k].
+//! a[0] + w (a[1] + w (a[2] + ...)),  w = y - y[0],
 //! ```
 //!
-//! All other terms are there before it is, so that the processor has summed them by the time; the recurrence
-//! waits for two operations an order instead of two sums.
+//! and w begins with its first order, so the bracket at depth l, b(l), is needed only up to an order l below that
+//! of the force:
+//!
+//! ```text
+//! b(l)[n] = sum of y[i] b(l+1)[n-i] over i = 1..=n,  b(l)[0] = a[l],  f = b(0).
+//! ```
+//!
+//! That takes a third of the products that powers of y take where the degree is near the order. Coefficients of
+//! one order do not wait for each other, so four depths are summed side by side. The newest coefficient, y\[k\],
+//! enters coefficient k of the force by one product only, with the stiffness a\[1\] where the step begins; all
+//! other terms are there before it is, so that the processor has summed them by the time.
 
 use super::order::ROOM;
-use crate::dynamics::equation::force::PieceForce;
+use crate::dynamics::equation::force::{PieceForce, shift};
 use crate::numeric::Number;
 
-/// The nested form of a force, each level a series.
+/// Depths of brackets that are summed side by side.
+const BLOCK: usize = 4;
+
+/// The force about the place where a step begins, in nested form.
 #[derive(Debug, Clone)]
 pub(crate) struct ForceSeries<T> {
-    /// The square of the displacement, where the force is odd.
-    square: [T; ROOM],
-    /// The levels, the outermost first: row j is that of c\[j\] + c\[j+1\] y + c\[j+2\] y^2 + ..., of an odd
-    /// force that of c\[2j+1\] + c\[2j+3\] w + ..., w = y^2.
-    rows: Vec<[T; ROOM]>,
-    /// What a row changes by with the newest coefficient of the displacement.
-    slopes: [T; ROOM],
-    /// The same of the force: the stiffness where the step begins.
-    slope: T,
+    /// Row n holds coefficient n of the brackets, the outermost first, and zeros beyond the degree.
+    rows: Vec<T>,
+    stride: usize,
+    /// The bracket of a cubic.
+    row: [T; ROOM],
+    /// The highest order of the force that the rows are enough for.
+    last: usize,
 }
 
 impl<T: Number> ForceSeries<T> {
-    /// With room for forces that take up to `products` products beyond the first.
-    pub fn new(products: usize) -> Self {
-        let zeros = [T::zero(); ROOM];
-        Self { square: zeros, rows: vec![zeros; products], slopes: zeros, slope: T::zero() }
+    /// With room for forces of up to this degree.
+    pub fn new(degree: usize) -> Self {
+        let zero = T::zero();
+        let stride = degree + 1 + BLOCK;
+        let rows = if degree > 3 { vec![zero; ROOM * stride] } else { Vec::new() };
+        Self { rows, stride, row: [zero; ROOM], last: 0 }
     }
 
-    /// Coefficient `k` of the force and of what is added to it, from y\[0..=k\]; the lower ones have been
-    /// asked for before.
+    /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones have been asked for before.
     #[inline(always)]
-    pub fn coefficient(&mut self, force: &PieceForce<T>, y: &[T; ROOM], k: usize, more: Option<T>) -> T {
+    pub fn coefficient(&mut self, force: &PieceForce<T>, y: &[T; ROOM], k: usize) -> T {
         match force.coefficients() {
-            [c0] => constant(*c0, k, more),
-            [c0, c1] => linear(*c0, *c1, y, k, more),
-            c if force.is_odd() => self.odd(c, y, k, more),
-            c => self.dense(c, y, k, more),
-        }
-    }
-
-    /// What gives the coefficients of the force c1 y + c3 y^3 from the displacement `start` on.
-    #[inline(always)]
-    pub fn cubic(&mut self, c1: T, c3: T, start: T) -> Cubic<'_, T> {
-        let row = &mut self.rows[0];
-        let change = c3 * (start + start);
-        row[0] = c3 * (start * start) + c1;
-        Cubic { c3, start, change, slope: row[0] + change * start, row }
-    }
-
-    /// Coefficient `k`, and what is added to it, of a force all of whose even coefficients are 0, of degree 3
-    /// or more.
-    #[inline(always)]
-    pub fn odd(&mut self, c: &[T], y: &[T; ROOM], k: usize, more: Option<T>) -> T {
-        let (top, twice) = (c.len() / 2 - 1, y[0] + y[0]);
-        let Self { square, rows, slopes, slope } = self;
-        let rows = &mut rows[..top];
-        if k == 0 {
-            let (mut value, mut change) = (c[2 * top + 1], T::zero());
-            square[0] = y[0] * y[0];
-            for j in (0..top).rev() {
-                change = value * twice + square[0] * change;
-                value = value * square[0] + c[2 * j + 1];
-                (rows[j][0], slopes[j]) = (value, change);
+            [c0] => constant(*c0, k, None),
+            [c0, c1] => linear(*c0, *c1, y, k, None),
+            [c0, c1, c2] => self.cubic([*c0, *c1, *c2, T::zero()], y[0]).coefficient(y, k, None),
+            [c0, c1, c2, c3] => self.cubic([*c0, *c1, *c2, *c3], y[0]).coefficient(y, k, None),
+            _ => {
+                self.prepare(force, y, k..k + 1);
+                self.nested(force.degree(), y, k, None)
             }
-            *slope = value + change * y[0];
-            return plus(value * y[0], more);
         }
-        let others = inner_square(y, k);
-        square[k] = others + twice * y[k];
-        let mut rest = c[2 * top + 1] * others;
-        rows[top - 1][k] = rest + slopes[top - 1] * y[k];
-        for j in (0..top - 1).rev() {
-            let above = &rows[j + 1];
-            rest = inner_convolve(above, square, k) + (above[0] * others + square[0] * rest);
-            rows[j][k] = rest + slopes[j] * y[k];
-        }
-        plus(inner_convolve(&rows[0], y, k) + rest * y[0], more) + *slope * y[k]
     }
 
-    /// The same of any force of degree 2 or more.
+    /// What gives the coefficients of a cubic from the displacement `start` on.
     #[inline(always)]
-    pub fn dense(&mut self, c: &[T], y: &[T; ROOM], k: usize, more: Option<T>) -> T {
-        let top = c.len() - 1;
-        let Self { rows, slopes, .. } = self;
-        let rows = &mut rows[..top];
-        if k == 0 {
-            let (mut value, mut change) = (c[top], T::zero());
-            for j in (0..top).rev() {
-                change = value + y[0] * change;
-                value = value * y[0] + c[j];
-                (rows[j][0], slopes[j]) = (value, change);
+    pub fn cubic(&mut self, mut about: [T; 4], start: T) -> Cubic<'_, T> {
+        shift(&mut about, start);
+        Cubic { about, row: &mut self.row }
+    }
+
+    /// Makes ready for coefficients of these orders of a force of degree 4 or more; the lower ones are known.
+    #[inline(always)]
+    pub fn prepare(&mut self, force: &PieceForce<T>, y: &[T; ROOM], orders: std::ops::Range<usize>) {
+        let Some(last) = orders.end.checked_sub(1) else { return };
+        if orders.start == 0 {
+            let (row, beyond) = self.rows[..self.stride].split_at_mut(force.degree() + 1);
+            row.copy_from_slice(force.coefficients());
+            shift(row, y[0]);
+            beyond.fill(T::zero());
+        } else if last > self.last {
+            for n in 1..orders.start {
+                self.sum(y, n, self.last - n + 1..force.degree().min(last - n + 1));
             }
-            return plus(value, more);
         }
-        let mut rest = T::zero();
-        rows[top - 1][k] = slopes[top - 1] * y[k];
-        for j in (1..top - 1).rev() {
-            rest = inner_convolve(&rows[j + 1], y, k) + rest * y[0];
-            rows[j][k] = rest + slopes[j] * y[k];
+        self.last = last;
+    }
+
+    /// Coefficient `k`, and what is added to it, of a force of this degree, 4 or more.
+    #[inline(always)]
+    pub fn nested(&mut self, degree: usize, y: &[T; ROOM], k: usize, more: Option<T>) -> T {
+        if k > 0 {
+            self.sum(y, k, 0..degree.min(self.last - k + 1));
         }
-        plus(inner_convolve(&rows[1], y, k) + rest * y[0], more) + slopes[0] * y[k]
+        plus(self.rows[k * self.stride], more)
+    }
+
+    /// Sums coefficient `n` of the brackets of these depths, four side by side.
+    #[inline(always)]
+    fn sum(&mut self, y: &[T; ROOM], n: usize, mut depths: std::ops::Range<usize>) {
+        // (by names, since of an array the compiler would gather the same lane of all)
+        macro_rules! side_by_side {
+            ($first:expr, $($at:literal $sum:ident)*) => {{
+                let (above, own) = self.rows.split_at_mut(n * self.stride);
+                let first = $first;
+                let mut rows = above.chunks_exact(self.stride).rev().zip(&y[1..=n]);
+                if let Some((row, y)) = rows.next() {
+                    let row = &row[first + 1..first + 1 + BLOCK];
+                    // (no sum begins with 0: the next would wait for it)
+                    $(let mut $sum = *y * row[$at];)*
+                    for (row, y) in rows {
+                        let row = &row[first + 1..first + 1 + BLOCK];
+                        $($sum = $sum + *y * row[$at];)*
+                    }
+                    let own = &mut own[first..first + BLOCK];
+                    $(own[$at] = $sum;)*
+                }
+            }};
+        }
+        while !depths.is_empty() {
+            match depths.len() {
+                1 => side_by_side!(depths.start, 0 a),
+                2 => side_by_side!(depths.start, 0 a 1 b),
+                3 => side_by_side!(depths.start, 0 a 1 b 2 c),
+                _ => side_by_side!(depths.start, 0 a 1 b 2 c 3 d),
+            }
+            depths.start += BLOCK;
+        }
     }
 }
 
-/// An odd cubic, as most scenes have it: as [`ForceSeries::odd`], with what stays from order to order at
-/// hand.
+/// A cubic about the place where a step begins, with what stays from order to order at hand.
 pub(crate) struct Cubic<'a, T> {
-    c3: T,
-    start: T,
-    /// Slopes of the row and of the force.
-    change: T,
-    slope: T,
-    /// c1 + c3 y^2.
+    about: [T; 4],
+    /// a\[1\] + a\[2\] w + a\[3\] w^2.
     row: &'a mut [T; ROOM],
 }
 
@@ -128,12 +139,17 @@ impl<T: Number> Cubic<'_, T> {
     /// Coefficient `k` of the force, and what is added to it.
     #[inline(always)]
     pub fn coefficient(&mut self, y: &[T; ROOM], k: usize, more: Option<T>) -> T {
+        let [a0, a1, a2, a3] = self.about;
         if k == 0 {
-            return plus(self.row[0] * self.start, more);
+            return plus(a0, more);
         }
-        let rest = self.c3 * inner_square(y, k);
-        self.row[k] = rest + self.change * y[k];
-        plus(inner_convolve(self.row, y, k) + rest * self.start, more) + self.slope * y[k]
+        let own = a1 * y[k];
+        match k {
+            1 => {}
+            2 => self.row[1] = a2 * y[1],
+            _ => self.row[k - 1] = a2 * y[k - 1] + a3 * inner_square(y, k - 1),
+        }
+        plus(inner_convolve(y, self.row, k), more) + own
     }
 }
 

@@ -2,8 +2,7 @@
 //!
 //! Taylor coefficients of x'' = -g x' - f(x) - a(t) by recurrence, one order at a time and only as many as
 //! are asked for: a flight of a microsecond between two small impacts needs four where a motion across the
-//! barrier needs sixteen. f is a polynomial of the current piece about its origin; an odd one goes by the
-//! square of the displacement, which halves its products. (Moore 1966, "Interval Analysis", ch. 11; Jorba and
+//! barrier needs sixteen. f is the polynomial of the current piece. (Moore 1966, "Interval Analysis", ch. 11; Jorba and
 //! Zou 2005, "A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods".)
 
@@ -45,14 +44,14 @@ pub(crate) struct Endpoint<T> {
 }
 
 impl<T: Number> Series<T> {
-    /// With room for forces that take up to `products` products beyond the first.
-    pub fn new(products: usize) -> Self {
+    /// With room for forces of up to this degree.
+    pub fn new(degree: usize) -> Self {
         let mut inverse = [T::zero(); ROOM];
         for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
             *slot = T::ratio(1.0, (k * (k - 1)) as f64);
         }
         let zeros = [T::zero(); ROOM];
-        Self { y: zeros, a: zeros, known: 0, measured: None, forces: ForceSeries::new(products), inverse }
+        Self { y: zeros, a: zeros, known: 0, measured: None, forces: ForceSeries::new(degree), inverse }
     }
 
     /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first
@@ -94,12 +93,19 @@ impl<T: Number> Series<T> {
         match force.coefficients() {
             [c0] => recur!(true, |k, _, more| force::constant(*c0, k, more)),
             [c0, c1] => recur!(true, |k, y, more| force::linear(*c0, *c1, y, k, more)),
-            [_, c1, _, c3] if force.is_odd() => {
-                let mut cubic = forces.cubic(*c1, *c3, y[0]);
+            [c0, c1, c2] => {
+                let mut cubic = forces.cubic([*c0, *c1, *c2, T::zero()], y[0]);
                 recur!(true, |k, y, more| cubic.coefficient(y, k, more));
             }
-            c if force.is_odd() => recur!(false, |k, y, more| forces.odd(c, y, k, more)),
-            c => recur!(false, |k, y, more| forces.dense(c, y, k, more)),
+            [c0, c1, c2, c3] => {
+                let mut cubic = forces.cubic([*c0, *c1, *c2, *c3], y[0]);
+                recur!(true, |k, y, more| cubic.coefficient(y, k, more));
+            }
+            _ => {
+                forces.prepare(force, y, known.clone());
+                let degree = force.degree();
+                recur!(false, |k, y, more| forces.nested(degree, y, k, more));
+            }
         }
         self.known = order + 1;
     }
@@ -107,7 +113,7 @@ impl<T: Number> Series<T> {
     /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones have been asked for before.
     #[inline(always)]
     pub(crate) fn force_coefficient(&mut self, force: &PieceForce<T>, k: usize) -> T {
-        self.forces.coefficient(force, &self.y, k, None)
+        self.forces.coefficient(force, &self.y, k)
     }
 
     /// Adds coefficient `k` of the drive, at or above [`SEEDED`]; once each and in ascending order.

@@ -45,10 +45,9 @@ pub(crate) struct Costs {
 }
 
 impl Costs {
-    /// Of series of this order, forces that take up to `products` products of series beyond the first, and a
-    /// drive.
-    pub fn new<T: Scalar, D: Drive<T>>(order: usize, products: usize, drive: &D) -> Self {
-        let (order, products) = (order as u64, products as u64);
+    /// Of series of this order, forces of up to this degree, and a drive.
+    pub fn new<T: Scalar, D: Drive<T>>(order: usize, degree: usize, drive: &D) -> Self {
+        let (order, products) = (order as u64, degree as u64 / 2);
         let own = drive.cost(order as usize);
         let step = 20 + order * order * (2 + 2 * products) / 80 + own;
         Self {
@@ -140,7 +139,7 @@ mod tests {
     #[test]
     fn a_simple_scene_may_take_twenty_million_steps_at_any_tolerance() {
         for order in 8..=23 {
-            let costs = Costs::new::<f64, _>(order, 1, &Still { acceleration: 0.0 });
+            let costs = Costs::new::<f64, _>(order, 3, &Still { acceleration: 0.0 });
             assert!(WORK_BUDGET / costs.step >= 20_000_000, "{order} {costs:?}");
         }
         const { assert!(IMPACT_BUDGET >= 2_000_000) };
@@ -184,8 +183,8 @@ mod tests {
                 fastest: 1.0,
             }
         };
-        let step = |lines| Costs::new(16, 1, &drive(lines)).step;
+        let step = |lines| Costs::new(16, 3, &drive(lines)).step;
         assert!(step(4096) > 500 * step(1) && step(64) > 5 * step(1));
-        assert_eq!(Costs::new(16, 1, &drive(4096)).samples_per_look(), 1);
+        assert_eq!(Costs::new(16, 3, &drive(4096)).samples_per_look(), 1);
     }
 }
