@@ -21,6 +21,7 @@ mod roots;
 pub mod round;
 mod scalar;
 mod short;
+pub(crate) mod single_root;
 mod sum;
 mod wide;
 

@@ -10,6 +10,7 @@
 //! what the rounding of the coefficients can tell, counts as none.
 
 use super::scalar::Scalar;
+use super::single_root::expansion;
 
 /// The largest degree that can be searched.
 pub const MAX_DEGREE: usize = 39;
@@ -87,7 +88,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         self.each_bracket(|low, high| {
             let root = self.polish(low, high);
             visit(T::at_root(root, |s| {
-                let (value, slope, _) = self.expansion(s);
+                let (value, slope, _) = expansion(self.g, s);
                 (value, slope)
             }))
         });
@@ -182,40 +183,6 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         self.isolate(&left, low, w, depth + 1, visit) && self.isolate(&right, low + w, w, depth + 1, visit)
     }
 
-    /// Value, first and half the second derivative at `s`. Even and odd powers apart: one long chain of
-    /// products would wait for itself.
-    #[inline]
-    fn expansion(&self, s: T) -> (T, T, T) {
-        let zero = T::zero();
-        let square = s * s;
-        // of each part: value, and first and half the second derivative by the square
-        let (mut e, mut o) = ([zero; 3], [zero; 3]);
-        let add = |part: &mut [T; 3], c: T| {
-            part[2] = part[2] * square + part[1];
-            part[1] = part[1] * square + part[0];
-            part[0] = part[0] * square + c;
-        };
-        let mut pairs = self.g.rchunks_exact(2);
-        if self.g.len().is_multiple_of(2) {
-            for pair in pairs.by_ref() {
-                add(&mut o, pair[1]);
-                add(&mut e, pair[0]);
-            }
-        } else {
-            for pair in pairs.by_ref() {
-                add(&mut e, pair[1]);
-                add(&mut o, pair[0]);
-            }
-            add(&mut e, pairs.remainder()[0]);
-        }
-        let two = T::of(2.0);
-        let first = e[1] + s * o[1];
-        let value = e[0] + s * o[0];
-        let slope = o[0] + two * s * first;
-        let half_curvature = first + two * s * (o[1] + two * s * (e[2] + s * o[2]));
-        (value, slope, half_curvature)
-    }
-
     /// The root between `low` and `high`, by Chebyshev's steps (third order) kept inside a shrinking bracket.
     fn polish(&self, mut low: T, mut high: T) -> T {
         let zero = T::zero();
@@ -225,7 +192,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         let close = T::of(T::ROUGH);
         let mut last_move = high - low;
         for _ in 0..120 {
-            let (value, slope, half_curvature) = self.expansion(s);
+            let (value, slope, half_curvature) = expansion(self.g, s);
             if (value > zero) == below {
                 low = s
             } else {
@@ -366,7 +333,7 @@ mod tests {
             let g: Vec<f64> = (0..count).map(|k| 1.0 / (1.5 + k as f64) - 0.3 * (k % 3) as f64).collect();
             let polynomial = PolynomialRoots::new(&g);
             for s in [-0.7, 0.0, 0.3, 1.0, 1.4] {
-                let (value, slope, half_curvature) = polynomial.expansion(s);
+                let (value, slope, half_curvature) = expansion(&g, s);
                 let (v, first, second) = polynomial.value_and_slopes(s);
                 let near = |a: f64, b: f64| (a - b).abs() < 1e-13 * (1.0 + b.abs());
                 assert!(

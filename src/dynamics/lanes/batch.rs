@@ -1,6 +1,7 @@
 //! Batch: motions in groups by the shape of their force, and the steps that a group takes together.
 
-use super::columns::{Columns, LaneMotion, Trial};
+use super::columns::{Columns, LaneMotion};
+use super::trial::Trial;
 use crate::dynamics::drive::form::clock;
 use crate::dynamics::drive::tone::Sine;
 use crate::dynamics::equation::Equation;
@@ -60,6 +61,8 @@ struct Group<const W: usize> {
     rule: GaussLegendre<Lanes<W>>,
     columns: Box<Columns<W>>,
     series: Box<Series<Lanes<W>>>,
+    /// The last step.
+    trial: Box<Trial<W>>,
     /// The motion in each lane.
     lanes: [Option<usize>; W],
     /// Motions that wait for a lane.
@@ -189,7 +192,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
             let motion = &mut own.motion;
             if motion.state.contact == Contact::Free
                 && motion.stepper.flies_freely(&motion.state)
-                && motion.has_budget_for(2 * BATCH_STEPS)
+                && motion.has_budget_for(4 * BATCH_STEPS)
             {
                 let force = &motion.stepper.mode(&motion.state).force;
                 let settings = &motion.stepper.settings;
@@ -205,6 +208,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
                         rule: motion.record.rule_of_steps().map(|value| Lanes([value; W])),
                         columns: Box::new(Columns::new(force)),
                         series: Box::new(Series::new(force.degree())),
+                        trial: Box::new(Trial::new()),
                         lanes: [None; W],
                         waiting: Vec::new(),
                         rounds: 0,
@@ -224,24 +228,26 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     fn step(&mut self, group: usize) {
         loop {
             self.fill(group);
-            let Group { columns, series, rounds, order, tolerance_log2, rule, .. } = &mut self.groups[group];
-            let trial = loop {
-                let trial = columns.step(series, rule, *order, *tolerance_log2);
+            let Group { columns, series, trial, rounds, order, tolerance_log2, rule, .. } =
+                &mut self.groups[group];
+            loop {
+                columns.step(series, rule, *order, *tolerance_log2, trial);
                 *rounds += 1;
                 let logs = (0..W).any(|lane| trial.taken[lane] & columns.logged[lane]);
-                if logs || *rounds % BATCH_STEPS == 0 || trial.stopped.contains(&true) {
-                    break trial;
-                }
-            };
-            let check = *rounds % BATCH_STEPS == 0;
-            for lane in 0..W {
-                if trial.taken[lane] & self.groups[group].columns.logged[lane] {
-                    self.log_step(group, lane, &trial);
+                let leaves = trial.stopped.contains(&true) | trial.passed.contains(&true);
+                if logs || leaves || *rounds % BATCH_STEPS == 0 {
+                    break;
                 }
             }
+            let check = *rounds % BATCH_STEPS == 0;
             for lane in 0..W {
-                if trial.stopped[lane] {
-                    self.store(group, lane, &trial);
+                let Group { columns, trial, .. } = &self.groups[group];
+                if trial.taken[lane] & columns.logged[lane] {
+                    self.log_step(group, lane);
+                } else if trial.passed[lane] {
+                    self.enter_neighbour(group, lane);
+                } else if trial.stopped[lane] {
+                    self.store(group, lane);
                 }
             }
             if check {
@@ -273,8 +279,9 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
 
     /// Stores a lane back to its motion, which takes the step on which an event is possible; loads it again
     /// where it stays in the group.
-    fn store(&mut self, group: usize, lane: usize, trial: &Trial<W>) {
+    fn store(&mut self, group: usize, lane: usize) {
         let Some((place, own, member)) = self.member(group, lane) else { return };
+        let trial = &own.trial;
         let motion = &mut member.motion;
         own.lanes[lane] = None;
         own.columns.store(lane, motion);
@@ -282,7 +289,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         let flow = if trial.holds[lane] && trial.length.0[lane] < left {
             copy_lane(&own.series, lane, own.order, &mut motion.stepper.series);
             let alone = &mut motion.stepper.series;
-            alone.measured = own.columns.inside[lane].then(|| (trial.length.0[lane], trial.squared.0[lane]));
+            alone.measured = trial.measured[lane].then(|| (trial.length.0[lane], trial.squared.0[lane]));
             motion.stepper.evaluations += 1;
             motion.stepper.cursor = Some(trial.drive_at_end(lane));
             motion.take(&Step { length: trial.length.0[lane], arrival: None, end: trial.end(lane) })
@@ -299,6 +306,18 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
+    /// Lets the motion of a lane, which stands on a break, enter the neighbouring mode.
+    fn enter_neighbour(&mut self, group: usize, lane: usize) {
+        let Some((place, own, member)) = self.member(group, lane) else { return };
+        if !own.columns.enter_neighbour(lane, &member.own.equation.modes) {
+            own.lanes[lane] = None;
+            own.columns.store(lane, &mut member.motion);
+            let exit = own.columns.exit(lane);
+            member.motion.enter_neighbour(exit);
+            self.wait(place);
+        }
+    }
+
     /// Loads a motion into a lane.
     fn load(&mut self, group: usize, lane: usize, place: usize) {
         if let Some(own) = &self.members[place] {
@@ -308,8 +327,9 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     }
 
     /// Logs the step that a lane has just taken.
-    fn log_step(&mut self, group: usize, lane: usize, trial: &Trial<W>) {
+    fn log_step(&mut self, group: usize, lane: usize) {
         let Some((_, own, member)) = self.member(group, lane) else { return };
+        let trial = &own.trial;
         let motion = &mut member.motion;
         copy_lane(&own.series, lane, own.order, &mut motion.stepper.series);
         let mode = motion.stepper.mode(&motion.state);

@@ -4,14 +4,17 @@
 //! with `run/flight.rs`), and as its fast path (`run/event_free.rs`). The three do the same arithmetic and
 //! must stay equal to the bit.
 
-use crate::dynamics::clock::Instant;
+use super::trial::{Clocks, CompensatedSums, Trial};
 use crate::dynamics::drive::tone::{Harmonic, Sine};
 use crate::dynamics::equation::force::PieceForce;
+use crate::dynamics::equation::{End, EndKind, Mode};
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::event_free::MARGIN;
 use crate::dynamics::series::{Endpoint, Series, natural_steps, polynomial};
+use crate::dynamics::state::{BY_SPEED, Touch};
 use crate::dynamics::step::chord::{CLEARANCE, Chord};
-use crate::numeric::{CompensatedSum, GaussLegendre, Lanes, Number, Scalar};
+use crate::dynamics::step::work::ARRIVAL;
+use crate::numeric::{GaussLegendre, Lanes, Number, Scalar, single_root};
 
 /// One motion under a sine, without a ledger.
 pub(super) type LaneMotion<'a> = Motion<'a, f64, Sine<f64>, false>;
@@ -20,8 +23,9 @@ pub(super) type LaneMotion<'a> = Motion<'a, f64, Sine<f64>, false>;
 pub(crate) struct Columns<const W: usize> {
     /// Which lanes are active.
     pub active: [bool; W],
-    /// Steps taken and crossings of the barrier since a lane was loaded.
+    /// Steps taken, breaks passed and crossings of the barrier since a lane was loaded.
     steps: Lanes<W>,
+    passages: Lanes<W>,
     crossings: Lanes<W>,
     // constant while a lane is in one mode of one run
     /// Which run and which mode that is.
@@ -30,6 +34,9 @@ pub(crate) struct Columns<const W: usize> {
     origin: Lanes<W>,
     low_end: Lanes<W>,
     high_end: Lanes<W>,
+    /// The same where they are breaks; else infinitely far away.
+    low_break: Lanes<W>,
+    high_break: Lanes<W>,
     damping: Lanes<W>,
     curvature: Lanes<W>,
     amplitude: Lanes<W>,
@@ -62,93 +69,8 @@ pub(crate) struct Columns<const W: usize> {
     high: Lanes<W>,
     squared: CompensatedSums<W>,
     covered: CompensatedSums<W>,
-}
-
-/// Instants; the cycles are whole numbers below 2^53.
-#[derive(Clone, Copy)]
-struct Clocks<const W: usize> {
-    cycle: Lanes<W>,
-    phase: Lanes<W>,
-}
-
-impl<const W: usize> Clocks<W> {
-    fn set(&mut self, lane: usize, at: &Instant<f64>) {
-        (self.cycle.0[lane], self.phase.0[lane]) = (at.cycle as f64, at.phase);
-    }
-
-    fn get(&self, lane: usize) -> Instant<f64> {
-        Instant { cycle: self.cycle.0[lane] as i64, phase: self.phase.0[lane] }
-    }
-
-    /// As [`Clock::advance`](crate::dynamics::clock::Clock::advance) by up to a cycle; of more the phase lies
-    /// beyond the cycle.
-    #[inline(always)]
-    fn advance(&self, by: &Lanes<W>, period: &Lanes<W>) -> Self {
-        let mut later = *self;
-        for lane in 0..W {
-            let (period, phase) = (period.0[lane], self.phase.0[lane] + by.0[lane]);
-            let whole = if phase >= period { 1.0 } else { 0.0 };
-            later.phase.0[lane] = phase - whole * period;
-            later.cycle.0[lane] = self.cycle.0[lane] + whole;
-        }
-        later
-    }
-}
-
-/// Sums with compensation.
-#[derive(Clone, Copy)]
-struct CompensatedSums<const W: usize> {
-    sum: Lanes<W>,
-    carry: Lanes<W>,
-}
-
-impl<const W: usize> CompensatedSums<W> {
-    fn set(&mut self, lane: usize, sum: &CompensatedSum<f64>) {
-        (self.sum.0[lane], self.carry.0[lane]) = sum.parts();
-    }
-
-    #[inline(always)]
-    fn get(&self, lane: usize) -> CompensatedSum<f64> {
-        CompensatedSum::of_parts(self.sum.0[lane], self.carry.0[lane])
-    }
-
-    /// What a sum becomes with one more term.
-    #[inline(always)]
-    fn with(&self, lane: usize, term: f64) -> (f64, f64) {
-        let mut own = self.get(lane);
-        own.add(term);
-        own.parts()
-    }
-}
-
-/// A step computed in all lanes.
-pub(crate) struct Trial<const W: usize> {
-    /// Active lanes that did not take it, since an event is possible on it.
-    pub stopped: [bool; W],
-    /// Those that took it.
-    pub taken: [bool; W],
-    /// Whether the polynomial satisfies the equation at the step's end.
-    pub holds: [bool; W],
-    pub length: Lanes<W>,
-    end: Endpoint<Lanes<W>>,
-    at: Clocks<W>,
-    value: Lanes<W>,
-    slope: Lanes<W>,
-    /// Integral of the squared velocity, where any lane is in the settled window.
-    pub squared: Lanes<W>,
-}
-
-impl<const W: usize> Trial<W> {
-    /// Where the polynomial of a lane leads.
-    pub fn end(&self, lane: usize) -> Endpoint<f64> {
-        let Endpoint { y, v, acceleration, bound } = &self.end;
-        Endpoint { y: y.0[lane], v: v.0[lane], acceleration: acceleration.0[lane], bound: bound.0[lane] }
-    }
-
-    /// When the step of a lane ends, and the drive and its time derivative there.
-    pub fn drive_at_end(&self, lane: usize) -> (Instant<f64>, (f64, f64)) {
-        (self.at.get(lane), (self.value.0[lane], self.slope.0[lane]))
-    }
+    /// Time to the border, less a margin.
+    left: Lanes<W>,
 }
 
 impl<const W: usize> Columns<W> {
@@ -160,12 +82,15 @@ impl<const W: usize> Columns<W> {
         Self {
             active: [false; W],
             steps: zero,
+            passages: zero,
             crossings: zero,
             of: [(usize::MAX, 0); W],
             force: PieceForce::new(vec![zero; force.coefficients().len()]),
             origin: zero,
             low_end: zero,
             high_end: zero,
+            low_break: zero,
+            high_break: zero,
             damping: zero,
             curvature: zero,
             amplitude: zero,
@@ -191,6 +116,7 @@ impl<const W: usize> Columns<W> {
             high: zero,
             squared: sums,
             covered: sums,
+            left: zero,
         }
     }
 
@@ -201,16 +127,11 @@ impl<const W: usize> Columns<W> {
 
     /// Loads a motion, whose force has the lanes' shape, into a lane, as number `index` of the runs.
     pub fn load(&mut self, lane: usize, index: usize, motion: &LaneMotion) {
-        let mode = motion.stepper.mode(&motion.state);
         let chord = motion.record.begin_event_free(&motion.state.at, &motion.stepper.end);
         if self.of[lane] != (index, motion.state.mode) {
-            self.of[lane] = (index, motion.state.mode);
-            for (degree, own) in mode.force.coefficients().iter().enumerate() {
-                self.force.coefficient_mut(degree).0[lane] = *own;
-            }
+            self.load_mode(lane, motion.state.mode, motion.stepper.mode(&motion.state));
+            self.of[lane].0 = index;
             let (tone, settings) = (&motion.stepper.drive.tone, &motion.stepper.settings);
-            self.origin.0[lane] = mode.origin;
-            (self.low_end.0[lane], self.high_end.0[lane]) = (mode.low, mode.high);
             self.damping.0[lane] = motion.stepper.equation.damping;
             self.curvature.0[lane] = tone.curvature();
             self.amplitude.0[lane] = tone.amplitude;
@@ -236,8 +157,45 @@ impl<const W: usize> Columns<W> {
         (self.value.0[lane], self.slope.0[lane]) =
             motion.stepper.drive.unit_from(&motion.state.at, &motion.stepper.cursor);
         self.steps.0[lane] = 0.0;
+        self.passages.0[lane] = 0.0;
         self.crossings.0[lane] = 0.0;
         self.active[lane] = true;
+    }
+
+    /// Loads a mode, whose force has the lanes' shape, into a lane, as number `index` of its equation.
+    fn load_mode(&mut self, lane: usize, index: usize, mode: &Mode<f64>) {
+        self.of[lane].1 = index;
+        for (degree, own) in mode.force.coefficients().iter().enumerate() {
+            self.force.coefficient_mut(degree).0[lane] = *own;
+        }
+        let at_break = |end: End| match mode.end(end) {
+            (level, EndKind::Break) => level,
+            _ => end.sign::<f64>() * f64::INFINITY,
+        };
+        self.origin.0[lane] = mode.origin;
+        (self.low_end.0[lane], self.high_end.0[lane]) = (mode.low, mode.high);
+        (self.low_break.0[lane], self.high_break.0[lane]) = (at_break(End::Low), at_break(End::High));
+    }
+
+    /// The end at which a lane, which stands on a break, leaves its mode.
+    pub fn exit(&self, lane: usize) -> End {
+        if self.v.0[lane] > 0.0 { End::High } else { End::Low }
+    }
+
+    /// Lets a lane, which stands on a break, enter the neighbouring mode; false where the force has another
+    /// shape there.
+    pub fn enter_neighbour(&mut self, lane: usize, modes: &[Mode<f64>]) -> bool {
+        let exit = self.exit(lane);
+        let index = match exit {
+            End::Low => self.of[lane].1 - 1,
+            End::High => self.of[lane].1 + 1,
+        };
+        if !self.takes(&modes[index].force) {
+            return false;
+        }
+        self.load_mode(lane, index, &modes[index]);
+        self.touch.0[lane] = exit.other().sign();
+        true
     }
 
     /// Copies the state of a lane to its motion, whose last step is to be logged.
@@ -257,13 +215,17 @@ impl<const W: usize> Columns<W> {
             return;
         }
         motion.steps += steps;
-        motion.stepper.work.add(steps * motion.stepper.costs.step);
+        let passages = self.passages.0[lane] as u64;
+        motion.stepper.work.add(steps * motion.stepper.costs.step + passages * ARRIVAL);
         motion.stepper.evaluations += steps;
         (motion.state.x, motion.state.v) = (self.x.0[lane], self.v.0[lane]);
         motion.state.at = self.at.get(lane);
         motion.stepper.cursor = Some((motion.state.at, (self.value.0[lane], self.slope.0[lane])));
         motion.state.turned_back = false;
-        motion.state.touch = None;
+        motion.state.mode = self.of[lane].1;
+        let touched = |end: End| Touch { end, multiplicity: BY_SPEED };
+        let ends = [End::Low, End::High].into_iter();
+        motion.state.touch = ends.map(touched).find(|own| own.end.sign::<f64>() == self.touch.0[lane]);
         motion.record.end_event_free(
             (self.low.0[lane], self.high.0[lane]),
             self.squared.get(lane),
@@ -280,48 +242,58 @@ impl<const W: usize> Columns<W> {
         rule: &GaussLegendre<Lanes<W>>,
         order: usize,
         tolerance_log2: f64,
-    ) -> Trial<W> {
+        trial: &mut Trial<W>,
+    ) {
         let swing = Harmonic { curvature: self.curvature };
         swing.seed(self.amplitude * self.value, self.amplitude * self.slope, &mut series.a);
         series.begin(self.x - self.origin, self.v);
         series.extend_to(order, &self.force, self.damping, &swing, &mut ());
-        let y = &series.y;
+        let y = &series.y[..=order];
         let length = natural_steps(order, |k| y[k].0, &self.speed_log2, tolerance_log2, &self.longest);
         let length = Lanes(length);
         let at = self.at.advance(&length, &self.period);
         let end = series.state(length);
-
-        let (mut value, mut slope) = (length, length);
-        for lane in 0..W {
-            let turns = at.phase.0[lane] * self.frequency.0[lane] + self.turn.0[lane];
-            let (s, c) = f64::sin_cos_turns(turns);
-            let omega = f64::tau() * self.frequency.0[lane];
-            value.0[lane] = if self.quarter[lane] { c } else { s };
-            slope.0[lane] = if self.quarter[lane] { -(s * omega) } else { c * omega };
-        }
-        let base = self.amplitude * value;
+        let unit = self.drive_at(&at);
+        let base = self.amplitude * unit.0;
         let sum = (end.acceleration + self.damping * end.v) + base;
         let residual = (self.force.at(end.y) + sum).abs() * length;
-
-        let mut squared = Lanes([0.0; W]);
-        let deviations = polynomial::chord_deviations(&series.y[..=order], length);
-        if self.inside.contains(&true) {
-            squared = polynomial::integrals::<_, false>(&series.y[..=order], &[], rule, squared, length).0;
-        }
-        let start = series.y[0] + self.origin;
         let x = end.y + self.origin;
-        let (mut holds, mut stopped, mut took) = ([false; W], [false; W], [false; W]);
+
+        let mut may = [false; W];
         for lane in 0..W {
             let (length, period) = (length.0[lane], self.period.0[lane]);
             let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
             let to_border = cycles * period + (self.border.phase.0[lane] - self.at.phase.0[lane]);
             let left = to_border - MARGIN * period;
-            let held = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
+            trial.holds[lane] = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
+            self.left.0[lane] = left;
+            may[lane] = self.active[lane] & trial.holds[lane] & (length < left);
+            may[lane] = may[lane] & (at.phase.0[lane] < period) & (end.v.0[lane].abs() < f64::INFINITY);
+        }
+        // As far as the step goes, or up to the first break.
+        let (mut ahead, mut to) = ([false; W], Arrivals { length, x, v: end.v, at, unit });
+        for lane in 0..W {
+            let (from, x, v) = (self.x.0[lane], x.0[lane], self.v.0[lane]);
+            let high = (v > 0.0) & (from < self.high_break.0[lane]) & (x > self.high_break.0[lane]);
+            let low = (v < 0.0) & (from > self.low_break.0[lane]) & (x < self.low_break.0[lane]);
+            ahead[lane] = may[lane] & !self.logged[lane] & (high | low);
+        }
+        if ahead.contains(&true) {
+            self.up_to_breaks(&mut ahead, y, &end, &mut to);
+        }
 
+        let mut squared = Lanes([0.0; W]);
+        let deviations = polynomial::chord_deviations(y, to.length);
+        if self.inside.contains(&true) {
+            squared = polynomial::integrals::<_, false>(y, &[], rule, squared, to.length).0;
+        }
+        let start = y[0] + self.origin;
+        for lane in 0..W {
+            let (length, left, ahead) = (to.length.0[lane], self.left.0[lane], ahead[lane]);
             let (bound, limits) = (end.bound.0[lane], (self.low_end.0[lane], self.high_end.0[lane]));
-            let ways = (self.v.0[lane] * length, end.v.0[lane] * length);
+            let ways = (self.v.0[lane] * length, to.v.0[lane] * length);
             let deviations = (deviations.0.0[lane], deviations.1.0[lane]);
-            let chord = Chord { start: start.0[lane], end: x.0[lane], bound, deviations, ways, limits };
+            let chord = Chord { start: start.0[lane], end: to.x.0[lane], bound, deviations, ways, limits };
             let (clear_low, clear_high) = chord.is_clear();
             let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
             let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
@@ -329,25 +301,26 @@ impl<const W: usize> Columns<W> {
             let leaves = 2.0 * self.v.0[lane].abs() * length > bound * CLEARANCE;
             let clear_low = clear_low | (leaves & (self.touch.0[lane] < 0.0));
             let clear_high = clear_high | (leaves & (self.touch.0[lane] > 0.0));
-            let clear = clear_low & clear_high;
+            let monotone = chord.is_monotone();
+            let clear = (clear_low & clear_high & !ahead) | (monotone & ahead);
             let (low, high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
 
             // Without a barrier every comparison with it is false, since it is NaN.
             let (barrier, side, inside) = (self.barrier.0[lane], self.side.0[lane], self.inside[lane]);
-            let (from, to) = ((chord.start - barrier) * side, (chord.end - barrier) * side);
-            let (near, onto, passed) = ((chord.start - barrier).abs() <= bound, to == 0.0, to < 0.0);
-            let monotone = chord.is_monotone();
+            let (from, to_barrier) = ((chord.start - barrier) * side, (chord.end - barrier) * side);
+            let near = (chord.start - barrier).abs() <= bound;
+            let (onto, passed) = (to_barrier == 0.0, to_barrier < 0.0);
             // outside the window only their number counts
-            let countable = !inside & (length + length < left);
+            let countable = !inside & (length + length < left) & !ahead;
             let clear_of_barrier =
                 !(near | passed | onto) | (monotone & (from > 0.0) & !onto & (!passed | countable));
 
-            let event_free = clear & held & clear_of_barrier & !(turns & inside) & (length < left);
-            let event_free = event_free & (at.phase.0[lane] < period) & (end.v.0[lane].abs() < f64::INFINITY);
+            let event_free = may[lane] & clear & clear_of_barrier & !(turns & inside);
             let taken = event_free & self.active[lane];
-            holds[lane] = held;
-            took[lane] = taken;
-            stopped[lane] = !event_free & self.active[lane];
+            trial.taken[lane] = taken;
+            trial.stopped[lane] = !event_free & self.active[lane];
+            trial.passed[lane] = taken & ahead;
+            trial.measured[lane] = inside & !ahead;
 
             let measured = taken & inside;
             let (squared, covered) =
@@ -363,14 +336,91 @@ impl<const W: usize> Columns<W> {
             set(&mut self.side.0[lane], -side, crosses);
             self.crossings.0[lane] += if crosses { 1.0 } else { 0.0 };
             self.steps.0[lane] += if taken { 1.0 } else { 0.0 };
+            self.passages.0[lane] += if taken & ahead { 1.0 } else { 0.0 };
             set(&mut self.touch.0[lane], 0.0, taken);
             set(&mut self.x.0[lane], chord.end, taken);
-            set(&mut self.v.0[lane], end.v.0[lane], taken);
-            set(&mut self.at.cycle.0[lane], at.cycle.0[lane], taken);
-            set(&mut self.at.phase.0[lane], at.phase.0[lane], taken);
-            set(&mut self.value.0[lane], value.0[lane], taken);
-            set(&mut self.slope.0[lane], slope.0[lane], taken);
+            set(&mut self.v.0[lane], to.v.0[lane], taken);
+            set(&mut self.at.cycle.0[lane], to.at.cycle.0[lane], taken);
+            set(&mut self.at.phase.0[lane], to.at.phase.0[lane], taken);
+            set(&mut self.value.0[lane], to.unit.0.0[lane], taken);
+            set(&mut self.slope.0[lane], to.unit.1.0[lane], taken);
         }
-        Trial { stopped, taken: took, holds, length, end, at, value, slope, squared }
+        (trial.length, trial.end, trial.at, trial.unit, trial.squared) = (length, end, at, unit, squared);
     }
+
+    /// The drive and its time derivative per unit amplitude.
+    #[inline(always)]
+    fn drive_at(&self, at: &Clocks<W>) -> (Lanes<W>, Lanes<W>) {
+        let (mut value, mut slope) = (at.phase, at.phase);
+        for lane in 0..W {
+            let turns = at.phase.0[lane] * self.frequency.0[lane] + self.turn.0[lane];
+            let (s, c) = f64::sin_cos_turns(turns);
+            let omega = f64::tau() * self.frequency.0[lane];
+            value.0[lane] = if self.quarter[lane] { c } else { s };
+            slope.0[lane] = if self.quarter[lane] { -(s * omega) } else { c * omega };
+        }
+        (value, slope)
+    }
+
+    /// Ends the steps of the lanes `ahead` where they meet the break that lies ahead, as far as it is found.
+    #[inline(always)]
+    fn up_to_breaks(
+        &self,
+        ahead: &mut [bool; W],
+        y: &[Lanes<W>],
+        end: &Endpoint<Lanes<W>>,
+        to: &mut Arrivals<W>,
+    ) {
+        let mut level = self.low_break;
+        for lane in 0..W {
+            level.0[lane] = if self.v.0[lane] > 0.0 { self.high_break.0[lane] } else { level.0[lane] };
+        }
+        let whole = to.length;
+        let mut g = polynomial::scaled(y, whole);
+        g[0] = self.x - level;
+        let g = &g[..y.len()];
+        let (past, slope, last) = (to.x - level, self.v * whole, end.v * whole);
+        let mut share = Lanes([0.0; W]);
+        for lane in 0..W {
+            let ends = ((g[0].0[lane], slope.0[lane]), (past.0[lane], last.0[lane]));
+            share.0[lane] = single_root::guess(ends.0, ends.1);
+        }
+        let mut found = [false; W];
+        for _ in 0..single_root::MOST_STEPS {
+            let (value, slope, half_curvature) = single_root::expansion(g, share);
+            let mut missing = false;
+            for lane in 0..W {
+                let expansion = (value.0[lane], slope.0[lane], half_curvature.0[lane]);
+                let (next, near) = single_root::next(share.0[lane], expansion);
+                share.0[lane] = if found[lane] { share.0[lane] } else { next };
+                found[lane] = found[lane] | near;
+                missing = missing | (ahead[lane] & !found[lane]);
+            }
+            if !missing {
+                break;
+            }
+        }
+        for lane in 0..W {
+            let own = &mut ahead[lane];
+            *own = *own & found[lane] & (share.0[lane] > 0.0) & (share.0[lane] <= 1.0);
+        }
+        let length = share * whole;
+        let choose = |own: Lanes<W>, other: Lanes<W>| {
+            Lanes(std::array::from_fn(|lane| if ahead[lane] { other.0[lane] } else { own.0[lane] }))
+        };
+        to.length = choose(whole, length);
+        to.x = choose(to.x, level);
+        to.v = choose(to.v, polynomial::slope(y, to.length));
+        to.at = self.at.advance(&to.length, &self.period);
+        to.unit = self.drive_at(&to.at);
+    }
+}
+
+/// Where steps lead.
+struct Arrivals<const W: usize> {
+    length: Lanes<W>,
+    x: Lanes<W>,
+    v: Lanes<W>,
+    at: Clocks<W>,
+    unit: (Lanes<W>, Lanes<W>),
 }

@@ -14,6 +14,7 @@
 
 mod batch;
 mod columns;
+mod trial;
 
 use std::cell::OnceCell;
 use std::sync::atomic::AtomicBool;

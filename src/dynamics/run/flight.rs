@@ -7,7 +7,6 @@ use crate::dynamics::motion::Motion;
 use crate::dynamics::result::Outcome;
 use crate::dynamics::state::Flow;
 use crate::dynamics::step::circuit::CoupledPath;
-use crate::dynamics::step::path::Path;
 use crate::dynamics::step::stepper::Step;
 use crate::dynamics::step::work::ARRIVAL;
 use crate::numeric::Scalar;
@@ -57,11 +56,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     pub fn take(&mut self, &Step { length: h, arrival, end }: &Step<T>) -> Flow {
         let mode = self.stepper.mode(&self.state);
         match self.stepper.find_exit(&self.state, h, &end) {
-            Some((s, exit)) => {
+            Some((length, v, exit)) => {
                 self.stepper.work.add(ARRIVAL);
-                let (length, level) = (s * h, mode.end(exit).0);
-                let on_the_end = (level, self.stepper.series.velocity(length));
-                self.arrive((h, length), end.bound, on_the_end, None, Some(exit))
+                self.arrive((h, length), end.bound, (mode.end(exit).0, v), None, Some(exit))
             }
             None => self.arrive((h, h), end.bound, (end.y + mode.origin, end.v), arrival, None),
         }

@@ -6,8 +6,8 @@ use super::order::ROOM;
 use crate::numeric::{GaussLegendre, Number, Scalar};
 
 /// The coefficients, each times its power of `h`.
-#[inline]
-pub(crate) fn scaled<T: Scalar>(y: &[T], h: T) -> [T; ROOM] {
+#[inline(always)]
+pub(crate) fn scaled<T: Number>(y: &[T], h: T) -> [T; ROOM] {
     let mut scaled = [T::zero(); ROOM];
     let mut power = T::of(1.0);
     for (k, (slot, c)) in scaled.iter_mut().zip(y).enumerate() {
@@ -30,8 +30,8 @@ pub(crate) fn value<T: Scalar>(y: &[T], t: T) -> T {
 }
 
 /// The time derivative at time `t` into the step.
-#[inline]
-pub(crate) fn slope<T: Scalar>(y: &[T], t: T) -> T {
+#[inline(always)]
+pub(crate) fn slope<T: Number>(y: &[T], t: T) -> T {
     let mut sum = T::zero();
     for k in (1..y.len()).rev() {
         sum = sum * t + y[k] * T::whole(k);

@@ -7,13 +7,51 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
 use crate::dynamics::series::{Endpoint, polynomial};
 use crate::dynamics::state::{BY_SPEED, HELD, MotionState};
-use crate::numeric::{PolynomialRoots, Scalar};
+use crate::numeric::{PolynomialRoots, Scalar, single_root};
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// The first contact with an end of the mode within the step, as a share of it; of the step's end is
-    /// known how it lies in the piece.
+    /// The end of the mode that a step of length `h` runs into ahead: when, and with what velocity. Only where
+    /// the velocity keeps its sign up to there, so that nothing else is met before. A batch does the same
+    /// arithmetic (`lanes/columns.rs`).
     #[inline(always)]
-    pub fn find_exit(
+    fn exit_ahead(&self, state: &MotionState<T>, h: T, end: &Endpoint<T>) -> Option<(T, T, End)> {
+        let zero = T::zero();
+        let mode = self.mode(state);
+        let exit = if state.v > zero { End::High } else { End::Low };
+        let (sign, level) = (exit.sign::<T>(), mode.end(exit).0);
+        let (from, to) = (state.x - level, (end.y + mode.origin) - level);
+        let leaves = state.touch.is_none_or(|touch| touch.multiplicity == BY_SPEED);
+        if !(leaves && sign * from < zero && sign * to > zero) {
+            return None;
+        }
+        let y = &self.series.y[..self.series.known];
+        let mut g = polynomial::scaled(y, h);
+        g[0] = from;
+        let (slope, last) = ((state.v * h).to_f64(), (end.v * h).to_f64());
+        let guess = single_root::guess((from.to_f64(), slope), (to.to_f64(), last));
+        let length = single_root::single_root(&g[..y.len()], T::of(guess))? * h;
+        let v = polynomial::slope(y, length);
+        let ways = (state.v * length, v * length);
+        let deviations = polynomial::chord_deviations(y, length);
+        let (start, limits) = (state.x, (mode.low, mode.high));
+        let chord = Chord { start, end: level, bound: end.bound, deviations, ways, limits };
+        chord.is_monotone().then_some((length, v, exit))
+    }
+
+    /// The first contact with an end of the mode within a step of length `h`: when, and with what velocity; of
+    /// the step's end is known how it lies in the piece.
+    #[inline(always)]
+    pub fn find_exit(&self, state: &MotionState<T>, h: T, end: &Endpoint<T>) -> Option<(T, T, End)> {
+        self.exit_ahead(state, h, end).or_else(|| {
+            let (share, exit) = self.first_exit(state, h, end)?;
+            let length = share * h;
+            Some((length, self.series.velocity(length), exit))
+        })
+    }
+
+    /// The first contact anywhere, as a share of the step.
+    #[inline(always)]
+    fn first_exit(
         &self,
         state: &MotionState<T>,
         h: T,

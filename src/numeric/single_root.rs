@@ -1,0 +1,96 @@
+//! The root of a polynomial that changes its sign once between 0 and 1.
+//!
+//! For one polynomial or, side by side, for several: each gets the root that it would get alone, to the bit.
+
+use super::number::Number;
+use super::scalar::Scalar;
+
+/// The most steps to the root; each takes the error to its third power.
+pub(crate) const MOST_STEPS: usize = 3;
+
+/// A root of the cubic that has these values and slopes at 0 and at 1, roughly, where the values differ in sign.
+#[inline(always)]
+pub(crate) fn guess((g0, slope0): (f64, f64), (g1, slope1): (f64, f64)) -> f64 {
+    let rise = g1 - g0;
+    // of the parabola that has the first slope
+    let bend = rise - slope0;
+    let root = (slope0 * slope0 - 4.0 * g0 * bend).sqrt();
+    let s = -2.0 * g0 / (slope0 + root.copysign(slope0));
+    // one step of third order along the cubic
+    let (c, d) = (3.0 * rise - 2.0 * slope0 - slope1, slope0 + slope1 - 2.0 * rise);
+    let value = g0 + s * (slope0 + s * (c + s * d));
+    let slope = slope0 + s * (2.0 * c + 3.0 * d * s);
+    s - step((value, slope, c + 3.0 * d * s)).0
+}
+
+/// Chebyshev's step (third order) from value, slope and half the curvature, and what the bend adds to one of
+/// Newton, as a share of that.
+#[inline(always)]
+fn step<T: Scalar>((value, slope, half_curvature): (T, T, T)) -> (T, T) {
+    let newton = value / slope;
+    let bent = newton * half_curvature / slope;
+    (newton + newton * bent, bent)
+}
+
+/// One step towards the root from `s`: the next place, and whether it is the root.
+#[inline(always)]
+pub(crate) fn next<T: Scalar>(s: T, expansion: (T, T, T)) -> (T, bool) {
+    let (step, bent) = step(expansion);
+    let close = T::of(T::ROUGH);
+    // what is left is the third power of that
+    (s - step, (step.abs() <= s.abs() * close) & (bent.abs() <= close))
+}
+
+/// The root near `guess`; none where it is not found at once, or not between 0 and 1.
+#[inline]
+pub(crate) fn single_root<T: Scalar>(g: &[T], guess: T) -> Option<T> {
+    let mut s = guess;
+    for _ in 0..MOST_STEPS {
+        let (next, found) = next(s, expansion(g, s));
+        s = next;
+        if found {
+            let root = T::at_root(s, |s| {
+                let (value, slope, _) = expansion(g, s);
+                (value, slope)
+            });
+            return (root > T::zero() && root <= T::of(1.0)).then_some(root);
+        }
+    }
+    None
+}
+
+/// Value, first and half the second derivative of a polynomial at `s`. Even and odd powers apart: one long
+/// chain of products would wait for itself.
+#[inline(always)]
+pub(crate) fn expansion<T: Number>(g: &[T], s: T) -> (T, T, T) {
+    let zero = T::zero();
+    let square = s * s;
+    // of each part: value, and first and half the second derivative by the square
+    let (mut e0, mut e1, mut e2, mut o0, mut o1, mut o2) = (zero, zero, zero, zero, zero, zero);
+    let mut pairs = g.rchunks_exact(2);
+    macro_rules! add {
+        ($value:ident $first:ident $second:ident, $c:expr) => {
+            $second = $second * square + $first;
+            $first = $first * square + $value;
+            $value = $value * square + $c;
+        };
+    }
+    if g.len().is_multiple_of(2) {
+        for pair in pairs.by_ref() {
+            add!(o0 o1 o2, pair[1]);
+            add!(e0 e1 e2, pair[0]);
+        }
+    } else {
+        for pair in pairs.by_ref() {
+            add!(e0 e1 e2, pair[1]);
+            add!(o0 o1 o2, pair[0]);
+        }
+        add!(e0 e1 e2, pairs.remainder()[0]);
+    }
+    let two = T::of(2.0);
+    let first = e1 + s * o1;
+    let value = e0 + s * o0;
+    let slope = o0 + two * s * first;
+    let half_curvature = first + two * s * (o1 + two * s * (e2 + s * o2));
+    (value, slope, half_curvature)
+}
