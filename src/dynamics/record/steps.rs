@@ -9,7 +9,7 @@ use crate::dynamics::result::Sample;
 use crate::dynamics::series::{ROOM, polynomial};
 use crate::dynamics::step::chord::Chord;
 use crate::dynamics::step::path::{InStop, Path, StepView};
-use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
+use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar, single_root};
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     /// What integrals over a step are taken with: half as many points as a full series has coefficients, and
@@ -119,21 +119,28 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             false => (step.x_at(from), step.x_at(to)),
         };
         let endless = T::of(f64::INFINITY);
-        let (zero, limits) = (T::zero(), step.limits);
-        let (deviations, ways) = ((endless, endless), (zero, zero));
-        let mut chord = Chord { start: first, end: last, bound: endless, deviations, ways, limits };
-        chord.bound = if full { step.bound } else { step.bound + step.bound };
+        let (nothing, limits) = ((T::zero(), T::zero()), step.limits);
+        let deviations = (endless, endless, endless);
+        let bound = if full { step.bound } else { step.bound + step.bound };
+        let chord =
+            Chord { start: first, end: last, bound, deviations, ways: nothing, bends: nothing, limits };
         let (low, high, mut turns) = chord.extremes((self.low, self.high));
+        (self.low, self.high) = (low, high);
         if turns
             && full
-            && step.length == step.whole
             && let Some((y, _)) = step.path.in_time()
         {
-            chord.deviations = polynomial::chord_deviations(y, step.length);
-            chord.ways = (y[1] * step.length, step.v * step.length);
+            let chord = Chord::new(y, (first, last), (step.length, step.v), bound, limits);
             (_, _, turns) = chord.extremes((low, high));
+            if turns
+                && chord.turns_once()
+                && let Some(t) = turning_point(y, step.length, &chord)
+            {
+                let x = step.x_at(t);
+                (self.low, self.high) = (self.low.smaller(x), self.high.larger(x));
+                turns = false;
+            }
         }
-        (self.low, self.high) = (low, high);
         if turns {
             let n = step.path.known();
             let mut slope = [T::zero(); ROOM];
@@ -178,4 +185,14 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         let until = if step.whole > T::zero() { step.length / step.whole } else { T::zero() };
         self.peak_contact = step.path.peak(step.whole, until, self.peak_contact);
     }
+}
+
+/// When the mass turns in a step of length `h` in which it does so once. A batch does the same arithmetic
+/// (`lanes/columns/landing.rs`).
+fn turning_point<T: Scalar>(y: &[T], h: T, chord: &Chord<T>) -> Option<T> {
+    let velocity = polynomial::scaled_slope(y, h);
+    let pair = |value: T, slope: T| (value.to_f64(), slope.to_f64());
+    let (ways, bends) = (chord.ways, chord.bends);
+    let guess = single_root::guess(pair(ways.0, bends.0), pair(ways.1, bends.1));
+    Some(single_root::single_root(&velocity[..y.len() - 1], T::of(guess))? * h)
 }

@@ -84,8 +84,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 start: series.y[0] + origin,
                 end: end.y + origin,
                 bound: end.bound,
-                deviations: (T::of(f64::INFINITY), T::of(f64::INFINITY)),
+                deviations: (T::of(f64::INFINITY), T::of(f64::INFINITY), T::of(f64::INFINITY)),
                 ways: (v * length, end.v * length),
+                bends: (T::zero(), T::zero()),
                 limits,
             };
             let deviations = || polynomial::chord_deviations(&series.y[..=settings.order], length);
@@ -169,7 +170,7 @@ impl<T: Scalar> EventFree<T> {
     fn record_step(
         &mut self,
         chord: &Chord<T>,
-        deviations: impl Fn() -> (T, T),
+        deviations: impl Fn() -> (T, T, T),
         (length, squared): (T, T),
     ) -> bool {
         let (low, high, mut turns) = chord.extremes((self.low, self.high));

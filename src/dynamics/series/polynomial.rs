@@ -19,9 +19,19 @@ pub(crate) fn scaled<T: Number>(y: &[T], h: T) -> [T; ROOM] {
     scaled
 }
 
+/// The coefficients of the velocity times `h`, each times its power of `h`.
+#[inline(always)]
+pub(crate) fn scaled_slope<T: Number>(y: &[T], h: T) -> [T; ROOM] {
+    let (mut slope, scaled) = ([T::zero(); ROOM], scaled(y, h));
+    for (k, slot) in (1..y.len()).zip(&mut slope) {
+        *slot = scaled[k] * T::whole(k);
+    }
+    slope
+}
+
 /// The value at time `t` into the step.
-#[inline]
-pub(crate) fn value<T: Scalar>(y: &[T], t: T) -> T {
+#[inline(always)]
+pub(crate) fn value<T: Number>(y: &[T], t: T) -> T {
     let mut sum = T::zero();
     for c in y.iter().rev() {
         sum = sum * t + *c;
@@ -39,18 +49,31 @@ pub(crate) fn slope<T: Number>(y: &[T], t: T) -> T {
     sum
 }
 
-/// Bounds of the deviation of the displacement, and of the velocity times `h`, from the chords between the
-/// ends of a step of length `h`: an eighth of the square of the length times the largest second derivative.
+/// The second time derivative at time `t` into the step.
 #[inline(always)]
-pub(crate) fn chord_deviations<T: Number>(y: &[T], h: T) -> (T, T) {
-    let (mut second, mut third, mut power) = (T::zero(), T::zero(), h);
+pub(crate) fn curvature<T: Number>(y: &[T], t: T) -> T {
+    let mut sum = T::zero();
+    for k in (2..y.len()).rev() {
+        sum = sum * t + y[k] * T::whole(k * (k - 1));
+    }
+    sum
+}
+
+/// Bounds of the deviations of the displacement, of the velocity times `h` and of the acceleration times its
+/// square from the chords between the ends of a step of length `h`: an eighth of the square of the length
+/// times the largest second derivative.
+#[inline(always)]
+pub(crate) fn chord_deviations<T: Number>(y: &[T], h: T) -> (T, T, T) {
+    let (mut second, mut third, mut fourth, mut power) = (T::zero(), T::zero(), T::zero(), h);
     for (k, c) in y.iter().enumerate().skip(2) {
         power = power * h;
-        let term = c.abs() * power;
-        second += term * T::whole(k * (k - 1));
-        third += term * T::whole(k * (k - 1) * (k - 2));
+        let term = c.abs() * power * T::whole(k * (k - 1));
+        second += term;
+        let term = term * T::whole(k - 2);
+        third += term;
+        fourth += term * T::whole(k.saturating_sub(3));
     }
-    (second * T::of(0.125), third * T::of(0.125))
+    (second * T::of(0.125), third * T::of(0.125), fourth * T::of(0.125))
 }
 
 /// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base acceleration

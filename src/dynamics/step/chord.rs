@@ -1,5 +1,6 @@
 //! Chord of a step of free flight: bounds of its distance from the ends of its mode, and of its extremes.
 
+use crate::dynamics::series::polynomial;
 use crate::numeric::Scalar;
 
 /// Safety factor on the bounds by which a step is clear of a surface: rounding never decides it.
@@ -12,16 +13,33 @@ pub(crate) struct Chord<T> {
     pub end: T,
     /// Bound of |x - x(start)|.
     pub bound: T,
-    /// Bounds of how far displacement, and velocity times length, leave the chords between their ends, as
+    /// Bounds of how far displacement, velocity times length, and acceleration times its square leave the
+    /// chords between their ends, as
     /// [`chord_deviations`](crate::dynamics::series::polynomial::chord_deviations) gives them.
-    pub deviations: (T, T),
+    pub deviations: (T, T, T),
     /// The velocities at its ends, times its length.
     pub ways: (T, T),
+    /// The accelerations there, times the square of its length; 0 where they are not asked for.
+    pub bends: (T, T),
     /// Ends of the mode.
     pub limits: (T, T),
 }
 
 impl<T: Scalar> Chord<T> {
+    /// Of a step with these coefficients, of this length and with this velocity at its end.
+    pub fn new(y: &[T], (start, end): (T, T), (length, v): (T, T), bound: T, limits: (T, T)) -> Self {
+        let square = length * length;
+        Self {
+            start,
+            end,
+            bound,
+            deviations: polynomial::chord_deviations(y, length),
+            ways: (y[1] * length, v * length),
+            bends: ((y[2] + y[2]) * square, polynomial::curvature(y, length) * square),
+            limits,
+        }
+    }
+
     /// Whether the step is clear of the low and of the high end of the mode, by its chord.
     #[inline(always)]
     pub fn is_clear(&self) -> (bool, bool) {
@@ -31,12 +49,23 @@ impl<T: Scalar> Chord<T> {
         (low, high)
     }
 
-    /// Whether the velocity keeps its sign, by its chord.
+    /// Whether the velocity keeps its sign, by its chord or since the acceleration does.
     #[inline(always)]
     pub fn is_monotone(&self) -> bool {
+        keeps_sign(self.ways, self.deviations.1) | (self.bends_one_way() & keeps_sign(self.ways, T::zero()))
+    }
+
+    /// Whether the acceleration keeps its sign, by its chord.
+    #[inline(always)]
+    pub fn bends_one_way(&self) -> bool {
+        keeps_sign(self.bends, self.deviations.2)
+    }
+
+    /// Whether the velocity changes its sign once, since the acceleration keeps its own.
+    #[inline(always)]
+    pub fn turns_once(&self) -> bool {
         let (from, to) = self.ways;
-        let alike = (from > T::zero()) == (to > T::zero());
-        alike & (self.deviations.1 * T::of(CLEARANCE) < from.abs().smaller(to.abs()))
+        self.bends_one_way() & keeps_sign((from, T::zero() - to), T::zero())
     }
 
     /// The extremes with the ends of the step, and whether a turning point inside it may lie beyond them.
@@ -49,4 +78,11 @@ impl<T: Scalar> Chord<T> {
         let lowest = (self.start - self.bound).larger(self.limits.0).larger(lower - self.deviations.0);
         (low, high, ((highest > high) | (lowest < low)) & !self.is_monotone())
     }
+}
+
+/// Whether a function keeps its sign that has these values at its ends and deviates so much from the chord.
+#[inline(always)]
+fn keeps_sign<T: Scalar>((from, to): (T, T), deviation: T) -> bool {
+    let alike = (from > T::zero()) == (to > T::zero());
+    alike & (deviation * T::of(CLEARANCE) < from.abs().smaller(to.abs()))
 }

@@ -6,43 +6,55 @@ use super::stepper::Stepper;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
 use crate::dynamics::series::{Endpoint, polynomial};
-use crate::dynamics::state::{BY_SPEED, HELD, MotionState};
+use crate::dynamics::state::{BY_SPEED, HELD, MotionState, Touch};
 use crate::numeric::{PolynomialRoots, Scalar, single_root};
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// The end of the mode that a step of length `h` runs into ahead: when, and with what velocity. Only where
-    /// the velocity keeps its sign up to there, so that nothing else is met before. A batch does the same
-    /// arithmetic (`lanes/columns.rs`).
+    /// The end of the mode that a step of length `h` runs into, when, and with what velocity: the one ahead
+    /// where the velocity keeps its sign, or the one just left where the acceleration does, so that nothing
+    /// else is met before. A batch does the same arithmetic (`lanes/columns/landing.rs`).
     #[inline(always)]
-    fn exit_ahead(&self, state: &MotionState<T>, h: T, end: &Endpoint<T>) -> Option<(T, T, End)> {
-        let zero = T::zero();
+    fn plain_exit(&self, state: &MotionState<T>, h: T, end: &Endpoint<T>) -> Option<(T, T, End)> {
         let mode = self.mode(state);
-        let exit = if state.v > zero { End::High } else { End::Low };
+        let to = end.y + mode.origin;
+        let past = |exit: End| exit.sign::<T>() * (to - mode.end(exit).0) > T::zero();
+        let ahead = if state.v > T::zero() { End::High } else { End::Low };
+        let exit = match state.touch {
+            Some(Touch { multiplicity: BY_SPEED, end }) if past(end) => end,
+            None | Some(Touch { multiplicity: BY_SPEED, .. }) => ahead,
+            Some(_) => return None,
+        };
         let (sign, level) = (exit.sign::<T>(), mode.end(exit).0);
-        let (from, to) = (state.x - level, (end.y + mode.origin) - level);
-        let leaves = state.touch.is_none_or(|touch| touch.multiplicity == BY_SPEED);
-        if !(leaves && sign * from < zero && sign * to > zero) {
+        let from = state.x - level;
+        let (returns, starts_inside) = (exit != ahead, sign * from < T::zero());
+        let clear = !returns || sign * (state.x - mode.end(ahead).0) > end.bound;
+        if !(past(exit) && clear && (returns || starts_inside)) {
             return None;
         }
         let y = &self.series.y[..self.series.known];
+        let (v, last, to) = (state.v * h, end.v * h, to - level);
         let mut g = polynomial::scaled(y, h);
-        g[0] = from;
-        let (slope, last) = ((state.v * h).to_f64(), (end.v * h).to_f64());
-        let guess = single_root::guess((from.to_f64(), slope), (to.to_f64(), last));
-        let length = single_root::single_root(&g[..y.len()], T::of(guess))? * h;
+        let (g, ends) = if returns {
+            // (the gap over the time since the start)
+            (&g[1..=y.len()], ((v, g[2]), (to, last - to)))
+        } else {
+            g[0] = from;
+            (&g[..y.len()], ((from, v), (to, last)))
+        };
+        let pair = |(value, slope): (T, T)| (value.to_f64(), slope.to_f64());
+        let guess = T::of(single_root::guess(pair(ends.0), pair(ends.1)));
+        let length = single_root::single_root(g, guess)? * h;
         let v = polynomial::slope(y, length);
-        let ways = (state.v * length, v * length);
-        let deviations = polynomial::chord_deviations(y, length);
-        let (start, limits) = (state.x, (mode.low, mode.high));
-        let chord = Chord { start, end: level, bound: end.bound, deviations, ways, limits };
-        chord.is_monotone().then_some((length, v, exit))
+        let chord = Chord::new(y, (state.x, level), (length, v), end.bound, (mode.low, mode.high));
+        let alone = if returns { chord.bends_one_way() } else { chord.is_monotone() };
+        (alone && sign * v > T::zero()).then_some((length, v, exit))
     }
 
     /// The first contact with an end of the mode within a step of length `h`: when, and with what velocity; of
     /// the step's end is known how it lies in the piece.
     #[inline(always)]
     pub fn find_exit(&self, state: &MotionState<T>, h: T, end: &Endpoint<T>) -> Option<(T, T, End)> {
-        self.exit_ahead(state, h, end).or_else(|| {
+        self.plain_exit(state, h, end).or_else(|| {
             let (share, exit) = self.first_exit(state, h, end)?;
             let length = share * h;
             Some((length, self.series.velocity(length), exit))
@@ -69,7 +81,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             }
             let (y, to) = (&self.series.y[..n], end + mode.origin);
             let deviations = polynomial::chord_deviations(y, h);
-            let chord = Chord { start: state.x, end: to, bound, deviations, ways: (zero, zero), limits };
+            let (ways, bends) = ((zero, zero), (zero, zero));
+            let chord = Chord { start: state.x, end: to, bound, deviations, ways, bends, limits };
             if chord.is_clear() == (true, true) {
                 return None;
             }

@@ -4,17 +4,23 @@
 //! with `run/flight.rs`), and as its fast path (`run/event_free.rs`). The three do the same arithmetic and
 //! must stay equal to the bit.
 
+mod landing;
+
 use super::trial::{Clocks, CompensatedSums, Trial};
 use crate::dynamics::drive::tone::{Harmonic, Sine};
 use crate::dynamics::equation::force::PieceForce;
 use crate::dynamics::equation::{End, EndKind, Mode};
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::event_free::MARGIN;
-use crate::dynamics::series::{Endpoint, Series, natural_steps, polynomial};
+use crate::dynamics::series::{Series, natural_steps, polynomial};
 use crate::dynamics::state::{BY_SPEED, Touch};
 use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::dynamics::step::work::ARRIVAL;
-use crate::numeric::{GaussLegendre, Lanes, Number, Scalar, single_root};
+use crate::numeric::{GaussLegendre, Lanes, Number, Scalar};
+use landing::Arrivals;
+
+/// A share of the way that rounding is far below.
+const ROUNDING: f64 = 1e-9;
 
 /// One motion under a sine, without a ledger.
 pub(super) type LaneMotion<'a> = Motion<'a, f64, Sine<f64>, false>;
@@ -69,8 +75,6 @@ pub(crate) struct Columns<const W: usize> {
     high: Lanes<W>,
     squared: CompensatedSums<W>,
     covered: CompensatedSums<W>,
-    /// Time to the border, less a margin.
-    left: Lanes<W>,
 }
 
 impl<const W: usize> Columns<W> {
@@ -116,7 +120,6 @@ impl<const W: usize> Columns<W> {
             high: zero,
             squared: sums,
             covered: sums,
-            left: zero,
         }
     }
 
@@ -234,7 +237,7 @@ impl<const W: usize> Columns<W> {
         motion.record.end_event_free_crossings(self.side.0[lane] as i8, self.crossings.0[lane] as u64);
     }
 
-    /// Computes one step in all lanes and takes it where it is event-free.
+    /// Computes one step in all lanes and takes it where it is event-free, up to a break where it meets one.
     #[inline(always)]
     pub fn step(
         &mut self,
@@ -257,88 +260,106 @@ impl<const W: usize> Columns<W> {
         let base = self.amplitude * unit.0;
         let sum = (end.acceleration + self.damping * end.v) + base;
         let residual = (self.force.at(end.y) + sum).abs() * length;
-        let x = end.y + self.origin;
 
-        let mut may = [false; W];
+        let (mut may, mut left) = ([false; W], length);
         for lane in 0..W {
             let (length, period) = (length.0[lane], self.period.0[lane]);
             let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
             let to_border = cycles * period + (self.border.phase.0[lane] - self.at.phase.0[lane]);
-            let left = to_border - MARGIN * period;
+            left.0[lane] = to_border - MARGIN * period;
             trial.holds[lane] = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
-            self.left.0[lane] = left;
-            may[lane] = self.active[lane] & trial.holds[lane] & (length < left);
-            may[lane] = may[lane] & (at.phase.0[lane] < period) & (end.v.0[lane].abs() < f64::INFINITY);
+            let early = (length < left.0[lane]) & (at.phase.0[lane] < period);
+            let finite = end.v.0[lane].abs() < f64::INFINITY;
+            may[lane] = self.active[lane] & trial.holds[lane] & early & finite;
         }
-        // As far as the step goes, or up to the first break.
-        let (mut ahead, mut to) = ([false; W], Arrivals { length, x, v: end.v, at, unit });
-        for lane in 0..W {
-            let (from, x, v) = (self.x.0[lane], x.0[lane], self.v.0[lane]);
-            let high = (v > 0.0) & (from < self.high_break.0[lane]) & (x > self.high_break.0[lane]);
-            let low = (v < 0.0) & (from > self.low_break.0[lane]) & (x < self.low_break.0[lane]);
-            ahead[lane] = may[lane] & !self.logged[lane] & (high | low);
-        }
-        if ahead.contains(&true) {
-            self.up_to_breaks(&mut ahead, y, &end, &mut to);
-        }
+        let (x, acceleration) = (end.y + self.origin, end.acceleration);
+        let mut to = Arrivals { length, x, v: end.v, acceleration, at, unit };
+        let landed = self.land(&may, y, &end.bound, &mut to);
 
         let mut squared = Lanes([0.0; W]);
         let deviations = polynomial::chord_deviations(y, to.length);
         if self.inside.contains(&true) {
             squared = polynomial::integrals::<_, false>(y, &[], rule, squared, to.length).0;
         }
-        let start = y[0] + self.origin;
+        let (start, square) = (y[0] + self.origin, to.length * to.length);
+        let (ways, bends) = ((self.v * to.length, to.v * to.length), to.acceleration * square);
+        let bends = ((y[2] + y[2]) * square, bends);
+        let (mut fine, mut turning, mut crosses) = ([false; W], [false; W], [false; W]);
+        let (mut low, mut high) = (start, start);
         for lane in 0..W {
-            let (length, left, ahead) = (to.length.0[lane], self.left.0[lane], ahead[lane]);
-            let (bound, limits) = (end.bound.0[lane], (self.low_end.0[lane], self.high_end.0[lane]));
-            let ways = (self.v.0[lane] * length, to.v.0[lane] * length);
-            let deviations = (deviations.0.0[lane], deviations.1.0[lane]);
-            let chord = Chord { start: start.0[lane], end: to.x.0[lane], bound, deviations, ways, limits };
+            let bound = end.bound.0[lane];
+            let chord = Chord {
+                start: start.0[lane],
+                end: to.x.0[lane],
+                bound,
+                deviations: (deviations.0.0[lane], deviations.1.0[lane], deviations.2.0[lane]),
+                ways: (ways.0.0[lane], ways.1.0[lane]),
+                bends: (bends.0.0[lane], bends.1.0[lane]),
+                limits: (self.low_end.0[lane], self.high_end.0[lane]),
+            };
+            let (limits, touch, monotone) = (chord.limits, self.touch.0[lane], chord.is_monotone());
             let (clear_low, clear_high) = chord.is_clear();
             let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
             let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
             // from a surface: its own speed leads further away than all the rest can lead back
-            let leaves = 2.0 * self.v.0[lane].abs() * length > bound * CLEARANCE;
-            let clear_low = clear_low | (leaves & (self.touch.0[lane] < 0.0));
-            let clear_high = clear_high | (leaves & (self.touch.0[lane] > 0.0));
-            let monotone = chord.is_monotone();
-            let clear = (clear_low & clear_high & !ahead) | (monotone & ahead);
-            let (low, high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
+            let leaves = 2.0 * self.v.0[lane].abs() * to.length.0[lane] > bound * CLEARANCE;
+            let clear_low = clear_low | (leaves & (touch < 0.0));
+            let clear_high = clear_high | (leaves & (touch > 0.0));
+            // between the ends, where the lowest or the highest place is one of them
+            let margin = bound * ROUNDING;
+            let above = (chord.end - limits.0 > margin) & ((chord.start > limits.0) | (touch < 0.0));
+            let below = (limits.1 - chord.end > margin) & ((chord.start < limits.1) | (touch > 0.0));
+            let bends = chord.bends_one_way();
+            let clear_low = clear_low | (above & (monotone | (bends & (chord.bends.0 < 0.0))));
+            let clear_high = clear_high | (below & (monotone | (bends & (chord.bends.0 > 0.0))));
+            let clear = (clear_low & clear_high) | landed[lane];
+            let (own_low, own_high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
+            (low.0[lane], high.0[lane]) = (own_low, own_high);
 
             // Without a barrier every comparison with it is false, since it is NaN.
             let (barrier, side, inside) = (self.barrier.0[lane], self.side.0[lane], self.inside[lane]);
-            let (from, to_barrier) = ((chord.start - barrier) * side, (chord.end - barrier) * side);
+            let (from, beyond) = ((chord.start - barrier) * side, (chord.end - barrier) * side);
             let near = (chord.start - barrier).abs() <= bound;
-            let (onto, passed) = (to_barrier == 0.0, to_barrier < 0.0);
+            let (onto, passed) = (beyond == 0.0, beyond < 0.0);
             // outside the window only their number counts
-            let countable = !inside & (length + length < left) & !ahead;
+            let countable = !inside & (to.length.0[lane] + to.length.0[lane] < left.0[lane]) & !landed[lane];
             let clear_of_barrier =
                 !(near | passed | onto) | (monotone & (from > 0.0) & !onto & (!passed | countable));
-
-            let event_free = may[lane] & clear & clear_of_barrier & !(turns & inside);
-            let taken = event_free & self.active[lane];
+            fine[lane] = may[lane] & clear & clear_of_barrier;
+            turning[lane] = fine[lane] & turns & inside;
+            crosses[lane] = passed;
+        }
+        if turning.contains(&true) {
+            let turned = self.turn(&turning, y, &to, (ways, bends, deviations), (&mut low, &mut high));
+            for lane in 0..W {
+                fine[lane] = fine[lane] & (!turning[lane] | turned[lane]);
+            }
+        }
+        for lane in 0..W {
+            let (taken, inside, length) = (fine[lane], self.inside[lane], to.length.0[lane]);
             trial.taken[lane] = taken;
-            trial.stopped[lane] = !event_free & self.active[lane];
-            trial.passed[lane] = taken & ahead;
-            trial.measured[lane] = inside & !ahead;
+            trial.stopped[lane] = !taken & self.active[lane];
+            trial.passed[lane] = taken & landed[lane];
+            trial.measured[lane] = inside & !landed[lane];
 
             let measured = taken & inside;
             let (squared, covered) =
                 (self.squared.with(lane, squared.0[lane]), self.covered.with(lane, length));
             let set = |place: &mut f64, value: f64, which: bool| *place = if which { value } else { *place };
-            set(&mut self.low.0[lane], low, measured);
-            set(&mut self.high.0[lane], high, measured);
+            set(&mut self.low.0[lane], low.0[lane], measured);
+            set(&mut self.high.0[lane], high.0[lane], measured);
             set(&mut self.squared.sum.0[lane], squared.0, measured);
             set(&mut self.squared.carry.0[lane], squared.1, measured);
             set(&mut self.covered.sum.0[lane], covered.0, measured);
             set(&mut self.covered.carry.0[lane], covered.1, measured);
-            let crosses = taken & passed;
+            let crosses = taken & crosses[lane];
+            let side = self.side.0[lane];
             set(&mut self.side.0[lane], -side, crosses);
             self.crossings.0[lane] += if crosses { 1.0 } else { 0.0 };
             self.steps.0[lane] += if taken { 1.0 } else { 0.0 };
-            self.passages.0[lane] += if taken & ahead { 1.0 } else { 0.0 };
+            self.passages.0[lane] += if trial.passed[lane] { 1.0 } else { 0.0 };
             set(&mut self.touch.0[lane], 0.0, taken);
-            set(&mut self.x.0[lane], chord.end, taken);
+            set(&mut self.x.0[lane], to.x.0[lane], taken);
             set(&mut self.v.0[lane], to.v.0[lane], taken);
             set(&mut self.at.cycle.0[lane], to.at.cycle.0[lane], taken);
             set(&mut self.at.phase.0[lane], to.at.phase.0[lane], taken);
@@ -361,66 +382,4 @@ impl<const W: usize> Columns<W> {
         }
         (value, slope)
     }
-
-    /// Ends the steps of the lanes `ahead` where they meet the break that lies ahead, as far as it is found.
-    #[inline(always)]
-    fn up_to_breaks(
-        &self,
-        ahead: &mut [bool; W],
-        y: &[Lanes<W>],
-        end: &Endpoint<Lanes<W>>,
-        to: &mut Arrivals<W>,
-    ) {
-        let mut level = self.low_break;
-        for lane in 0..W {
-            level.0[lane] = if self.v.0[lane] > 0.0 { self.high_break.0[lane] } else { level.0[lane] };
-        }
-        let whole = to.length;
-        let mut g = polynomial::scaled(y, whole);
-        g[0] = self.x - level;
-        let g = &g[..y.len()];
-        let (past, slope, last) = (to.x - level, self.v * whole, end.v * whole);
-        let mut share = Lanes([0.0; W]);
-        for lane in 0..W {
-            let ends = ((g[0].0[lane], slope.0[lane]), (past.0[lane], last.0[lane]));
-            share.0[lane] = single_root::guess(ends.0, ends.1);
-        }
-        let mut found = [false; W];
-        for _ in 0..single_root::MOST_STEPS {
-            let (value, slope, half_curvature) = single_root::expansion(g, share);
-            let mut missing = false;
-            for lane in 0..W {
-                let expansion = (value.0[lane], slope.0[lane], half_curvature.0[lane]);
-                let (next, near) = single_root::next(share.0[lane], expansion);
-                share.0[lane] = if found[lane] { share.0[lane] } else { next };
-                found[lane] = found[lane] | near;
-                missing = missing | (ahead[lane] & !found[lane]);
-            }
-            if !missing {
-                break;
-            }
-        }
-        for lane in 0..W {
-            let own = &mut ahead[lane];
-            *own = *own & found[lane] & (share.0[lane] > 0.0) & (share.0[lane] <= 1.0);
-        }
-        let length = share * whole;
-        let choose = |own: Lanes<W>, other: Lanes<W>| {
-            Lanes(std::array::from_fn(|lane| if ahead[lane] { other.0[lane] } else { own.0[lane] }))
-        };
-        to.length = choose(whole, length);
-        to.x = choose(to.x, level);
-        to.v = choose(to.v, polynomial::slope(y, to.length));
-        to.at = self.at.advance(&to.length, &self.period);
-        to.unit = self.drive_at(&to.at);
-    }
-}
-
-/// Where steps lead.
-struct Arrivals<const W: usize> {
-    length: Lanes<W>,
-    x: Lanes<W>,
-    v: Lanes<W>,
-    at: Clocks<W>,
-    unit: (Lanes<W>, Lanes<W>),
 }

@@ -1,0 +1,179 @@
+//! Where steps of all lanes meet a break, and where they turn.
+//!
+//! A motion alone does the same arithmetic (`step/exit.rs`, `record/steps.rs`), and gets the same bits.
+
+use super::{Clocks, Columns};
+use crate::dynamics::series::polynomial;
+use crate::dynamics::step::chord::Chord;
+use crate::numeric::{Lanes, single_root};
+
+/// Where steps lead.
+#[derive(Clone, Copy)]
+pub(super) struct Arrivals<const W: usize> {
+    pub length: Lanes<W>,
+    pub x: Lanes<W>,
+    pub v: Lanes<W>,
+    pub acceleration: Lanes<W>,
+    pub at: Clocks<W>,
+    /// The drive and its time derivative per unit amplitude.
+    pub unit: (Lanes<W>, Lanes<W>),
+}
+
+/// Three columns.
+type Three<const W: usize> = (Lanes<W>, Lanes<W>, Lanes<W>);
+
+impl<const W: usize> Columns<W> {
+    /// Ends steps that `may` be taken at the break that they meet, the one ahead or the one just left, where it
+    /// is found at once; which those are.
+    #[inline(always)]
+    pub(super) fn land(
+        &self,
+        may: &[bool; W],
+        y: &[Lanes<W>],
+        bound: &Lanes<W>,
+        to: &mut Arrivals<W>,
+    ) -> [bool; W] {
+        let (mut meets, mut returns, mut level) = ([false; W], [false; W], to.x);
+        for lane in 0..W {
+            let (from, x, v) = (self.x.0[lane], to.x.0[lane], self.v.0[lane]);
+            let (low, high) = (self.low_break.0[lane], self.high_break.0[lane]);
+            let (ahead_low, ahead_high) = ((v < 0.0) & (from > low), (v > 0.0) & (from < high));
+            let back_low = (self.touch.0[lane] < 0.0) & (self.high_end.0[lane] - from > bound.0[lane]);
+            let back_high = (self.touch.0[lane] > 0.0) & (from - self.low_end.0[lane] > bound.0[lane]);
+            let falls = (x < low) & (ahead_low | back_low);
+            let rises = (x > high) & (ahead_high | back_high);
+            meets[lane] = may[lane] & !self.logged[lane] & (falls | rises);
+            returns[lane] = falls & (self.touch.0[lane] < 0.0) | rises & (self.touch.0[lane] > 0.0);
+            level.0[lane] = if falls { low } else { high };
+        }
+        if !meets.contains(&true) {
+            return meets;
+        }
+        let (from, whole) = (self.x - level, to.length);
+        let (v, last, past) = (self.v * whole, to.v * whole, to.x - level);
+        let mut g = polynomial::scaled(y, whole);
+        let second = g[2];
+        // (of those that return the gap over the time since the start)
+        g[0] = from;
+        for k in 0..y.len() {
+            g[k] = choose(&returns, g[k], g[k + 1]);
+        }
+        let first = (choose(&returns, from, v), choose(&returns, v, second));
+        let last = (past, choose(&returns, last, last - past));
+        let (share, found) = roots(&g[..y.len()], &meets, first, last);
+        let length = choose(&found, whole, share * whole);
+        let arrival = polynomial::slope(y, length);
+        let acceleration = polynomial::curvature(y, length);
+        let deviations = polynomial::chord_deviations(y, length);
+        let square = length * length;
+        let (ways, bends) =
+            ((self.v * length, arrival * length), ((y[2] + y[2]) * square, acceleration * square));
+        let mut landed = [false; W];
+        for lane in 0..W {
+            let chord = chord(lane, ways, bends, deviations);
+            let alone = if returns[lane] { chord.bends_one_way() } else { chord.is_monotone() };
+            let outward = (arrival.0[lane] > 0.0) == (past.0[lane] > 0.0);
+            landed[lane] = found[lane] & alone & outward & (arrival.0[lane] != 0.0);
+        }
+        to.length = choose(&landed, whole, length);
+        to.x = choose(&landed, to.x, level);
+        to.v = choose(&landed, to.v, arrival);
+        to.acceleration = choose(&landed, to.acceleration, acceleration);
+        to.at = self.at.advance(&to.length, &self.period);
+        to.unit = self.drive_at(&to.at);
+        landed
+    }
+
+    /// Takes turning points into the extremes of lanes that are `turning`, where they turn once; which those
+    /// are.
+    #[inline(always)]
+    pub(super) fn turn(
+        &self,
+        turning: &[bool; W],
+        y: &[Lanes<W>],
+        to: &Arrivals<W>,
+        (ways, bends, deviations): ((Lanes<W>, Lanes<W>), (Lanes<W>, Lanes<W>), Three<W>),
+        (low, high): (&mut Lanes<W>, &mut Lanes<W>),
+    ) -> [bool; W] {
+        let bends = (bends.0, polynomial::curvature(y, to.length) * (to.length * to.length));
+        let mut turned = [false; W];
+        for lane in 0..W {
+            turned[lane] = turning[lane] & chord(lane, ways, bends, deviations).turns_once();
+        }
+        let velocity = polynomial::scaled_slope(y, to.length);
+        let ends = ((ways.0, bends.0), (ways.1, bends.1));
+        let (share, turned) = roots(&velocity[..y.len() - 1], &turned, ends.0, ends.1);
+        let x = polynomial::value(y, share * to.length) + self.origin;
+        for lane in 0..W {
+            let x = x.0[lane].max(self.low_end.0[lane]).min(self.high_end.0[lane]);
+            let (lowest, highest) = (low.0[lane].min(x), high.0[lane].max(x));
+            low.0[lane] = if turned[lane] { lowest } else { low.0[lane] };
+            high.0[lane] = if turned[lane] { highest } else { high.0[lane] };
+        }
+        turned
+    }
+}
+
+/// What is known of a lane's velocity and acceleration over a step.
+#[inline(always)]
+fn chord<const W: usize>(
+    lane: usize,
+    ways: (Lanes<W>, Lanes<W>),
+    bends: (Lanes<W>, Lanes<W>),
+    deviations: Three<W>,
+) -> Chord<f64> {
+    let far = f64::INFINITY;
+    Chord {
+        start: 0.0,
+        end: 0.0,
+        bound: far,
+        deviations: (far, deviations.1.0[lane], deviations.2.0[lane]),
+        ways: (ways.0.0[lane], ways.1.0[lane]),
+        bends: (bends.0.0[lane], bends.1.0[lane]),
+        limits: (-far, far),
+    }
+}
+
+/// The roots of the lanes that are `wanted`, from values and slopes at both ends, and where they are found.
+#[inline(always)]
+fn roots<const W: usize>(
+    g: &[Lanes<W>],
+    wanted: &[bool; W],
+    first: (Lanes<W>, Lanes<W>),
+    last: (Lanes<W>, Lanes<W>),
+) -> (Lanes<W>, [bool; W]) {
+    let (mut share, mut found) = (first.0, [false; W]);
+    for lane in 0..W {
+        let pair = |(value, slope): (Lanes<W>, Lanes<W>)| (value.0[lane], slope.0[lane]);
+        share.0[lane] = single_root::guess(pair(first), pair(last));
+    }
+    for _ in 0..single_root::MOST_STEPS {
+        let (value, slope, half_curvature) = single_root::expansion(g, share);
+        let mut missing = false;
+        for lane in 0..W {
+            let expansion = (value.0[lane], slope.0[lane], half_curvature.0[lane]);
+            let (next, near) = single_root::next(share.0[lane], expansion);
+            share.0[lane] = if found[lane] { share.0[lane] } else { next };
+            found[lane] = found[lane] | near;
+            missing = missing | (wanted[lane] & !found[lane]);
+        }
+        if !missing {
+            break;
+        }
+    }
+    for lane in 0..W {
+        let inside = (share.0[lane] > 0.0) & (share.0[lane] <= 1.0);
+        found[lane] = found[lane] & wanted[lane] & inside;
+    }
+    (share, found)
+}
+
+/// Of each lane the second number where `which` says so, else the first.
+#[inline(always)]
+fn choose<const W: usize>(which: &[bool; W], own: Lanes<W>, other: Lanes<W>) -> Lanes<W> {
+    let mut chosen = own;
+    for lane in 0..W {
+        chosen.0[lane] = if which[lane] { other.0[lane] } else { own.0[lane] };
+    }
+    chosen
+}
