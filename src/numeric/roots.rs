@@ -10,7 +10,7 @@
 //! what the rounding of the coefficients can tell, counts as none.
 
 use super::scalar::Scalar;
-use super::single_root::expansion;
+use super::single_root::{expansion, step};
 
 /// The largest degree that can be searched.
 pub const MAX_DEGREE: usize = 39;
@@ -36,8 +36,10 @@ static BINOMIALS: [[f64; COEFFICIENTS]; COEFFICIENTS] = {
 
 /// A polynomial on [0, 1], sum g\[k\] s^k, as something to find sign changes in.
 ///
-/// A value of exactly 0 counts as negative throughout: a root at the very end of an interval belongs to
-/// it, and is found once.
+/// Its sign at 0 is that right after it: a root at 0 is no change. From there on a value of exactly 0 counts
+/// as of the other sign: a root at the very end of an interval is found once, that at 1 where the polynomial
+/// comes to it with its first sign, and a polynomial and its negative have the same ones. A touch at the very
+/// end of a halved interval is found as a pair.
 #[derive(Debug, Clone, Copy)]
 pub struct PolynomialRoots<'a, T> {
     g: &'a [T],
@@ -85,10 +87,11 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     /// Calls `visit` with every s in (0, 1] where the polynomial changes sign, in ascending order, until
     /// it returns false.
     pub fn each_sign_change(&self, mut visit: impl FnMut(T) -> bool) {
-        self.each_bracket(|low, high| {
-            let root = self.polish(low, high);
+        let own = self.without_a_root_at_0();
+        own.each_bracket(|above, bracket| {
+            let root = own.polish(above, bracket);
             visit(T::at_root(root, |s| {
-                let (value, slope, _) = expansion(self.g, s);
+                let (value, slope, _) = expansion(own.g, s);
                 (value, slope)
             }))
         });
@@ -97,17 +100,31 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     /// How often it changes sign in (0, 1]: what [`Self::each_sign_change`] visits, without locating it.
     pub fn count_sign_changes(&self) -> usize {
         let mut count = 0;
-        self.each_bracket(|_, _| {
+        self.without_a_root_at_0().each_bracket(|_, _| {
             count += 1;
             true
         });
         count
     }
 
-    /// Calls `visit` with the ends of an interval around each sign change, in ascending order, until it
-    /// returns false.
+    /// The same sign on (0, 1], divided by the power of s that makes it 0 at 0.
     #[inline]
-    fn each_bracket(&self, mut visit: impl FnMut(T, T) -> bool) {
+    fn without_a_root_at_0(&self) -> Self {
+        let first = self.g.iter().position(|c| *c != T::zero()).unwrap_or(0);
+        Self { g: &self.g[first..] }
+    }
+
+    /// Whether a value is on the side of 0 on which the polynomial begins.
+    #[inline(always)]
+    fn is_as_at_first(&self, value: T) -> bool {
+        if self.g[0] > T::zero() { value > T::zero() } else { value < T::zero() }
+    }
+
+    /// Calls `visit` for an interval around each sign change, with whether the polynomial has its first sign
+    /// at the low end and with the ends, in ascending order, until it returns false. Precondition: it is not 0
+    /// at 0.
+    #[inline]
+    fn each_bracket(&self, mut visit: impl FnMut(bool, (T, T)) -> bool) {
         let zero = T::zero();
         let g = self.g;
         if g.len() < 2 {
@@ -129,8 +146,8 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         }
         if most_slope < zero || least_slope > zero {
             // Monotone: the end decides.
-            if (self.value(T::of(1.0)) > zero) != (g[0] > zero) {
-                visit(zero, T::of(1.0));
+            if !self.is_as_at_first(self.value(T::of(1.0))) {
+                visit(true, (zero, T::of(1.0)));
             }
             return;
         }
@@ -155,17 +172,18 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         low: T,
         width: T,
         depth: u32,
-        visit: &mut impl FnMut(T, T) -> bool,
+        visit: &mut impl FnMut(bool, (T, T)) -> bool,
     ) -> bool {
         let zero = T::zero();
         let n = self.g.len() - 1;
-        let changes = b[..=n].windows(2).filter(|w| (w[0] > zero) != (w[1] > zero)).count();
+        let as_at_first = |c: T| self.is_as_at_first(c);
+        let changes = b[..=n].windows(2).filter(|w| as_at_first(w[0]) != as_at_first(w[1])).count();
         if changes == 0 {
             return true;
         }
         if changes == 1 || depth == MAX_DEPTH {
             if changes % 2 == 1 {
-                return visit(low, low + width);
+                return visit(as_at_first(b[0]), (low, low + width));
             }
             return true; // a touch
         }
@@ -184,23 +202,21 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     }
 
     /// The root between `low` and `high`, by Chebyshev's steps (third order) kept inside a shrinking bracket.
-    fn polish(&self, mut low: T, mut high: T) -> T {
-        let zero = T::zero();
-        let below = if low == zero { self.g[0] > zero } else { self.value(low) > zero };
+    /// The sign at `low` is that which the interval was found by: where `low` is a root to rounding, another
+    /// way to the value there may give the other sign.
+    fn polish(&self, above: bool, (mut low, mut high): (T, T)) -> T {
         let half = T::of(0.5);
         let mut s = self.guess(low, high).unwrap_or_else(|| (low + high) * half);
         let close = T::of(T::ROUGH);
         let mut last_move = high - low;
         for _ in 0..120 {
-            let (value, slope, half_curvature) = expansion(self.g, s);
-            if (value > zero) == below {
+            let expansion = expansion(self.g, s);
+            if self.is_as_at_first(expansion.0) == above {
                 low = s
             } else {
                 high = s
             }
-            let newton = value / slope;
-            let bent = newton * half_curvature / slope;
-            let step = newton + newton * bent;
+            let (step, bent) = step(expansion);
             let next = s - step;
             // A step must stay inside and at least halve the last move; else halve the bracket.
             let inside = next >= low && next <= high && step.abs() * T::of(2.0) <= last_move;
@@ -238,117 +254,4 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::DoubleDouble;
-    use super::*;
-
-    fn from_roots(roots: &[f64], scale: f64) -> Vec<f64> {
-        let mut g = vec![scale];
-        for r in roots {
-            let mut next = vec![0.0; g.len() + 1];
-            for (k, c) in g.iter().enumerate() {
-                next[k] -= c * r;
-                next[k + 1] += c;
-            }
-            g = next;
-        }
-        g
-    }
-
-    fn all(g: &[f64]) -> Vec<f64> {
-        let mut found = Vec::new();
-        PolynomialRoots::new(g).each_sign_change(|s| {
-            found.push(s);
-            true
-        });
-        assert_eq!(PolynomialRoots::new(g).count_sign_changes(), found.len());
-        found
-    }
-
-    #[test]
-    fn a_polynomial_and_its_negative_have_the_same_roots_whatever_sign_a_zero_has() {
-        // A mass that starts at rest: no slope, of either sign.
-        let mut state = 1_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        for _ in 0..200 {
-            let g = [0.2 + 0.5 * next(), 0.0, -0.9 - 0.3 * next(), 0.05 * next(), -0.01 * next()];
-            let other = [g[0], -0.0, g[2], g[3], g[4]];
-            let found = all(&g);
-            assert!(!found.is_empty());
-            assert_eq!(
-                (all(&other), all(&g.map(|c| -c)), all(&other.map(|c| -c))),
-                (found.clone(), found.clone(), found)
-            );
-        }
-    }
-
-    #[test]
-    fn every_root_inside_is_found_once_and_in_order() {
-        let g = from_roots(&[0.1, 0.35, 0.36, 0.9, 1.4, -0.2], -1.0);
-        let found = all(&g);
-        assert_eq!(found.len(), 4);
-        for (f, r) in found.iter().zip([0.1, 0.35, 0.36, 0.9]) {
-            assert!((f - r).abs() < 1e-13, "{f} {r}");
-        }
-        assert!((PolynomialRoots::new(&g).first().unwrap() - 0.1).abs() < 1e-15);
-    }
-
-    #[test]
-    fn a_pair_that_the_ends_do_not_show() {
-        let g = from_roots(&[0.5, 0.500_001], 1.0);
-        let found = all(&g);
-        assert_eq!(found.len(), 2);
-        assert!((found[0] - 0.5).abs() < 1e-9 && (found[1] - 0.500_001).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_double_root_is_a_touch() {
-        assert!(all(&from_roots(&[0.3, 0.3], 1.0)).len().is_multiple_of(2));
-        assert!(all(&from_roots(&[0.3, 0.3, 0.7], -1.0)).len() % 2 == 1);
-        // a value of exactly 0 at a halving point is met as a pair, as close as rounding allows
-        let pair = all(&from_roots(&[0.5, 0.5], 1.0));
-        assert!(pair.len() == 2 && (pair[0] - 0.5).abs() < 1e-7 && (pair[1] - 0.5).abs() < 1e-7);
-    }
-
-    #[test]
-    fn a_root_at_the_end_and_at_a_halving_point() {
-        assert_eq!(all(&[1.0, -1.0]), vec![1.0]);
-        let found = all(&from_roots(&[0.25, 0.5, 0.75], -1.0));
-        assert_eq!(found.len(), 3);
-    }
-
-    #[test]
-    fn small_roots_keep_their_relative_digits() {
-        let g = [1e-9, -0.3, 0.2, 0.1];
-        let s = PolynomialRoots::new(&g).first().unwrap();
-        assert!((s - 1e-9 / 0.3 * (1.0 + 0.2 * 1e-9 / 0.09)).abs() < 1e-24);
-    }
-
-    #[test]
-    fn the_expansion_is_value_and_slopes() {
-        for count in 1..9 {
-            let g: Vec<f64> = (0..count).map(|k| 1.0 / (1.5 + k as f64) - 0.3 * (k % 3) as f64).collect();
-            let polynomial = PolynomialRoots::new(&g);
-            for s in [-0.7, 0.0, 0.3, 1.0, 1.4] {
-                let (value, slope, half_curvature) = expansion(&g, s);
-                let (v, first, second) = polynomial.value_and_slopes(s);
-                let near = |a: f64, b: f64| (a - b).abs() < 1e-13 * (1.0 + b.abs());
-                assert!(
-                    near(value, v) && near(slope, first) && near(2.0 * half_curvature, second),
-                    "{count} {s}"
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn the_same_code_in_double_double() {
-        let g: Vec<DoubleDouble> = [2.0, 0.0, -4.0].iter().map(|c| crate::numeric::Number::of(*c)).collect();
-        let s = PolynomialRoots::new(&g).first().unwrap();
-        let half: DoubleDouble = crate::numeric::Number::of(0.5);
-        assert!((s * s - half).to_f64().abs() < 1e-30);
-    }
-}
+mod tests;

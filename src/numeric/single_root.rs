@@ -26,7 +26,7 @@ pub(crate) fn guess((g0, slope0): (f64, f64), (g1, slope1): (f64, f64)) -> f64 {
 /// Chebyshev's step (third order) from value, slope and half the curvature, and what the bend adds to one of
 /// Newton, as a share of that.
 #[inline(always)]
-fn step<T: Scalar>((value, slope, half_curvature): (T, T, T)) -> (T, T) {
+pub(crate) fn step<T: Scalar>((value, slope, half_curvature): (T, T, T)) -> (T, T) {
     let newton = value / slope;
     let bent = newton * half_curvature / slope;
     (newton + newton * bent, bent)

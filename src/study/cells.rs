@@ -232,7 +232,11 @@ impl Cells {
         };
         let mut scene = self.base.clone();
         let mut next = |under_way: usize| loop {
-            let number = next(under_way).filter(|_| !task.is_cancelled())?;
+            // Before it waits for more, which there may be none of any more.
+            if task.is_cancelled() {
+                return None;
+            }
+            let number = next(under_way)?;
             match self.model(cell(number), &mut scene, task) {
                 Some(Ok(model)) => return Some((number, question.model(model), request)),
                 // Not after the grid has been validated.

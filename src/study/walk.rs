@@ -122,9 +122,11 @@ impl Cells {
                 }
             };
             let mut next = |under_way: usize| loop {
+                if task.is_cancelled() {
+                    return None;
+                }
                 let own = ready.borrow_mut().pop();
-                let own = own.or_else(|| take(under_way).map(|number| (number, begin(number))));
-                let (number, walk) = own.filter(|_| !task.is_cancelled())?;
+                let (number, walk) = own.or_else(|| take(under_way).map(|number| (number, begin(number))))?;
                 match self.model(walk.cell(length as u64), &mut scene, task) {
                     Some(Ok(model)) => {
                         let model = question.model(model);

@@ -74,7 +74,8 @@ impl Pool {
     /// [`Queue`], and hand over their results by the second one, so many of `each` number, numbered through
     /// and those of one number in order. They leave in order, here, some at a time and those of a number
     /// together where they are not very many, while others are still worked on. At most so many numbers
-    /// are begun `ahead` of the last one whose results have left. Ends early where `leave` wants no more.
+    /// are begun `ahead` of the last one whose results have left. Ends early where `leave` wants no more, and
+    /// where a `work` ends while there are more: those of the others that can still leave do.
     pub fn in_order<R: Send>(
         &self,
         (count, each, ahead): (usize, usize, usize),
@@ -108,17 +109,27 @@ impl Pool {
                 work(&take, &done);
                 send();
             });
+            // However this ends, be it by a panic of `leave`: no thread waits for more.
+            let _over = Over(&queue);
             let (mut waiting, mut left, mut working) = (BTreeMap::new(), 0, self.count());
-            let step = if each <= MOST { each } else { 1 };
-            while working > 0 && !queue.is_stopped() {
+            while working > 0 {
                 match news.recv() {
                     Ok(News::Done(results)) => waiting.extend(results),
-                    Ok(News::Ended { whole: true }) => working -= 1,
-                    // The panic goes on when all threads have ended.
-                    Ok(News::Ended { whole: false }) | Err(_) => queue.stop(),
+                    Ok(News::Ended) => {
+                        // While there is more it has given up, or panics, which goes on when all threads have
+                        // ended: some results will never come, and nobody is to wait for them.
+                        queue.stop();
+                        working -= 1;
+                    }
+                    Err(_) => break,
                 }
-                while !queue.is_stopped() {
-                    let ends = (1..=MOST / step).map(|more| left + more * step);
+                loop {
+                    // whole numbers, or of a large one some, none beyond its end
+                    let (step, most) = match each <= MOST {
+                        true => (each, MOST),
+                        false => (1, MOST.min(each - left % each)),
+                    };
+                    let ends = (1..=most / step).map(|more| left + more * step);
                     let until = ends.take_while(|end| waiting.contains_key(&(end - 1))).last();
                     let in_order = (left..until.unwrap_or(left)).map_while(|own| waiting.remove(&own));
                     let next: Vec<R> = in_order.collect();
@@ -128,7 +139,7 @@ impl Pool {
                     left += next.len();
                     queue.leave(left / each);
                     if !leave(next) {
-                        queue.stop();
+                        return;
                     }
                 }
             }
@@ -226,10 +237,6 @@ impl Queue {
         self.moved.notify_all();
     }
 
-    fn is_stopped(&self) -> bool {
-        self.lock().stopped
-    }
-
     fn lock(&self) -> MutexGuard<'_, Taken> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -239,8 +246,8 @@ impl Queue {
 enum News<R> {
     /// Results, each with its number.
     Done(Vec<(usize, R)>),
-    /// It has come to its end, and not by a panic.
-    Ended { whole: bool },
+    /// It has come to its end, be it by a panic.
+    Ended,
 }
 
 /// Tells, however a thread ends, that it has ended.
@@ -248,7 +255,16 @@ struct Farewell<R>(Sender<News<R>>);
 
 impl<R> Drop for Farewell<R> {
     fn drop(&mut self) {
-        let _ = self.0.send(News::Ended { whole: !std::thread::panicking() });
+        let _ = self.0.send(News::Ended);
+    }
+}
+
+/// Stops a queue, however what uses it ends.
+struct Over<'a>(&'a Queue);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.stop();
     }
 }
 
@@ -270,72 +286,4 @@ pub fn within<R>(patience: Duration, work: impl FnOnce(&AtomicBool) -> R) -> R {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn results_come_in_order_and_none_is_begun_too_far_ahead() {
-        for threads in [1, 2, 5] {
-            let pool = Pool::new(threads).unwrap();
-            let (begun, left) = (Mutex::new(0), Mutex::new(Vec::new()));
-            let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-                while let Some(first) = next(0) {
-                    // two at a time where there are two, the later one first
-                    let pair = [next(1), Some(first)];
-                    for i in pair.into_iter().flatten() {
-                        *begun.lock().unwrap() += 1;
-                        done(i, i * i);
-                    }
-                }
-            };
-            let leave = |results: Vec<usize>| {
-                let mut left = left.lock().unwrap();
-                assert!(*begun.lock().unwrap() <= left.len() + results.len() + 7);
-                left.extend(results);
-                true
-            };
-            pool.in_order((500, 1, 7), work, leave);
-            assert_eq!(left.into_inner().unwrap(), (0..500).map(|i| i * i).collect::<Vec<_>>());
-
-            let mut few = Vec::new();
-            let leave = |results: Vec<usize>| {
-                few.extend(results);
-                few.len() < 3
-            };
-            pool.in_order((1_000_000_000, 1, 4), work, leave);
-            assert_eq!(few[..3], [0, 1, 4]);
-            pool.in_order((0, 1, 4), work, |_| unreachable!());
-        }
-    }
-
-    #[test]
-    fn shared_results_come_in_order_and_an_error_is_told() {
-        let pool = Pool::new(3).unwrap();
-        let squares = |next: &dyn Fn(usize) -> Option<usize>| {
-            Ok::<_, ()>(std::iter::from_fn(|| next(0)).map(|i| (i, i * i)).collect())
-        };
-        assert_eq!(share(Some(&pool), 100, squares), Ok((0..100).map(|i| i * i).collect()));
-        assert_eq!(share(None, 0, squares), Ok(Vec::new()));
-        assert_eq!(share(Some(&pool), 9, |_| Err::<Vec<(usize, ())>, _>("wrong")), Err("wrong"));
-    }
-
-    #[test]
-    fn no_thread_holds_more_than_its_share() {
-        let queue = Queue::new(5, 2);
-        assert_eq!([0, 1, 2].map(|held| queue.take(held)), [Some(0), Some(1), Some(2)]);
-        assert_eq!([3, 0, 2, 1, 0].map(|held| queue.take(held)), [None, Some(3), Some(4), None, None]);
-    }
-
-    #[test]
-    fn a_panic_in_a_part_ends_all() {
-        let pool = Pool::new(2).unwrap();
-        let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-            while let Some(number) = next(0) {
-                assert!(number != 3, "part 3");
-                done(number, number);
-            }
-        };
-        let run = || pool.in_order((usize::MAX, 1, 2), work, |_| true);
-        assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err());
-    }
-}
+mod tests;

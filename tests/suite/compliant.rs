@@ -6,6 +6,7 @@ mod one_step;
 mod phases;
 mod quasi_static;
 mod together;
+mod within;
 
 use interwell::dynamics::{EventKind, Model, Run};
 

@@ -137,3 +137,42 @@ fn the_nearest_miss_is_that_of_the_amplitude() {
     near(impact.v_in, -0.3, 1e-12);
     assert_eq!(swing("None").nearest_miss, None);
 }
+
+#[test]
+fn a_motion_that_begins_at_rest_has_missed_no_stop() {
+    // the same swing from either side, over less than half of it and over more
+    let stops = |left: f64, right: f64| {
+        format!("stops: Uneven(left_mm: {left}, right_mm: {right}, restitution_right: 0.5)")
+    };
+    let own = |x: f64, stops: &str, time: f64| {
+        let own = oscillator(&format!("{stops}, start: At(x_mm: {}, v_m_per_s: 0)", 1e3 * x));
+        let passage = StroboscopicMap::over(&own, time).pass((x, 0.0), 1);
+        assert_eq!((passage.outcome, passage.impacts()), (Outcome::Done, 0));
+        passage.nearest_miss
+    };
+    for near in [10.0, 0.5, 1e-6, 0.0] {
+        assert_eq!(own(0.5, &stops(520.0, 500.0 + near), 3.0), None);
+        assert_eq!(own(-0.5, &stops(500.0 + near, 520.0), 3.0), None);
+        near_relative(own(0.5, &stops(520.0, 500.0 + near), 3.3).unwrap(), 0.02, 1e-10);
+        near_relative(own(-0.5, &stops(500.0 + near, 520.0), 3.3).unwrap(), 0.02, 1e-10);
+    }
+    // at rest where the forces balance to rounding
+    let well = model(
+        "mass_g: 1000, mechanism: Cubic(linear_n_per_m: -0.7, cubic_n_per_m3: 1.3), run: (duration_s: 10), \
+         stops: Rigid(travel_limit_mm: 1200, restitution: 0.5)",
+    );
+    let at = (0.7_f64 / 1.3).sqrt();
+    for x in [at, -at, at.next_up(), 0.0] {
+        assert_eq!(StroboscopicMap::over(&well, 40.0).pass((x, 0.0), 1).nearest_miss, None);
+    }
+    // at rest on a stop up to its release
+    for amplitude in 2..15 {
+        let own = preset("paper", &[&format!("excitation.amplitude_g={}", f64::from(amplitude) * 0.1)]);
+        let passage = own.stroboscopic_map(0.0).unwrap().pass((1.5e-3, 0.0), 2);
+        assert!(
+            passage.nearest_miss.is_none_or(|miss| miss > 1e-6),
+            "{amplitude}: {:?}",
+            passage.nearest_miss
+        );
+    }
+}

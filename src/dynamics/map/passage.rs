@@ -7,7 +7,8 @@ use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::barrier::side_of;
 use crate::dynamics::result::{Event, EventKind, Outcome, Request, Side};
-use crate::dynamics::state::{Contact, MotionState};
+use crate::dynamics::state::{Contact, HELD, MotionState};
+use crate::dynamics::step::settings::ROUNDINGS;
 use crate::numeric::{PolynomialRoots, Scalar};
 
 /// What happens between two strobes.
@@ -24,7 +25,7 @@ pub struct Passage {
     /// on the motion.
     pub determinant: Option<f64>,
     /// Smallest distance in m between a stop and a place where the mass turned back without touching it; none
-    /// where it never did.
+    /// where it never did. A mass that begins at rest has not turned back there.
     pub nearest_miss: Option<f64>,
     /// `Done`, or how the motion ended before.
     pub outcome: Outcome,
@@ -131,20 +132,27 @@ fn miss<T: Scalar, D: Drive<T>>(motion: &Motion<'_, T, D, false>, before: &Motio
     }
     let series = &motion.stepper.series;
     let length = motion.stepper.clock.between(&before.at, &motion.state.at).to_f64();
+    // where it leaves a surface, what is 0 by definition is so but for rounding
+    let multiplicity =
+        before.touch.map_or(1, |touch| if touch.multiplicity == HELD { 1 } else { touch.multiplicity });
     let (mut velocity, mut power) = (Vec::with_capacity(series.known), 1.0);
     for (k, c) in series.y[..series.known].iter().enumerate().skip(1) {
-        velocity.push(k as f64 * c.to_f64() * power);
+        velocity.push(if k < multiplicity { 0.0 } else { k as f64 * c.to_f64() * power });
         power *= length;
     }
+    // A mass that begins at rest has not turned there, and one that stands still to rounding turns nowhere.
+    let mut rises = *velocity.iter().find(|own| **own != 0.0)? > 0.0;
+    let place = |t: f64| series.y[..series.known].iter().rev().fold(0.0, |sum, c| sum * t + c.to_f64());
+    let (first, last) = (place(0.0), place(length));
+    let rounding = ROUNDINGS * f64::EPSILON * before.x.to_f64().abs();
     let mut least: Option<f64> = None;
-    let mut rises = velocity[0] > 0.0 || velocity[0] == 0.0 && velocity.get(1).is_some_and(|own| *own > 0.0);
     PolynomialRoots::new(&velocity).each_sign_change(|s| {
         let end = if rises { End::High } else { End::Low };
         rises = !rises;
-        let t = s * length;
-        let y = series.y[..series.known].iter().rev().fold(0.0, |sum, c| sum * t + c.to_f64());
+        let y = place(s * length);
         let gap = (mode.end(end).0.to_f64() - (mode.origin.to_f64() + y)).abs();
-        if s < 1.0 && gap > 0.0 && is_stop(end) {
+        let moves = (y - first).abs().max((y - last).abs()) > rounding;
+        if s < 1.0 && moves && gap > 0.0 && is_stop(end) {
             least = Some(least.map_or(gap, |own| own.min(gap)));
         }
         true

@@ -148,10 +148,6 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             for (k, slot) in (1..n).zip(slope.iter_mut()) {
                 *slot = scaled[k] * T::whole(k);
             }
-            if slope[0] < T::zero() {
-                // a value of 0 counts as negative: the mirrored motion must give the same
-                slope[..n - 1].iter_mut().for_each(|c| *c = -*c);
-            }
             PolynomialRoots::new(&slope[..n - 1]).each_sign_change(|s| {
                 let t = s * step.whole;
                 if t >= from && t <= to {

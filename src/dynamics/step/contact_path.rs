@@ -157,21 +157,12 @@ impl<T: Scalar> InStop<T> for Penetration<T> {
         for k in 1..n {
             slope[k - 1] = scaled[k] * T::of(k as f64);
         }
-        // The force of a touch-down rises like the cube of the parameter; its first slope that is not 0
-        // decides.
-        let first = slope[..n - 1].iter().position(|c| *c != T::zero());
-        if let Some(first) = first {
-            let slope = &mut slope[first..n - 1];
-            if slope[0] < T::zero() {
-                slope.iter_mut().for_each(|c| *c = -*c);
+        PolynomialRoots::new(&slope[..n - 1]).each_sign_change(|s| {
+            if s < until {
+                peak = peak.larger(value(s));
             }
-            PolynomialRoots::new(slope).each_sign_change(|s| {
-                if s < until {
-                    peak = peak.larger(value(s));
-                }
-                s < until
-            });
-        }
+            s < until
+        });
         known.larger(self.stop.stiffness * peak)
     }
 }

@@ -110,6 +110,15 @@ pub(crate) struct Impact<T> {
     change: Values<T>,
 }
 
+/// The motion at a place: root of the depth, inward speed, and what t and m change by over y.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place<N> {
+    pub root: N,
+    pub speed: N,
+    pub time_slope: N,
+    amplitude_slope: N,
+}
+
 /// How an impact ends.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Separation<T> {
@@ -161,11 +170,12 @@ impl<T: Scalar> Impact<T> {
             #[inline(always)]
             || self.iterate(tolerance),
         )?;
-        let unresolved = self.rule.unresolved(&self.time_slope);
-        if !(unresolved <= between * time && unresolved * unresolved <= tolerance * (time * time)) {
+        let share = |slopes: &Values<T>, of: T| self.rule.unresolved(slopes) / of;
+        let unresolved = share(&self.time_slope, time).larger(share(&self.amplitude_slope, amplitude));
+        if !(unresolved <= between && unresolved * unresolved <= tolerance) {
             return None;
         }
-        let (_, end) = self.speed_of(amplitude, T::of(1.0));
+        let end = self.motion(|own| own, T::sqrt, [amplitude, time, T::of(1.0)]).speed;
         let groups = self.amplitude[..self.rule.groups()].iter();
         // (between the points too)
         self.most = groups.flat_map(|own| own.0).fold(self.first, T::larger) * T::of(1.001);
@@ -222,7 +232,8 @@ impl<T: Scalar> Impact<T> {
         None
     }
 
-    /// Sweeps until m and t at the end stand still; both.
+    /// Sweeps until m and t at the end stand still; both. What is kept at the points then goes with the last
+    /// slopes.
     #[inline(always)]
     fn iterate(&mut self, tolerance: T) -> Option<(T, T)> {
         let groups = self.rule.groups();
@@ -238,9 +249,16 @@ impl<T: Scalar> Impact<T> {
             m = self.first + self.rule.total(&self.amplitude_slope);
             t = self.rule.total(&self.time_slope);
             let change = self.rule.total(&self.change);
+            self.rule.integrals(self.first, &self.amplitude_slope, &mut self.amplitude);
+            self.rule.integrals(T::zero(), &self.time_slope, &mut self.time);
             if sweep > 0 {
                 rate = rate.larger(change / last);
-                if change * rate <= tolerance {
+                // (the first change is from no slopes at all, and tells no rate)
+                if sweep > 1 && change * rate <= tolerance {
+                    for group in 0..groups {
+                        let own = self.motion_at(group);
+                        (self.root[group], self.speed[group]) = (own.root, own.speed);
+                    }
                     return Some((m, t));
                 }
                 if !(rate < T::of(0.5)) {
@@ -248,8 +266,6 @@ impl<T: Scalar> Impact<T> {
                 }
             }
             last = change;
-            self.rule.integrals(self.first, &self.amplitude_slope, &mut self.amplitude);
-            self.rule.integrals(T::zero(), &self.time_slope, &mut self.time);
         }
         None
     }
@@ -258,32 +274,47 @@ impl<T: Scalar> Impact<T> {
     #[inline(always)]
     fn sweep(&mut self, (m, t): (T, T)) {
         let all = Lanes::<GROUP, T>::all;
-        let (one, two, four) = (Lanes::of(1.0), Lanes::of(2.0), Lanes::of(4.0));
-        let (stiffness, loss) = (all(self.stop.stiffness), all(self.stop.loss));
-        let pressing = all(self.pressing);
         let (inverse_time, inverse_amplitude) = (all(T::of(1.0) / t), all(T::of(3.0) / m));
         for group in 0..self.rule.groups() {
-            let y = self.rule.places(group);
-            let (m, t) = (self.amplitude[group], self.time[group]);
-            let c = one - y * y;
-            let elastic = stiffness * (m * m * m);
-            let r = self.r_of(elastic, c, pressing).map(T::sqrt);
-            let q = -(y * m * r);
-            let stretch = self.stretch(loss * q);
-            let (w, u) = (q * stretch, m * c);
-            let changed = self.changed(all, [t, u * u, w]);
-            let z = loss * w;
-            let b = (changed - z * pressing) / (one + z);
-            let net = elastic - pressing;
-            let slope = four * u / (r * stretch * (one - c * c * b / net));
-            let amplitude_slope = w * b * slope / (two * m * net);
-            self.change[group] = (slope - self.time_slope[group]).abs() * inverse_time
-                + (amplitude_slope - self.amplitude_slope[group]).abs() * inverse_amplitude;
-            self.root[group] = u;
-            self.speed[group] = w;
-            self.time_slope[group] = slope;
-            self.amplitude_slope[group] = amplitude_slope;
+            let own = self.motion_at(group);
+            self.change[group] = (own.time_slope - self.time_slope[group]).abs() * inverse_time
+                + (own.amplitude_slope - self.amplitude_slope[group]).abs() * inverse_amplitude;
+            self.time_slope[group] = own.time_slope;
+            self.amplitude_slope[group] = own.amplitude_slope;
         }
+    }
+
+    /// The motion at the points of a group.
+    #[inline(always)]
+    fn motion_at(&self, group: usize) -> Place<Lanes<GROUP, T>> {
+        let (m, t, y) = (self.amplitude[group], self.time[group], self.rule.places(group));
+        self.motion(Lanes::all, |own| own.map(T::sqrt), [m, t, y])
+    }
+
+    /// The motion at m, t and y.
+    #[inline(always)]
+    pub fn motion<N: Number>(
+        &self,
+        all: impl Fn(T) -> N,
+        sqrt: impl Fn(N) -> N,
+        [m, t, y]: [N; 3],
+    ) -> Place<N> {
+        let (one, two, four) = (N::of(1.0), N::of(2.0), N::of(4.0));
+        let (stiffness, loss) = (all(self.stop.stiffness), all(self.stop.loss));
+        let pressing = all(self.pressing);
+        let c = one - y * y;
+        let elastic = stiffness * (m * m * m);
+        let r = sqrt(self.r_of(elastic, c, pressing));
+        let q = -(y * m * r);
+        let stretch = self.stretch(loss * q);
+        let (w, u) = (q * stretch, m * c);
+        let changed = self.changed(all, [t, u * u, w]);
+        let z = loss * w;
+        let b = (changed - z * pressing) / (one + z);
+        let net = elastic - pressing;
+        let time_slope = four * u / (r * stretch * (one - c * c * b / net));
+        let amplitude_slope = w * b * time_slope / (two * m * net);
+        Place { root: u, speed: w, time_slope, amplitude_slope }
     }
 
     /// Change of the inward acceleration by everything but the stop since touch, at a time, a depth and a
@@ -313,18 +344,34 @@ impl<T: Scalar> Impact<T> {
         STRETCH[..self.terms].iter().rev().fold(N::zero(), |sum, c| sum * p + N::of(*c))
     }
 
-    /// c and w at m and y.
-    fn speed_of(&self, m: T, y: T) -> (T, T) {
-        let c = T::of(1.0) - y * y;
-        let q = -(y * m * self.r_of(self.stop.stiffness * (m * m * m), c, self.pressing).sqrt());
-        (c, q * self.stretch(self.stop.loss * q))
+    /// The motion and the time at `y`, by the slopes between the points.
+    pub fn at(&self, y: T) -> (Place<T>, T) {
+        let m = self.first + self.rule.integral(&self.amplitude_slope, y).0;
+        let t = self.rule.integral(&self.time_slope, y).0;
+        (self.motion(|own| own, T::sqrt, [m, t, y]), t)
     }
 
-    /// Root of the depth and inward speed at `y`.
-    pub fn at(&self, y: T) -> (T, T) {
-        let m = self.first + self.rule.integral(&self.amplitude_slope, y).0;
-        let (c, w) = self.speed_of(m, y);
-        (m * c, w)
+    /// The same as exact as at the ends: the slopes between the points are not, what they add up to is.
+    pub fn exactly_at(&self, y: T) -> (Place<T>, T) {
+        let start = T::of(-1.0);
+        let (mut m, mut t): (Values<T>, Values<T>) =
+            ([Lanes::zero(); MOST_GROUPS], [Lanes::zero(); MOST_GROUPS]);
+        for group in 0..self.rule.groups() {
+            let own = self.between((start, y), group).0;
+            (m[group], t[group]) = (own.amplitude_slope, own.time_slope);
+        }
+        let half = (y - start) * T::of(0.5);
+        let (m, t) = (self.first + self.rule.total(&m) * half, self.rule.total(&t) * half);
+        (self.motion(|own| own, T::sqrt, [m, t, y]), t)
+    }
+
+    /// The motion at the points between two places, and the time there.
+    pub fn between(&self, (from, to): (T, T), group: usize) -> (Place<Lanes<GROUP, T>>, Lanes<GROUP, T>) {
+        let half = (to - from) * T::of(0.5);
+        let y = self.rule.places(group).map(|place: T| from + half * (T::of(1.0) + place));
+        let m = y.map(|y| self.first + self.rule.integral(&self.amplitude_slope, y).0);
+        let t = y.map(|y| self.rule.integral(&self.time_slope, y).0);
+        (self.motion(Lanes::all, |own| own.map(T::sqrt), [m, t, y]), t)
     }
 
     /// The base's acceleration.

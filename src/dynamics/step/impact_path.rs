@@ -16,6 +16,26 @@ const HALVINGS: u32 = 30;
 const MOST_STEPS: usize = 60;
 
 impl<T: Scalar> Impact<T> {
+    /// The parameter at which the first of what `of` gives at y, with its slope, is `time`; it begins with a
+    /// guess.
+    fn parameter_by(&self, of: impl Fn(T) -> (T, T), time: T, guess: T) -> T {
+        let (mut low, mut high, mut parameter) = (T::zero(), T::of(2.0), guess);
+        for _ in 0..MOST_STEPS {
+            let (value, slope) = of(parameter - T::of(1.0));
+            let late = value - time;
+            *(if late > T::zero() { &mut high } else { &mut low }) = parameter;
+            let newton = parameter - late / slope;
+            let inside = newton > low && newton < high;
+            let next = if inside { newton } else { (low + high) * T::of(0.5) };
+            let change = (next - parameter).abs();
+            parameter = next;
+            if change <= T::of(2.0 * T::EPSILON) {
+                break;
+            }
+        }
+        parameter
+    }
+
     /// The integral over time of a function of time, root of the depth and inward speed, between two
     /// parameters.
     fn integral(&self, (from, to): (T, T), of: impl Fn(Group<T>, Group<T>, Group<T>) -> Group<T>) -> T {
@@ -26,9 +46,8 @@ impl<T: Scalar> Impact<T> {
             let (t, u, w, slope) = if whole {
                 (self.time[group], self.root[group], self.speed[group], self.time_slope[group])
             } else {
-                let y = self.rule.places(group).map(|place| (from - one) + half * (one + place));
-                let (time, at) = (y.map(|y| self.rule.integral(&self.time_slope, y)), y.map(|y| self.at(y)));
-                (time.map(|t| t.0), at.map(|at| at.0), at.map(|at| at.1), time.map(|t| t.1))
+                let (own, t) = self.between((from - one, to - one), group);
+                (t, own.root, own.speed, own.time_slope)
             };
             *value = of(t, u, w) * slope;
         }
@@ -52,39 +71,36 @@ impl<T: Scalar> Path<T> for Impact<T> {
     /// The parabola through touch, turn and separation: it turns where the motion does, and nothing else is
     /// read of it, since an impact that reaches the barrier is no such step.
     fn scaled(&self, _: T) -> [T; ROOM] {
-        let (most, _) = self.at(T::zero());
+        let most = self.at(T::zero()).0.root;
         let height = self.sign * (most * most) * T::of(4.0);
         let mut scaled = [T::zero(); ROOM];
         (scaled[0], scaled[1], scaled[2]) = (self.surface, height, -height);
         scaled
     }
     fn position(&self, parameter: T) -> T {
-        let (root, _) = self.at(parameter - T::of(1.0));
+        let root = self.exactly_at(parameter - T::of(1.0)).0.root;
         self.surface + self.sign * (root * root)
     }
     fn velocity(&self, parameter: T) -> T {
-        self.sign * self.at(parameter - T::of(1.0)).1
+        self.sign * self.exactly_at(parameter - T::of(1.0)).0.speed
     }
     fn time(&self, parameter: T) -> T {
-        self.rule.integral(&self.time_slope, parameter - T::of(1.0)).0
+        self.exactly_at(parameter - T::of(1.0)).1
     }
     fn parameter(&self, time: T, length: T) -> T {
-        let (mut low, mut high) = (T::zero(), length);
-        let mut parameter = length * T::of(0.5);
-        for _ in 0..MOST_STEPS {
-            let (value, slope) = self.rule.integral(&self.time_slope, parameter - T::of(1.0));
-            let late = value - time;
-            *(if late > T::zero() { &mut high } else { &mut low }) = parameter;
-            let newton = parameter - late / slope;
-            let inside = newton > low && newton < high;
-            let next = if inside { newton } else { (low + high) * T::of(0.5) };
-            let change = (next - parameter).abs();
-            parameter = next;
-            if change <= length * T::of(T::EPSILON) {
-                break;
-            }
+        if !(time > T::zero()) {
+            return T::zero();
         }
-        parameter
+        if time >= self.rule.total(&self.time_slope) {
+            return length;
+        }
+        let between =
+            self.parameter_by(|y| self.rule.integral(&self.time_slope, y), time, length * T::of(0.5));
+        let exactly = |y: T| {
+            let (own, time) = self.exactly_at(y);
+            (time, own.time_slope)
+        };
+        self.parameter_by(exactly, time, between)
     }
     fn integrals<const WORK: bool>(&self, _: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
         let squared = self.integral((from, to), |_, _, w| w * w);
@@ -109,13 +125,13 @@ impl<T: Scalar> InStop<T> for Impact<T> {
             return known;
         }
         let grows = |y: T| {
-            let (u, w) = self.at(y);
-            let t = self.rule.integral(&self.time_slope, y).0;
+            let (own, t) = self.at(y);
+            let (u, w) = (own.root, own.speed);
             let net = self.stop.force(u, w) - self.pressing - self.changed(|own| own, [t, u * u, w]);
             T::of(1.5) * w * (T::of(1.0) + self.stop.loss * w) > self.stop.loss * (u * u) * net
         };
         let (_, place) = bisect(T::of(-1.0), T::zero(), HALVINGS, grows);
-        let (u, w) = self.at(place);
-        known.larger(self.stop.force(u, w))
+        let own = self.at(place).0;
+        known.larger(self.stop.force(own.root, own.speed))
     }
 }

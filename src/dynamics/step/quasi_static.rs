@@ -150,11 +150,7 @@ impl<T: Scalar> InStop<T> for QuasiStatic<T> {
         for k in 1..coefficients.len() {
             slope[k - 1] = scaled[k] * T::whole(k);
         }
-        let slope = &mut slope[..coefficients.len() - 1];
-        if slope[0] < T::zero() {
-            slope.iter_mut().for_each(|c| *c = -*c);
-        }
-        PolynomialRoots::new(slope).each_sign_change(|s| {
+        PolynomialRoots::new(&slope[..coefficients.len() - 1]).each_sign_change(|s| {
             peak = peak.larger(force(s * h));
             true
         });

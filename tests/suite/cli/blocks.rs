@@ -129,6 +129,11 @@ fn a_file_that_cannot_grow_is_gone_on_with() {
     let own = Unfinished::new(walks, 300);
     assert!(own.blocks() >= 2);
     own.ends("--resume");
+    // One of more cells than leave at once too.
+    let long = walks.replace("1:6:0.04", "1:6:0.1").replace("0:2:0.05", "0:2.99:0.01");
+    let own = Unfinished::new(&long, 600);
+    assert!(own.blocks() >= 2);
+    own.ends("--resume");
 }
 
 #[test]

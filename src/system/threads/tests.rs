@@ -1,0 +1,136 @@
+use super::*;
+
+#[test]
+fn results_come_in_order_and_none_is_begun_too_far_ahead() {
+    for threads in [1, 2, 5] {
+        let pool = Pool::new(threads).unwrap();
+        let (begun, left) = (Mutex::new(0), Mutex::new(Vec::new()));
+        let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+            while let Some(first) = next(0) {
+                // two at a time where there are two, the later one first
+                let pair = [next(1), Some(first)];
+                for i in pair.into_iter().flatten() {
+                    *begun.lock().unwrap() += 1;
+                    done(i, i * i);
+                }
+            }
+        };
+        let leave = |results: Vec<usize>| {
+            let mut left = left.lock().unwrap();
+            assert!(*begun.lock().unwrap() <= left.len() + results.len() + 7);
+            left.extend(results);
+            true
+        };
+        pool.in_order((500, 1, 7), work, leave);
+        assert_eq!(left.into_inner().unwrap(), (0..500).map(|i| i * i).collect::<Vec<_>>());
+
+        let mut few = Vec::new();
+        let leave = |results: Vec<usize>| {
+            few.extend(results);
+            few.len() < 3
+        };
+        pool.in_order((1_000_000_000, 1, 4), work, leave);
+        assert_eq!(few[..3], [0, 1, 4]);
+        pool.in_order((0, 1, 4), work, |_| unreachable!());
+    }
+}
+
+/// What `work` gives, which is to come to its end.
+fn ends<R: Send + 'static>(work: impl FnOnce() -> R + Send + 'static) -> R {
+    let (done, wait) = channel();
+    spawn(move || drop(done.send(work())));
+    wait.recv_timeout(Duration::from_secs(60)).expect("it does not end")
+}
+
+#[test]
+fn one_that_gives_up_while_the_others_wait_ends_all() {
+    for (threads, after) in (1..=8).flat_map(|threads| [0, 1, 3, 40].map(|after| (threads, after))) {
+        let left = ends(move || {
+            let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+                while let Some(number) = next(0) {
+                    if number == after {
+                        return sleep(Duration::from_millis(5)); // the others wait for it by then
+                    }
+                    done(number, number);
+                }
+            };
+            let mut left = Vec::new();
+            Pool::new(threads).unwrap().in_order((1_000_000_000, 1, 5), work, |own| {
+                left.extend(own);
+                true
+            });
+            left
+        });
+        assert_eq!(left, (0..after).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn a_panic_where_they_leave_ends_all() {
+    for threads in 1..=8 {
+        assert!(ends(move || {
+            let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+                std::iter::from_fn(|| next(0)).for_each(|number| done(number, number));
+            };
+            let leave = |own: Vec<usize>| own.iter().all(|number| *number < 9 || panic!("the ninth"));
+            let run = || Pool::new(threads).unwrap().in_order((usize::MAX, 1, 3), work, leave);
+            std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err()
+        }));
+    }
+}
+
+#[test]
+fn results_of_a_number_leave_together_or_up_to_its_end() {
+    for (threads, each) in (1..=8).flat_map(|threads| [1, 7, 255, 256, 257, 300, 700].map(|n| (threads, n))) {
+        let all = 2000 / each + 3;
+        let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+            while let Some(number) = next(0) {
+                let pair = [Some(number), next(1)]; // side by side
+                for row in 0..each {
+                    pair.iter().flatten().for_each(|own| done(own * each + row, own * each + row));
+                }
+            }
+        };
+        let mut left = Vec::new();
+        Pool::new(threads).unwrap().in_order((all, each, 4), work, |own| {
+            assert!(own.len() <= MOST);
+            let (first, last) = (own[0], own[own.len() - 1]);
+            let together = first % each == 0 && (last + 1) % each == 0;
+            assert!(if each <= MOST { together } else { first / each == last / each });
+            left.extend(own);
+            true
+        });
+        assert_eq!(left, (0..all * each).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn shared_results_come_in_order_and_an_error_is_told() {
+    let pool = Pool::new(3).unwrap();
+    let squares = |next: &dyn Fn(usize) -> Option<usize>| {
+        Ok::<_, ()>(std::iter::from_fn(|| next(0)).map(|i| (i, i * i)).collect())
+    };
+    assert_eq!(share(Some(&pool), 100, squares), Ok((0..100).map(|i| i * i).collect()));
+    assert_eq!(share(None, 0, squares), Ok(Vec::new()));
+    assert_eq!(share(Some(&pool), 9, |_| Err::<Vec<(usize, ())>, _>("wrong")), Err("wrong"));
+}
+
+#[test]
+fn no_thread_holds_more_than_its_share() {
+    let queue = Queue::new(5, 2);
+    assert_eq!([0, 1, 2].map(|held| queue.take(held)), [Some(0), Some(1), Some(2)]);
+    assert_eq!([3, 0, 2, 1, 0].map(|held| queue.take(held)), [None, Some(3), Some(4), None, None]);
+}
+
+#[test]
+fn a_panic_in_a_part_ends_all() {
+    let pool = Pool::new(2).unwrap();
+    let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+        while let Some(number) = next(0) {
+            assert!(number != 3, "part 3");
+            done(number, number);
+        }
+    };
+    let run = || pool.in_order((usize::MAX, 1, 2), work, |_| true);
+    assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err());
+}
