@@ -153,7 +153,9 @@ fn up_and_down() {
     told.says("each step on the way down is as on the way up");
     let slower = walk("--set run.duration_s=60 --set run.settle_s=30", "1.05:1.25:0.01");
     let [up, down] = least_that_cross(&slower);
-    told.says(&format!("from {down} to {up} g in steps of 0.01 g"));
+    // the motion that the walk comes down with ends in a fold; what follows may be another one or a well
+    assert!(up == 1.16 && (1.12..=1.16).contains(&down), "{up} {down}");
+    told.says("the gap is small, at most from 1.12 to 1.16 g in steps of 0.01 g");
 }
 
 /// The mean of some values and its standard error.
