@@ -63,7 +63,8 @@ fn the_rows_of_the_comparison_are_measured() {
     let with = |digits: usize, value: f64| format!("{value:.digits$}");
     let (release, speed) = (number(&csv, "release_g"), number(&csv, "rms_velocity_m_per_s"));
     assert_eq!(row("frees the mass from, g"), [&with(3, release), "", "", ""]);
-    assert_eq!(row("crosses from, g")[0], with(3, number(&csv, "crossing_g")));
+    let crosses_from = row("crosses from, g");
+    assert_eq!(crosses_from, [with(3, number(&csv, "crossing_g")).as_str(), "0.19 to 0.21", "0.14", "1.15"]);
     assert_eq!(row("RMS velocity, mm/s")[0], with(1, 1e3 * speed));
     assert_eq!(row("fastest impact, mm/s")[0], with(0, 1e3 * number(&csv, "impact_speed_max_m_per_s")));
     assert_eq!((row("crosses from, Hz")[0], number(&csv, "crosses_from_hz")), ("0.3 or less", 0.3));
@@ -73,35 +74,50 @@ fn the_rows_of_the_comparison_are_measured() {
     for (i, name) in ["paper", "balanced", "magnet", "paper-unconstrained"].into_iter().enumerate() {
         let document = beside_paper(name, &[]);
         let own = settled(&build(&document), &AtomicBool::new(false)).unwrap();
-        assert_eq!(row("crosses from, g")[i], with(3, crossing(&document)), "{name}");
-        assert_eq!(row("reach, mm")[i].parse::<f64>().unwrap(), decimal(1e3 * own.max_abs_x.unwrap(), i));
-        let speed = 1e3 * own.rms_velocity.unwrap();
-        assert!(row("RMS velocity, mm/s")[i].starts_with(&with(1, speed)), "{name}: {speed}");
+        // of the two irregular motions below
+        let irregular = ["balanced", "magnet"].contains(&name);
+        let (reach, speed) = (1e3 * own.max_abs_x.unwrap(), 1e3 * own.rms_velocity.unwrap());
+        if !irregular {
+            assert_eq!(row("reach, mm")[i], with([1, 0, 0, 2][i], reach), "{name}");
+            assert!(row("RMS velocity, mm/s")[i].starts_with(&with(1, speed)), "{name}: {speed}");
+        }
+        let least = crossing(&document);
+        let range = [0.717..0.719, 0.185..0.21, 0.133..0.138, 1.145..1.16][i].clone();
+        assert!(range.contains(&least), "{name}: {least}");
         let (crosses, impacts) = (own.crossings > 0, own.impacts > 0);
         assert_eq!((crosses, impacts), (name != "paper-unconstrained", name == "paper"), "{name}");
         assert_eq!(row("fastest impact, mm/s")[i] == "none", !impacts, "{name}");
     }
 }
 
+/// A long window gives what does not depend on rounding, a short one nearly that.
 #[test]
-fn speeds_of_irregular_motions_are_those_of_the_windows_that_are_named() {
-    let irregular = ["balanced", "magnet"].map(|name| build(&beside_paper(name, &[])));
-    let early = irregular.each_ref().map(|model| {
-        let own = model.run(&Request::default()).summary;
-        assert_eq!(own.window, (5.0, 10.0));
-        1e3 * own.rms_velocity.unwrap()
-    });
-    says(&format!("From 5 to 10 s they are {:.1} and {:.1} mm/s", early[0], early[1]));
-    for model in &irregular {
-        let own = settled(model, &AtomicBool::new(false)).unwrap();
-        assert_eq!((own.regime, own.window), (Regime::Irregular, (335.0, 340.0)));
+fn speeds_of_irregular_motions_are_those_of_a_long_window() {
+    for (i, name) in [(1, "balanced"), (2, "magnet")] {
+        let long = beside_paper(name, &["run.duration_s=2000", "run.settle_s=340"]);
+        let own = build(&long).run(&Request::default()).summary;
+        assert_eq!((own.regime, own.window), (Regime::Irregular, (340.0, 2000.0)));
+        let speed: f64 = row("RMS velocity, mm/s")[i].parse().unwrap();
+        near(1e3 * own.rms_velocity.unwrap(), speed, 1.5);
+        assert_eq!(row("reach, mm")[i], format!("{:.1}", 1e3 * own.max_abs_x.unwrap()));
+        let short = settled(&build(&beside_paper(name, &[])), &AtomicBool::new(false)).unwrap();
+        assert_eq!((short.regime, short.window), (Regime::Irregular, (335.0, 340.0)));
+        near_relative(1e3 * short.rms_velocity.unwrap(), speed, 0.1);
     }
+    says("within 10 % of the speeds here, which are those from 340 to 2000 s");
 }
 
-/// A reach in mm as the page has it: the stop's with one decimal, others with two.
-fn decimal(value: f64, column: usize) -> f64 {
-    let unit = if column == 0 { 10.0 } else { 100.0 };
-    (unit * value).round() / unit
+/// Between these a crossing may end after hundreds of seconds, or not at all.
+#[test]
+fn the_threshold_beside_the_spring_is_sharp_for_who_waits() {
+    let crosses = |amplitude: f64| {
+        let change = format!("excitation.amplitude_g={amplitude}");
+        let model = build(&beside_paper("balanced", &[&change]));
+        let own = model.run(&Request { until_settled: Some(3000.0), ..Request::default() }).summary;
+        own.crossings > 0
+    };
+    assert!(crosses(0.21) && !crosses(0.2));
+    says("Followed for 3000 s, it crosses from 0.21 g on, and not at 0.20 g");
 }
 
 #[test]
@@ -112,14 +128,16 @@ fn the_change_of_the_threshold_by_one_percent_of_a_size_is_as_said() {
     };
     let spring = beside_paper("balanced", &[]);
     let (buckling, parallel) = ("mechanism.0.buckling.length_mm", "mechanism.0.parallel.length_mm");
-    let before: f64 = row("crosses from, g")[1].parse().unwrap();
+    let before = crossing(&spring);
     let change = |by: f64| {
         let other = beside_paper("balanced", &[&length(&spring, buckling, by)]);
         (crossing(&other) / before - 1.0).abs()
     };
     let most = change(0.99).max(change(1.01));
-    assert_eq!(row("change of the threshold for 1 % of a size")[1], format!("{:.0} %", 100.0 * most));
-    says(&format!("moves the threshold by {:.0} % beside the spring", 100.0 * most));
+    // the threshold that is found depends on rounding, and so this does
+    assert!((0.72..0.93).contains(&most), "{most}");
+    assert_eq!(row("change of the threshold for 1 % of a size")[1], "75 to 90 %");
+    says("moves the threshold by 75 to 90 % beside the spring");
     let magnet = beside_paper("magnet", &[]);
     let without = [0.99, 1.01].map(|by| beside_paper("magnet", &[&length(&magnet, parallel, by)]));
     assert!(without.iter().any(|own| mechanism(own).landscape.barrier.is_none()));

@@ -10,17 +10,16 @@ fn height(name: &str, changes: &[&str]) -> f64 {
     1e3 * mechanism(&changed(name, changes)).landscape.barrier.unwrap().from_right_j
 }
 
-/// What both scenes have in common; the threshold is looked for in `range`.
-fn low_barrier(text: &mut Text, name: &str, range: std::ops::Range<f64>) {
+/// What both scenes have in common.
+fn low_barrier(text: &mut Text, name: &str) {
     let prototype = mechanism(&changed("paper", &[]));
     let climbed = 1e3 * (prototype.curve.potential(0.0) - prototype.curve.potential(1.5e-3));
     near_relative(height(name, &[]), climbed, 1e-9);
     let whole = 1e3 * prototype.landscape.barrier.unwrap().from_right_j;
     text.says(&format!("Of the barrier of {whole:.3} mJ"));
     text.says(&format!("{climbed:.4} mJ, as much as the mass has to climb from a stop at 1.5 mm"));
-    let own = least(Onset::Crossing, name, &[], range);
     let stopped = least(Onset::Crossing, "paper", &[], 0.5..1.0);
-    text.says(&format!("crosses from {own:.2} g on, where it takes {stopped:.2} g from that stop"));
+    text.says(&format!("where it takes {stopped:.2} g from that stop"));
     let settled = settled(name, &[]);
     crosses(&settled);
     let reach = 1e3 * settled.max_abs_x.unwrap();
@@ -30,17 +29,26 @@ fn low_barrier(text: &mut Text, name: &str, range: std::ops::Range<f64>) {
     ));
 }
 
+/// Whether it crosses with this shaking in g, after up to 3000 s.
+fn crosses_at(name: &str, amplitude: f64) -> bool {
+    let model = preset(name, &[&format!("excitation.amplitude_g={amplitude}")]);
+    model.run(&Request { until_settled: Some(3000.0), ..Request::default() }).summary.crossings > 0
+}
+
 pub fn balanced(text: &mut Text) {
-    low_barrier(text, "balanced", 0.15..0.25);
+    low_barrier(text, "balanced");
+    // in between it depends on rounding which motion the irregular crossings end in
+    assert!([0.21, 0.22, 0.23].iter().all(|own| crosses_at("balanced", *own)));
+    assert!([0.18, 0.19, 0.2].iter().all(|own| !crosses_at("balanced", *own)));
+    text.says("From rest it crosses for good from 0.21 g on");
     // with the run of `paper`, and as long as a motion is followed for a threshold
     let compared = changed("balanced", &["run.duration_s=10", "run.settle_s=5"]);
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
     let found = thresholds(&compared.scene, &mechanism(&compared), &task).unwrap().crosses_from.unwrap();
     let followed = 10.0 + 250.0 / 3.0;
-    text.says(&format!("follows it for {followed:.0} s, takes that for crossing and gives {found:.3} g"));
-    // what crosses so long below the threshold is kept by one well in the end
-    let changes = [format!("excitation.amplitude_g={found}")];
-    assert_eq!(settled("balanced", &[&changes[0]]).regime, Regime::Intrawell);
+    text.says(&format!("follows it for {followed:.0} s, may take that for crossing"));
+    within(found, 0.185..0.21);
+    text.says("and gives a value from 0.19 g on");
     let stiffness = 50.489_568_209_863_194;
     text.says(&format!("A spring of {stiffness:.2} N/m"));
     let other = |share: f64| height("balanced", &[&format!("mechanism.1.n_per_m={}", share * stiffness)]);
@@ -55,9 +63,11 @@ pub fn balanced(text: &mut Text) {
 }
 
 pub fn magnet(text: &mut Text) {
-    low_barrier(text, "magnet", 0.1..0.2);
-    let from = least(Onset::Crossing, "magnet", &[], 0.1..0.2);
-    text.says(&format!("in place of the spring: crosses from {from:.2} g"));
+    low_barrier(text, "magnet");
+    within(least(Onset::Crossing, "magnet", &[], 0.1..0.2), 0.133..0.137);
+    assert!([0.14, 0.15, 0.16].iter().all(|own| crosses_at("magnet", *own)));
+    text.says("in place of the spring: crosses from 0.14 g");
+    text.says("From rest it crosses from 0.14 g on");
     let strength = 1_331.382_602_919_717_3;
     let other = |share: f64| height("magnet", &[&format!("mechanism.1.strength_n_mm4={}", share * strength)]);
     let (stronger, weaker) = (other(1.01), other(0.99));

@@ -108,16 +108,17 @@ pub fn duffing(text: &mut Text) {
 }
 
 pub fn duffing_chaos(text: &mut Text) {
-    // Over 21 starts the RMS velocity was 0.509 to 0.522 m/s, the crossings were 622 to 652, in 586 to 612 of
-    // 900 periods.
+    // Over a hundred runs the RMS velocity was 0.507 to 0.529 m/s, the crossings were 620 to 666, in 585 to
+    // 624 of 900 periods, the reach 1.535 to 1.536 m.
     let mut finals = Vec::new();
     for change in ["start.x_mm=1000", "start.x_mm=1000.000001", "start.x_mm=900", "start.x_mm=1100"] {
         let own = settled("duffing-chaos", &[change]);
         assert_eq!((own.regime, own.period, own.impacts), (Regime::Irregular, None, 0));
         near_relative(own.rms_velocity.unwrap(), 0.52, 0.03);
-        near(own.crossings as f64 / own.periods as f64, 0.7, 0.03);
+        near(own.crossings as f64 / own.periods as f64, 0.71, 0.05);
         near(own.crossing_periods as f64 / own.periods as f64, 2.0 / 3.0, 0.03);
-        text.says(&format!("the reach {:.2} m", own.max_abs_x.unwrap()));
+        near(own.max_abs_x.unwrap(), 1.54, 0.01);
+        text.says("the reach 1.54 m");
         finals.push((own.final_x, own.final_v));
     }
     assert_ne!(finals[0], finals[1]);

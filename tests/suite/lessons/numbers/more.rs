@@ -33,12 +33,12 @@ fn restitution() {
         share(0.9)
     ));
     told.says("cares about the 93 %");
-    assert!([0.36, 0.85, 0.88, 0.9, 0.94, 0.97].iter().all(|e| crosses(&at(*e, 1.0))));
-    assert!([0.85, 0.97].iter().all(|e| share(*e) < 80.0));
-    told.says("between 0.85 and 0.97 most values will do, not all");
+    assert!([0.36, 0.87, 0.88, 0.89, 0.9, 0.91, 0.92].iter().all(|e| crosses(&at(*e, 1.0))));
+    assert!(share(0.87) < 80.0 && share(0.36) > 80.0);
+    told.says("of those tried, 0.87 to 0.92 in steps of 0.01 all do");
     let long = ["run.duration_s=300", "run.settle_s=200", "excitation.amplitude_g=1"];
     for (e, claim) in [
-        (0.86, "at 0.86 the motion was still irregular after 300 s"),
+        (0.93, "at 0.93 the motion was still irregular after 300 s"),
         (1.0, "At a restitution of 1 the stops take nothing, but then we have seen no rhythm"),
     ] {
         let own = told.run(&[&bouncing(e), long[0], long[1], long[2]]);
@@ -61,16 +61,13 @@ fn basins() {
             .map(|run| run.summary)
             .collect::<Vec<_>>()
     };
-    let mut counts = ["run.tolerance=1e-9", "run.tolerance=1e-10", "run.tolerance=1e-11"].map(|tolerance| {
+    for tolerance in ["run.tolerance=1e-9", "run.tolerance=1e-10", "run.tolerance=1e-11"] {
         let ends: Vec<bool> = flicks(&[tolerance]).iter().map(crosses).collect();
         assert!(ends.windows(2).filter(|pair| pair[0] != pair[1]).count() >= 6, "{ends:?}");
-        ends.iter().filter(|own| **own).count()
-    });
-    counts.sort_unstable();
-    let [fewest, _, most] = counts;
-    told.says(&format!(
-        "Of the 31 flicks {fewest} to {most} cross, with tolerances of 1e-9, 1e-10 and 1e-11"
-    ));
+        let count = ends.iter().filter(|own| **own).count();
+        assert!((11..=16).contains(&count), "{count} with {tolerance}");
+    }
+    told.says("Of the 31 flicks some 12 to 15 cross, which of them depends on the last digits");
     told.says("along the list the answer changes again and again");
     let stops = flicks(&[&stopped(2.0), "run.duration_s=20", "run.settle_s=10"]);
     let speeds: Vec<f64> = stops.iter().map(rms).collect();
@@ -156,7 +153,9 @@ fn up_and_down() {
     told.says("each step on the way down is as on the way up");
     let slower = walk("--set run.duration_s=60 --set run.settle_s=30", "1.05:1.25:0.01");
     let [up, down] = least_that_cross(&slower);
-    told.says(&format!("from {down} to {up} g in steps of 0.01 g"));
+    // the motion that the walk comes down with ends in a fold; what follows may be another one or a well
+    assert!(up == 1.16 && (1.12..=1.16).contains(&down), "{up} {down}");
+    told.says("the gap is small, at most from 1.12 to 1.16 g in steps of 0.01 g");
 }
 
 /// The mean of some values and its standard error.
