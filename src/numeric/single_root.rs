@@ -94,3 +94,64 @@ pub(crate) fn expansion<T: Number>(g: &[T], s: T) -> (T, T, T) {
     let half_curvature = first + two * s * (o1 + two * s * (e2 + s * o2));
     (value, slope, half_curvature)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{DoubleDouble, Lanes};
+    use super::*;
+
+    /// The product of (s - root) and a polynomial without roots near [0, 1], falling or rising.
+    fn with_root(root: f64, others: &[f64]) -> Vec<f64> {
+        let mut g = vec![0.0; others.len() + 1];
+        for (k, c) in others.iter().enumerate() {
+            g[k] -= root * c;
+            g[k + 1] += c;
+        }
+        g
+    }
+
+    fn guessed(g: &[f64]) -> f64 {
+        let (value, slope, _) = expansion(g, 1.0);
+        guess((g[0], g[1]), (value, slope))
+    }
+
+    #[test]
+    fn the_root_is_found_to_rounding_wherever_it_lies() {
+        for root in [1e-9, 1e-4, 0.01, 0.3, 0.5, 0.9, 0.9999] {
+            for others in [&[1.0, 0.4, 0.1, -0.05][..], &[-3.0, 0.5, -0.2], &[2.0, -0.7, 0.0, 0.0, 0.03]] {
+                let g = with_root(root, others);
+                let found = single_root(&g, guessed(&g)).unwrap();
+                assert!((found - root).abs() <= 4e-16 * root.max(0.25), "{root} {others:?} {found:e}");
+                let negative = g.iter().map(|c| -c).collect::<Vec<_>>();
+                assert_eq!(single_root(&negative, guessed(&negative)), Some(found));
+            }
+        }
+    }
+
+    #[test]
+    fn a_root_beyond_1_is_none_and_so_is_one_that_is_not_there() {
+        let g = with_root(1.25, &[1.0, 0.4]);
+        assert_eq!(single_root(&g, 1.2), None);
+        assert_eq!(single_root(&[1.0, 0.1, 1.0], 0.5), None);
+        assert_eq!(single_root(&[1.0, -2.0], f64::NAN), None);
+    }
+
+    #[test]
+    fn zeros_above_the_highest_power_change_no_bit() {
+        let g = with_root(0.37, &[1.0, 0.4, 0.1, -0.05]);
+        let longer = [&g[..], &[0.0, 0.0, 0.0]].concat();
+        for length in g.len()..=longer.len() {
+            assert_eq!(expansion(&longer[..length], 0.3), expansion(&g, 0.3));
+        }
+        let lanes = g.iter().map(|c| Lanes([*c; 4])).collect::<Vec<_>>();
+        let (value, slope, half_curvature) = expansion(&lanes, Lanes([0.3; 4]));
+        assert_eq!((value.0[3], slope.0[3], half_curvature.0[3]), expansion(&g, 0.3));
+    }
+
+    #[test]
+    fn the_same_code_in_double_double() {
+        let g: Vec<DoubleDouble> = [2.0, 0.0, -4.0].iter().map(|c| DoubleDouble::of(*c)).collect();
+        let s = single_root(&g, DoubleDouble::of(0.7)).unwrap();
+        assert!((s * s - DoubleDouble::of(0.5)).to_f64().abs() < 1e-30);
+    }
+}

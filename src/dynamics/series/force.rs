@@ -233,3 +233,62 @@ fn inner_square<T: Number>(a: &[T; ROOM], k: usize) -> T {
     let twice = sum + sum;
     if k.is_multiple_of(2) { twice + a[k / 2] * a[k / 2] } else { twice }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::{DoubleDouble, Scalar};
+
+    /// Coefficients of a force of this degree, and those of a motion.
+    fn some<T: Number>(degree: usize) -> (PieceForce<T>, [T; ROOM]) {
+        let force = (0..=degree).map(|k| T::of(0.7 - 0.37 * (k % 5) as f64)).collect();
+        let mut y = [T::zero(); ROOM];
+        for (k, slot) in y.iter_mut().enumerate().take(20) {
+            *slot = T::of(0.8 / (1.0 + k as f64) * if k % 3 == 1 { -1.0 } else { 1.0 });
+        }
+        (PieceForce::new(force), y)
+    }
+
+    /// The same by Horner's rule on whole series, in some 31 digits.
+    fn by_horner(degree: usize) -> Vec<f64> {
+        let (force, y) = some::<DoubleDouble>(degree);
+        let mut sum = [DoubleDouble::zero(); ROOM];
+        for c in force.coefficients().iter().rev() {
+            let last = sum;
+            for k in 0..ROOM {
+                sum[k] = convolve(&last, &y, k);
+            }
+            sum[0] += *c;
+        }
+        sum.iter().map(|c| c.to_f64()).collect()
+    }
+
+    #[test]
+    fn of_every_degree_it_is_the_series_of_the_polynomial() {
+        for degree in 0..=13 {
+            let exact = by_horner(degree);
+            let largest = exact[..18].iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+            let (force, y) = some::<f64>(degree);
+            let mut series = ForceSeries::new(degree);
+            for (k, exact) in exact.iter().enumerate().take(18) {
+                let own = series.coefficient(&force, &y, k);
+                assert!((own - exact).abs() < 1e-13 * largest, "{degree} {k}: {own:e} {exact:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn however_it_is_extended_the_bits_are_the_same() {
+        let (force, y) = some::<f64>(9);
+        let mut series = ForceSeries::new(9);
+        let one_by_one: Vec<f64> = (0..18).map(|k| series.coefficient(&force, &y, k)).collect();
+        for parts in [&[0..18][..], &[0..4, 4..5, 5..18], &[0..1, 1..12, 12..14, 14..18]] {
+            let mut found = Vec::new();
+            for part in parts {
+                series.prepare(&force, &y, part.clone());
+                found.extend(part.clone().map(|k| series.nested(9, &y, k, None)));
+            }
+            assert_eq!(found, one_by_one, "{parts:?}");
+        }
+    }
+}
