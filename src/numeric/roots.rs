@@ -90,7 +90,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         own.each_bracket(|above, bracket| {
             let root = own.polish(above, bracket);
             visit(T::at_root(root, |s| {
-                let (value, slope, _) = own.expansion(s);
+                let (value, slope, _) = self.expansion(s);
                 (value, slope)
             }))
         });
