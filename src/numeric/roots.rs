@@ -119,9 +119,9 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         if self.g[0] > T::zero() { value > T::zero() } else { value < T::zero() }
     }
 
-    /// Calls `visit` for an interval around each sign change, in ascending order, until it returns false: with
-    /// whether the polynomial has its first sign at the low end, and with the ends. Precondition: it is not 0
-    /// at 0.
+    /// Calls `visit` for an interval around each sign change, in ascending order, until it returns false:
+    /// with whether the polynomial has its first sign at the low end, and with the ends. Precondition: it is
+    /// not 0 at 0.
     #[inline]
     fn each_bracket(&self, mut visit: impl FnMut(bool, (T, T)) -> bool) {
         let zero = T::zero();
