@@ -91,7 +91,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         own.each_bracket(|above, bracket| {
             let root = own.polish(above, bracket);
             visit(T::at_root(root, |s| {
-                let (value, slope, _) = expansion(own.g, s);
+                let (value, slope, _) = expansion(self.g, s);
                 (value, slope)
             }))
         });
@@ -120,9 +120,9 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         if self.g[0] > T::zero() { value > T::zero() } else { value < T::zero() }
     }
 
-    /// Calls `visit` for an interval around each sign change, with whether the polynomial has its first sign
-    /// at the low end and with the ends, in ascending order, until it returns false. Precondition: it is not 0
-    /// at 0.
+    /// Calls `visit` for an interval around each sign change, in ascending order, until it returns false:
+    /// with whether the polynomial has its first sign at the low end, and with the ends. Precondition: it is
+    /// not 0 at 0.
     #[inline]
     fn each_bracket(&self, mut visit: impl FnMut(bool, (T, T)) -> bool) {
         let zero = T::zero();

@@ -78,7 +78,9 @@ impl<T: Scalar> Path<T> for Impact<T> {
         scaled
     }
     fn position(&self, parameter: T) -> T {
-        let root = self.exactly_at(parameter - T::of(1.0)).0.root;
+        let y = parameter - T::of(1.0);
+        // At the turn, which is read of nearly every impact, m alone counts, and it hardly changes.
+        let root = if y == T::zero() { self.at(y) } else { self.exactly_at(y) }.0.root;
         self.surface + self.sign * (root * root)
     }
     fn velocity(&self, parameter: T) -> T {

@@ -54,8 +54,8 @@ impl Case {
     }
 }
 
-/// Mean square and dissipation and work in what is listed, in units of the impact.
-fn figures(run: &Run, speed: f64) -> [f64; 5] {
+/// Velocity, energies, mean and largest displacement, in units of an impact at a speed that takes a time.
+fn figures(run: &Run, speed: f64, time: f64) -> [f64; 6] {
     let own = &run.summary;
     let (ledger, energy) = (own.ledger.unwrap(), 0.0152 * speed * speed);
     [
@@ -64,6 +64,7 @@ fn figures(run: &Run, speed: f64) -> [f64; 5] {
         ledger.work_j / energy,
         ledger.damping_j / energy,
         own.mean_x.unwrap() / 1e-3,
+        own.max_abs_x.unwrap() / (speed * time),
     ]
 }
 
@@ -80,7 +81,7 @@ fn it_is_as_exact_as_the_ends() {
         let request = Request { sample_times: &times, events: true, ledger: true, ..Request::default() };
         let exact = case.model(span, 1e-6).run_reference(&request, 1e-22);
         let leaves = |run: &Run| of_kind(run, EventKind::Separate)[0];
-        let shown = figures(&exact, case.speed);
+        let shown = figures(&exact, case.speed, end);
         for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
             let own = run_at(&case.model(span, tolerance), &times);
             if own.summary.steps > 3 {
@@ -99,7 +100,7 @@ fn it_is_as_exact_as_the_ends() {
                 check("sample's speed", (own.v - exact.v) / case.speed);
                 check("sample's place", (own.x - exact.x) / (case.speed * end));
             }
-            figures(&own, case.speed)
+            figures(&own, case.speed, end)
                 .into_iter()
                 .zip(shown)
                 .for_each(|(own, exact)| check("figure", own - exact));
