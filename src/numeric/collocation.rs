@@ -61,7 +61,8 @@ impl Collocation {
             let mut one = none;
             one[k / GROUP].0[k % GROUP] = 1.0;
             for group in 0..groups {
-                own.integrals[k][group] = own.places[group].map(|place| own.integral(&one, place).0);
+                let one = own.coefficients(&one);
+                own.integrals[k][group] = own.integral(&one, own.places[group], Lanes::all).0;
             }
         }
         own
@@ -99,15 +100,32 @@ impl Collocation {
         }
     }
 
-    /// The integral of the interpolating polynomial from -1 to `place`, and its value there.
-    pub fn integral<T: Scalar>(&self, values: &Values<T>, place: T) -> (T, T) {
-        let (mut sum, mut value) = (T::zero(), T::zero());
-        let (mut before, mut now) = (T::of(-1.0), T::of(1.0));
+    /// The interpolating polynomial in those of Legendre: the coefficient of each over 2 k + 1, k its degree.
+    pub fn coefficients<T: Scalar>(&self, values: &Values<T>) -> Values<T> {
+        let mut coefficients = [Lanes::zero(); MOST_GROUPS];
         for (k, row) in self.legendre.iter().enumerate() {
-            let share = self.product(row, values);
+            coefficients[k / GROUP].0[k % GROUP] = self.product(row, values);
+        }
+        coefficients
+    }
+
+    /// The integral of the polynomial of these coefficients from -1 to `place`, and its value there: at one
+    /// place or, with `all` to repeat a number, at several.
+    #[inline(always)]
+    pub fn integral<T: Scalar, N: Number>(
+        &self,
+        coefficients: &Values<T>,
+        place: N,
+        all: impl Fn(T) -> N,
+    ) -> (N, N) {
+        let (mut sum, mut value) = (N::zero(), N::zero());
+        let (mut before, mut now) = (N::of(-1.0), N::of(1.0));
+        let coefficients = coefficients[..self.groups].iter().flat_map(|group| group.0);
+        for (k, coefficient) in coefficients.enumerate() {
+            let share = all(coefficient);
             let after = next(k, place, (before, now));
             sum += share * (after - before);
-            value += share * T::whole(2 * k + 1) * now;
+            value += share * N::whole(2 * k + 1) * now;
             (before, now) = (now, after);
         }
         (sum, value)
@@ -160,7 +178,7 @@ mod tests {
                     assert!((sum - 0.5 - exact(place)).abs() < 1e-14, "{points} {power} {i}");
                 }
                 assert!((own.total(&values) - exact(1.0)).abs() < 1e-14);
-                let (integral, value) = own.integral(&values, 0.3);
+                let (integral, value) = own.integral(&own.coefficients(&values), 0.3, |own| own);
                 assert!((integral - exact(0.3)).abs() < 1e-14 && (value - 0.3_f64.powi(power)).abs() < 1e-13);
             }
             // 1/(1 + x^2), whose pole i lies on the ellipse of sum 1 + sqrt 2
@@ -172,7 +190,7 @@ mod tests {
             let (unresolved, last) = (own.unresolved(&values), fall * (1.0 + 2.0_f64.sqrt()).powi(2));
             let one = fall / points as f64;
             assert!(unresolved < last + 1e-15 && unresolved > 0.1 * last - 1e-15, "{points} {unresolved:e}");
-            let (integral, value) = own.integral(&values, 0.4);
+            let (integral, value) = own.integral(&own.coefficients(&values), 0.4, |own| own);
             let off = integral - (0.4_f64.atan() + std::f64::consts::FRAC_PI_4);
             assert!(off.abs() < 10.0 * one + 1e-15, "{points} {off:e}");
             assert!((value - 1.0 / 1.16).abs() < 10.0 * fall + 1e-14);

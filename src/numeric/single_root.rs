@@ -8,7 +8,8 @@ use super::scalar::Scalar;
 /// The most steps to the root; each takes the error to its third power.
 pub(crate) const MOST_STEPS: usize = 3;
 
-/// A root of the cubic that has these values and slopes at 0 and at 1, roughly, where the values differ in sign.
+/// A root of the cubic that has these values and slopes at 0 and at 1, roughly, where the values differ in
+/// sign.
 #[inline(always)]
 pub(crate) fn guess((g0, slope0): (f64, f64), (g1, slope1): (f64, f64)) -> f64 {
     let rise = g1 - g0;

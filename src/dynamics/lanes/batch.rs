@@ -1,4 +1,4 @@
-//! Batch: motions in groups by the shape of their force, and the steps that a group takes together.
+//! Batch: motions in groups by the degree of their force, and the steps that a group takes together.
 
 use super::columns::{Columns, LaneMotion};
 use super::trial::Trial;
@@ -18,7 +18,7 @@ use crate::numeric::{GaussLegendre, Lanes};
 const BATCH_STEPS: u64 = 256;
 
 /// The most motions that are under way at a time, in widths of the batch: so many that, where their forces
-/// have two or three shapes, one group can fill its lanes.
+/// have two or three degrees, one group can fill its lanes.
 const UNDER_WAY: usize = 4;
 
 /// Fewer motions than this go on faster one after the other: a step of all lanes takes as long as some five
@@ -54,7 +54,7 @@ struct Member<'a> {
     begun: Begun<f64>,
 }
 
-/// Motions of one order whose force has one shape at present.
+/// Motions of one order whose force has one degree at present.
 struct Group<const W: usize> {
     order: usize,
     tolerance_log2: f64,

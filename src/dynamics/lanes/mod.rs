@@ -2,11 +2,12 @@
 //!
 //! Each lane holds a motion, with its own time and its own step length. As long as the steps of a lane are
 //! event-free, all that they need (series, step length, end state, residual, clock and drive, sums and
-//! extremes of the settled window) lies in columns and is computed for all lanes by the same instructions. A
-//! step on which an event is possible (a surface or the barrier near by, a turning point that may be an
-//! extreme, a border of the window, a stroboscopic state) is not taken there: the lane is stored back to its
-//! motion, which takes that step alone, and is then loaded again. The lanes of a group hold forces of one
-//! shape; a motion that enters a piece of the curve with another shape waits for a lane of that group. A run
+//! extremes of the settled window) lies in columns and is computed for all lanes by the same instructions.
+//! Breaks of the force curve and turning points are found there too, where there is one in a step. A step on
+//! which another event is possible (a stop or the barrier near by, a border of the window, a stroboscopic
+//! state) is not taken there: the lane is stored back to its motion, which takes that step alone, and is then
+//! loaded again. The lanes of a group hold forces of one degree; a motion that enters a piece of the curve of
+//! another degree waits for a lane of that group. A run
 //! that has ended makes room for the next. The arithmetic is that of a motion alone, operation for operation,
 //! so the result has the same bits for any width, batch and processor.
 //!

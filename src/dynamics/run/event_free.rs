@@ -5,7 +5,7 @@
 //! here once, before the first of them; from one to the next only state, clock and sums change. The first
 //! step on which an event is possible is left to the general step. The event-free step is written three
 //! times: here, as the general step of a motion alone (`step/choose.rs` with `run/flight.rs`), and for a
-//! batch (`lanes/columns.rs`). The three do the same arithmetic and must stay equal to the bit.
+//! batch (`lanes/columns/step.rs`). The three do the same arithmetic and must stay equal to the bit.
 
 use crate::dynamics::drive::Drive;
 use crate::dynamics::motion::Motion;

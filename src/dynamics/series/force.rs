@@ -6,17 +6,17 @@
 //! a[0] + w (a[1] + w (a[2] + ...)),  w = y - y[0],
 //! ```
 //!
-//! and w begins with its first order, so the bracket at depth l, b(l), is needed only up to an order l below that
-//! of the force:
+//! and w begins with its first order, so the bracket at depth l, b(l), is needed only up to an order l below
+//! that of the force:
 //!
 //! ```text
 //! b(l)[n] = sum of y[i] b(l+1)[n-i] over i = 1..=n,  b(l)[0] = a[l],  f = b(0).
 //! ```
 //!
-//! That takes a third of the products that powers of y take where the degree is near the order. Coefficients of
-//! one order do not wait for each other, so four depths are summed side by side. The newest coefficient, y\[k\],
-//! enters coefficient k of the force by one product only, with the stiffness a\[1\] where the step begins; all
-//! other terms are there before it is, so that the processor has summed them by the time.
+//! That takes a third of the products that powers of y take where the degree is near the order. Coefficients
+//! of one order do not wait for each other, so four depths are summed side by side. The newest coefficient,
+//! y\[k\], enters coefficient k of the force by one product only, with the stiffness a\[1\] where the step
+//! begins; all other terms are there before it is, so that the processor has summed them by the time.
 
 use super::order::ROOM;
 use crate::dynamics::equation::force::{PieceForce, shift};
@@ -31,6 +31,8 @@ pub(crate) struct ForceSeries<T> {
     /// Row n holds coefficient n of the brackets, the outermost first, and zeros beyond the degree.
     rows: Vec<T>,
     stride: usize,
+    /// The degree that they are zeros beyond.
+    degree: usize,
     /// The bracket of a cubic.
     row: [T; ROOM],
     /// The highest order of the force that the rows are enough for.
@@ -43,7 +45,7 @@ impl<T: Number> ForceSeries<T> {
         let zero = T::zero();
         let stride = degree + 1 + BLOCK;
         let rows = if degree > 3 { vec![zero; ROOM * stride] } else { Vec::new() };
-        Self { rows, stride, row: [zero; ROOM], last: 0 }
+        Self { rows, stride, degree, row: [zero; ROOM], last: 0 }
     }
 
     /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones have been asked for before.
@@ -56,7 +58,7 @@ impl<T: Number> ForceSeries<T> {
             [c0, c1, c2, c3] => self.cubic([*c0, *c1, *c2, *c3], y[0]).coefficient(y, k, None),
             _ => {
                 self.prepare(force, y, k..k + 1);
-                self.nested(force.degree(), y, k, None)
+                self.nested(y, k, None)
             }
         }
     }
@@ -73,23 +75,26 @@ impl<T: Number> ForceSeries<T> {
     pub fn prepare(&mut self, force: &PieceForce<T>, y: &[T; ROOM], orders: std::ops::Range<usize>) {
         let Some(last) = orders.end.checked_sub(1) else { return };
         if orders.start == 0 {
-            let (row, beyond) = self.rows[..self.stride].split_at_mut(force.degree() + 1);
+            if self.degree != force.degree() {
+                self.degree = force.degree();
+                self.rows.fill(T::zero());
+            }
+            let row = &mut self.rows[..=self.degree];
             row.copy_from_slice(force.coefficients());
             shift(row, y[0]);
-            beyond.fill(T::zero());
         } else if last > self.last {
             for n in 1..orders.start {
-                self.sum(y, n, self.last - n + 1..force.degree().min(last - n + 1));
+                self.sum(y, n, self.last - n + 1..self.degree.min(last - n + 1));
             }
         }
         self.last = last;
     }
 
-    /// Coefficient `k`, and what is added to it, of a force of this degree, 4 or more.
+    /// Coefficient `k` of the force, and what is added to it.
     #[inline(always)]
-    pub fn nested(&mut self, degree: usize, y: &[T; ROOM], k: usize, more: Option<T>) -> T {
+    pub fn nested(&mut self, y: &[T; ROOM], k: usize, more: Option<T>) -> T {
         if k > 0 {
-            self.sum(y, k, 0..degree.min(self.last - k + 1));
+            self.sum(y, k, 0..self.degree.min(self.last - k + 1));
         }
         plus(self.rows[k * self.stride], more)
     }
@@ -278,6 +283,19 @@ mod tests {
     }
 
     #[test]
+    fn after_a_force_of_another_degree_the_bits_are_the_same() {
+        let (low, y) = some::<f64>(5);
+        let (high, other) = some::<f64>(11);
+        let series = |own: &mut ForceSeries<f64>, force, y| -> Vec<f64> {
+            (0..18).map(|k| own.coefficient(force, y, k)).collect()
+        };
+        let alone = series(&mut ForceSeries::new(11), &low, &y);
+        let mut used = ForceSeries::new(11);
+        series(&mut used, &high, &other);
+        assert_eq!(series(&mut used, &low, &y), alone);
+    }
+
+    #[test]
     fn however_it_is_extended_the_bits_are_the_same() {
         let (force, y) = some::<f64>(9);
         let mut series = ForceSeries::new(9);
@@ -286,7 +304,7 @@ mod tests {
             let mut found = Vec::new();
             for part in parts {
                 series.prepare(&force, &y, part.clone());
-                found.extend(part.clone().map(|k| series.nested(9, &y, k, None)));
+                found.extend(part.clone().map(|k| series.nested(&y, k, None)));
             }
             assert_eq!(found, one_by_one, "{parts:?}");
         }

@@ -2,9 +2,9 @@
 //!
 //! Taylor coefficients of x'' = -g x' - f(x) - a(t) by recurrence, one order at a time and only as many as
 //! are asked for: a flight of a microsecond between two small impacts needs four where a motion across the
-//! barrier needs sixteen. f is the polynomial of the current piece. (Moore 1966, "Interval Analysis", ch. 11; Jorba and
-//! Zou 2005, "A software package for the numerical integration of ODEs by means of high-order Taylor
-//! methods".)
+//! barrier needs sixteen. f is the polynomial of the current piece. (Moore 1966, "Interval Analysis", ch. 11;
+//! Jorba and Zou 2005, "A software package for the numerical integration of ODEs by means of high-order
+//! Taylor methods".)
 
 mod force;
 mod order;
@@ -103,8 +103,7 @@ impl<T: Number> Series<T> {
             }
             _ => {
                 forces.prepare(force, y, known.clone());
-                let degree = force.degree();
-                recur!(false, |k, y, more| forces.nested(degree, y, k, more));
+                recur!(false, |k, y, more| forces.nested(y, k, more));
             }
         }
         self.known = order + 1;

@@ -50,8 +50,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         (alone && sign * v > T::zero()).then_some((length, v, exit))
     }
 
-    /// The first contact with an end of the mode within a step of length `h`: when, and with what velocity; of
-    /// the step's end is known how it lies in the piece.
+    /// The first contact with an end of the mode within a step of length `h`: when, and with what velocity;
+    /// of the step's end is known how it lies in the piece.
     #[inline(always)]
     pub fn find_exit(&self, state: &MotionState<T>, h: T, end: &Endpoint<T>) -> Option<(T, T, End)> {
         self.plain_exit(state, h, end).or_else(|| {

@@ -34,6 +34,8 @@
 //! nonlinear ordinary differential equations in Chebyshev series".) The singularities of an elastic
 //! impact, where c^5 = 1, lie on an ellipse about -1 and 1 with half axes of sum 2, whatever the speed.
 
+use std::cell::OnceCell;
+
 use crate::dynamics::equation::Compliant;
 use crate::dynamics::series::Series;
 use crate::numeric::{
@@ -108,6 +110,8 @@ pub(crate) struct Impact<T> {
     pub time_slope: Values<T>,
     /// By how much the last sweep changed them, over m and the time that the impact takes.
     change: Values<T>,
+    /// The slopes of m and t in polynomials of Legendre, once they are asked for.
+    between: OnceCell<[Values<T>; 2]>,
 }
 
 /// The motion at a place: root of the depth, inward speed, and what t and m change by over y.
@@ -151,6 +155,7 @@ impl<T: Scalar> Impact<T> {
             amplitude_slope: zeros,
             time_slope: zeros,
             change: zeros,
+            between: OnceCell::new(),
         }
     }
 
@@ -160,6 +165,7 @@ impl<T: Scalar> Impact<T> {
         let stiffness = self.stop.stiffness;
         self.pressing = -(self.sign * (self.about[0] + self.series.a[0]));
         self.struck = speed;
+        self.between.take();
         let q = self.begin(speed, tolerance)?;
         self.first = self.turn_of(q * q * T::of(0.5))?;
         let cube = self.first * self.first * self.first;
@@ -344,10 +350,22 @@ impl<T: Scalar> Impact<T> {
         STRETCH[..self.terms].iter().rev().fold(N::zero(), |sum, c| sum * p + N::of(*c))
     }
 
-    /// The motion and the time at `y`, by the slopes between the points.
+    /// m at `y`, and the time there with its slope, by the slopes between the points.
+    #[inline(always)]
+    fn sums<N: Number>(&self, y: N, all: impl Fn(T) -> N + Copy) -> (N, (N, N)) {
+        let slopes = [&self.amplitude_slope, &self.time_slope];
+        let [m, t] = self.between.get_or_init(|| slopes.map(|own| self.rule.coefficients(own)));
+        (all(self.first) + self.rule.integral(m, y, all).0, self.rule.integral(t, y, all))
+    }
+
+    /// The time at `y` and its slope.
+    pub fn time_at(&self, y: T) -> (T, T) {
+        self.sums(y, |own| own).1
+    }
+
+    /// The motion and the time at `y`.
     pub fn at(&self, y: T) -> (Place<T>, T) {
-        let m = self.first + self.rule.integral(&self.amplitude_slope, y).0;
-        let t = self.rule.integral(&self.time_slope, y).0;
+        let (m, (t, _)) = self.sums(y, |own| own);
         (self.motion(|own| own, T::sqrt, [m, t, y]), t)
     }
 
@@ -369,8 +387,7 @@ impl<T: Scalar> Impact<T> {
     pub fn between(&self, (from, to): (T, T), group: usize) -> (Place<Lanes<GROUP, T>>, Lanes<GROUP, T>) {
         let half = (to - from) * T::of(0.5);
         let y = self.rule.places(group).map(|place: T| from + half * (T::of(1.0) + place));
-        let m = y.map(|y| self.first + self.rule.integral(&self.amplitude_slope, y).0);
-        let t = y.map(|y| self.rule.integral(&self.time_slope, y).0);
+        let (m, (t, _)) = self.sums(y, Lanes::all);
         (self.motion(Lanes::all, |own| own.map(T::sqrt), [m, t, y]), t)
     }
 

@@ -96,8 +96,7 @@ impl<T: Scalar> Path<T> for Impact<T> {
         if time >= self.rule.total(&self.time_slope) {
             return length;
         }
-        let between =
-            self.parameter_by(|y| self.rule.integral(&self.time_slope, y), time, length * T::of(0.5));
+        let between = self.parameter_by(|y| self.time_at(y), time, length * T::of(0.5));
         let exactly = |y: T| {
             let (own, time) = self.exactly_at(y);
             (time, own.time_slope)

@@ -5,7 +5,7 @@
 use super::{Clocks, Columns};
 use crate::dynamics::series::polynomial;
 use crate::dynamics::step::chord::Chord;
-use crate::numeric::{Lanes, single_root};
+use crate::numeric::{Lanes, Scalar, single_root};
 
 /// Where steps lead.
 #[derive(Clone, Copy)]
@@ -23,8 +23,22 @@ pub(super) struct Arrivals<const W: usize> {
 type Three<const W: usize> = (Lanes<W>, Lanes<W>, Lanes<W>);
 
 impl<const W: usize> Columns<W> {
-    /// Ends steps that `may` be taken at the break that they meet, the one ahead or the one just left, where it
-    /// is found at once; which those are.
+    /// The drive and its time derivative per unit amplitude.
+    #[inline(always)]
+    pub(super) fn drive_at(&self, at: &Clocks<W>) -> (Lanes<W>, Lanes<W>) {
+        let (mut value, mut slope) = (at.phase, at.phase);
+        for lane in 0..W {
+            let turns = at.phase.0[lane] * self.frequency.0[lane] + self.turn.0[lane];
+            let (s, c) = f64::sin_cos_turns(turns);
+            let omega = f64::tau() * self.frequency.0[lane];
+            value.0[lane] = if self.quarter[lane] { c } else { s };
+            slope.0[lane] = if self.quarter[lane] { -(s * omega) } else { c * omega };
+        }
+        (value, slope)
+    }
+
+    /// Ends steps that `may` be taken at the break that they meet, the one ahead or the one just left, where
+    /// it is found at once; which those are.
     #[inline(always)]
     pub(super) fn land(
         &self,

@@ -1,26 +1,16 @@
-//! Columns of a batch: what the lanes hold, and one event-free step of all of them.
-//!
-//! The event-free step is written three times: here, as the general step of a motion alone (`step/choose.rs`
-//! with `run/flight.rs`), and as its fast path (`run/event_free.rs`). The three do the same arithmetic and
-//! must stay equal to the bit.
+//! Columns of a batch: what the lanes hold, how a motion gets there and back, and one step of all lanes.
 
 mod landing;
+mod step;
 
-use super::trial::{Clocks, CompensatedSums, Trial};
-use crate::dynamics::drive::tone::{Harmonic, Sine};
+use super::trial::{Clocks, CompensatedSums};
+use crate::dynamics::drive::tone::Sine;
 use crate::dynamics::equation::force::PieceForce;
 use crate::dynamics::equation::{End, EndKind, Mode};
 use crate::dynamics::motion::Motion;
-use crate::dynamics::record::event_free::MARGIN;
-use crate::dynamics::series::{Series, natural_steps, polynomial};
 use crate::dynamics::state::{BY_SPEED, Touch};
-use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::dynamics::step::work::ARRIVAL;
-use crate::numeric::{GaussLegendre, Lanes, Number, Scalar};
-use landing::Arrivals;
-
-/// A share of the way that rounding is far below.
-const ROUNDING: f64 = 1e-9;
+use crate::numeric::Lanes;
 
 /// One motion under a sine, without a ledger.
 pub(super) type LaneMotion<'a> = Motion<'a, f64, Sine<f64>, false>;
@@ -78,7 +68,7 @@ pub(crate) struct Columns<const W: usize> {
 }
 
 impl<const W: usize> Columns<W> {
-    /// For forces of the shape that this one has.
+    /// For forces of the degree that this one has.
     pub fn new(force: &PieceForce<f64>) -> Self {
         let zero = Lanes([0.0; W]);
         let clocks = Clocks { cycle: zero, phase: zero };
@@ -123,12 +113,12 @@ impl<const W: usize> Columns<W> {
         }
     }
 
-    /// Whether a force has the shape of those of the lanes.
+    /// Whether a force has the degree of those of the lanes.
     pub fn takes(&self, force: &PieceForce<f64>) -> bool {
         self.force.degree() == force.degree()
     }
 
-    /// Loads a motion, whose force has the lanes' shape, into a lane, as number `index` of the runs.
+    /// Loads a motion, whose force has the lanes' degree, into a lane, as number `index` of the runs.
     pub fn load(&mut self, lane: usize, index: usize, motion: &LaneMotion) {
         let chord = motion.record.begin_event_free(&motion.state.at, &motion.stepper.end);
         if self.of[lane] != (index, motion.state.mode) {
@@ -165,7 +155,7 @@ impl<const W: usize> Columns<W> {
         self.active[lane] = true;
     }
 
-    /// Loads a mode, whose force has the lanes' shape, into a lane, as number `index` of its equation.
+    /// Loads a mode, whose force has the lanes' degree, into a lane, as number `index` of its equation.
     fn load_mode(&mut self, lane: usize, index: usize, mode: &Mode<f64>) {
         self.of[lane].1 = index;
         for (degree, own) in mode.force.coefficients().iter().enumerate() {
@@ -186,7 +176,7 @@ impl<const W: usize> Columns<W> {
     }
 
     /// Lets a lane, which stands on a break, enter the neighbouring mode; false where the force has another
-    /// shape there.
+    /// degree there.
     pub fn enter_neighbour(&mut self, lane: usize, modes: &[Mode<f64>]) -> bool {
         let exit = self.exit(lane);
         let index = match exit {
@@ -235,151 +225,5 @@ impl<const W: usize> Columns<W> {
             self.covered.get(lane),
         );
         motion.record.end_event_free_crossings(self.side.0[lane] as i8, self.crossings.0[lane] as u64);
-    }
-
-    /// Computes one step in all lanes and takes it where it is event-free, up to a break where it meets one.
-    #[inline(always)]
-    pub fn step(
-        &mut self,
-        series: &mut Series<Lanes<W>>,
-        rule: &GaussLegendre<Lanes<W>>,
-        order: usize,
-        tolerance_log2: f64,
-        trial: &mut Trial<W>,
-    ) {
-        let swing = Harmonic { curvature: self.curvature };
-        swing.seed(self.amplitude * self.value, self.amplitude * self.slope, &mut series.a);
-        series.begin(self.x - self.origin, self.v);
-        series.extend_to(order, &self.force, self.damping, &swing, &mut ());
-        let y = &series.y[..=order];
-        let length = natural_steps(order, |k| y[k].0, &self.speed_log2, tolerance_log2, &self.longest);
-        let length = Lanes(length);
-        let at = self.at.advance(&length, &self.period);
-        let end = series.state(length);
-        let unit = self.drive_at(&at);
-        let base = self.amplitude * unit.0;
-        let sum = (end.acceleration + self.damping * end.v) + base;
-        let residual = (self.force.at(end.y) + sum).abs() * length;
-
-        let (mut may, mut left) = ([false; W], length);
-        for lane in 0..W {
-            let (length, period) = (length.0[lane], self.period.0[lane]);
-            let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
-            let to_border = cycles * period + (self.border.phase.0[lane] - self.at.phase.0[lane]);
-            left.0[lane] = to_border - MARGIN * period;
-            trial.holds[lane] = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
-            let early = (length < left.0[lane]) & (at.phase.0[lane] < period);
-            let finite = end.v.0[lane].abs() < f64::INFINITY;
-            may[lane] = self.active[lane] & trial.holds[lane] & early & finite;
-        }
-        let (x, acceleration) = (end.y + self.origin, end.acceleration);
-        let mut to = Arrivals { length, x, v: end.v, acceleration, at, unit };
-        let landed = self.land(&may, y, &end.bound, &mut to);
-
-        let mut squared = Lanes([0.0; W]);
-        let deviations = polynomial::chord_deviations(y, to.length);
-        if self.inside.contains(&true) {
-            squared = polynomial::integrals::<_, false>(y, &[], rule, squared, to.length).0;
-        }
-        let (start, square) = (y[0] + self.origin, to.length * to.length);
-        let (ways, bends) = ((self.v * to.length, to.v * to.length), to.acceleration * square);
-        let bends = ((y[2] + y[2]) * square, bends);
-        let (mut fine, mut turning, mut crosses) = ([false; W], [false; W], [false; W]);
-        let (mut low, mut high) = (start, start);
-        for lane in 0..W {
-            let bound = end.bound.0[lane];
-            let chord = Chord {
-                start: start.0[lane],
-                end: to.x.0[lane],
-                bound,
-                deviations: (deviations.0.0[lane], deviations.1.0[lane], deviations.2.0[lane]),
-                ways: (ways.0.0[lane], ways.1.0[lane]),
-                bends: (bends.0.0[lane], bends.1.0[lane]),
-                limits: (self.low_end.0[lane], self.high_end.0[lane]),
-            };
-            let (limits, touch, monotone) = (chord.limits, self.touch.0[lane], chord.is_monotone());
-            let (clear_low, clear_high) = chord.is_clear();
-            let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
-            let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
-            // from a surface: its own speed leads further away than all the rest can lead back
-            let leaves = 2.0 * self.v.0[lane].abs() * to.length.0[lane] > bound * CLEARANCE;
-            let clear_low = clear_low | (leaves & (touch < 0.0));
-            let clear_high = clear_high | (leaves & (touch > 0.0));
-            // between the ends, where the lowest or the highest place is one of them
-            let margin = bound * ROUNDING;
-            let above = (chord.end - limits.0 > margin) & ((chord.start > limits.0) | (touch < 0.0));
-            let below = (limits.1 - chord.end > margin) & ((chord.start < limits.1) | (touch > 0.0));
-            let bends = chord.bends_one_way();
-            let clear_low = clear_low | (above & (monotone | (bends & (chord.bends.0 < 0.0))));
-            let clear_high = clear_high | (below & (monotone | (bends & (chord.bends.0 > 0.0))));
-            let clear = (clear_low & clear_high) | landed[lane];
-            let (own_low, own_high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
-            (low.0[lane], high.0[lane]) = (own_low, own_high);
-
-            // Without a barrier every comparison with it is false, since it is NaN.
-            let (barrier, side, inside) = (self.barrier.0[lane], self.side.0[lane], self.inside[lane]);
-            let (from, beyond) = ((chord.start - barrier) * side, (chord.end - barrier) * side);
-            let near = (chord.start - barrier).abs() <= bound;
-            let (onto, passed) = (beyond == 0.0, beyond < 0.0);
-            // outside the window only their number counts
-            let countable = !inside & (to.length.0[lane] + to.length.0[lane] < left.0[lane]) & !landed[lane];
-            let clear_of_barrier =
-                !(near | passed | onto) | (monotone & (from > 0.0) & !onto & (!passed | countable));
-            fine[lane] = may[lane] & clear & clear_of_barrier;
-            turning[lane] = fine[lane] & turns & inside;
-            crosses[lane] = passed;
-        }
-        if turning.contains(&true) {
-            let turned = self.turn(&turning, y, &to, (ways, bends, deviations), (&mut low, &mut high));
-            for lane in 0..W {
-                fine[lane] = fine[lane] & (!turning[lane] | turned[lane]);
-            }
-        }
-        for lane in 0..W {
-            let (taken, inside, length) = (fine[lane], self.inside[lane], to.length.0[lane]);
-            trial.taken[lane] = taken;
-            trial.stopped[lane] = !taken & self.active[lane];
-            trial.passed[lane] = taken & landed[lane];
-            trial.measured[lane] = inside & !landed[lane];
-
-            let measured = taken & inside;
-            let (squared, covered) =
-                (self.squared.with(lane, squared.0[lane]), self.covered.with(lane, length));
-            let set = |place: &mut f64, value: f64, which: bool| *place = if which { value } else { *place };
-            set(&mut self.low.0[lane], low.0[lane], measured);
-            set(&mut self.high.0[lane], high.0[lane], measured);
-            set(&mut self.squared.sum.0[lane], squared.0, measured);
-            set(&mut self.squared.carry.0[lane], squared.1, measured);
-            set(&mut self.covered.sum.0[lane], covered.0, measured);
-            set(&mut self.covered.carry.0[lane], covered.1, measured);
-            let crosses = taken & crosses[lane];
-            let side = self.side.0[lane];
-            set(&mut self.side.0[lane], -side, crosses);
-            self.crossings.0[lane] += if crosses { 1.0 } else { 0.0 };
-            self.steps.0[lane] += if taken { 1.0 } else { 0.0 };
-            self.passages.0[lane] += if trial.passed[lane] { 1.0 } else { 0.0 };
-            set(&mut self.touch.0[lane], 0.0, taken);
-            set(&mut self.x.0[lane], to.x.0[lane], taken);
-            set(&mut self.v.0[lane], to.v.0[lane], taken);
-            set(&mut self.at.cycle.0[lane], to.at.cycle.0[lane], taken);
-            set(&mut self.at.phase.0[lane], to.at.phase.0[lane], taken);
-            set(&mut self.value.0[lane], to.unit.0.0[lane], taken);
-            set(&mut self.slope.0[lane], to.unit.1.0[lane], taken);
-        }
-        (trial.length, trial.end, trial.at, trial.unit, trial.squared) = (length, end, at, unit, squared);
-    }
-
-    /// The drive and its time derivative per unit amplitude.
-    #[inline(always)]
-    fn drive_at(&self, at: &Clocks<W>) -> (Lanes<W>, Lanes<W>) {
-        let (mut value, mut slope) = (at.phase, at.phase);
-        for lane in 0..W {
-            let turns = at.phase.0[lane] * self.frequency.0[lane] + self.turn.0[lane];
-            let (s, c) = f64::sin_cos_turns(turns);
-            let omega = f64::tau() * self.frequency.0[lane];
-            value.0[lane] = if self.quarter[lane] { c } else { s };
-            slope.0[lane] = if self.quarter[lane] { -(s * omega) } else { c * omega };
-        }
-        (value, slope)
     }
 }
