@@ -7,9 +7,9 @@
 //! which another event is possible (a stop or the barrier near by, a border of the window, a stroboscopic
 //! state) is not taken there: the lane is stored back to its motion, which takes that step alone, and is then
 //! loaded again. The lanes of a group hold forces of one degree; a motion that enters a piece of the curve of
-//! another degree waits for a lane of that group. A run
-//! that has ended makes room for the next. The arithmetic is that of a motion alone, operation for operation,
-//! so the result has the same bits for any width, batch and processor.
+//! another degree waits for a lane of that group. A run that has ended makes room for the next. The
+//! arithmetic is that of a motion alone, operation for operation, so the result has the same bits for any
+//! width, batch and processor.
 //!
 //! The width is chosen at run time by the processor.
 

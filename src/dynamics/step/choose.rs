@@ -1,8 +1,8 @@
 //! Choice of the length of a step of free flight.
 //!
 //! The event-free step is written three times: here, with what `run/flight.rs` does with the step, as the
-//! fast path of a motion alone (`run/event_free.rs`), and for a batch (`lanes/columns/step.rs`). The three do the
-//! same arithmetic and must stay equal to the bit.
+//! fast path of a motion alone (`run/event_free.rs`), and for a batch (`lanes/columns/step.rs`). The three do
+//! the same arithmetic and must stay equal to the bit.
 
 use super::settings::{RESIDUAL, ROUNDINGS};
 use super::stepper::{MOST_HALVINGS, Step, Stepper};
