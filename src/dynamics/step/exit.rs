@@ -11,8 +11,9 @@ use crate::numeric::{PolynomialRoots, Scalar, single_root};
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// The end of the mode that a step of length `h` runs into, when, and with what velocity: the one ahead
-    /// where the velocity keeps its sign, or the one just left where the acceleration does, so that nothing
-    /// else is met before. A batch does the same arithmetic (`lanes/columns/landing.rs`).
+    /// where the velocity keeps its sign, or the one just left where the acceleration does. Then there is one
+    /// such contact. In the second case the one ahead may be met before. A batch does the same arithmetic
+    /// (`lanes/columns/landing.rs`).
     #[inline(always)]
     fn plain_exit(&self, state: &MotionState<T>, h: T, end: &Endpoint<T>) -> Option<(T, T, End)> {
         let mode = self.mode(state);
@@ -27,8 +28,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (sign, level) = (exit.sign::<T>(), mode.end(exit).0);
         let from = state.x - level;
         let (returns, starts_inside) = (exit != ahead, sign * from < T::zero());
-        let clear = !returns || sign * (state.x - mode.end(ahead).0) > end.bound;
-        if !(past(exit) && clear && (returns || starts_inside)) {
+        if !(past(exit) && (returns || starts_inside)) {
             return None;
         }
         let y = &self.series.y[..self.series.known];
@@ -54,11 +54,21 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// of the step's end is known how it lies in the piece.
     #[inline(always)]
     pub fn find_exit(&self, state: &MotionState<T>, h: T, end: &Endpoint<T>) -> Option<(T, T, End)> {
-        self.plain_exit(state, h, end).or_else(|| {
-            let (share, exit) = self.first_exit(state, h, end)?;
+        let at = |(share, exit): (T, End)| {
             let length = share * h;
-            Some((length, self.series.velocity(length), exit))
-        })
+            (length, self.series.velocity(length), exit)
+        };
+        let Some(plain) = self.plain_exit(state, h, end) else {
+            return self.first_exit(state, h, end).map(at);
+        };
+        let (other, bound) = (plain.2.other(), end.bound);
+        if state.touch.is_some_and(|touch| touch.end == plain.2)
+            && let Some(share) = self.contact(state, h, other, bound)
+            && share * h < plain.0
+        {
+            return Some(at((share, other)));
+        }
+        Some(plain)
     }
 
     /// The first contact anywhere, as a share of the step.
@@ -88,38 +98,42 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             }
         }
         for end in [End::Low, End::High] {
-            let sign = end.sign::<T>();
-            let gap = sign * (mode.end(end).0 - state.x);
-            let touch = state.touch.filter(|t| t.end == end);
-            if touch.map_or(gap > bound, |touch| touch.multiplicity == HELD) {
-                continue;
-            }
-            let mut g = self.series.scaled(h);
-            if end == End::High {
-                g[1..n].iter_mut().for_each(|c| *c = -*c);
-            }
-            g[0] = gap;
-            // Beyond the surface only by rounding, after it was held, and not on the way out: it is touched.
-            let returns = touch.is_none() && gap < zero && sign * state.v <= zero;
-            let mut from = if returns { BY_SPEED } else { touch.map_or(0, |t| t.multiplicity.min(n - 1)) };
-            // A coefficient that is exactly 0 decides nothing.
-            while from + 1 < n && g[from] == zero {
-                from += 1;
-            }
-            let g = &g[from..n];
-            let s = if g[0] > zero {
-                PolynomialRoots::new(g).first()
-            } else if g[0] < zero {
-                Some(zero) // outward at once
-            } else {
-                None // it stays where it is
-            };
-            if let Some(s) = s
+            if let Some(s) = self.contact(state, h, end, bound)
                 && first.is_none_or(|f| s < f.0)
             {
                 first = Some((s, end));
             }
         }
         first
+    }
+
+    /// The first contact with this end, as a share of a step that leads no further than `bound`.
+    #[inline(always)]
+    fn contact(&self, state: &MotionState<T>, h: T, end: End, bound: T) -> Option<T> {
+        let (zero, sign, n) = (T::zero(), end.sign::<T>(), self.series.known);
+        let gap = sign * (self.mode(state).end(end).0 - state.x);
+        let touch = state.touch.filter(|t| t.end == end);
+        if touch.map_or(gap > bound, |touch| touch.multiplicity == HELD) {
+            return None;
+        }
+        let mut g = self.series.scaled(h);
+        if end == End::High {
+            g[1..n].iter_mut().for_each(|c| *c = -*c);
+        }
+        g[0] = gap;
+        // Beyond the surface only by rounding, after it was held, and not on the way out: it is touched.
+        let returns = touch.is_none() && gap < zero && sign * state.v <= zero;
+        let mut from = if returns { BY_SPEED } else { touch.map_or(0, |t| t.multiplicity.min(n - 1)) };
+        // A coefficient that is exactly 0 decides nothing.
+        while from + 1 < n && g[from] == zero {
+            from += 1;
+        }
+        let g = &g[from..n];
+        if g[0] > zero {
+            PolynomialRoots::new(g).first()
+        } else {
+            // outward at once, or it stays where it is
+            (g[0] < zero).then_some(zero)
+        }
     }
 }
