@@ -113,8 +113,8 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
                 let figure = branch_figure(&found, phase_deg, axes, &caption(&document), &picture.theme);
                 picture.write(&mut sinks[1..3], figure)?;
             }
-            if !common.quiet && found.end != BranchEnd::Range {
-                say(&told(&found));
+            if !common.quiet {
+                told(&found, (from, to)).inspect(|own| say(own));
             }
             found.table()
         }
@@ -132,10 +132,15 @@ fn count(quiet: bool) -> ProgressBar {
     ProgressBar::no_length().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
 }
 
-/// Where and why a branch ended.
-fn told(branch: &Branch) -> String {
+/// Where and why a branch ended, unless at the value that it was to be followed to.
+fn told(branch: &Branch, (from, to): (f64, f64)) -> Option<String> {
     let at = branch.values.last().copied().unwrap_or(f64::NAN);
-    format!("the branch ends at {} = {at}: {}", branch.field, branch.end)
+    let why = match branch.end {
+        BranchEnd::Range if (at - to).abs() < (at - from).abs() => return None,
+        BranchEnd::Range => "it came back to the value at which it began".to_owned(),
+        other => other.to_string(),
+    };
+    Some(format!("the branch ends at {} = {at}: {why}", branch.field))
 }
 
 fn phase(text: &str) -> Result<f64, Failure> {

@@ -176,6 +176,19 @@ fn the_sum_is_that_of_damping_and_impacts_on_chaos_too() {
     }
 }
 
+/// In a period in which the mass lingers near the top of the barrier changes grow up to 1e6-fold; in 1000
+/// periods from one of these starts or another there are some.
+#[test]
+fn the_sum_keeps_its_digits_where_the_mass_lingers_on_a_barrier() {
+    for k in 0..8 {
+        let tolerance = format!("run.tolerance={:e}", 1e-13 * (1.0 + 1e-3 * f64::from(k)));
+        let own = preset("paper-unconstrained", &["excitation.amplitude_g=1.5", &tolerance]);
+        let start = (7e-3, 0.01 * f64::from(k));
+        let found = average_exponents(&own, (start, 0.0), 1000, &NEVER).unwrap();
+        near_relative(found.sum, found.exact_sum.unwrap(), 1e-11);
+    }
+}
+
 /// Irregular motion with impacts on both sides.
 const IMPACTS: &[&str] = &[
     "stops=Rigid(travel_limit_mm: 7, restitution: 0.9)",

@@ -28,7 +28,7 @@ fn differences(model: &Model, seconds: f64, (x, v): (f64, f64)) -> Jacobian {
     let step = dd(1e-9);
     let end = |dx: DoubleDouble, dv: DoubleDouble| {
         let start = (dd(x) + dx, (dd(v) + dv) * dd(unit));
-        let (x, v) = map.trace(&kernel, start, 1.0).end;
+        let (x, v) = map.trace(&kernel, start, (0.0, 1.0)).end;
         (x, v / dd(unit))
     };
     let zero = dd(0.0);

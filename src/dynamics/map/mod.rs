@@ -110,25 +110,34 @@ impl StroboscopicMap {
     /// A displacement beyond a stop or the curve is the caller's error: the motion then begins there.
     pub fn pass(&self, (x, v): (f64, f64), periods: u32) -> Passage {
         let unit = self.model.scales.unit();
-        self.trace(&self.plain, (x, v * unit), f64::from(periods)).passage
+        self.trace(&self.plain, (x, v * unit), (0.0, f64::from(periods))).passage
     }
 
     /// The same over a part of the forcing period, from 0 to 1.
     pub fn pass_part(&self, (x, v): (f64, f64), part: f64) -> Passage {
         let unit = self.model.scales.unit();
-        self.trace(&self.plain, (x, v * unit), part).passage
+        self.trace(&self.plain, (x, v * unit), (0.0, part)).passage
     }
 
     /// The same with the derivatives of the state at the end by that at the start. All are 0 where the mass
     /// has rested on a stop. Some are infinite or not a number where it has touched one without speed. Those
     /// of a mass that stands on a stop or a break of the curve are of one side alone.
-    pub fn pass_with_jacobian(&self, (x, v): (f64, f64), periods: u32) -> (Passage, Jacobian) {
+    pub fn pass_with_jacobian(&self, state: (f64, f64), periods: u32) -> (Passage, Jacobian) {
+        self.pass_part_with_jacobian(state, (0.0, f64::from(periods)))
+    }
+
+    /// The same from the one to the other of two times after a strobe, in forcing periods.
+    pub(crate) fn pass_part_with_jacobian(
+        &self,
+        (x, v): (f64, f64),
+        span: (f64, f64),
+    ) -> (Passage, Jacobian) {
         let unit = self.model.scales.unit();
         // Changes of the size of the scales, so that the length of a step suits them as it suits the state.
         let scales = [self.model.scales.length, self.model.scales.speed * unit];
         let start =
             (Dual { value: x, slopes: [scales[0], 0.0] }, Dual { value: v * unit, slopes: [0.0, scales[1]] });
-        let Traced { passage, end, rested } = self.trace(&self.dual, start, f64::from(periods));
+        let Traced { passage, end, rested } = self.trace(&self.dual, start, span);
         if rested {
             return (passage, Jacobian { rows: [[0.0; 2]; 2] });
         }
@@ -137,18 +146,18 @@ impl StroboscopicMap {
         (passage, Jacobian { rows: [row(end.0, 1.0), row(end.1, unit)] })
     }
 
-    fn trace<T: Scalar>(&self, kernel: &Kernel<T>, start: (T, T), periods: f64) -> Traced<T> {
+    fn trace<T: Scalar>(&self, kernel: &Kernel<T>, start: (T, T), (from, to): (f64, f64)) -> Traced<T> {
         let Kernel { equation, clock, drive } = kernel;
-        let from = Instant { cycle: self.phase.0, phase: T::of(self.phase.1) * clock.period() };
-        let to = match self.length {
+        let strobe = Instant { cycle: self.phase.0, phase: T::of(self.phase.1) * clock.period() };
+        let after = |periods: f64| match self.length {
             Length::Cycles(cycles) => {
                 let cycles = periods * cycles as f64;
-                let later = Instant { cycle: from.cycle + cycles.floor() as i64, ..from };
+                let later = Instant { cycle: strobe.cycle + cycles.floor() as i64, ..strobe };
                 clock.advance(&later, T::of(cycles - cycles.floor()) * clock.period())
             }
             Length::Seconds(seconds) => clock.at(seconds * periods),
         };
-        let span = (from, to);
+        let span = (after(from), after(to));
         match drive {
             Form::Still(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
             Form::Sine(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),

@@ -1,11 +1,16 @@
 //! Forcing period of a motion, with what becomes of small changes of it.
 
 use super::result::NoExponents;
-use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Scales, Side, StroboscopicMap};
+use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Passage, Scales, Side, StroboscopicMap};
 
 /// Below this share of its two products a determinant has lost its digits: rounding is some 1e-15 of them.
 /// (The error of the integration is a share of the areas themselves, of the size of the tolerance.)
 const LOST: f64 = 1e-12;
+
+/// Below this share that of a period is the product of those of its parts, so many. A mass that lingers near
+/// the top of a barrier turns all changes into the one that grows there, up to 1e6-fold in a period.
+const FEW_LEFT: f64 = 1e-4;
+const PARTS: u32 = 8;
 
 /// The stroboscopic map of a model, with changes of a state in units of its scales.
 pub(super) struct Tangent {
@@ -83,8 +88,7 @@ impl Tangent {
         let time = self.scales.length / self.scales.speed;
         let [[a, b], [c, d]] = own.rows;
         let jacobian = Jacobian { rows: [[a, b / time], [c * time, d]] };
-        let products = (a * d).abs() + (b * c).abs();
-        if !products.is_finite() {
+        if !products(&own).is_finite() {
             return Err(NoExponents::Grazing);
         }
         let rested = own.rows == [[0.0; 2]; 2];
@@ -96,14 +100,30 @@ impl Tangent {
             true => f64::NEG_INFINITY,
             false => self.damped + times(impacts(Side::Left), left) + times(impacts(Side::Right), right),
         });
-        let determinant = own.determinant().abs();
-        let least = exact.unwrap_or(self.damped).exp().min(determinant);
         let measured = match rested {
             true => f64::NEG_INFINITY,
-            false if least <= LOST * products => f64::NAN,
-            false => determinant.ln(),
+            false => self.told((&passage, &own), 1.0, FEW_LEFT).unwrap_or_else(|| self.by_parts(state)),
         };
         Ok(Passed { state: passage.state, jacobian, measured, exact })
+    }
+
+    /// Logarithm of the determinant of a share of a period, where it is more than `least` of its products.
+    fn told(&self, (passage, own): (&Passage, &Jacobian), share: f64, least: f64) -> Option<f64> {
+        let determinant = own.determinant().abs();
+        let exact = passage.determinant.unwrap_or_else(|| (self.damped * share).exp());
+        (exact.min(determinant) > least * products(own)).then(|| determinant.ln())
+    }
+
+    /// The same of a period from its parts, NaN where one has lost its digits.
+    fn by_parts(&self, mut state: (f64, f64)) -> f64 {
+        let share = 1.0 / f64::from(PARTS);
+        let parts = (0..PARTS).map(|part| {
+            let span = (f64::from(part) * share, f64::from(part + 1) * share);
+            let (passage, own) = self.map.pass_part_with_jacobian(state, span);
+            state = passage.state;
+            self.told((&passage, &own), share, LOST).unwrap_or(f64::NAN)
+        });
+        parts.sum()
     }
 
     /// So many periods of the motion together.
@@ -131,6 +151,12 @@ impl Tangent {
     pub fn changed(&self, (x, v): (f64, f64), by: [f64; 2]) -> (f64, f64) {
         (x + by[0] * self.scales.length, v + by[1] * self.scales.speed)
     }
+}
+
+/// The two products of which a determinant is the difference, without their signs.
+fn products(own: &Jacobian) -> f64 {
+    let [[a, b], [c, d]] = own.rows;
+    (a * d).abs() + (b * c).abs()
 }
 
 /// A count times a logarithm, 0 where there is nothing to count however small the logarithm.

@@ -120,13 +120,23 @@ pub fn branch(
         events: Vec::new(),
         end: BranchEnd::Points,
     };
-    let ends = [from.min(to), from.max(to)].map(|own| own / units.range);
+    let range = [from.min(to), from.max(to)];
+    let ends = range.map(|own| own / units.range);
     let room = match model.stop_positions() {
         (Some(left), Some(right)) => scales.length.min(0.5 * (right - left)),
         _ => scales.length,
     };
-    let mut walk =
-        Walk { corrector, branch, ends, room, phase, told: Vec::new(), meets: false, at: (point, along) };
+    let mut walk = Walk {
+        corrector,
+        branch,
+        range,
+        ends,
+        room,
+        phase,
+        told: Vec::new(),
+        meets: false,
+        at: (point, along),
+    };
     walk.add(None, &walk.at.0.clone());
     walk.branch.end = walk.run_out(task)?;
     Ok(walk.branch)
@@ -137,7 +147,8 @@ struct Walk<'a> {
     /// At a phase of the drive away from impacts, where a state has no derivative by the field.
     corrector: Corrector<'a>,
     branch: Branch,
-    /// The ends of the range in its unit.
+    /// The range, and its ends in its unit.
+    range: [f64; 2],
     ends: [f64; 2],
     /// A length in m that is a share of the room that the mass has.
     room: f64,
@@ -163,13 +174,12 @@ impl Walk<'_> {
             self.keep_clear();
             let (point, along) = &self.at;
             let guess = point.at + along * step;
-            let leaves = |to: f64| self.ends.into_iter().find(|end| (to - end) * (point.at.z - end) < 0.0);
-            let mut beyond = leaves(guess.z);
+            let mut beyond = self.end_before(guess.z);
             let mut found = None;
             if beyond.is_none()
                 && let Some(point) = self.corrector.correct(guess, along)
             {
-                beyond = leaves(point.at.z);
+                beyond = self.end_before(point.at.z);
                 found = self.corrector.tangent(&point, along).map(|onward| (point, onward));
             }
             if let Some(end) = beyond {
@@ -190,14 +200,19 @@ impl Walk<'_> {
                 None => step *= 0.5,
             }
             let at_a_grazing = step < NEAR_A_GRAZING && grazes(&self.at.0, &self.corrector.units);
-            if at_a_grazing && let Some(next) = self.past_a_grazing() {
+            if at_a_grazing && let Some((next, is_last)) = self.past_a_grazing() {
                 self.go_to(next);
+                if is_last {
+                    return Ok(BranchEnd::Range);
+                }
                 if self.is_closed(0.0) {
                     return Ok(BranchEnd::Closed);
                 }
                 step = FIRST * 0.1;
             } else if step < SHORTEST {
+                let leaves = beyond.is_some_and(|end| (self.at.0.at.z - end).abs() < SHORTEST);
                 return Ok(match self.branch.events.last_mut() {
+                    _ if leaves => BranchEnd::Range,
                     // each impact of a mass that chatters may be gentle
                     _ if leaps => BranchEnd::Leap,
                     Some(event) if at_a_grazing => {
@@ -211,6 +226,12 @@ impl Walk<'_> {
         Ok(BranchEnd::Points)
     }
 
+    /// The end of the range beyond which a value of the field lies.
+    fn end_before(&self, to: f64) -> Option<f64> {
+        let [low, high] = self.ends;
+        if to < low { Some(low) } else { (to > high).then_some(high) }
+    }
+
     /// The point at an end of the range.
     fn last(&self, end: f64) -> Option<(Point, Vector3<f64>)> {
         let (point, along) = &self.at;
@@ -218,7 +239,8 @@ impl Walk<'_> {
         let share = (end - point.at.z) / along.z;
         let next = self.corrector.correct(point.at + along * share, &across)?;
         let onward = self.corrector.tangent(&next, along)?;
-        ((next.at - point.at).norm() <= 2.0 * LONGEST).then_some((next, onward))
+        // at an end already, the branch first goes round the fold just before it
+        (SHORTEST..=2.0 * LONGEST).contains(&(next.at - point.at).norm()).then_some((next, onward))
     }
 
     /// Whether a point continues the branch: it lies in its direction, and so does its own direction.
@@ -267,7 +289,9 @@ impl Walk<'_> {
         let left = self.told.iter().take_while(|(_, own)| far - own > LONGEST);
         self.meets |= left.into_iter().any(|(own, _)| (at - own).amax() <= SAME);
         self.told.push((at, far));
-        self.branch.values.push(point.value);
+        let [low, high] = self.range;
+        // a motion at an end is so but for the rounding of its unit
+        self.branch.values.push(if event.is_none() { point.value.clamp(low, high) } else { point.value });
         self.branch.orbits.push(told);
         self.branch.events.push(event);
     }
@@ -295,23 +319,33 @@ impl Walk<'_> {
         self.meets || (last - first).norm() < 0.5 * step && farthest > 10.0 * step
     }
 
-    /// A motion that touches the stops otherwise, near the last one, and the direction away from it.
-    fn past_a_grazing(&self) -> Option<(Point, Vector3<f64>)> {
+    /// A motion that touches the stops otherwise, near the last one, with the direction away from it; and
+    /// whether it is the one at the end of the range, beyond which the branch goes.
+    fn past_a_grazing(&self) -> Option<((Point, Vector3<f64>), bool)> {
         let (last, _) = &self.at;
         let directions = self.corrector.directions_past(last);
         let starts = AROUND.iter().flat_map(|far| directions.iter().map(move |own| (*far, own)));
         for (distance, direction) in starts {
-            let Some(point) = self.corrector.correct(last.at + direction * distance, direction) else {
-                continue;
+            let beside = |point: &Point| {
+                let far = (point.at - last.at).norm();
+                far <= 3.0 * distance && differ(last, point) && self.is_near(point)
             };
+            let found = self.corrector.correct(last.at + direction * distance, direction);
+            let Some(mut point) = found.filter(|own| beside(own)) else { continue };
             let away = point.at - last.at;
-            let far = away.norm();
-            let beside = (0.3 * distance..=3.0 * distance).contains(&far);
-            if !beside || !differ(last, &point) || !self.is_near(&point) {
+            if away.norm() < 0.3 * distance {
                 continue;
             }
-            if let Some(onward) = self.corrector.tangent(&point, &(away / far)) {
-                return Some((point, onward));
+            let beyond = self.end_before(point.at.z);
+            if let Some(end) = beyond {
+                let guess = last.at + away * ((end - last.at.z) / away.z);
+                let Some(own) = self.corrector.correct(guess, &Vector3::z()).filter(&beside) else {
+                    continue;
+                };
+                point = own;
+            }
+            if let Some(onward) = self.corrector.tangent(&point, &away.normalize()) {
+                return Some(((point, onward), beyond.is_some()));
             }
         }
         None

@@ -56,6 +56,36 @@ fn a_branch_does_not_go_back_along_itself() {
     assert!(!at(&down, BranchEvent::Flip).is_empty() && down.values.len() < 200, "{}", down.values.len());
 }
 
+/// Past a grazing just below the start of the range one way leads upward, out of it. Which way is taken is up
+/// to rounding.
+#[test]
+fn a_branch_does_not_leave_its_range() {
+    let ends = ["1e-9", "3e-10", "2e-10", "1.0001e-9"].map(|tolerance| {
+        let own = changed("paper", &["stops.travel_limit_mm=7", &format!("run.tolerance={tolerance}")]);
+        let found = over_amplitude(&own, (1.495, 0.7), Some(1));
+        assert!(found.values.iter().all(|own| (0.7..=1.495).contains(own)), "{tolerance} {found:?}");
+        assert!(found.end != BranchEnd::Range || found.values.last() == Some(&1.495), "{tolerance}");
+        found.end
+    });
+    assert!(ends.iter().all(|own| [BranchEnd::Range, BranchEnd::Closed].contains(own)), "{ends:?}");
+}
+
+/// A fold that lies just beyond the end is not reached, and a branch that comes back to its start says so.
+#[test]
+fn a_fold_beyond_the_end_is_not_told_and_a_return_is() {
+    let own = changed("paper-unconstrained", &["run.duration_s=200"]);
+    let whole = over_amplitude(&own, (1.3, 1.1), None);
+    let fold = at(&whole, BranchEvent::Fold)[0];
+    for (beyond, folds) in [(1e-3, 0), (1e-5, 0), (1e-7, 0), (-1e-7, 1), (-1e-5, 1)] {
+        let to = fold + beyond;
+        let found = over_amplitude(&own, (1.3, to), None);
+        assert!(found.values.iter().all(|own| (to..=1.3).contains(own)), "{beyond} {:?}", found.values);
+        let end = if folds == 0 { to } else { 1.3 };
+        assert_eq!((found.end, found.values.last()), (BranchEnd::Range, Some(&end)), "{beyond}");
+        assert_eq!(at(&found, BranchEvent::Fold).len(), folds, "{beyond}");
+    }
+}
+
 #[test]
 fn a_branch_begins_at_its_own_value_of_the_field() {
     let of =
