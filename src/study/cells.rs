@@ -92,6 +92,9 @@ pub(super) trait Question: Sync {
 /// Cells that may be begun, for each thread, before the first of them has left.
 const AHEAD: u64 = 4096;
 
+/// Walks of which this may be so however long they are: as many as a thread has under way.
+const WALKS: u64 = 64;
+
 /// Mechanisms kept for the whole sweep; beyond that each cell builds its own.
 const KEPT_MECHANISMS: u64 = 4096;
 /// About the bytes of a large one (flexures with their states).
@@ -188,11 +191,18 @@ impl Cells {
         end.or(cancelled.then_some(SweepEnd::Cancelled)).map_or(Ok(tally), Err)
     }
 
-    /// An upper bound of the bytes that [`run`](Self::run) keeps, however many cells there are.
-    pub fn memory<Q: Question>(&self, threads: u64) -> u64 {
+    /// Walks of so many cells that may be begun, for each thread, before the first of them has left.
+    pub(super) fn walks_ahead(length: u64) -> u64 {
+        (AHEAD / length).max(WALKS)
+    }
+
+    /// An upper bound of the bytes that [`run`](Self::run), or [`walk`](Self::walk) with walks of so many
+    /// cells, keeps, however many cells there are.
+    pub fn memory<Q: Question>(&self, threads: u64, length: Option<u64>) -> u64 {
         let row = size_of::<Ran<Q::Answer>>() as u64;
         let mechanisms = if self.grid.changes_mechanism() { self.mechanisms.len() as u64 } else { 1 };
-        AHEAD * threads * row + mechanisms * LARGEST_MECHANISM
+        let ahead = length.map_or(AHEAD, |length| Self::walks_ahead(length) * length);
+        ahead * threads * row + mechanisms * LARGEST_MECHANISM
     }
 
     /// Runs these cells on `pool`, begun in their order, and hands each over from its thread as soon as it is

@@ -134,7 +134,8 @@ impl Sweep {
     /// About the most bytes that a run of it keeps, however many cells there are. Walks are kept while they
     /// are walked.
     pub fn memory(&self, threads: usize) -> u64 {
-        self.cells.memory::<SweepOptions>(threads as u64)
+        let length = self.options.carry.map(|_| self.unit());
+        self.cells.memory::<SweepOptions>(threads as u64, length)
     }
 
     /// The cell of a row.

@@ -150,6 +150,7 @@ impl Cells {
             Model::run_from(&mut next, &mut ended);
         };
         let walks = ((slice.rows() - from) / length as u64) as usize;
-        self.in_order(question, (walks, length, usize::MAX), pool, task, work, write)
+        let ahead = Self::walks_ahead(length as u64) as usize * pool.count();
+        self.in_order(question, (walks, length, ahead), pool, task, work, write)
     }
 }
