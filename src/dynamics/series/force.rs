@@ -114,7 +114,7 @@ impl<T: Number> ForceSeries<T> {
                     $(let mut $sum = *y * row[$at];)*
                     for (row, y) in rows {
                         let row = &row[first + 1..first + 1 + BLOCK];
-                        $($sum = $sum + *y * row[$at];)*
+                        $($sum += *y * row[$at];)*
                     }
                     let own = &mut own[first..first + BLOCK];
                     $(own[$at] = $sum;)*

@@ -111,18 +111,18 @@ impl<const W: usize> Columns<W> {
     ) -> [bool; W] {
         let bends = (bends.0, polynomial::curvature(y, to.length) * (to.length * to.length));
         let mut turned = [false; W];
-        for lane in 0..W {
-            turned[lane] = turning[lane] & chord(lane, ways, bends, deviations).turns_once();
+        for (lane, turned) in turned.iter_mut().enumerate() {
+            *turned = turning[lane] & chord(lane, ways, bends, deviations).turns_once();
         }
         let velocity = polynomial::scaled_slope(y, to.length);
         let ends = ((ways.0, bends.0), (ways.1, bends.1));
         let (share, turned) = roots(&velocity[..y.len() - 1], &turned, ends.0, ends.1);
         let x = polynomial::value(y, share * to.length) + self.origin;
-        for lane in 0..W {
+        for (lane, turned) in turned.iter().enumerate() {
             let x = x.0[lane].max(self.low_end.0[lane]).min(self.high_end.0[lane]);
             let (lowest, highest) = (low.0[lane].min(x), high.0[lane].max(x));
-            low.0[lane] = if turned[lane] { lowest } else { low.0[lane] };
-            high.0[lane] = if turned[lane] { highest } else { high.0[lane] };
+            low.0[lane] = if *turned { lowest } else { low.0[lane] };
+            high.0[lane] = if *turned { highest } else { high.0[lane] };
         }
         turned
     }
@@ -168,8 +168,8 @@ fn roots<const W: usize>(
             let expansion = (value.0[lane], slope.0[lane], half_curvature.0[lane]);
             let (next, near) = single_root::next(share.0[lane], expansion);
             share.0[lane] = if found[lane] { share.0[lane] } else { next };
-            found[lane] = found[lane] | near;
-            missing = missing | (wanted[lane] & !found[lane]);
+            found[lane] |= near;
+            missing |= wanted[lane] & !found[lane];
         }
         if !missing {
             break;
@@ -186,8 +186,8 @@ fn roots<const W: usize>(
 #[inline(always)]
 fn choose<const W: usize>(which: &[bool; W], own: Lanes<W>, other: Lanes<W>) -> Lanes<W> {
     let mut chosen = own;
-    for lane in 0..W {
-        chosen.0[lane] = if which[lane] { other.0[lane] } else { own.0[lane] };
+    for (lane, which) in which.iter().enumerate() {
+        chosen.0[lane] = if *which { other.0[lane] } else { own.0[lane] };
     }
     chosen
 }

@@ -42,7 +42,7 @@ impl<const W: usize> Columns<W> {
         let residual = (self.force.at(end.y) + sum).abs() * length;
 
         let (mut may, mut left) = ([false; W], length);
-        for lane in 0..W {
+        for (lane, may) in may.iter_mut().enumerate() {
             let (length, period) = (length.0[lane], self.period.0[lane]);
             let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
             let to_border = cycles * period + (self.border.phase.0[lane] - self.at.phase.0[lane]);
@@ -50,7 +50,7 @@ impl<const W: usize> Columns<W> {
             trial.holds[lane] = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
             let early = (length < left.0[lane]) & (at.phase.0[lane] < period);
             let finite = end.v.0[lane].abs() < f64::INFINITY;
-            may[lane] = self.active[lane] & trial.holds[lane] & early & finite;
+            *may = self.active[lane] & trial.holds[lane] & early & finite;
         }
         let (x, acceleration) = (end.y + self.origin, end.acceleration);
         let mut to = Arrivals { length, x, v: end.v, acceleration, at, unit };
@@ -112,7 +112,7 @@ impl<const W: usize> Columns<W> {
         if turning.contains(&true) {
             let turned = self.turn(&turning, y, &to, (ways, bends, deviations), (&mut low, &mut high));
             for lane in 0..W {
-                fine[lane] = fine[lane] & (!turning[lane] | turned[lane]);
+                fine[lane] &= !turning[lane] | turned[lane];
             }
         }
         for lane in 0..W {
