@@ -211,12 +211,19 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         let mut last_move = high - low;
         for _ in 0..120 {
             let expansion = expansion(self.g, s);
+            let (step, bent) = step(expansion);
+            // Another change, the other way, at the very end of the bracket: its sign there is rounding alone.
+            let falls = (expansion.1 > T::zero()) != (self.g[0] > T::zero());
+            let middle = (low + high) * half;
+            if falls != above && step.abs() <= close && s != middle {
+                (s, last_move) = (middle, high - low);
+                continue;
+            }
             if self.is_as_at_first(expansion.0) == above {
                 low = s
             } else {
                 high = s
             }
-            let (step, bent) = step(expansion);
             let next = s - step;
             // A step must stay inside and at least halve the last move; else halve the bracket.
             let inside = next >= low && next <= high && step.abs() * T::of(2.0) <= last_move;

@@ -174,6 +174,18 @@ fn where_the_end_of_a_half_is_a_root_to_rounding_it_is_that_root() {
     }
 }
 
+#[test]
+fn a_change_inside_is_found_where_the_end_is_a_root_to_rounding() {
+    for k in (1..2000).map(|k| f64::from(k) / 2000.0) {
+        for other in [-0.39, -2.0, 1.7] {
+            for scale in [0.5, -0.5] {
+                let found = all(&from_roots(&[other, 1.0, k], scale));
+                assert!(!found.is_empty() && (found[0] - k).abs() < 1e-11, "{k} {other} {scale}: {found:?}");
+            }
+        }
+    }
+}
+
 /// Roots from 0 to 1, halves and quarters among them, and some outside.
 fn some_roots() -> impl Strategy<Value = Vec<f64>> {
     let root = prop_oneof![

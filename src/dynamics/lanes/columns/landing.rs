@@ -4,7 +4,7 @@
 
 use super::{Clocks, Columns};
 use crate::dynamics::series::polynomial;
-use crate::dynamics::step::chord::Chord;
+use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::numeric::{Lanes, Scalar, single_root};
 
 /// Where steps lead.
@@ -18,6 +18,9 @@ pub(super) struct Arrivals<const W: usize> {
     /// The drive and its time derivative per unit amplitude.
     pub unit: (Lanes<W>, Lanes<W>),
 }
+
+/// A share of the way that rounding is far below.
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Three columns.
 type Three<const W: usize> = (Lanes<W>, Lanes<W>, Lanes<W>);
@@ -96,6 +99,34 @@ impl<const W: usize> Columns<W> {
         to.at = self.at.advance(&to.length, &self.period);
         to.unit = self.drive_at(&to.at);
         landed
+    }
+
+    /// Looks at steps at four times within: which are `clear` of the low and of the high end of the mode after
+    /// all, and which are not `turning` beyond the extremes.
+    #[inline(always)]
+    pub(super) fn look_closer(
+        &self,
+        y: &[Lanes<W>],
+        to: &Arrivals<W>,
+        (bound, deviation): (&Lanes<W>, &Lanes<W>),
+        (low, high): (&Lanes<W>, &Lanes<W>),
+        clear: &mut ([bool; W], [bool; W]),
+        turning: &mut [bool; W],
+    ) {
+        let at = |share: f64| to.length * Lanes([share; W]);
+        let times = (at(0.2), at(0.4), at(0.6), at(0.8));
+        let (a, b, c, d) = polynomial::at_four_times(y.len(), |k| y[k], 0, times);
+        for (lane, turning) in turning.iter_mut().enumerate() {
+            let own = [a, b, c, d].map(|own| own.0[lane] + self.origin.0[lane]);
+            let (start, end) = (y[0].0[lane] + self.origin.0[lane], to.x.0[lane]);
+            let lowest = own.into_iter().fold(start.min(end), f64::min);
+            let highest = own.into_iter().fold(start.max(end), f64::max);
+            // five chords, each of a fifth of the length
+            let off = deviation.0[lane] * (CLEARANCE / 25.0) + bound.0[lane] * ROUNDING;
+            clear.0[lane] |= lowest - off > self.low_end.0[lane];
+            clear.1[lane] |= highest + off < self.high_end.0[lane];
+            *turning &= (lowest - off < low.0[lane]) | (highest + off > high.0[lane]);
+        }
     }
 
     /// Takes turning points into the extremes of lanes that are `turning`, where they turn once; which those

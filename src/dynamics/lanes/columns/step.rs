@@ -5,16 +5,13 @@
 //! must stay equal to the bit.
 
 use super::Columns;
-use super::landing::Arrivals;
+use super::landing::{Arrivals, ROUNDING};
 use crate::dynamics::drive::tone::Harmonic;
 use crate::dynamics::lanes::trial::Trial;
 use crate::dynamics::record::event_free::MARGIN;
 use crate::dynamics::series::{Series, natural_steps, polynomial};
 use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::numeric::{GaussLegendre, Lanes, Number};
-
-/// A share of the way that rounding is far below.
-const ROUNDING: f64 = 1e-9;
 
 impl<const W: usize> Columns<W> {
     /// Computes one step in all lanes and takes it where it is event-free, up to a break where it meets one.
@@ -65,6 +62,7 @@ impl<const W: usize> Columns<W> {
         let (ways, bends) = ((self.v * to.length, to.v * to.length), to.acceleration * square);
         let bends = ((y[2] + y[2]) * square, bends);
         let (mut fine, mut turning, mut crosses) = ([false; W], [false; W], [false; W]);
+        let (mut clear, mut unsure) = (([false; W], [false; W]), false);
         let (mut low, mut high) = (start, start);
         for lane in 0..W {
             let bound = end.bound.0[lane];
@@ -92,7 +90,8 @@ impl<const W: usize> Columns<W> {
             let bends = chord.bends_one_way();
             let clear_low = clear_low | (above & (monotone | (bends & (chord.bends.0 < 0.0))));
             let clear_high = clear_high | (below & (monotone | (bends & (chord.bends.0 > 0.0))));
-            let clear = (clear_low & clear_high) | landed[lane];
+            clear.0[lane] = clear_low | landed[lane];
+            clear.1[lane] = clear_high | landed[lane];
             let (own_low, own_high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
             (low.0[lane], high.0[lane]) = (own_low, own_high);
 
@@ -105,9 +104,17 @@ impl<const W: usize> Columns<W> {
             let countable = !inside & (to.length.0[lane] + to.length.0[lane] < left.0[lane]) & !landed[lane];
             let clear_of_barrier =
                 !(near | passed | onto) | (monotone & (from > 0.0) & !onto & (!passed | countable));
-            fine[lane] = may[lane] & clear & clear_of_barrier;
-            turning[lane] = fine[lane] & turns & inside;
+            fine[lane] = may[lane] & clear_of_barrier;
+            turning[lane] = turns & inside;
             crosses[lane] = passed;
+            unsure |= fine[lane] & (turning[lane] | !(clear.0[lane] & clear.1[lane]));
+        }
+        if unsure {
+            self.look_closer(y, &to, (&end.bound, &deviations.0), (&low, &high), &mut clear, &mut turning);
+        }
+        for lane in 0..W {
+            fine[lane] &= clear.0[lane] & clear.1[lane];
+            turning[lane] &= fine[lane];
         }
         if turning.contains(&true) {
             let turned = self.turn(&turning, y, &to, (ways, bends, deviations), (&mut low, &mut high));
