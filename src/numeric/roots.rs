@@ -212,7 +212,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         for _ in 0..120 {
             let expansion = expansion(self.g, s);
             let (step, bent) = step(expansion);
-            // Another change, the other way, at the very end of the bracket: its sign there is rounding alone.
+            // Another change, the other way, at the very end of the bracket: its sign is rounding alone.
             let falls = (expansion.1 > T::zero()) != (self.g[0] > T::zero());
             let middle = (low + high) * half;
             if falls != above && step.abs() <= close && s != middle {

@@ -101,8 +101,8 @@ impl<const W: usize> Columns<W> {
         landed
     }
 
-    /// Looks at steps at four times within: which are `clear` of the low and of the high end of the mode after
-    /// all, and which are not `turning` beyond the extremes.
+    /// Looks at steps at four times within: which are `clear` of the low and of the high end of the mode
+    /// after all, and which are not `turning` beyond the extremes.
     #[inline(always)]
     pub(super) fn look_closer(
         &self,
