@@ -30,7 +30,7 @@ fn every_hard_case_holds() {
                 assert!(check.passes(), "{} {} {quantity}: {check:?}", case.name, variant.name);
                 if let Check::Error { allowed, .. } = check {
                     // a case that allows anything shows nothing
-                    assert!(*allowed < 0.15, "{} {} {quantity}: {check:?}", case.name, variant.name);
+                    assert!(*allowed < 0.1, "{} {} {quantity}: {check:?}", case.name, variant.name);
                 }
                 checks += 1;
             }

@@ -78,6 +78,7 @@ pub(crate) struct Trial<const W: usize> {
     pub unit: (Lanes<W>, Lanes<W>),
     /// Integral of the squared velocity over the whole of it, where that is known.
     pub squared: Lanes<W>,
+    /// Where that is.
     pub measured: [bool; W],
 }
 

@@ -22,9 +22,6 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     pub fn flies_freely(&mut self, state: &MotionState<T>) -> bool {
         match state.touch {
             None => true,
-            Some(Touch { end, multiplicity: BY_SPEED }) if self.mode(state).end(end).1 == EndKind::Break => {
-                true
-            }
             Some(Touch { multiplicity: BY_SPEED, .. }) => {
                 self.seed(state);
                 self.pressed_rebound(state)

@@ -71,7 +71,7 @@ fn white_noise_gives_a_damper_the_same_power_whatever_the_potential() {
     let free = [(one, "None".to_owned()), (two, "None".to_owned())];
     for (mechanism, stops) in free.into_iter().chain(elastic) {
         let (mean, error) = under_noise(mechanism, &stops);
-        assert!(error < 0.08, "{error}");
+        assert!(error < 0.06, "{error}");
         // (a band up to 4 Hz leaves out a hundredth)
         near(mean, 1.0, 3.0 * error + 0.02);
     }

@@ -8,7 +8,6 @@ use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::numeric::{Lanes, Scalar, single_root};
 
 /// Where steps lead.
-#[derive(Clone, Copy)]
 pub(super) struct Arrivals<const W: usize> {
     pub length: Lanes<W>,
     pub x: Lanes<W>,
