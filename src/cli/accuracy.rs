@@ -14,7 +14,6 @@ use super::picture::Picture;
 use super::support::{Watch, finish, open, write_table, write_text};
 use super::{interrupt, say, scene_accuracy};
 
-/// What it takes.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene file or built-in scene whose run is looked at; without one the program's own problems and cases
@@ -42,25 +41,19 @@ pub struct Arguments {
     /// The picture: error over time, of the problems p1, p2 and flexures.
     #[command(flatten)]
     pub plot: PlotOptions,
-
-    /// What every command takes; --out has everything as CSV, and where that is `-` the table goes to
-    /// standard error.
-    #[command(flatten)]
-    pub common: Common,
 }
 
 /// Runs what was selected and shows it; an error where a case falls short, after everything was written.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(scene) = &options.scene {
-        return scene_accuracy::run(scene, options);
+        return scene_accuracy::run(scene, options, common);
     }
-    let common = &options.common;
     if let Some(option) = common.given(true) {
         return Err(Failure::argument(format!(
             "{option} needs a SCENE, such as interwell --headless accuracy paper {option} .."
         )));
     }
-    let picture = Picture::asked(&options.plot, &options.common)?;
+    let picture = Picture::asked(&options.plot, common)?;
     let selection = if options.case.is_empty() { Selection::all() } else { Selection::of(&options.case)? };
     if options.list {
         let mut sinks = open(&[], [Some(("--list", std::path::Path::new("-")))])?;

@@ -10,27 +10,22 @@ use super::options::Common;
 use super::say;
 use super::support::{finish, load, mechanism, open, write_text};
 
-/// What it takes.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene files or built-in scenes [default: paper]
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
 }
 
 /// Reports every scene; the ones that are wrong on standard error, after which the command has failed.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let paper = ["paper".to_owned()];
     let scenes = if options.scenes.is_empty() { &paper[..] } else { &options.scenes[..] };
     let names: Vec<PathBuf> = scenes.iter().map(PathBuf::from).collect();
-    let mut sinks = open(&names, [Some(("--out", options.common.out()))])?;
+    let mut sinks = open(&names, [Some(("--out", common.out()))])?;
     let mut wrong = Vec::new();
     for spec in scenes {
-        match report(spec, &options.common) {
+        match report(spec, common) {
             Ok(text) => write_text(&mut sinks[0], &text)?,
             Err(error) => wrong.push(error),
         }

@@ -26,7 +26,6 @@ Examples:
   interwell --headless compare paper balanced magnet paper-unconstrained --plot alternatives.pdf \\
       --plot-width-mm 170 --no-title";
 
-/// What it takes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
@@ -41,15 +40,10 @@ pub struct Arguments {
     /// The picture: a row a scene, a panel a quantity.
     #[command(flatten)]
     pub plot: PlotOptions,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
 }
 
 /// Rates the scenes and writes a row for each.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::asked(&options.plot, common)?;
     let environment = options.environment.as_deref().or(options.scenes.first().map(String::as_str));
     let environment = read(environment.unwrap_or("paper"), common)?;

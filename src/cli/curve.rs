@@ -17,12 +17,13 @@ use interwell::study::{
 
 use super::failure::Failure;
 use super::measured_force::MeasuredForceOptions;
-use super::options::{Common, PlotOptions, RangeOptions, whole};
+use super::options::{ChartOptions, Common, whole};
 use super::picture::{Picture, caption, ranges};
-use super::support::{finish, inputs, load_with_mechanism, numbers, open, write_table, write_text};
+use super::support::{
+    finish, inputs, load_with_mechanism, number, numbers, open, range, write_table, write_text,
+};
 use super::{interrupt, say};
 
-/// What it takes.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene file or built-in scene
@@ -77,34 +78,25 @@ pub struct Arguments {
     #[command(flatten)]
     pub measured: MeasuredForceOptions,
 
-    /// The picture.
     #[command(flatten)]
-    pub plot: PlotOptions,
-
-    /// Its axes.
-    #[command(flatten)]
-    pub ranges: RangeOptions,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
+    pub chart: ChartOptions,
 }
 
 /// Positions at which the flexures are drawn: each is some hundred rows.
 const SHAPES: u32 = 21;
 
 /// Writes the curve as CSV and, where asked for, the landscape as JSON and the shapes of the flexures as CSV.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
-    let picture = Picture::asked(&options.plot, &options.common)?;
-    let axes = ranges(&options.ranges, "--plot-x")?;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let picture = Picture::asked(&options.chart.plot, common)?;
+    let axes = ranges(&options.chart, "--plot-x")?;
     let contact_picture =
-        Picture::of("--contact-plot", options.contact_plot.as_deref(), &options.plot, common)?;
+        Picture::of("--contact-plot", options.contact_plot.as_deref(), &options.chart.plot, common)?;
     // of two pictures the numbers are those of --plot
     let contact_picture =
-        contact_picture.map(|own| if picture.is_none() { own.with_data(&options.plot) } else { own });
+        contact_picture.map(|own| if picture.is_none() { own.with_data(&options.chart.plot) } else { own });
     let rigid = restitution(&options.rigid)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
+    let range = |text| range("--range-mm", text, "A:B in mm with A below B, such as -8:8");
     let range = options.range_mm.as_deref().map(range).transpose()?;
     let even = |points: usize| match range {
         Some(range) => even_positions(range, points).into_iter().map(metres).collect(),
@@ -206,10 +198,8 @@ fn contact_table(
 
 /// The restitution of a rigid stop as given to `--rigid`.
 fn restitution(text: &str) -> Result<f64, Failure> {
-    let number = text.trim().parse().ok().filter(|own| (0.0..=1.0).contains(own));
-    number.ok_or_else(|| {
-        Failure::argument(format!("--rigid {text}: give a coefficient of restitution, 0 to 1, such as 0.36"))
-    })
+    let fits = |own: &f64| (0.0..=1.0).contains(own);
+    number("--rigid", text, fits, "give a coefficient of restitution, 0 to 1, such as 0.36")
 }
 
 /// The flexures at these positions in m, unless Ctrl-C comes first; `scene` and `option` are what an error
@@ -231,14 +221,5 @@ fn unknown(scene: &str, option: &str, error: StatesError) -> Failure {
         StatesError::Outside(error) => error.into(),
         StatesError::Unsolved(_) => Failure::Failed(anyhow::anyhow!("{scene}: {error}")),
         StatesError::Cancelled => Failure::interrupted(),
-    }
-}
-
-fn range(text: &str) -> Result<(f64, f64), Failure> {
-    match numbers("--range-mm", text, ':')?[..] {
-        [from, to] if from < to && from.is_finite() && to.is_finite() => Ok((from, to)),
-        _ => {
-            Err(Failure::argument(format!("--range-mm {text}: write A:B in mm with A below B, such as -8:8")))
-        }
     }
 }

@@ -2,9 +2,7 @@
 
 use clap::Args;
 use interwell::dynamics::Model;
-use interwell::output::{
-    ExponentPicture, Sink, can_show_exponents, exponents_figure, exponents_manifest, header, rows,
-};
+use interwell::output::{ExponentPicture, can_show_exponents, exponents_figure, exponents_manifest, header};
 use interwell::scene::Document;
 use interwell::study::{
     ExponentCells, ExponentOptions, ExponentTally, Exponents, Grid, NoExponents, SweepEnd, Table, Task,
@@ -12,11 +10,11 @@ use interwell::study::{
 };
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions, whole};
+use super::options::{ChartOptions, Common, whole};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
-    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, refuse_electrical_state, until_settled,
-    warn, write_table, write_text,
+    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, put, refuse_electrical_state,
+    until_settled, warn, write_table, write_text,
 };
 use super::sweep::{bar, file_name, located, manifest_path, pool};
 use super::{interrupt, say};
@@ -30,7 +28,6 @@ Examples:
 
 A motion that rests on a stop forgets where it came from: both exponents are then minus infinity, -inf.";
 
-/// What it takes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
@@ -55,27 +52,18 @@ pub struct Arguments {
 
     /// The picture, with --over one field: both exponents, each with its standard error.
     #[command(flatten)]
-    pub plot: PlotOptions,
-
-    /// Its axes.
-    #[command(flatten)]
-    pub ranges: RangeOptions,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
+    pub chart: ChartOptions,
 }
 
 /// Measures and writes the table.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.plot, &options.common)?;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let picture = Picture::asked(&options.chart.plot, common)?;
     if !options.over.is_empty() {
-        return over(options, picture);
+        return over(options, common, picture);
     }
     if picture.is_some() {
         can_show_exponents(None)?;
     }
-    let common = &options.common;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
     if let Some(fault) = drive_fault(&model, &document.scene) {
@@ -128,9 +116,8 @@ fn about(found: &Exponents, forced: bool) -> String {
 }
 
 /// A row for each cell of a grid.
-fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
-    let common = &options.common;
-    let axes = ranges(&options.ranges, "--plot-x")?;
+fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Result<(), Failure> {
+    let axes = ranges(&options.chart, "--plot-x")?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let beside = manifest_path(common.out());
     if beside.is_some() {
@@ -162,7 +149,7 @@ fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
         if let Some(shown) = &mut shown {
             shown.append(table);
         }
-        put(&mut sinks[0], table).map(|open| open || shown.is_some())
+        put(&mut sinks[0], table, shown.is_some())
     });
     bar.finish_and_clear();
     let tally = result.map_err(|end| match end {
@@ -183,14 +170,6 @@ fn over(options: &Arguments, picture: Option<Picture>) -> Result<(), Failure> {
         say(&summary(&tally, watch.wall_s()));
     }
     Ok(())
-}
-
-/// Writes rows at once; whether anyone still reads them.
-fn put(sink: &mut Option<Sink>, table: &Table) -> Result<bool, Failure> {
-    write_text(sink, &rows(table, 0..usize::MAX))?;
-    let Some(sink) = sink else { return Ok(false) };
-    sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
-    Ok(!sink.is_closed())
 }
 
 /// What came of the cells.

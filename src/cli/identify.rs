@@ -11,7 +11,7 @@ use interwell::study::{
 
 use super::columns::{ColumnOptions, PositionOptions};
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{ChartOptions, Common};
 use super::picture::{Picture, ranges};
 use super::say;
 use super::support::{Watch, finish, open, write_table, write_text};
@@ -26,7 +26,6 @@ Examples:
   interwell --headless identify pull.csv --of force --points 201 --out force.csv
   interwell --headless curve --set 'mechanism=Table(path: \"/data/force.csv\", tolerance: 1e-3)'";
 
-/// What it takes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
@@ -55,7 +54,6 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=100_000))]
     pub points: Option<u32>,
 
-    /// The positions.
     #[command(flatten)]
     pub positions: PositionOptions,
 
@@ -63,21 +61,11 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub summary: Option<PathBuf>,
 
-    /// The columns.
     #[command(flatten)]
     pub columns: ColumnOptions,
 
-    /// The picture.
     #[command(flatten)]
-    pub plot: PlotOptions,
-
-    /// Its axes.
-    #[command(flatten)]
-    pub ranges: RangeOptions,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
+    pub chart: ChartOptions,
 }
 
 impl Arguments {
@@ -91,17 +79,16 @@ impl Arguments {
 }
 
 /// Reads the record, identifies, and writes rows and summary.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
-    fits(options)?;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    fits(options, common)?;
     let summary = options.summary.as_deref().map(|path| ("--summary", path));
     let watch = Watch::start();
-    let picture = Picture::asked(&options.plot, common)?;
-    let axes = ranges(&options.ranges, "--plot-x")?;
+    let picture = Picture::asked(&options.chart.plot, common)?;
+    let axes = ranges(&options.chart, "--plot-x")?;
     let [plot, data] = Picture::outputs(picture);
     let outputs = [Some(("--out", common.out())), summary, plot, data];
     let mut sinks = open(&[options.file().to_path_buf()], outputs)?;
-    let Answer { timing, found, across, values } = answer(options)?;
+    let Answer { timing, found, across, values } = answer(options, common.quiet)?;
     let found = found.map_err(|problem| about(options.file(), problem))?;
     let [rows, about, pictures @ ..] = &mut sinks;
     write_table(rows, &found.rows)?;
@@ -126,7 +113,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
 }
 
 /// Refuses what has no meaning for what is asked.
-fn fits(options: &Arguments) -> Result<(), Failure> {
+fn fits(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if options.file.is_none() || options.of.is_none() {
         return Err(Failure::argument(
             "identify needs a record and what to identify: identify FILE --of damping, restitution or force",
@@ -149,7 +136,7 @@ fn fits(options: &Arguments) -> Result<(), Failure> {
     if let Some((option, _)) = timed.into_iter().find(|own| own.1 && of == "force") {
         return Err(Failure::argument(format!("{option} cuts a record over time; --of force has none")));
     }
-    if let Some(option) = options.common.given(true).filter(|option| *option != "--jobs") {
+    if let Some(option) = common.given(true).filter(|option| *option != "--jobs") {
         return Err(Failure::argument(format!("{option} changes a scene, and `identify` has none")));
     }
     if let (Some(from), Some(to)) = (options.from, options.to)
@@ -172,31 +159,31 @@ struct Answer {
 }
 
 /// Reads the record and identifies.
-fn answer(options: &Arguments) -> Result<Answer, Failure> {
+fn answer(options: &Arguments, quiet: bool) -> Result<Answer, Failure> {
     let times = options.columns.times();
     match options.of() {
         "force" => {
             let asks = [options.positions.positions(), options.columns.values(&[Quantity::Force])];
-            let [x, own] = read(options, &asks)?.channels;
+            let [x, own] = read(options, quiet, &asks)?.channels;
             let points = options.points.map_or(FORCE_POINTS, |points| points as usize);
             let found = force(&x.values, &own.values, points);
             Ok(Answer { timing: None, found, across: x.values, values: own })
         }
         "restitution" if options.impact_times => {
-            let [times] = cut(options, read(options, &[times])?)?.channels;
+            let [times] = cut(options, read(options, quiet, &[times])?)?.channels;
             let found = restitution_of_times(&times.values);
             let values = Channel { quantity: Quantity::Displacement, values: Vec::new(), ..times };
             Ok(Answer { timing: None, found, across: Vec::new(), values })
         }
         "restitution" => {
             let values = options.columns.values(&[Quantity::Displacement]);
-            let [times, values] = cut(options, read(options, &[times, values])?)?.channels;
+            let [times, values] = cut(options, read(options, quiet, &[times, values])?)?.channels;
             let (timing, times) = (Some(Timing::of(&times.values)), times.values);
             Ok(Answer { timing, found: restitution(&times, &values.values), across: times, values })
         }
         _ => {
             let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
-            let record = read(options, &[times, options.columns.values(&any)])?;
+            let record = read(options, quiet, &[times, options.columns.values(&any)])?;
             let [times, values] = cut(options, record)?.channels;
             let (timing, times) = (Some(Timing::of(&times.values)), times.values);
             Ok(Answer { timing, found: damping(&times, &values), across: times, values })
@@ -204,9 +191,9 @@ fn answer(options: &Arguments) -> Result<Answer, Failure> {
     }
 }
 
-fn read<const N: usize>(options: &Arguments, asks: &[Ask; N]) -> Result<Measured<N>, Failure> {
+fn read<const N: usize>(options: &Arguments, quiet: bool, asks: &[Ask; N]) -> Result<Measured<N>, Failure> {
     let record = read_measured(options.file(), asks).map_err(|problem| about(options.file(), problem))?;
-    if !options.common.quiet {
+    if !quiet {
         let read = record.channels.iter().map(|own| format!("{} from `{}`", own.quantity.name(), own.column));
         let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
         say(&format!("{}: {}{commas}", options.file().display(), read.collect::<Vec<_>>().join(", ")));

@@ -23,7 +23,6 @@ Examples:
   interwell --headless lesson --new my-lesson.ron
   interwell --headless lesson my-lesson.ron --check";
 
-/// What it takes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
@@ -39,15 +38,10 @@ pub struct Arguments {
     /// Write a lesson to begin one's own from
     #[arg(long, value_name = "FILE", conflicts_with_all = ["lesson", "check"])]
     pub new: Option<PathBuf>,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
 }
 
 /// Lists, prints, checks or begins lessons.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let changes = !common.set.is_empty() || common.tolerance.is_some();
     if let Some(option) = common.given(true).filter(|_| changes || !options.check) {
         return Err(Failure::argument(format!(
@@ -60,7 +54,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
     let input: Vec<PathBuf> = options.lesson.iter().map(PathBuf::from).collect();
     let mut sinks = open(&input, [Some(("--out", common.out()))])?;
     let (text, wrong) = match &options.lesson {
-        _ if options.check => checked(options)?,
+        _ if options.check => checked(options, common)?,
         Some(spec) => (told(&load(spec)?), None),
         None => (listed()?, None),
     };
@@ -109,7 +103,7 @@ fn told(document: &LessonDocument) -> String {
 }
 
 /// What the check of the lessons says, a line each, and the error with which it ends where one is wrong.
-fn checked(options: &Arguments) -> Result<(String, Option<Failure>), Failure> {
+fn checked(options: &Arguments, common: &Common) -> Result<(String, Option<Failure>), Failure> {
     let specs: Vec<&str> = match &options.lesson {
         Some(spec) => vec![spec],
         None => LESSONS.iter().map(|lesson| lesson.name).collect(),
@@ -119,7 +113,7 @@ fn checked(options: &Arguments) -> Result<(String, Option<Failure>), Failure> {
     let of = |document: usize| (0..documents[document].lesson.steps.len()).map(move |step| (document, step));
     let steps: Vec<(usize, usize)> = (0..documents.len()).flat_map(of).collect();
     let check = |_: &mut (), part: usize| check_step(&documents[steps[part].0], steps[part].1, &task);
-    let checked = pool(&options.common)?.map(steps.len(), || (), check).map_err(|error| match error {
+    let checked = pool(common)?.map(steps.len(), || (), check).map_err(|error| match error {
         Unjudged::Cancelled => Failure::interrupted(),
         Unjudged::Scene { .. } => Failure::Failed(anyhow::anyhow!("a scene of the lesson: {error}")),
     })?;
@@ -137,7 +131,7 @@ fn checked(options: &Arguments) -> Result<(String, Option<Failure>), Failure> {
             many(*predictions),
             many(*tasks)
         );
-        if !options.common.quiet {
+        if !common.quiet {
             lines(document, &report.warnings).for_each(|line| say(&format!("warning: {line}")));
         }
         wrong.extend(lines(document, &report.wrong));

@@ -13,9 +13,8 @@ use interwell::study::{Comparison, MeasuredMotion, NoComparison, compare, metres
 use super::columns::ColumnOptions;
 use super::failure::Failure;
 use super::say;
-use super::support::numbers;
+use super::support::{number, numbers};
 
-/// What it takes.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Comparison with a measured motion")]
 pub struct MeasuredOptions {
@@ -45,7 +44,6 @@ pub struct MeasuredOptions {
     #[arg(long, value_name = "A:B", allow_hyphen_values = true, requires_all = ["measured", "plot"])]
     pub inset: Option<String>,
 
-    /// Its columns.
     #[command(flatten)]
     pub columns: ColumnOptions,
 }
@@ -57,8 +55,7 @@ pub fn offset(text: Option<&str>) -> Result<f64, Failure> {
 }
 
 fn finite(option: &str, text: &str, right: &str) -> Result<f64, Failure> {
-    let number = text.trim().parse().ok().filter(|own: &f64| own.is_finite());
-    number.ok_or_else(|| Failure::argument(format!("{option} {text}: {right}")))
+    number(option, text, |own: &f64| own.is_finite(), right)
 }
 
 /// A record that was read, and how it is laid over the run.

@@ -13,7 +13,6 @@ use super::failure::Failure;
 use super::measured::offset;
 use super::say;
 
-/// What it takes.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Comparison with a measured force")]
 pub struct MeasuredForceOptions {
@@ -30,7 +29,6 @@ pub struct MeasuredForceOptions {
     #[arg(long, value_name = "MM", allow_hyphen_values = true, requires = "measured")]
     pub offset_mm: Option<String>,
 
-    /// The positions.
     #[command(flatten)]
     pub positions: PositionOptions,
 

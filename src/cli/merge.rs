@@ -17,16 +17,11 @@ use super::shard::{PLACE, command, other_name, value};
 use super::support::{MANIFEST, Watch, file_name, finish, manifest_path, open, write_text};
 use super::{interrupt, say};
 
-/// What it takes.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// The files that `sweep --shard` wrote, in any order; the manifest of each stands beside it
     #[arg(value_name = "PART")]
     pub parts: Vec<PathBuf>,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
 }
 
 /// A shard: its file, its manifest, and how far it has been read.
@@ -39,8 +34,7 @@ struct Part {
 }
 
 /// Puts the shards together.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(option) = common.given(true) {
         return Err(Failure::argument(format!(
             "{option} changes a run, and merge runs nothing: leave it out"

@@ -54,7 +54,6 @@ pub struct Options {
     #[command(subcommand)]
     pub command: Option<Command>,
 
-    /// Common options before the command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -70,7 +69,12 @@ macro_rules! commands {
                 #[command(override_usage = concat!("interwell \
                     --headless ", stringify!($word), $scene, " \
                     [OPTIONS]"))]
-                $variant(super::$word::Arguments),
+                $variant {
+                    #[command(flatten)]
+                    own: super::$word::Arguments,
+                    #[command(flatten)]
+                    common: Common,
+                },
             )*
         }
 
@@ -81,21 +85,21 @@ macro_rules! commands {
             /// The word that selects it.
             pub fn name(&self) -> &'static str {
                 match self {
-                    $(Self::$variant(_) => stringify!($word),)*
+                    $(Self::$variant { .. } => stringify!($word),)*
                 }
             }
 
             /// Its common options.
             pub fn common(&mut self) -> &mut Common {
                 match self {
-                    $(Self::$variant(arguments) => &mut arguments.common,)*
+                    $(Self::$variant { common, .. } => common,)*
                 }
             }
 
             /// Does it.
             pub fn run(&self) -> Result<(), Failure> {
                 match self {
-                    $(Self::$variant(arguments) => super::$word::run(arguments),)*
+                    $(Self::$variant { own, common } => super::$word::run(own, common),)*
                 }
             }
         }
@@ -283,7 +287,10 @@ pub struct PlotOptions {
 
 /// What the commands take whose pictures have axes with ranges.
 #[derive(Debug, Args)]
-pub struct RangeOptions {
+pub struct ChartOptions {
+    #[command(flatten)]
+    pub plot: PlotOptions,
+
     /// With --plot: range of the axis to the right in its unit; of a run the times in s
     #[arg(
         long,

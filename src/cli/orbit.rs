@@ -11,9 +11,11 @@ use interwell::scene::{Axis, Document};
 use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, orbit, orbit_table};
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions, whole};
+use super::options::{ChartOptions, Common, whole};
 use super::picture::{Picture, caption, ranges};
-use super::support::{finish, inputs, mechanism, open, read, refuse_electrical_state, warn, write_table};
+use super::support::{
+    finish, inputs, mechanism, number, open, read, refuse_electrical_state, warn, write_table,
+};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -23,7 +25,6 @@ Examples:
   interwell --headless orbit paper-unconstrained --set run.duration_s=200 \\
       --branch excitation.amplitude_g=1.3:1.1 --out branch.csv --plot branch.png";
 
-/// What it takes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
@@ -47,22 +48,13 @@ pub struct Arguments {
 
     /// The picture, of a branch.
     #[command(flatten)]
-    pub plot: PlotOptions,
-
-    /// Its axes.
-    #[command(flatten)]
-    pub ranges: RangeOptions,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
+    pub chart: ChartOptions,
 }
 
 /// Finds the motion, or follows its branch, and writes the table.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
-    let picture = Picture::asked(&options.plot, &options.common)?;
-    let axes = ranges(&options.ranges, "--plot-x")?;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let picture = Picture::asked(&options.chart.plot, common)?;
+    let axes = ranges(&options.chart, "--plot-x")?;
     if picture.is_some() && options.branch.is_none() {
         return Err(Failure::argument("--plot shows a branch; add --branch FIELD=A:B, or leave it out"));
     }
@@ -144,11 +136,7 @@ fn told(branch: &Branch, (from, to): (f64, f64)) -> Option<String> {
 }
 
 fn phase(text: &str) -> Result<f64, Failure> {
-    text.trim()
-        .parse()
-        .ok()
-        .filter(|own: &f64| own.is_finite())
-        .ok_or_else(|| Failure::argument(format!("--phase-deg {text}: give a phase in degrees, such as 90")))
+    number("--phase-deg", text, |own: &f64| own.is_finite(), "give a phase in degrees, such as 90")
 }
 
 /// The field of `--branch FIELD=A:B` and the ends of its range.

@@ -10,9 +10,9 @@ use interwell::output::{
 use interwell::scene::Document;
 
 use super::failure::Failure;
-use super::options::{Common, Options, PlotOptions, RangeOptions};
+use super::options::{ChartOptions, Common, Options, PlotOptions};
 use super::say;
-use super::support::{numbers, write_table};
+use super::support::{range, write_table};
 
 /// A picture that was asked for.
 #[derive(Debug, Clone, Copy)]
@@ -141,17 +141,11 @@ pub fn caption(document: &Document) -> Caption {
 }
 
 /// The ranges of the axes that `options` ask for; errors call the one to the right `across`.
-pub fn ranges(options: &RangeOptions, across: &'static str) -> Result<Ranges, Failure> {
-    let of = |option, text: &Option<String>| text.as_deref().map(|text| range(option, text)).transpose();
+pub fn ranges(options: &ChartOptions, across: &'static str) -> Result<Ranges, Failure> {
+    let form = "A:B with A below B, such as 0:2";
+    let of =
+        |option, text: &Option<String>| text.as_deref().map(|text| range(option, text, form)).transpose();
     Ok(Ranges { x: of(across, &options.plot_x)?, y: of("--plot-y", &options.plot_y)? })
-}
-
-/// A range `A:B` as given to `option`.
-fn range(option: &str, text: &str) -> Result<(f64, f64), Failure> {
-    match numbers(option, text, ':')?[..] {
-        [from, to] if from < to && from.is_finite() && to.is_finite() => Ok((from, to)),
-        _ => Err(Failure::argument(format!("{option} {text}: write A:B with A below B, such as 0:2"))),
-    }
 }
 
 /// A size `WxH` in pixels.

@@ -11,7 +11,6 @@ use super::failure::Failure;
 use super::options::Common;
 use super::support::{finish, open, write_text};
 
-/// What it takes.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Copy the scenes and their tables into this folder
@@ -21,20 +20,16 @@ pub struct Arguments {
     /// With --write: replace files that are there and differ
     #[arg(long, requires = "write")]
     pub force: bool,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
 }
 
 /// Lists the built-in scenes, a line each, or writes them into a folder and lists the files.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    if let Some(option) = options.common.given(true) {
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    if let Some(option) = common.given(true) {
         return Err(Failure::argument(format!(
             "{option} changes a run, and presets runs nothing: leave it out"
         )));
     }
-    let mut sinks = open(&[], [Some(("--out", options.common.out()))])?;
+    let mut sinks = open(&[], [Some(("--out", common.out()))])?;
     let text = match &options.write {
         Some(folder) => write(folder, options.force)?,
         None => {

@@ -9,11 +9,11 @@ use super::accuracy::Arguments;
 use super::accuracy::show;
 use super::failure::Failure;
 use super::interrupt;
+use super::options::Common;
 use super::support::{finish, inputs, load_with_mechanism, open, write_table};
 
 /// Looks at the run of the scene called `spec`.
-pub fn run(spec: &str, options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
+pub fn run(spec: &str, options: &Arguments, common: &Common) -> Result<(), Failure> {
     let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
     let (document, mechanism) = load_with_mechanism(spec, common)?;
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use interwell::dynamics::{Model, Summary};
-use interwell::output::{SectionPicture, Sink, header, manifest, rows, section_figure};
+use interwell::output::{SectionPicture, header, manifest, section_figure};
 use interwell::scene::Document;
 use interwell::study::{
     Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, SweepEnd, Table, Tally, Task,
@@ -10,11 +10,11 @@ use interwell::study::{
 };
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions, whole};
+use super::options::{ChartOptions, Common, whole};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
-    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, refuse_electrical_state, until_settled,
-    warn, write_table, write_text,
+    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, number, open, put, refuse_electrical_state,
+    until_settled, warn, write_table, write_text,
 };
 use super::sweep::{bar, file_name, located, manifest_path, pool};
 use super::{interrupt, say};
@@ -26,7 +26,6 @@ Examples:
   interwell --headless section paper-unconstrained --over excitation.amplitude_g=1:1.5:0.005 --carry both \\
       --skip 200 --keep 100 --out diagram.csv --plot diagram.png";
 
-/// What it takes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
@@ -65,28 +64,19 @@ pub struct Arguments {
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
-    /// The picture.
     #[command(flatten)]
-    pub plot: PlotOptions,
-
-    /// Its axes.
-    #[command(flatten)]
-    pub ranges: RangeOptions,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
+    pub chart: ChartOptions,
 }
 
 /// Takes the section, or one for each cell, and writes the rows.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let asked = SectionOptions {
         at: section_at(options)?,
         periods: options.skip.zip(options.keep),
         until_settled: None,
         carry: options.carry.as_deref().and_then(Carry::named),
     };
-    if options.over.is_empty() { one(options, asked) } else { diagram(options, asked) }
+    if options.over.is_empty() { one(options, common, asked) } else { diagram(options, common, asked) }
 }
 
 /// Where the section is taken.
@@ -100,17 +90,15 @@ fn section_at(options: &Arguments) -> Result<SectionAt, Failure> {
             None => Ok(SectionAt::Impacts),
         };
     }
-    let number = |text: &str| text.trim().parse().ok().filter(|own: &f64| own.is_finite());
-    let wrong = |text| Failure::argument(format!("--phase-deg {text}: give an angle in degrees, such as 90"));
-    let phase = phase.map_or(Ok(0.0), |text| number(text).ok_or_else(|| wrong(text)))?;
-    Ok(SectionAt::Phase(phase))
+    let finite = |own: &f64| own.is_finite();
+    let angle = |text| number("--phase-deg", text, finite, "give an angle in degrees, such as 90");
+    Ok(SectionAt::Phase(phase.map_or(Ok(0.0), angle)?))
 }
 
 /// The section of one run.
-fn one(options: &Arguments, mut asked: SectionOptions) -> Result<(), Failure> {
-    let common = &options.common;
-    let picture = Picture::asked(&options.plot, &options.common)?;
-    let axes = ranges(&options.ranges, "--plot-x")?;
+fn one(options: &Arguments, common: &Common, mut asked: SectionOptions) -> Result<(), Failure> {
+    let picture = Picture::asked(&options.chart.plot, common)?;
+    let axes = ranges(&options.chart, "--plot-x")?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
     asked.until_settled = until_settled(options.until_settled.as_deref(), &document, &asked.run_of(&model))?;
@@ -148,10 +136,9 @@ fn phase(asked: &SectionOptions) -> Option<f64> {
 }
 
 /// The sections of all cells.
-fn diagram(options: &Arguments, asked: SectionOptions) -> Result<(), Failure> {
-    let common = &options.common;
-    let picture = Picture::asked(&options.plot, &options.common)?;
-    let axes = ranges(&options.ranges, "--plot-x")?;
+fn diagram(options: &Arguments, common: &Common, asked: SectionOptions) -> Result<(), Failure> {
+    let picture = Picture::asked(&options.chart.plot, common)?;
+    let axes = ranges(&options.chart, "--plot-x")?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let beside = manifest_path(common.out());
     if beside.is_some() {
@@ -224,15 +211,6 @@ fn diagram(options: &Arguments, asked: SectionOptions) -> Result<(), Failure> {
         say(&format!("{count} rows of {} in {:.2} s", runs(&tally), watch.wall_s()));
     }
     Ok(())
-}
-
-/// Writes rows as they come; whether more of them are wanted: where the reader of a pipe has gone, a picture
-/// may still be.
-fn put(sink: &mut Option<Sink>, table: &Table, drawn: bool) -> Result<bool, Failure> {
-    write_text(sink, &rows(table, 0..usize::MAX))?;
-    let Some(sink) = sink else { return Ok(drawn) };
-    sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
-    Ok(!sink.is_closed() || drawn)
 }
 
 /// The number of runs in words, and of those that ended early.

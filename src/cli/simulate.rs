@@ -12,14 +12,13 @@ use interwell::study::{
 
 use super::failure::Failure;
 use super::measured::MeasuredOptions;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{ChartOptions, Common};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
-    Watch, finish, inputs, load_with_mechanism, numbers, open, until_settled, write_table, write_text,
+    Watch, finish, inputs, load_with_mechanism, number, numbers, open, until_settled, write_table, write_text,
 };
 use super::{interrupt, say};
 
-/// What it takes.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene file or built-in scene
@@ -61,30 +60,18 @@ pub struct Arguments {
     #[command(flatten)]
     pub measured: MeasuredOptions,
 
-    /// The picture.
     #[command(flatten)]
-    pub plot: PlotOptions,
-
-    /// Its axes.
-    #[command(flatten)]
-    pub ranges: RangeOptions,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
+    pub chart: ChartOptions,
 }
 
 /// Runs the scene and writes samples, events and summary.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
-    let picture = Picture::asked(&options.plot, &options.common)?;
-    let axes = ranges(&options.ranges, "--plot-time")?;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let picture = Picture::asked(&options.chart.plot, common)?;
+    let axes = ranges(&options.chart, "--plot-time")?;
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
         (None, Some(text)) => {
-            let wrong =
-                || Failure::argument(format!("--dt {text}: not a number; give seconds, such as 0.01"));
-            Sampling::Every(text.trim().parse().map_err(|_| wrong())?)
+            Sampling::Every(number("--dt", text, |_| true, "not a number; give seconds, such as 0.01")?)
         }
         (None, None) => Sampling::Default,
     };

@@ -7,9 +7,9 @@ use interwell::output::{SpectrumQuantity, spectrum_figure};
 use interwell::study::{NoSpectrum, Signal, SpectrumOptions, Task, spectrum};
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{ChartOptions, Common};
 use super::picture::{Picture, caption, ranges};
-use super::support::{finish, inputs, load_with_mechanism, open, until_settled, write_table};
+use super::support::{finish, inputs, load_with_mechanism, number, open, until_settled, write_table};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -22,7 +22,6 @@ Examples:
 What lies above half the rate is folded back below it; impacts make a spectrum that never ends, so compare
 with a higher --rate-hz.";
 
-/// What it takes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
@@ -54,24 +53,14 @@ pub struct Arguments {
           value_parser = ["amplitude", "psd"])]
     pub quantity: String,
 
-    /// The picture.
     #[command(flatten)]
-    pub plot: PlotOptions,
-
-    /// Its axes.
-    #[command(flatten)]
-    pub ranges: RangeOptions,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
+    pub chart: ChartOptions,
 }
 
 /// Runs the scene and writes the spectrum of its settled motion.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
-    let picture = Picture::asked(&options.plot, &options.common)?;
-    let axes = ranges(&options.ranges, "--plot-x")?;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let picture = Picture::asked(&options.chart.plot, common)?;
+    let axes = ranges(&options.chart, "--plot-x")?;
     if let Some((low, high)) = axes.y.filter(|(low, _)| !(*low > 0.0)) {
         return Err(Failure::argument(format!(
             "--plot-y {low}:{high}: the axis is logarithmic; give two numbers above 0, such as 1e-9:1e-2"
@@ -122,10 +111,6 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
 }
 
 fn rate(text: &str) -> Result<f64, Failure> {
-    let number = text.trim().parse().ok().filter(|own: &f64| *own > 0.0 && own.is_finite());
-    number.ok_or_else(|| {
-        Failure::argument(format!(
-            "--rate-hz {text}: give a number of samples a second above 0, such as 2048"
-        ))
-    })
+    let fits = |own: &f64| *own > 0.0 && own.is_finite();
+    number("--rate-hz", text, fits, "give a number of samples a second above 0, such as 2048")
 }

@@ -1,6 +1,7 @@
 //! Steps that several commands share: loading a scene, building its mechanism, opening and writing outputs.
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::sync::Arc;
 
 use interwell::dynamics::Model;
@@ -136,6 +137,25 @@ pub fn numbers(option: &str, text: &str, separator: char) -> Result<Vec<f64>, Fa
     text.split(separator).map(number).collect()
 }
 
+/// The number in `text`, as given to `option`; an error with this remedy where it is none that `fits`.
+pub fn number<T: FromStr>(
+    option: &str,
+    text: &str,
+    fits: impl FnOnce(&T) -> bool,
+    remedy: &str,
+) -> Result<T, Failure> {
+    let number = text.trim().parse().ok().filter(fits);
+    number.ok_or_else(|| Failure::argument(format!("{option} {text}: {remedy}")))
+}
+
+/// The range `A:B` as given to `option`; an error that says what to write where it is none.
+pub fn range(option: &str, text: &str, form: &str) -> Result<(f64, f64), Failure> {
+    match numbers(option, text, ':')?[..] {
+        [from, to] if from < to && from.is_finite() && to.is_finite() => Ok((from, to)),
+        _ => Err(Failure::argument(format!("{option} {text}: write {form}"))),
+    }
+}
+
 /// The time in s of `--until-settled`, where it was given and runs of `model` can go on so far.
 pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> Result<Option<f64>, Failure> {
     let Some(text) = text else { return Ok(None) };
@@ -226,6 +246,15 @@ pub fn write_table(sink: &mut Option<Sink>, table: &Table) -> Result<(), Failure
 pub fn write_text(sink: &mut Option<Sink>, text: &str) -> Result<(), Failure> {
     let Some(sink) = sink else { return Ok(()) };
     sink.put(text).map_err(|error| Failure::writing(sink.name(), error))
+}
+
+/// Writes rows as they come; whether more of them are wanted: where the reader of a pipe has gone, a picture
+/// may still be.
+pub fn put(sink: &mut Option<Sink>, table: &Table, drawn: bool) -> Result<bool, Failure> {
+    write_text(sink, &rows(table, 0..usize::MAX))?;
+    let Some(sink) = sink else { return Ok(drawn) };
+    sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
+    Ok(!sink.is_closed() || drawn)
 }
 
 /// Writes out what is left of all outputs, then gives the files their names: either all of them

@@ -6,7 +6,7 @@ use interwell::scene::{Axis, Document};
 use interwell::study::{CellFaults, Grid, Onset, Scan, Table, Task, threshold_table};
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{ChartOptions, Common};
 use super::picture::{Picture, caption, ranges};
 use super::support::{finish, inputs, load, mechanism, open, warn, write_table};
 use super::sweep::{bar, located, pool};
@@ -21,7 +21,6 @@ Examples:
   interwell --headless threshold paper --over excitation.frequency_hz=2,3,4 \\
       --over stops.travel_limit_mm=0.5:6:0.25 --plot lines.png";
 
-/// What it takes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
@@ -55,15 +54,7 @@ pub struct Arguments {
     /// The picture: over one field of --over a line, over two a line for each value of the one that has few,
     /// or a map.
     #[command(flatten)]
-    pub plot: PlotOptions,
-
-    /// Its axes.
-    #[command(flatten)]
-    pub ranges: RangeOptions,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
+    pub chart: ChartOptions,
 }
 
 /// The field and range of a scan where none are given.
@@ -76,10 +67,9 @@ const STEPS: f64 = 200.0;
 const MOST_NAMED: usize = 8;
 
 /// Searches and writes the table.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
-    let picture = Picture::asked(&options.plot, &options.common)?;
-    let axes = ranges(&options.ranges, "--plot-x")?;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let picture = Picture::asked(&options.chart.plot, common)?;
+    let axes = ranges(&options.chart, "--plot-x")?;
     // without --over no cell of the scene's own sweep is run
     let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
     let (document, warnings) = load(&options.scene, common, over)?;

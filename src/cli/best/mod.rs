@@ -29,7 +29,6 @@ Examples:
       --environment excitation.seed=1,2,3,4,5
   interwell --headless best paper --over mechanism.preload_mm=1:3 --over stops.travel_limit_mm=0.5:5";
 
-/// What it takes.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
@@ -64,15 +63,10 @@ pub struct Arguments {
     /// Seed of these samples
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub seed: u64,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
 }
 
 /// Searches and writes the row.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let (document, warnings) = load(&options.scene, common, None)?;
     let question = BestQuestion {
         over: ranges(&options.over, &document)?,

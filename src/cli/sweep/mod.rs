@@ -13,7 +13,7 @@ use interwell::study::{Grid, SummaryField, Sweep, SweepEnd, SweepOptions, Table,
 use serde_json::json;
 
 use super::failure::Failure;
-use super::options::{Common, PlotOptions, RangeOptions};
+use super::options::{ChartOptions, Common};
 use super::picture::{Picture, caption, ranges};
 pub use super::progress::bar;
 use super::shard;
@@ -25,7 +25,6 @@ use super::{interrupt, say};
 use asked::{Asked, view};
 use rows::{Begin, Blocks, Compared, Rows};
 
-/// What it takes.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene file or built-in scene
@@ -89,25 +88,15 @@ pub struct Arguments {
     #[arg(long)]
     pub strict: bool,
 
-    /// The picture.
     #[command(flatten)]
-    pub plot: PlotOptions,
-
-    /// Its axes.
-    #[command(flatten)]
-    pub ranges: RangeOptions,
-
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
+    pub chart: ChartOptions,
 }
 
 /// Runs the grid and writes a row a cell.
-pub fn run(options: &Arguments) -> Result<(), Failure> {
-    let common = &options.common;
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     asked::has_manifest(options)?;
-    let picture = Picture::asked(&options.plot, &options.common)?;
-    let axes = ranges(&options.ranges, "--plot-x")?;
+    let picture = Picture::asked(&options.chart.plot, common)?;
+    let axes = ranges(&options.chart, "--plot-x")?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
     // Rows, plan and manifest are of the same bytes, whatever becomes of the files meanwhile.
     document.hold_files();
@@ -263,7 +252,7 @@ pub fn run(options: &Arguments) -> Result<(), Failure> {
         }
     }
     finish(sinks)?;
-    tell(options, &document, &tally, (slice.rows(), from), watch.wall_s());
+    tell(common.quiet, &document, &tally, (slice.rows(), from), watch.wall_s());
     let early = all.ended_early + all.not_converged;
     if options.strict && early > 0 {
         let cells = format!("{early} of {} cells did not come to their end", all.cells);
@@ -282,9 +271,9 @@ fn shown_before(blocks: &Blocks, sweep: &Sweep, from: u64) -> Result<Table, Fail
 }
 
 /// Says what came of so many `rows`, of which some were there `before`.
-fn tell(options: &Arguments, document: &Document, tally: &Tally, (rows, before): (u64, u64), wall_s: f64) {
+fn tell(quiet: bool, document: &Document, tally: &Tally, (rows, before): (u64, u64), wall_s: f64) {
     // Fewer cells than there are: the reader of a pipe has gone, which is no news to anyone.
-    if options.common.quiet || tally.cells != rows - before {
+    if quiet || tally.cells != rows - before {
         return;
     }
     let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
