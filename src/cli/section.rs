@@ -79,7 +79,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if options.over.is_empty() { one(options, common, asked) } else { diagram(options, common, asked) }
 }
 
-/// Where the section is taken.
 fn section_at(options: &Arguments) -> Result<SectionAt, Failure> {
     let phase = options.phase_deg.as_deref();
     if options.at == "impacts" {

@@ -67,7 +67,6 @@ pub struct Rated {
     pub sensitivity: Option<(f64, String)>,
 }
 
-/// One part of the work.
 enum Part {
     Own(usize),
     Changed(usize, String, f64),

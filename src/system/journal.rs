@@ -21,7 +21,6 @@ pub struct Block {
     pub note: String,
 }
 
-/// A journal as it was found.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Journal {
     /// What the file was begun with; none where not even that was written.
@@ -49,7 +48,6 @@ fn json(line: &[u8]) -> Option<&str> {
     (checksum(json.as_bytes()).get(..DIGITS)? == sum).then_some(json)
 }
 
-/// Reads a journal.
 pub(super) fn read(bytes: &[u8]) -> Journal {
     let mut journal = Journal::default();
     let mut lines = bytes.split_inclusive(|byte| *byte == b'\n').peekable();

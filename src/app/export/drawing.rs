@@ -94,7 +94,6 @@ impl Drawing<'_> {
         model.map_err(|faults| self.document.error_from(faults).to_string())
     }
 
-    /// The grid of a subject, and threads for it.
     fn grid(&self, subject: &Subject) -> Result<(Grid, Pool), String> {
         let over: Vec<String> = subject.axes().iter().map(over).collect();
         let axes = self.document.axes(&over).map_err(|error| error.to_string())?;
@@ -202,7 +201,6 @@ fn strobes(carry: Option<Carry>) -> SectionOptions {
     SectionOptions { at: SectionAt::Phase(0.0), periods: None, until_settled: None, carry }
 }
 
-/// Keeps rows as they come.
 fn keep(rows: &mut Table, more: &Table) -> Result<bool, String> {
     rows.append(more);
     Ok(true)

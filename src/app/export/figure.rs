@@ -37,7 +37,6 @@ pub enum Subject {
     Spectrum(Signal, Option<f64>),
 }
 
-/// A figure that is asked for.
 #[derive(Debug, Clone)]
 pub struct FigureOrder {
     /// What the command line calls the scene.
@@ -46,9 +45,7 @@ pub struct FigureOrder {
     pub(super) settings: Vec<String>,
     /// What it then is, with the first values of what is swept.
     pub(super) scene: Scene,
-    /// What is shown of it.
     pub(super) subject: Subject,
-    /// Its sheet of paper.
     pub(super) sheet: Sheet,
     /// Its kind of file.
     format: Format,
@@ -61,11 +58,8 @@ pub struct FigureOrder {
 /// Where a figure goes and how it is laid out; checked.
 #[derive(Debug, Clone)]
 pub struct Place {
-    /// The file.
     pub path: PathBuf,
-    /// Its kind.
     pub format: Format,
-    /// The sheet of paper.
     pub sheet: Sheet,
     /// The file of the numbers that are drawn, where one is asked for.
     pub data: Option<PathBuf>,
@@ -89,7 +83,6 @@ impl Subject {
         })
     }
 
-    /// A quantity of the map.
     pub fn map(session: &Session, surface: bool) -> Result<Self, String> {
         let none = || "This scene has no two fields to make a map over.".to_owned();
         let quantity = session.map.quantity().column;

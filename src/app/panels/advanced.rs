@@ -9,7 +9,6 @@ use crate::scene::{Excitation, Stops};
 
 use super::fields::{field_ui, fields_ui};
 
-/// Draws it.
 pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     kind_ui(ui, session);
     excitation_ui(ui, session, width);

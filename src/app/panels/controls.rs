@@ -39,7 +39,6 @@ const LOAD: [&str; 4] = [
 ];
 const CIRCUIT: [&str; 3] = ["transducer.coil_ohm", "transducer.inductance_mh", "transducer.capacitance_nf"];
 
-/// The controls as a column.
 pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     let width = (ui.available_width() - 84.0).max(80.0);
     heading_ui(ui, "Shaking");

@@ -18,12 +18,13 @@ const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier,
 /// What is to be tried.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
-    /// Make it cross.
     Cross,
     /// It has crossed by shaking: now with stops.
     Compare,
     /// It has crossed between stops at the shaking of the start, with the stops at so many mm: now move them.
-    Move { from_mm: f64 },
+    Move {
+        from_mm: f64,
+    },
     /// The stops have been moved: what there was to see.
     Answer,
     /// Nothing any more.

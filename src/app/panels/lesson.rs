@@ -35,14 +35,10 @@ const MEANING: f32 = 320.0;
 /// The most options that stand side by side.
 const SIDE_BY_SIDE: usize = 3;
 
-/// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LessonAct {
-    /// Choose this option.
     Choose(usize),
-    /// A step back.
     Back,
-    /// A step on.
     Next,
     /// Show or hide the hint.
     Hint,
@@ -263,7 +259,6 @@ fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
     response.on_hover_text(name);
 }
 
-/// The ways back and on.
 fn ways_ui(ui: &mut Ui, lesson: &OpenLesson, width: f32) -> Option<LessonAct> {
     let mut asked = None;
     ui.allocate_ui_with_layout(vec2(width, WAY), Layout::right_to_left(Align::Center), |ui| {

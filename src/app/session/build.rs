@@ -10,7 +10,6 @@ use crate::scene::{Document, Excitation, Fault, Scene, SceneError};
 /// Why a scene cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum CannotRun {
-    /// It is wrong.
     #[error(transparent)]
     Wrong(#[from] SceneError),
     /// It is right, and its flexures were not solved.

@@ -58,7 +58,6 @@ impl Session {
         self.refused.as_deref()
     }
 
-    /// Ends the gesture.
     pub fn end_gesture(&mut self) {
         self.presses = None;
         if self.editor.in_gesture() {
@@ -81,7 +80,6 @@ impl Session {
         self.ask_settled();
     }
 
-    /// Changes the scene by one gesture of its own.
     pub fn edit_once(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
         self.end_gesture();
         let changed = self.edit(change);

@@ -89,7 +89,6 @@ impl Editor {
         self.path().is_some() && crate::scene::has_comments(&self.document.text)
     }
 
-    /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.document.scene
     }

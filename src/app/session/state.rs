@@ -39,7 +39,6 @@ impl OpenedScales {
 /// A side of the card Before / now.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Card {
-    /// The scene.
     pub scene: Scene,
     /// What it settles to, once that is known.
     pub settled: Option<Summary>,
@@ -55,7 +54,6 @@ pub struct Session {
     pub(super) model: Arc<Model>,
     /// Why the scene as it stands cannot be run.
     pub(super) fault: Option<String>,
-    /// The motion.
     pub player: Player,
     pub(super) settled: Latest<Summary>,
     pub(super) thresholds: Latest<Thresholds>,
@@ -63,7 +61,6 @@ pub struct Session {
     pub(super) stops_that_cross: Latest<Option<f64>>,
     /// How accurate the motion is.
     pub accuracy: Accuracy,
-    /// The map of the scene.
     pub map: Mapping,
     /// What the views of the layout Explore show.
     pub explore: Explore,
@@ -99,7 +96,6 @@ pub struct Session {
     pub(super) presses: Option<(String, f64)>,
     /// What it would take to cross is not to be said: it is the answer of a lesson.
     pub keeps_remedy: bool,
-    /// The search for the best stops.
     pub best: BestStops,
     pub(super) wake: Wake,
 }

@@ -24,7 +24,6 @@ const WIDTH: f32 = 300.0;
 /// A slider with its number.
 #[derive(Debug, Clone, Copy)]
 pub struct Knob<'a> {
-    /// Its name.
     pub name: &'a str,
     /// The unit after the number; none for a ratio.
     pub unit: &'a str,
@@ -55,7 +54,6 @@ pub enum How {
 pub struct Turn {
     /// The new value, where it changed.
     pub value: Option<f64>,
-    /// How.
     pub how: How,
     /// Whether a drag has ended.
     pub ended: bool,

@@ -4,7 +4,6 @@
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Dark ground.
     pub dark: bool,
     /// Light ground, larger, thicker lines.
     pub projector: bool,
@@ -12,10 +11,8 @@ pub struct Settings {
     pub reduce_motion: bool,
 }
 
-/// One of the settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Setting {
-    /// Dark ground.
     Dark,
     /// Light ground, larger, thicker lines.
     Projector,

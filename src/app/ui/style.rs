@@ -24,7 +24,6 @@ pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);
 pub const SMALL: f32 = 11.5;
 /// Body text and buttons.
 pub const BODY: f32 = 14.0;
-/// The status sentence.
 pub const STATUS: f32 = 18.0;
 /// The status sentence where room is short.
 pub const STATUS_COMPACT: f32 = 16.0;
@@ -80,17 +79,14 @@ impl Style {
         self.pick(Color32::from_gray(135), Color32::from_gray(118))
     }
 
-    /// Grid lines.
     pub fn grid(&self) -> Color32 {
         self.pick(Color32::from_gray(225), Color32::from_gray(52))
     }
 
-    /// The ground of a view.
     pub fn ground(&self) -> Color32 {
         self.pick(Color32::WHITE, Color32::from_gray(22))
     }
 
-    /// The proof mass.
     pub fn mass(&self) -> Color32 {
         ORANGE
     }
@@ -110,7 +106,6 @@ impl Style {
         self.pick(Color32::from_rgb(122, 84, 0), Color32::from_rgb(255, 214, 128))
     }
 
-    /// Stops.
     pub fn stop(&self) -> Color32 {
         self.pick(GREEN, Color32::from_rgb(40, 190, 145))
     }
@@ -135,12 +130,10 @@ impl Style {
         self.pick(Color32::from_gray(222), Color32::from_gray(58))
     }
 
-    /// Impacts.
     pub fn impact(&self) -> Color32 {
         self.pick(VERMILION, Color32::from_rgb(240, 120, 40))
     }
 
-    /// A kind of motion.
     pub fn kind(&self, kind: Kind) -> Color32 {
         match kind {
             Kind::Resting | Kind::Other => self.pick(Color32::from_gray(105), Color32::from_gray(170)),
@@ -185,7 +178,6 @@ impl Style {
         Stroke::new(self.width(1.6), self.motion().gamma_multiply(0.6))
     }
 
-    /// What was measured.
     pub fn measured(&self) -> Color32 {
         self.kind(Kind::Irregular)
     }
@@ -215,7 +207,6 @@ impl Style {
         Stroke::new(self.width(1.5), self.impact())
     }
 
-    /// A stop.
     pub fn stop_stroke(&self) -> Stroke {
         Stroke::new(self.width(2.0), self.stop())
     }
@@ -230,12 +221,10 @@ impl Style {
         Stroke::new(3.0, self.mass_ink())
     }
 
-    /// An arrow.
     pub fn arrow_stroke(&self) -> Stroke {
         Stroke::new(3.0, self.base())
     }
 
-    /// Flexures.
     pub fn flexure_stroke(&self) -> Stroke {
         Stroke::new(self.width(2.0), self.ink())
     }
@@ -245,7 +234,6 @@ impl Style {
         Stroke::new(1.0, self.grid())
     }
 
-    /// The frame of the base.
     pub fn frame_colour(&self) -> Color32 {
         self.pick(Color32::from_gray(190), Color32::from_gray(85))
     }

@@ -72,9 +72,7 @@ pub enum Icon {
     Restart,
     /// A triangle and a bar: one step.
     Step,
-    /// To the event before.
     PreviousEvent,
-    /// To the event after.
     NextEvent,
     /// A square: one view over the whole window.
     Fill,

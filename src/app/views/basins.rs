@@ -24,7 +24,6 @@ const MARK: f32 = 5.0;
 /// The most attractors that the legend names, those that most starts go to.
 const MOST_NAMED: usize = 6;
 
-/// Draws it.
 pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click() | Sense::DRAG);
     if area.width() < 100.0 || area.height() < 100.0 {

@@ -21,7 +21,6 @@ const APART: (f32, f32) = (6.0, 1.0);
 /// Rows that are always there: the heading, motion, RMS velocity, reach, and from where it crosses.
 const ALWAYS: usize = 5;
 
-/// Draws it.
 pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
@@ -99,7 +98,6 @@ fn card_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
 }
 
-/// The row of the RMS velocity.
 const RMS: &str = "RMS velocity";
 
 /// What the RMS velocity is, and over which time it was taken.
@@ -109,7 +107,6 @@ fn rms_words(settled: &Summary) -> String {
     format!("{}\n\nHere it was taken {time}.", meaning(RMS).unwrap_or_default())
 }
 
-/// A row of the card.
 #[derive(Debug, Clone, PartialEq)]
 struct Row {
     name: String,

@@ -39,7 +39,6 @@ enum Asked {
     Unpin(char),
 }
 
-/// Draws it.
 pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
@@ -157,7 +156,6 @@ fn table_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<Asked> {
     asked
 }
 
-/// A cell of a width.
 fn cell_ui<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let cell = ui.vertical(|ui| {
         ui.set_width(width);

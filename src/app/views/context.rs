@@ -74,11 +74,9 @@ pub struct ViewContext<'a> {
     pub memory: &'a mut Memory,
     /// No rings at impacts.
     pub reduce_motion: bool,
-    /// What is covered.
     pub cover: Cover,
     /// One view fills the window, and shares its axes with none.
     pub filled: bool,
-    /// Which motion is drawn.
     pub drawn: Drawn,
 }
 

@@ -40,7 +40,6 @@ impl Cursors {
         self.at[which] = t.clamp(begin, end);
     }
 
-    /// The one that is nearer to a time.
     pub(super) fn nearer(&self, t: f64) -> usize {
         usize::from((self.at[1] - t).abs() < (self.at[0] - t).abs())
     }

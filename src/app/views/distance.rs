@@ -16,7 +16,6 @@ use super::plot::{LOW, MARGIN, decades, marks, plot_place, power, still_plot};
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
-/// The most points of a line.
 const MOST_POINTS: usize = 2000;
 
 /// Decades of a mm below which nothing is told apart.
@@ -27,7 +26,6 @@ const LEAST: f64 = -14.0;
 const PERIODS: f64 = 6.0;
 const PRESENT: f64 = 0.94;
 
-/// Draws it.
 pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
     if area.width() < 160.0 || area.height() < 100.0 {

@@ -83,7 +83,6 @@ fn accounted(residual: f64) -> String {
     if missing < 0.005 { "100".to_owned() } else { format!("{:.2}", 100.0 - missing) }
 }
 
-/// Draws it.
 pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());

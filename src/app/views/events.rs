@@ -27,7 +27,6 @@ const COLUMNS: [Column; 7] = [
     ("lost", "lost_j", 1.0, "Kinetic energy that it took; on a compliant stop it goes bit by bit."),
 ];
 
-/// Draws it.
 pub fn events_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
     if area.width() < 160.0 || area.height() < 90.0 {
@@ -154,7 +153,6 @@ fn write(ui: &Ui, style: &Style, place: Rect, column: &str, text: &str, strong: 
     painter.text(at, align, text, FontId::proportional(style.small().size), color);
 }
 
-/// What stands in a row and column.
 fn cell(table: &Table, column: &str, row: usize, unit: (f64, &str)) -> String {
     match table.column(column).map(|own| &own.values) {
         Some(Values::Words(words)) => words[row].to_owned(),

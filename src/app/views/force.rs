@@ -35,7 +35,6 @@ const LINE: f32 = 8.0;
 const BESIDE: f32 = 16.0;
 const LABEL: f32 = 110.0;
 
-/// Draws it.
 pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::DRAG);
     if area.width() < 60.0 || area.height() < 80.0 {

@@ -32,9 +32,7 @@ const ROUND: usize = 32;
 pub(super) struct Ghost {
     /// Which of the pins it is.
     pub place: usize,
-    /// What it is called.
     pub letter: char,
-    /// Its state.
     pub state: Sample,
     /// The model by which it moves.
     pub model: Arc<Model>,

@@ -27,21 +27,15 @@ const SHORT: [(&str, &str); 5] = [
 /// An entry of the legend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sign {
-    /// A line.
     Line(Stroke),
-    /// A dashed line.
     Dashed(Stroke),
     /// A line with the dashes of a pin.
     Dashes(Stroke, usize),
-    /// A ring.
     Ring(Stroke),
-    /// A shaded stretch.
     Shade(Color32),
-    /// Dots.
     Dots(Color32),
     /// Plus signs.
     Pluses(Color32),
-    /// Ticks at the edge.
     Ticks(Stroke),
 }
 

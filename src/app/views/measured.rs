@@ -27,7 +27,6 @@ const MOST_PERCENT: f64 = 1000.0;
 /// Width in points of the slider, where there is room.
 const SLIDER: f32 = 100.0;
 
-/// Draws it.
 pub fn measured_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);

@@ -34,7 +34,6 @@ const FOOT: usize = 5;
 /// Room in points that the base's own motion needs.
 const INSET: f32 = 184.0;
 
-/// Draws it.
 pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (rect, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
     if rect.width() < 60.0 || rect.height() < 60.0 {

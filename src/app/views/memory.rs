@@ -17,7 +17,6 @@ use super::zoom::Axes;
 pub struct Memory {
     /// Axes that stand still during a gesture.
     pub(super) held: HeldAxes,
-    /// The drawing of the mechanism.
     pub(super) drawing: Drawing,
     /// The mass is to be taken hold of by the first view that has it.
     pub grab: bool,
@@ -46,9 +45,7 @@ pub struct Memory {
     pub(super) ranges: Ranges,
     /// The phase portrait shows a point a period and no path.
     pub points_only: bool,
-    /// How the map is shown.
     pub map_look: MapLook,
-    /// State of the pointer on the map.
     pub(super) map_pointer: PointerState,
     /// What the view Accuracy shows where there is no room for all of it.
     pub(super) accuracy_page: Page,
@@ -95,11 +92,9 @@ impl Held {
 /// The axes that stand still during a gesture.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct HeldAxes {
-    /// Displacement.
     pub span: Held,
     /// Potential energy.
     pub heights: Held,
-    /// Force.
     pub force: Held,
 }
 
@@ -112,10 +107,8 @@ pub(super) struct Ring {
     pub size: f64,
 }
 
-/// How the map is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapLook {
-    /// As a surface, or from above.
     pub surface: bool,
     /// Lines through it where the scene is stand beside it.
     pub cuts: bool,
@@ -140,7 +133,6 @@ pub(super) struct Drawing {
     pub seen_to: f64,
 }
 
-/// State of the pointer on the map.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PointerState {
     /// Where a box begins.
@@ -154,7 +146,6 @@ pub(super) struct PointerState {
 pub(super) enum Page {
     /// What each digit costs.
     Digits,
-    /// What the step size does.
     #[default]
     Steps,
 }

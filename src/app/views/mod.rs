@@ -57,7 +57,6 @@ pub use trace::TraceQuantity;
 pub(super) use trace::stretch;
 pub use view::View;
 
-/// Draws one view.
 pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
     // what is left of the panel: over a filled window stand a title and a button
     let rect = ui.available_rect_before_wrap();

@@ -89,7 +89,6 @@ impl MeasuredTrace {
         Some(Self { parts, dots: false })
     }
 
-    /// Its entry in the legend.
     pub fn entry(&self, style: &Style) -> (Sign, &'static str) {
         entry(self.dots, style)
     }

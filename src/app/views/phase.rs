@@ -47,7 +47,6 @@ const MOST_STROBES: f64 = 300.0;
 const STATE: f32 = 6.0;
 const STROBE: f32 = 3.0;
 
-/// Draws it.
 pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     states_ui(ui, context, false);
 }

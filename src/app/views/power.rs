@@ -21,7 +21,6 @@ const NONE: &str = "The work of the base. This scene has no transducer: add one 
                     transducer: Electromagnetic(coupling_v_s_per_m: 5, coil_ohm: 40, load_ohm: 60), or open \
                     the scene harvester.";
 
-/// Draws it.
 pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (style, area) = (context.style, ui.max_rect());
     ui.painter().rect_filled(area, 0.0, style.ground());

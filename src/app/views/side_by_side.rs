@@ -18,7 +18,6 @@ const MECHANISM: f32 = 0.42;
 /// Room in points between the columns.
 const APART: f32 = 6.0;
 
-/// Draws it.
 pub fn side_by_side_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
     if area.width() < 240.0 || area.height() < 180.0 {

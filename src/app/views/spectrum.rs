@@ -30,7 +30,6 @@ const SIGNALS: [(Signal, &str, &str, f64); 3] = [
     (Signal::BaseAcceleration, "Base", "g", 1.0 / STANDARD_GRAVITY),
 ];
 
-/// Draws it.
 pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
     if area.width() < 200.0 || area.height() < 140.0 {

@@ -56,7 +56,6 @@ pub enum TraceQuantity {
     Displacement,
     /// Velocity relative to the base.
     Velocity,
-    /// Acceleration of the base.
     BaseAcceleration,
     /// Work of the base on the mass in a second.
     Power,
@@ -145,7 +144,6 @@ impl TraceQuantity {
     }
 }
 
-/// Draws it.
 pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ends = quantity.ends(context);

@@ -35,7 +35,6 @@ struct Way<'a> {
     visits: Vec<&'a Visit>,
 }
 
-/// Draws it.
 pub fn up_and_down_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let area = ui.max_rect();
     if area.width() < 200.0 || area.height() < 140.0 {

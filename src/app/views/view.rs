@@ -123,7 +123,6 @@ views! {
          scene in fixed steps, as a game or a small applet takes them. From the scene's start.";
 }
 
-/// An axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Axis {
     /// The time of the traces.

@@ -20,7 +20,6 @@ use super::stops::{WALL, stops_ui};
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
-/// Draws it.
 pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::DRAG);
     if area.width() < 60.0 || area.height() < 60.0 {

@@ -42,7 +42,6 @@ pub enum Command {
     Arrange(Layout),
     ArrangeOwn,
     KeepOwn,
-    /// Show or hide a view.
     Show(View, bool),
     NextTab,
     /// One view over the whole window, or all again.
@@ -105,13 +104,11 @@ impl Command {
     }
 }
 
-/// A part of a menu.
 pub(super) enum Part {
     /// A command: its name, none where it stands in no menu; its key; its place in the list of keys.
     Item(&'static str, Option<KeyboardShortcut>, Command, Listed),
     /// A row of the list of keys alone: its heading, the keys, and what they do.
     Row(&'static str, &'static str, &'static str),
-    /// A menu within the menu.
     Menu(&'static str, &'static [Part]),
     /// A line between commands.
     Line,
@@ -165,7 +162,6 @@ use Command as C;
 use Listed::{As, Joined, No};
 use Part::{Item, Line, Row};
 
-/// The menus.
 #[rustfmt::skip]
 pub(super) static MENUS: [(&str, &[Part]); 6] = [
     ("File", &[

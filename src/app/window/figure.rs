@@ -19,7 +19,6 @@ const LITTLE: f64 = 0.05;
 pub struct Figures {
     /// The view; none while no figure is asked for.
     pub(super) view: Option<View>,
-    /// The file.
     pub path: String,
     /// Width on paper in mm.
     pub width: String,
@@ -149,7 +148,6 @@ impl Figures {
         }
     }
 
-    /// The times of a run as they are typed.
     fn typed_times(&self) -> Result<Option<(f64, f64)>, String> {
         let [from, to] = self.times.each_ref().map(|text| text.trim());
         if from.is_empty() && to.is_empty() {
@@ -200,7 +198,6 @@ impl Figures {
     }
 }
 
-/// The panel of a run that a view is.
 pub(super) fn panel(view: View) -> Option<Panel> {
     match view {
         View::Displacement => Some(Panel::Displacement),

@@ -10,13 +10,11 @@ use super::figure::{Figures, panel};
 
 /// What a hand asks of the dialog.
 pub(super) enum Asked {
-    /// The file.
     Save,
     /// The command that makes it, copied.
     Copy,
     /// A file from the desktop's dialog.
     Browse,
-    /// Nothing.
     Close,
 }
 

@@ -24,7 +24,6 @@ impl Window {
         self.set_records(get_value(storage, LESSONS).unwrap_or_default());
     }
 
-    /// Keeps it.
     pub(super) fn keep(&self, storage: &mut dyn Storage) {
         set_value(storage, eframe::APP_KEY, &self.settings);
         set_value(storage, RECENT, &self.recent);

@@ -42,7 +42,6 @@ impl Room {
     }
 }
 
-/// Which arrangement is on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrangement {
     /// One that comes with the program.
@@ -51,7 +50,6 @@ pub enum Arrangement {
     Own,
 }
 
-/// The tiles of one arrangement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tiling {
     tree: Tree<View>,
@@ -59,7 +57,6 @@ pub struct Tiling {
 }
 
 impl Tiling {
-    /// The tiles of a layout.
     pub fn new(layout: Layout, room: Room) -> Self {
         let tree = match room {
             Room::Compact if matches!(layout, Layout::Map | Layout::Explore) => tabs_tree(&views_of(layout)),
@@ -210,7 +207,6 @@ impl Tiling {
 struct Behavior<'a, 'b> {
     context: &'a mut ViewContext<'b>,
     fill: &'a mut Option<View>,
-    /// Size of the titles.
     title: f32,
     room: Room,
 }

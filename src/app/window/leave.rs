@@ -17,14 +17,11 @@ pub enum Next {
     Quit,
 }
 
-/// What was answered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
-    /// Save first.
     Save,
     /// Let the changes go, or save to another file.
     DontSave,
-    /// Stay.
     Cancel,
 }
 

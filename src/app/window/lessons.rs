@@ -29,10 +29,8 @@ pub(super) const CANNOT_OPEN_LESSON: &str = "This lesson cannot be opened";
 /// Distance in points of the outline around what a lesson points at.
 const AROUND: f32 = 2.0;
 
-/// The lessons of a window.
 #[derive(Default)]
 pub(super) struct Lessons {
-    /// The one that is open.
     pub open: Option<OpenLesson>,
     /// What was there before.
     aside: Option<Aside>,
@@ -158,7 +156,6 @@ impl Window {
         }
     }
 
-    /// The lesson that is open.
     pub fn lesson(&self) -> Option<&OpenLesson> {
         self.lessons.open.as_ref()
     }
@@ -196,7 +193,6 @@ impl Window {
         self.lessons.open.as_ref().is_some_and(OpenLesson::is_covering)
     }
 
-    /// What is covered.
     pub(super) fn cover(&self) -> Cover {
         match &self.lessons.open {
             _ if self.covered => Cover::All,
@@ -206,7 +202,6 @@ impl Window {
         }
     }
 
-    /// Does what was asked for in the lesson.
     pub(super) fn act_in_lesson(&mut self, act: LessonAct) {
         let Some(lesson) = &mut self.lessons.open else { return };
         let turn = match act {
@@ -276,7 +271,6 @@ impl Window {
         self.session.keeps_remedy = !lesson.tells_remedy();
     }
 
-    /// The strip of the lesson.
     pub(super) fn lesson_strip_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) {
         let Some(lesson) = &mut self.lessons.open else { return };
         if let Some(act) = lesson_ui(ui, lesson, &self.session, style, compact) {
@@ -293,7 +287,6 @@ impl Window {
         self.lessons.controls = controls::named_ui(ui, &mut self.session, &lesson.lesson().controls);
     }
 
-    /// Whether the lesson has controls.
     pub(super) fn lesson_has_controls(&self) -> bool {
         self.lessons.open.as_ref().is_some_and(|own| !own.lesson().controls.is_empty())
     }

@@ -43,7 +43,6 @@ pub struct MeasuredDialog {
     refused: Option<String>,
 }
 
-/// How the dialog ended.
 pub(super) enum Ended {
     /// The record lies over the computed.
     Laid(Box<MeasuredRecord>),

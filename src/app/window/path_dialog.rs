@@ -12,7 +12,6 @@ use super::wanted::Wanted;
 /// A path that is being typed, and what for.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PathDialog {
-    /// What the file is wanted for.
     pub wanted: Wanted,
     /// The path so far.
     pub path: String,
@@ -20,12 +19,10 @@ pub(super) struct PathDialog {
     begun: bool,
 }
 
-/// How it ended.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Ended {
     /// With this file.
     Chosen(PathBuf),
-    /// Without one.
     Cancelled,
 }
 

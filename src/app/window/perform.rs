@@ -22,7 +22,6 @@ use super::wanted::Wanted;
 /// How many periods of the motion an event is looked for.
 const PERIODS_AHEAD: f64 = 300.0;
 
-/// What this program is.
 const ABOUT: &str = concat!(
     "Version ",
     env!("CARGO_PKG_VERSION"),
@@ -47,7 +46,6 @@ impl Window {
         }
     }
 
-    /// Does what was asked for.
     pub fn carry_out(&mut self, ctx: &egui::Context, command: Command) {
         if self.lesson_covers() && command.tells_of_motion() {
             return self.messages.tell("First choose what you expect");

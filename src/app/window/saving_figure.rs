@@ -16,7 +16,6 @@ impl Window {
         self.figures.open(view, &self.session, &self.memory);
     }
 
-    /// The figure that is asked for.
     pub fn figures(&mut self) -> &mut Figures {
         &mut self.figures
     }

@@ -31,7 +31,6 @@ impl WindowSize {
         Self { wanted: size.map(|[x, y]| vec2(x, y)).filter(sane), ..Self::default() }
     }
 
-    /// The size to be kept.
     pub fn size(&self) -> Option<[f32; 2]> {
         self.size.map(|size| [size.x, size.y])
     }

@@ -65,9 +65,7 @@ pub struct Window {
     pub(super) written: (Sender<Written>, Receiver<Written>),
     /// A whole run that is computed and written.
     pub(super) run: Latest<Written>,
-    /// The size of the window on the screen.
     pub(super) place: WindowSize,
-    /// The title that the window has.
     pub(super) titled: String,
     pub(super) dialog: Latest<Chosen>,
     /// Whether files are asked for.
@@ -83,9 +81,7 @@ pub struct Window {
     pub(super) hint: hint::Hint,
     /// The line of the first minute has been there.
     pub(super) hint_row: bool,
-    /// The lessons.
     pub(super) lessons: Lessons,
-    /// The glossary is shown.
     pub(super) glossary: bool,
     pub(super) wake: Wake,
     /// What was applied last, to be applied again only where it changes.

@@ -2,12 +2,9 @@
 
 use std::path::PathBuf;
 
-/// What a file is wanted for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wanted {
-    /// A scene to be opened.
     Open,
-    /// A lesson to be opened.
     Lesson,
     /// Measured data to be laid over the computed.
     Measured,
@@ -25,7 +22,6 @@ pub enum Wanted {
     Map,
     /// The window, as PNG.
     Picture,
-    /// A figure of a view.
     Figure,
 }
 

@@ -11,7 +11,6 @@ use crate::study::{BestDesign, DesignRange, NoBest, Optimum};
 pub enum Found<'a> {
     /// It goes on after so many runs; what the coarse scan had.
     Searching(u64, Option<&'a Optimum>),
-    /// It has ended.
     Whole(&'a Result<BestDesign, NoBest>),
     /// It has ended without an answer.
     Nothing,

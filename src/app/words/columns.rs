@@ -4,7 +4,6 @@ use crate::app::words::numbers::power_unit;
 use crate::output::{RMS, speed_unit, words_of};
 use crate::study::{Column, Read, SummaryField, Values};
 
-/// A column of a summary.
 #[derive(Debug, PartialEq, Eq)]
 pub struct ColumnInfo {
     /// Its name in a table.
@@ -100,7 +99,6 @@ pub fn column_info(name: &str) -> Option<&'static ColumnInfo> {
 }
 
 impl ColumnInfo {
-    /// The field of a summary that it is.
     pub fn field(&self) -> Option<&'static SummaryField> {
         SummaryField::find(self.column)
     }

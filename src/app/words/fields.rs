@@ -198,7 +198,6 @@ const OTHERS: &[(&str, &str, &str)] = &[
     ("run.tolerance", "tolerance", ""),
 ];
 
-/// What kind of mechanism it is.
 pub fn mechanism_name(mechanism: &Mechanism) -> String {
     match mechanism {
         Mechanism::Flexures { .. } => "flexures".to_owned(),

@@ -26,7 +26,6 @@ pub fn expected(choice: Option<&str>, outcome: Option<&str>) -> String {
     }
 }
 
-/// By what a task is judged.
 pub fn judged_by(lesson: &Lesson, start: Start) -> String {
     let from = if start == Start::Rest { "from rest" } else { "from the scene's start" };
     match (&lesson.walk, lesson.seeds) {

@@ -155,7 +155,6 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
     }
 }
 
-/// The ranges of `--over`.
 fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Failure> {
     let mut ranges: Vec<DesignRange> = Vec::new();
     if over.is_empty() {
@@ -269,7 +268,6 @@ fn weighted<'a>(text: &'a str, option: &str) -> Result<(&'a str, f64), Failure> 
     Ok((own.trim(), weight.ok_or_else(wrong)?))
 }
 
-/// The most environments.
 const MOST_ENVIRONMENTS: usize = 1000;
 
 /// The environments of the design; without any given, the scene's own.

@@ -164,7 +164,6 @@ fn flat(head: &Value) -> Value {
     own
 }
 
-/// The checksum of a file.
 fn file_checksum(path: &Path) -> Option<String> {
     let (mut file, mut own, mut bytes) = (files::open(path).ok()?, Checksum::default(), vec![0; 1 << 16]);
     loop {

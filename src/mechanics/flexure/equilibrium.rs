@@ -38,7 +38,6 @@ pub(super) struct System {
     pub basis: Basis,
 }
 
-/// What is prescribed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Prescribed {
     /// The displacement.

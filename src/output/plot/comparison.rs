@@ -55,7 +55,6 @@ struct Entry {
     words: String,
 }
 
-/// A quantity.
 struct Panel {
     title: &'static str,
     unit: String,

@@ -75,7 +75,6 @@ pub(super) fn map_with_cuts(
     figure.data = drawn.table();
 }
 
-/// One cut.
 struct Panel {
     /// Whether it is along the map's axis upward.
     upright: bool,

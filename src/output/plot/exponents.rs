@@ -118,7 +118,6 @@ fn about(picture: &ExponentPicture) -> String {
     format!("rates at which small changes of the settled motion grow, {swept} motions{shaken}")
 }
 
-/// One exponent.
 struct Line {
     name: &'static str,
     of: &'static str,

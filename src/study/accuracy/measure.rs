@@ -124,7 +124,6 @@ impl Variant {
         }
     }
 
-    /// A fact.
     pub(super) fn fact(mut self, quantity: &'static str, holds: bool) -> Self {
         self.checks.push((quantity, Check::Fact(holds)));
         self

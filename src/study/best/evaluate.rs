@@ -168,7 +168,6 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// A result as a number.
 fn number(field: &SummaryField, summary: &Summary) -> Option<f64> {
     match field.read {
         Read::Number(of) => of(summary),

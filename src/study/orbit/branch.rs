@@ -27,7 +27,6 @@ const STRAIGHT: f64 = 0.9;
 /// The change in a step of where a mass is that rests on its way, as a share of its room.
 const CHANGE: f64 = 0.1;
 
-/// The most points.
 const MOST_POINTS: usize = 5000;
 
 /// Distances at which another motion is looked for where the branch comes to a grazing.

@@ -17,7 +17,6 @@ pub const STARTS: u64 = 81;
 /// A scene without its own start, and the starts in mm and m/s.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BasinsQuestion {
-    /// The scene.
     pub scene: Scene,
     /// Ends of the displacements in mm.
     pub x_mm: (f64, f64),

@@ -73,7 +73,6 @@ impl<Q: PartialEq + Clone, P: Send + 'static> Explored<Q, P> {
         if self.parts.is_empty() && !self.is_whole { (&self.before, false) } else { (&self.parts, true) }
     }
 
-    /// The newest question.
     pub fn question(&self) -> Option<&Q> {
         self.question.as_ref()
     }

@@ -23,7 +23,6 @@ impl PartialEq for SpectrumQuestion {
 
 /// The spectrum of a session.
 pub struct Spectra {
-    /// Of what it is.
     pub signal: Signal,
     /// The spectrum, or why there is none.
     pub found: Explored<SpectrumQuestion, Result<Spectrum, String>>,

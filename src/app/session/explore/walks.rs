@@ -20,7 +20,6 @@ pub enum WalkQuantity {
     /// Displacements once a forcing period.
     #[default]
     Strobes,
-    /// RMS velocity.
     RmsVelocity,
     /// Mean power into the load of a transducer.
     LoadPower,
@@ -35,12 +34,10 @@ pub struct WalkQuestion {
     pub axis: SweepAxis,
 }
 
-/// The walks of a session.
 #[derive(Default)]
 pub struct Walks {
     /// The axis that was chosen; none for one around the scene.
     pub chosen: Option<SweepAxis>,
-    /// What is drawn.
     pub quantity: WalkQuantity,
     /// The runs as they come, with the stride of their values: coarse ones first.
     pub found: Explored<WalkQuestion, (usize, Visit)>,

@@ -40,7 +40,6 @@ pub enum Turn {
     Leave,
 }
 
-/// A lesson that is open.
 pub struct OpenLesson {
     document: Arc<LessonDocument>,
     progress: Progress,
@@ -75,7 +74,6 @@ impl OpenLesson {
         (own, scene)
     }
 
-    /// The lesson.
     pub fn lesson(&self) -> &Lesson {
         &self.document.lesson
     }
@@ -104,7 +102,6 @@ impl OpenLesson {
         self.progress.step
     }
 
-    /// The step.
     pub fn step(&self) -> &Step {
         &self.lesson().steps[self.progress.step]
     }
@@ -327,7 +324,6 @@ impl OpenLesson {
         None
     }
 
-    /// How far the task is.
     pub fn task(&self, session: &Session) -> TaskState {
         if self.answer().met {
             return TaskState::Met;

@@ -13,7 +13,6 @@ use crate::scene::lesson::{Lesson, Step};
 pub struct Answer {
     /// The question or task; an answer to another one does not count.
     pub ask: String,
-    /// The option that was chosen.
     pub choice: Option<String>,
     /// The answer of the prediction has been shown, with or without a choice.
     pub shown: bool,

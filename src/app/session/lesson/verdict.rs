@@ -6,16 +6,13 @@ use crate::scene::Document;
 use crate::scene::lesson::{LessonDocument, Step};
 use crate::study::{Lack, Subject, Task, Unjudged};
 
-/// How far a task is.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TaskState {
     /// A hand changes the scene, or has just changed it.
     Moving,
-    /// It is being judged.
     Judging,
     /// Not done by the present scene, and the first thing that it lacks.
     NotYet(Lack),
-    /// Done.
     Met,
     /// The scene cannot be judged, and why.
     Unjudged(String),

@@ -187,7 +187,6 @@ pub fn label(column: &str) -> String {
     }
 }
 
-/// The `--over` argument of an axis.
 pub fn over(axis: &SweepAxis) -> String {
     format!("{}={}:{}:{}", axis.field, axis.from, axis.to, axis.step)
 }

@@ -36,7 +36,6 @@ pub struct CutCell<'a> {
 
 /// A map as far as it is known.
 pub struct Map {
-    /// What it answers.
     pub question: Question,
     /// The cells across and up.
     pub edges: [Edges; 2],
@@ -117,7 +116,6 @@ impl Map {
         self.levels.whole(self.known).is_some()
     }
 
-    /// The grid.
     pub fn grid(&self) -> &Grid {
         self.sweep.grid()
     }

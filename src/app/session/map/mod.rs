@@ -104,7 +104,6 @@ impl Mapping {
         self.problem.as_deref()
     }
 
-    /// Stops where it is.
     pub fn stop(&mut self) {
         self.pause();
         self.stopped = true;
@@ -123,7 +122,6 @@ impl Mapping {
         self.quantity.unwrap_or(&COLUMNS[0].1[0])
     }
 
-    /// Has the map show a column.
     pub fn show(&mut self, quantity: &'static ColumnInfo) {
         self.quantity = Some(quantity);
     }

@@ -17,7 +17,6 @@ pub struct Trail {
 }
 
 impl Trail {
-    /// Remembers a scene.
     pub(in crate::app::session) fn note(&mut self, scene: &Scene) {
         self.scenes.push_back(Scene { title: String::new(), notes: String::new(), ..scene.clone() });
         if self.scenes.len() > MOST {

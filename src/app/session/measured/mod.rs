@@ -15,7 +15,6 @@ use super::explore::Explored;
 /// A measured record whose columns are chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredRecord {
-    /// The name of its file.
     pub name: String,
     /// Times in s, or positions in m.
     pub across: Channel,
@@ -79,7 +78,6 @@ impl MeasuredRecord {
 /// A record over the computed, and how it is moved and stretched in time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Overlay {
-    /// The record.
     pub record: Arc<MeasuredRecord>,
     /// What is added to displacements or positions, in m.
     pub offset: f64,
@@ -123,13 +121,10 @@ impl PartialEq for MeasuredQuestion {
 /// The numbers in which a record and the computed differ.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Differences {
-    /// Of a motion.
     Motion(Box<Comparison>),
-    /// Of a force curve.
     Force(Box<ForceComparison>),
 }
 
-/// The measured data of a session.
 #[derive(Default)]
 pub struct MeasuredData {
     /// The record that lies over the computed.
@@ -175,7 +170,6 @@ impl MeasuredData {
     }
 }
 
-/// A clause as a sentence.
 pub fn sentence(clause: &str) -> String {
     let mut letters = clause.chars();
     let first = letters.next().map(|own| own.to_uppercase().to_string()).unwrap_or_default();

@@ -19,10 +19,8 @@ const LETTERS: [char; 3] = ['A', 'B', 'C'];
 const SHARE: Duration = Duration::from_millis(4);
 const STRETCH: f64 = 2.0;
 
-/// What is pinned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PinKind {
-    /// The motion as it is.
     Motion,
     /// The motion from here on with its stops switched the other way.
     OtherStops,
@@ -55,12 +53,10 @@ impl Pin {
         LETTERS.iter().position(|own| *own == self.letter).unwrap_or(0)
     }
 
-    /// What was pinned.
     pub fn kind(&self) -> PinKind {
         self.kind
     }
 
-    /// Its scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }

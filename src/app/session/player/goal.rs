@@ -34,9 +34,7 @@ impl Goal {
 /// How the way to a goal ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reached {
-    /// At the time that was wanted.
     Time,
-    /// At this event.
     Event(Event),
     /// Without an event of that kind, up to the time that was set.
     Nothing(EventKind),

@@ -145,7 +145,6 @@ impl Player {
         self.watch.place(x, v);
     }
 
-    /// Lets go of the mass.
     pub fn let_go(&mut self) {
         self.held = false;
     }
@@ -221,7 +220,6 @@ impl Player {
         self.past.is_some()
     }
 
-    /// The state that is shown.
     pub fn state(&self) -> Sample {
         self.past.map_or_else(|| self.watch.now(), |t| self.watch.state_at(t))
     }

@@ -17,7 +17,6 @@ const PICTURE: f32 = 110.0;
 /// Room in points beside the picture for the numbers of its axes.
 const AXES: (f32, f32) = (52.0, 36.0);
 
-/// Draws it.
 pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     let (model, accuracy) = (context.session.model(), &context.session.accuracy);

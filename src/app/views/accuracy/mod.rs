@@ -18,7 +18,6 @@ const BOTH: (f32, f32) = (760.0, 250.0);
 /// Share of the width that the digits have then.
 const DIGITS: f32 = 0.42;
 
-/// Draws it.
 pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.painter().rect_filled(ui.max_rect(), 0.0, context.style.ground());
     let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));

@@ -42,7 +42,6 @@ const MARGIN: f32 = 14.0;
 /// A ghost of so many steps or fewer has a dot for each.
 const MOST_DOTS: usize = 150;
 
-/// Draws it.
 pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     choice_ui(ui, context);
     let style = context.style;

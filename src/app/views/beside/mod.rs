@@ -59,7 +59,6 @@ pub(super) struct Bench {
     pub rect: Rect,
     /// The inner side of the lower clamp.
     pub bottom: f32,
-    /// The mass.
     pub body: Rect,
     /// Where x is 0.
     pub zero: f32,
@@ -77,7 +76,6 @@ pub(super) struct Below {
 }
 
 impl Beside {
-    /// That of a model.
     pub fn of(model: &Model) -> Self {
         let mut own = Self { stiffness: 0.0, magnets: None, pairs: 0, transducer: model.transducer() };
         let stiff = |(strength, gap): (f64, f64)| strength.abs() / gap.powi(5);
@@ -245,7 +243,6 @@ impl Pen<'_> {
         self.explain(Rect::from_center_size(stood, vec2(2.0 * MAGNET, 2.0 * pole)), "magnets", &words);
     }
 
-    /// A magnet with its north pole above or below.
     fn magnet(&self, middle: Pos2, pole: f32, north_above: bool) {
         let (ink, ground) = (self.style.ink(), self.style.ground());
         let half = |above: bool| {

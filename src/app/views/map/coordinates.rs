@@ -35,9 +35,7 @@ pub struct Coordinates {
     pub bar: Option<Rect>,
     /// The strips beside it: with the axis across, below or to the right, and to the right with the axis up.
     pub strips: Option<[Rect; 2]>,
-    /// Across.
     pub x: PlotAxis,
-    /// Up.
     pub y: PlotAxis,
 }
 

@@ -39,7 +39,6 @@ struct Drawn {
     surface: Option<Arc<Surface>>,
 }
 
-/// Draws it.
 pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());

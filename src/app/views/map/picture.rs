@@ -31,7 +31,6 @@ const SYMBOLS: f32 = 46.0;
 /// What was drawn, so that it is made again only where it would differ.
 #[derive(Clone)]
 pub struct Picture {
-    /// The colours of its quantity.
     pub scale: Arc<ColourScale>,
     texture: TextureHandle,
     looks: Arc<[Look]>,
@@ -227,7 +226,6 @@ impl Picture {
     }
 }
 
-/// The colour of a look.
 pub fn colour(style: &Style, look: Look) -> Color32 {
     match look {
         Look::Unknown => style.panel(),

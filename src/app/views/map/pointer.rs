@@ -26,13 +26,11 @@ pub enum MapAction {
     Closer(usize, usize),
     /// What was there before the last part was enlarged.
     Larger,
-    /// All of it.
     Whole,
 }
 
 /// Where things are on the screen.
 pub struct Hand<'a> {
-    /// The cell at a place.
     pub cell_at: &'a dyn Fn(Pos2) -> Option<(usize, usize)>,
     /// The coordinates in which a box can be drawn; none for a surface.
     pub frame: Option<&'a Coordinates>,
@@ -137,7 +135,6 @@ fn cross_hair_ui(ui: &Ui, map: &Map, (style, hand): (&Style, &Hand<'_>)) -> Opti
     Some(MapAction::Cell(moved(column, across, columns), moved(row, up, rows)))
 }
 
-/// Performs an action.
 pub fn perform(context: &mut ViewContext<'_>, action: Option<MapAction>) {
     let session = &mut *context.session;
     match action {

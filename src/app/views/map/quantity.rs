@@ -143,7 +143,6 @@ impl ColourScale {
         (self.steps == Steps::Whole).then_some(PERIODS)
     }
 
-    /// The column.
     pub fn column(&self) -> &'static str {
         self.info.column
     }

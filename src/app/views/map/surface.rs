@@ -23,7 +23,6 @@ const BOTTOM: f32 = 48.0;
 /// The most columns and rows that are drawn; of more, each second or third.
 const MOST: usize = 128;
 
-/// A surface on the screen.
 pub struct Surface {
     place: Place,
     projection: Projection,
@@ -75,7 +74,6 @@ impl Surface {
         self.place == place
     }
 
-    /// Where a place in the box stands on the screen.
     fn screen(&self, at: BoxPlace) -> Pos2 {
         let (x, y) = self.projection.place(at);
         pos2(x as f32, y as f32)
@@ -110,7 +108,6 @@ impl Surface {
         shapes
     }
 
-    /// Draws it, with its axes.
     pub fn draw(&self, painter: &Painter, style: &Style) {
         painter.add(Shape::Mesh(Arc::clone(&self.mesh)));
         let stroke = Stroke::new(1.0, style.ink());

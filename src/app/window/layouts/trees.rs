@@ -22,7 +22,6 @@ pub(super) const MECHANISM_SHARE: f32 = 0.4;
 const STUDY_COLUMN: f32 = 0.34;
 const COMPACT_SHARE: f32 = 0.5;
 
-/// The views of a layout.
 pub(super) fn views_of(layout: Layout) -> Vec<View> {
     let look = [View::Well, View::Mechanism, View::Displacement, View::BeforeNow];
     let study = [View::PhasePortrait, View::ForceCurve, View::Energy];

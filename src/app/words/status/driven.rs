@@ -14,10 +14,8 @@ const SEEN_PERIODS: f64 = 5.0;
 /// A motion that settles within so many forcing periods does so at once, to the eye.
 const AT_ONCE: f64 = 5.0;
 
-/// What is told of.
 #[derive(Debug, Clone, Copy)]
 pub struct Told<'a> {
-    /// The scene.
     pub scene: &'a Scene,
     /// The model that moves.
     pub model: &'a Model,
@@ -69,7 +67,6 @@ impl Told<'_> {
     }
 }
 
-/// The words of a tense.
 struct Words {
     stays: &'static str,
     settles: &'static str,

@@ -19,9 +19,7 @@ pub use remedy::ways;
 /// What the status line says.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Sentence {
-    /// What kind of motion it is.
     pub kind: Kind,
-    /// The sentence.
     pub text: String,
     /// What it would take, said once it has been searched for; a lesson may keep it to itself.
     pub remedy: String,
@@ -43,7 +41,6 @@ impl Sentence {
         Self::new(Kind::Other, "Working out what this settles to.")
     }
 
-    /// The whole of it.
     pub fn whole(&self) -> String {
         if self.remedy.is_empty() { self.text.clone() } else { format!("{} {}", self.text, self.remedy) }
     }
