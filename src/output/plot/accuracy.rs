@@ -4,7 +4,7 @@ use serde_json::Map;
 
 use super::axis::PlotAxis;
 use super::drawn::Drawn;
-use super::figure::{Area, Figure, Point, Text};
+use super::figure::{Area, Figure, Point, Text, fitted};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Ink, Theme};
@@ -97,15 +97,8 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
             }
         }
         frame.axes(&mut figure, theme);
-        figure.text(Text {
-            words: super::figure::fitted(heading(problem), style::AXIS, true, width),
-            at: (left, top - 16.0),
-            size: style::AXIS,
-            ink: theme.ink,
-            bold: true,
-            align: super::figure::Align::Left,
-            upright: false,
-        });
+        let words = fitted(heading(problem), style::AXIS, true, width);
+        figure.text(Text { bold: true, ..Text::new(words, (left, top - 16.0), style::AXIS, theme.ink) });
     }
     let mut drawn = Drawn::new(["cpu_s", "error"], &["problem", "method"]);
     for row in 0..problems.len() {

@@ -4,10 +4,10 @@ use super::axis::PlotAxis;
 use super::drawn::Drawn;
 use super::figure::{Area, Figure};
 use super::frame::Frame;
-use super::mark::{Caption, Marker, Sample, legend, marker};
+use super::mark::{Caption, Marker, Sample, marker};
 use super::style::{self, Ink, KINDS, Theme};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
-use super::swept::{LEAST, LEFT, TOP};
+use super::swept::{LEAST, LEFT, below_legend};
 use crate::numeric::short;
 use crate::study::{Answer, Attractor, Basins, Edges, Starts, Table};
 
@@ -28,8 +28,7 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
     let mut figure = Figure::new(theme, caption, LEAST);
     let entries = entries(basins, answer, theme);
     let entries: Vec<(Sample, &str)> = entries.iter().map(|(own, words)| (*own, words.as_str())).collect();
-    let ends = (LEFT, figure.right());
-    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
+    let top = below_legend(&mut figure, theme, &entries);
     let (across, up) = match basins.starts().axes() {
         Some((x_mm, v)) => (Edges::new(x_mm).ends(), Edges::new(v).ends()),
         None => {
@@ -42,10 +41,8 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
         }
     };
     let upward = PlotAxis::between(up.0, up.1, 7, "velocity at the start, m/s");
-    let left = Frame::left(&figure, &upward, LEFT, figure.bottom() - top);
-    let area = Area::new(left, top, figure.right(), figure.bottom());
-    let frame =
-        Frame::new(area, PlotAxis::between(across.0, across.1, 8, "displacement at the start, mm"), upward);
+    let rightward = PlotAxis::between(across.0, across.1, 8, "displacement at the start, mm");
+    let frame = Frame::whole(&figure, (LEFT, top), rightward, upward);
     match basins.starts().axes() {
         Some((x_mm, v)) => cells(&mut figure, &frame, (x_mm, v), (basins, answer), theme),
         None => dots(&mut figure, &frame, (basins, answer), theme),
@@ -59,7 +56,7 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
     for (place, attractor) in answer.attractors.iter().enumerate() {
         for (x, v) in &attractor.states {
             let at = frame.place((1e3 * x, *v));
-            if area.contains(at) {
+            if frame.area.contains(at) {
                 marker(&mut figure, shape(place), at, style::MARKER + 5.0, style::BLACK, style::BLACK);
                 marker(&mut figure, shape(place), at, style::MARKER, attractor_colour(place), style::WHITE);
             }

@@ -3,11 +3,11 @@
 
 use super::axis::{PlotAxis, Ranges};
 use super::drawn::Drawn;
-use super::figure::{Area, Figure, Point};
+use super::figure::{Figure, Point};
 use super::frame::Frame;
-use super::mark::{Caption, Marker, Sample, legend, marker};
+use super::mark::{Caption, Marker, Sample, marker};
 use super::style::{self, Theme};
-use super::swept::{LEAST, LEFT, TOP, label};
+use super::swept::{LEAST, LEFT, below_legend, label};
 use crate::numeric::short;
 use crate::study::{Branch, BranchEvent};
 
@@ -42,15 +42,13 @@ pub fn branch_figure(
     for (event, shape) in EVENTS.into_iter().filter(|own| branch.events.contains(&Some(own.0))) {
         entries.push((Sample::Marker(shape, theme.soft), event.name()));
     }
-    let ends = (LEFT, figure.right());
-    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
+    let top = below_legend(&mut figure, theme, &entries);
     let x_label = label(&table, &table.columns()[0].name);
     let y_label = "displacement at the strobe, mm";
     let across =
         PlotAxis::around(branch.values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     let up = PlotAxis::around(millimetres, 0.08, 6, y_label).or_given(ranges.y, 6, y_label);
-    let left = Frame::left(&figure, &up, LEFT, figure.bottom() - top);
-    let frame = Frame::new(Area::new(left, top, figure.right(), figure.bottom()), across, up);
+    let frame = Frame::whole(&figure, (LEFT, top), across, up);
     frame.grid(&mut figure, theme);
     // a stretch of one kind ends at the point where the other begins
     let mut from = 0;

@@ -127,15 +127,9 @@ pub fn comparison_figure(picture: &ComparisonPicture<'_>, caption: &Caption, the
         for (scene, name) in names.iter().enumerate().filter(|_| column == 0) {
             let step = (area.bottom - area.top) / names.len() as f64;
             let size = style::TICK.min(0.9 * step);
-            figure.text(Text {
-                words: fitted(name, size, false, name_width),
-                at: (from - 18.0, frame.down(place(rated, scene)) + 0.5 * size * font::CAPITAL),
-                size,
-                ink: theme.ink,
-                bold: false,
-                align: Align::Right,
-                upright: false,
-            });
+            let at = (from - 18.0, frame.down(place(rated, scene)) + 0.5 * size * font::CAPITAL);
+            let text = Text::new(fitted(name, size, false, name_width), at, size, theme.ink);
+            figure.text(Text { align: Align::Right, ..text });
         }
     }
     figure.data = drawn(rated);
@@ -282,15 +276,7 @@ fn draw(
     {
         let size =
             size * ((area.right - area.left + BETWEEN - 8.0) / font::width(text, size, false)).min(1.0);
-        figure.text(Text {
-            words: text.to_owned(),
-            at: (area.left, area.top - y),
-            size,
-            ink,
-            bold: false,
-            align: Align::Left,
-            upright: false,
-        });
+        figure.text(Text::new(text, (area.left, area.top - y), size, ink));
     }
     frame
 }
@@ -334,15 +320,8 @@ fn words(
     let x = if is_behind { behind } else { (left + 8.0).min(right - width) };
     // the colour of the best is light in either theme
     let ink = if is_best && !is_behind { style::BLACK } else { theme.ink };
-    figure.text(Text {
-        words: entry.words.clone(),
-        at: (x, y + 0.5 * size * font::CAPITAL),
-        size,
-        ink,
-        bold: is_best,
-        align: Align::Left,
-        upright: false,
-    });
+    let text = Text::new(&entry.words, (x, y + 0.5 * size * font::CAPITAL), size, ink);
+    figure.text(Text { bold: is_best, ..text });
 }
 
 /// What marks and colours mean, of those that are drawn.

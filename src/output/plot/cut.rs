@@ -1,13 +1,13 @@
 //! Picture of a map with cuts through it beside it: the quantity over one field at a value of the other.
 
 use super::axis::PlotAxis;
-use super::figure::{Align, Area, Figure, Point, Text};
+use super::figure::{Area, Figure, Point, Text};
 use super::frame::Frame;
 use super::map::{Lines, Map};
-use super::mark::{REGIMES, Sample, legend, marker, regime};
+use super::mark::{REGIMES, Sample, regime};
 use super::quantity::Quantity;
 use super::style::{self, Theme};
-use super::swept::{Cut, LEFT, MARKER_ROOM, SweepPicture, TOP, label, thinned, words};
+use super::swept::{Cut, LEFT, MARKER_ROOM, SweepPicture, below_legend, label, mark_regimes, words};
 use crate::numeric::short;
 use crate::study::line_meets;
 
@@ -43,8 +43,7 @@ pub(super) fn map_with_cuts(
             entries.push((Sample::Marker(shape, ink), name));
         }
     }
-    let ends = (LEFT, figure.right());
-    let top = TOP.max(legend(figure, theme, &entries, ends, 146.0) + 18.0);
+    let top = below_legend(figure, theme, &entries);
     let (width, bottom, count) = (figure.canvas.right, figure.bottom(), panels.len() as f64);
     let narrow = figure.is_narrow();
     // narrow: the map has as much height as a cut
@@ -148,26 +147,12 @@ impl Panel {
             if self.quantity.words.is_none() {
                 frame.line(figure, &points, style::FINE_LINE, theme.soft);
             }
-            let marks: Vec<(Point, &str)> = part
-                .iter()
-                .map(|(at, word)| (frame.place(*at), *word))
-                .filter(|own| area.contains(own.0))
-                .collect();
             let size = 0.7 * style::MARKER;
-            for (at, word) in thinned(&marks, MARKER_ROOM * size, 1.5 * size) {
-                let (shape, ink) = regime(word, theme);
-                marker(figure, shape, at, size, ink, theme.ink);
-            }
+            let look = (theme.ink, theme);
+            mark_regimes(figure, &frame, part.iter().copied(), (size, MARKER_ROOM * size), look);
         }
         frame.axes(figure, theme);
-        figure.text(Text {
-            words: self.heading.clone(),
-            at: (area.left, area.top - 14.0),
-            size: style::TICK,
-            ink: theme.ink,
-            bold: true,
-            align: Align::Left,
-            upright: false,
-        });
+        let heading = Text::new(&self.heading, (area.left, area.top - 14.0), style::TICK, theme.ink);
+        figure.text(Text { bold: true, ..heading });
     }
 }

@@ -4,10 +4,10 @@ use super::axis::{PlotAxis, Ranges};
 use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
-use super::mark::{Caption, Sample, legend};
+use super::mark::{Caption, Sample};
 use super::style::{self, Ink, Theme};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
-use super::swept::{LEAST, LEFT, TOP, label};
+use super::swept::{LEAST, LEFT, below_legend, label};
 use crate::numeric::short;
 use crate::scene::{Excitation, Scene};
 use crate::study::{Grid, Table};
@@ -71,11 +71,9 @@ pub fn exponents_figure(
     if first.iter().any(|own| own.is_nan()) {
         entries.push((Sample::Ticks(theme.soft), "no value"));
     }
-    let ends = (LEFT, figure.right());
-    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
-    let (left, right, bottom) =
-        (Frame::left(&figure, &up, LEFT, figure.bottom() - top), figure.right(), figure.bottom());
-    let frame = Frame::new(Area::new(left, top, right, bottom), across, up);
+    let top = below_legend(&mut figure, theme, &entries);
+    let frame = Frame::whole(&figure, (LEFT, top), across, up);
+    let Area { left: _, right: _, bottom, .. } = frame.area;
     frame.grid(&mut figure, theme);
     frame.horizontal(&mut figure, 0.0, style::THIN, theme.ink, None);
     let mut order: Vec<usize> = (0..places.len()).collect();

@@ -99,6 +99,13 @@ pub struct Text {
     pub upright: bool,
 }
 
+impl Text {
+    /// Plain words that begin at a place.
+    pub fn new(words: impl Into<String>, at: Point, size: f64, ink: Ink) -> Self {
+        Self { words: words.into(), at, size, ink, bold: false, align: Align::Left, upright: false }
+    }
+}
+
 /// One shape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
@@ -284,6 +291,13 @@ impl Figure {
         if self.canvas.contains(text.at) && !text.words.trim().is_empty() {
             self.shapes.push(Shape::Text(text));
         }
+    }
+
+    /// Adds the outline of `area`.
+    pub fn outline(&mut self, area: Area, width: f64, ink: Ink) {
+        let Area { left, top, right, bottom } = area;
+        let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+        self.line(&corners, width, ink, self.canvas);
     }
 
     /// Hatches `area` with lines that go up to the right, in step with every other hatching.

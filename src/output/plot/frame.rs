@@ -54,6 +54,12 @@ impl Frame {
         BESIDE + numbers + style::AXIS + if fits(&y.label, height) { 0.0 } else { SECOND }
     }
 
+    /// A frame from `top` to the lower edge of the canvas, on a wide canvas from `wide` on.
+    pub fn whole(figure: &Figure, (wide, top): (f64, f64), x: PlotAxis, y: PlotAxis) -> Self {
+        let left = Self::left(figure, &y, wide, figure.bottom() - top);
+        Self::new(Area::new(left, top, figure.right(), figure.bottom()), x, y)
+    }
+
     /// Where a value of x stands on the canvas.
     pub fn across(&self, x: f64) -> f64 {
         self.area.left + self.x.share(x) * (self.area.right - self.area.left)
@@ -85,17 +91,11 @@ impl Frame {
     /// Frame, ticks, numbers and labels, over everything else.
     pub fn axes(&self, figure: &mut Figure, theme: &Theme) {
         let Area { left, top, right, bottom } = self.area;
-        let outline = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-        figure.line(&outline, style::FRAME, theme.ink, figure.canvas);
+        figure.outline(self.area, style::FRAME, theme.ink);
         let ascent = style::TICK * font::CAPITAL;
         let text = |words: &str, at: Point, align: Align| Text {
-            words: words.to_owned(),
-            at,
-            size: style::TICK,
-            ink: theme.ink,
-            bold: false,
             align,
-            upright: false,
+            ..Text::new(words, at, style::TICK, theme.ink)
         };
         let (numbered, narrow) = (self.numbered(), figure.is_narrow());
         for (i, (value, words)) in self.x.ticks.iter().enumerate() {

@@ -5,10 +5,10 @@ use super::drawn::Drawn;
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
 use super::frame::Frame;
-use super::mark::{Sample, cross, legend};
+use super::mark::{Sample, cross};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{LEFT, Overlay, SweepPicture, TOP, drawn, label, missing_words, words};
+use super::swept::{LEFT, Overlay, SweepPicture, below_legend, drawn, label, missing_words, words};
 use crate::study::{Edges, Table, first_crossing_edge};
 
 /// What a cell of a map shows.
@@ -99,8 +99,7 @@ const NARROW_BAR: (f64, f64) = (22.0, 50.0);
 /// The quantity as colour over two fields.
 pub(super) fn map(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &str), theme: &Theme) {
     let map = Map::new(picture, (x, y));
-    let ends = (LEFT, figure.right());
-    let top = TOP.max(legend(figure, theme, &map.entries(picture, theme), ends, 146.0) + 18.0);
+    let top = below_legend(figure, theme, &map.entries(picture, theme));
     let canvas = figure.canvas.right;
     let right = match (figure.is_narrow(), map.quantity.words.is_some()) {
         (true, true) => figure.right(),
@@ -254,31 +253,22 @@ pub(super) fn colour_bar(
         let step = Area::new(area.left, bottom - height, area.right, bottom);
         figure.rect(step, colour((i as f64 + 0.5) / STEPS as f64));
     }
-    let Area { left, top, right, bottom } = area;
-    let outline = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-    figure.line(&outline, style::FRAME, theme.ink, figure.canvas);
+    let Area { top, right, bottom, .. } = area;
+    figure.outline(area, style::FRAME, theme.ink);
     let mut widest: f64 = 0.0;
-    let text = |words: &str, at, size, align, upright| Text {
-        words: words.to_owned(),
-        at,
-        size,
-        ink: theme.ink,
-        bold: false,
-        align,
-        upright,
-    };
     for (value, words) in &axis.ticks {
         let at = bottom - axis.share(*value) * (bottom - top);
         let tick = [(right, at), (right + style::TICK_LENGTH, at)];
         figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
         widest = widest.max(font::width(words, style::TICK, false));
         let place = (right + style::TICK_LENGTH + 7.0, at + 0.5 * style::TICK * font::CAPITAL);
-        figure.text(text(words, place, style::TICK, Align::Left, false));
+        figure.text(Text::new(words, place, style::TICK, theme.ink));
     }
     let place = (
         (right + style::TICK_LENGTH + 7.0 + widest + 16.0 + style::AXIS * font::CAPITAL)
             .min(figure.canvas.right - 8.0),
         0.5 * (top + bottom),
     );
-    figure.text(text(&axis.label, place, style::AXIS, Align::Centre, true));
+    let label = Text::new(&axis.label, place, style::AXIS, theme.ink);
+    figure.text(Text { align: Align::Centre, upright: true, ..label });
 }

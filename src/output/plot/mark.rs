@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::figure::{Align, Area, Figure, Point, Text, fitted};
+use super::figure::{Area, Figure, Point, Text, fitted};
 use super::font;
 use super::style::{self, Ink, Theme};
 use crate::output::manifest::origin;
@@ -125,15 +125,9 @@ pub fn legend(
     for ((sample, words), (x, row)) in entries.iter().zip(places) {
         let y = middle + ROW * row as f64;
         entry(figure, theme, *sample, Area::new(x, y - 12.0, x + SAMPLE, y + 12.0));
-        figure.text(Text {
-            words: fitted(words, style::TICK, false, right - x - SAMPLE - GAP),
-            at: (x + SAMPLE + GAP, y + 0.5 * style::TICK * font::CAPITAL),
-            size: style::TICK,
-            ink: theme.ink,
-            bold: false,
-            align: Align::Left,
-            upright: false,
-        });
+        let words = fitted(words, style::TICK, false, right - x - SAMPLE - GAP);
+        let at = (x + SAMPLE + GAP, y + 0.5 * style::TICK * font::CAPITAL);
+        figure.text(Text::new(words, at, style::TICK, theme.ink));
     }
     middle + ROW * (rows as f64 + 0.5)
 }
@@ -159,12 +153,12 @@ fn entry(figure: &mut Figure, theme: &Theme, sample: Sample, area: Area) {
             if let Some(hatch) = hatch {
                 figure.hatch(area, style::HATCH, hatch);
             }
-            outline(figure, area, theme.soft);
+            figure.outline(area, style::GRID, theme.soft);
         }
         Sample::Crossed(paper, ink) => {
             figure.rect(area, paper);
             cross(figure, area, ink);
-            outline(figure, area, theme.soft);
+            figure.outline(area, style::GRID, theme.soft);
         }
         Sample::Ticks(ink) => {
             for at in [middle.0 - 7.0, middle.0 + 7.0] {
@@ -172,12 +166,6 @@ fn entry(figure: &mut Figure, theme: &Theme, sample: Sample, area: Area) {
             }
         }
     }
-}
-
-fn outline(figure: &mut Figure, area: Area, ink: Ink) {
-    let Area { left, top, right, bottom } = area;
-    let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-    figure.line(&corners, style::GRID, ink, figure.canvas);
 }
 
 /// A cross from corner to corner.
@@ -254,15 +242,8 @@ impl Caption {
             // On paper the words are smaller before they are cut.
             let share = (room / font::width(words, size, bold)).clamp(0.7, 1.0);
             let size = if on_paper { share * size } else { size };
-            figure.text(Text {
-                words: fitted(words, size, bold, room),
-                at: (left, height),
-                size,
-                ink,
-                bold,
-                align: Align::Left,
-                upright: false,
-            });
+            let words = fitted(words, size, bold, room);
+            figure.text(Text { bold, ..Text::new(words, (left, height), size, ink) });
         };
         row(&self.title, style::TITLE, true, theme.ink, 58.0);
         row(subtitle, style::SUBTITLE, false, theme.soft, 100.0);

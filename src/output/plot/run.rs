@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::axis::{PlotAxis, Ranges};
 use super::drawn::Drawn;
-use super::figure::{Align, Area, Figure, Point, Text};
+use super::figure::{Area, Figure, Point, Text};
 use super::font;
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker, regime};
@@ -377,5 +377,5 @@ fn note(figure: &mut Figure, words: &str, at: Point, size: f64, ink: Ink, bold: 
     let room = figure.canvas.right - at.0 - 10.0;
     let words = super::figure::fitted(words, size, bold, room);
     debug_assert!(font::width(&words, size, bold) <= room + 1.0);
-    figure.text(Text { words, at, size, ink, bold, align: Align::Left, upright: false });
+    figure.text(Text { bold, ..Text::new(words, at, size, ink) });
 }

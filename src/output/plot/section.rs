@@ -6,10 +6,10 @@ use super::axis::{PlotAxis, Ranges};
 use super::drawn::Drawn;
 use super::figure::{Align, Area, Figure, Text};
 use super::frame::Frame;
-use super::mark::{Caption, Marker, Sample, dot, legend};
+use super::mark::{Caption, Marker, Sample, dot};
 use super::run::speed_unit;
 use super::style::{self, Ink, Theme};
-use super::swept::{LEAST, LEFT, TOP, label, words};
+use super::swept::{LEAST, LEFT, below_legend, label, words};
 use crate::numeric::short;
 use crate::study::{DIRECTION, Direction, IMPACTS, Table, Values};
 
@@ -68,8 +68,7 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
     let both = [Direction::Up, Direction::Down].iter().all(|way| ways.contains(&way.name()));
     let panels: &[Option<Direction>] =
         if both { &[Some(Direction::Up), Some(Direction::Down)] } else { &[None] };
-    let ends = (LEFT, figure.right());
-    let top = TOP.max(legend(&mut figure, theme, &entries, ends, 146.0) + 18.0);
+    let top = below_legend(&mut figure, theme, &entries);
     let x = PlotAxis::around(across.values.iter().copied(), 0.02, 8, &across.label);
     let x = if over.is_none() && phase_deg.is_none() { turn(&across.label) } else { x };
     let x = x.or_given(ranges.x, 8, &across.label);
@@ -108,15 +107,8 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
         }
         frame.axes(&mut figure, theme);
         if let Some(way) = way {
-            figure.text(Text {
-                words: way.name().to_owned(),
-                at: (right, begin - 12.0),
-                size: style::AXIS,
-                ink: theme.ink,
-                bold: false,
-                align: Align::Right,
-                upright: false,
-            });
+            let text = Text::new(way.name(), (right, begin - 12.0), style::AXIS, theme.ink);
+            figure.text(Text { align: Align::Right, ..text });
         }
     }
     figure.data = drawn(rows, over, phase_deg.is_some(), |at| (x.low..=x.high).contains(&at));

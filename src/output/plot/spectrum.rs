@@ -2,7 +2,7 @@
 
 use super::axis::{PlotAxis, Ranges};
 use super::drawn::Drawn;
-use super::figure::{Area, Figure, Point};
+use super::figure::{Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Sample, legend};
 use super::style::{self, Theme};
@@ -77,10 +77,7 @@ pub fn spectrum_figure(
         [] => 135.0,
         some => TOP.max(legend(&mut figure, theme, some, ends, 146.0) + 18.0),
     };
-    let left = Frame::left(&figure, &up, LEFT, figure.bottom() - top);
-    let area = Area::new(left, top, figure.right(), figure.bottom());
-
-    let frame = Frame::new(area, across, up);
+    let frame = Frame::whole(&figure, (LEFT, top), across, up);
     frame.grid(&mut figure, theme);
     for own in marked.iter().copied() {
         frame.vertical(&mut figure, own, style::GUIDE, theme.shaking, Some(style::DASH));

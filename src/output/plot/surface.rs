@@ -4,11 +4,10 @@ use super::axis::PlotAxis;
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
 use super::map::{Cell, Mosaic, colour_bar, meanings};
-use super::mark::legend;
 use super::projection::{AXIS_EDGES, BACK_EDGES, BoxPlace, Projection, SIDES, faces, wall_lines};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{LEFT, SweepPicture, TOP, drawn, label};
+use super::swept::{LEFT, SweepPicture, below_legend, drawn, label};
 
 /// The most cells that are drawn as faces.
 pub const MAX_SURFACE_CELLS: u64 = 60_000;
@@ -55,14 +54,9 @@ impl View {
             self.line(figure, line, style::FRAME, theme.ink);
         }
         let canvas = figure.canvas;
-        let text = |words: &str, at: Point, size: f64, align: Align, upright: bool| Text {
-            words: words.to_owned(),
-            at,
-            size,
-            ink: theme.ink,
-            bold: false,
+        let text = |words: &str, at: Point, size: f64, align: Align| Text {
             align,
-            upright,
+            ..Text::new(words, at, size, theme.ink)
         };
         let below = style::TICK * font::CAPITAL + 14.0;
         let mut row = |axis: &PlotAxis, place: &dyn Fn(f64) -> Point, align: Align, out: f64| {
@@ -77,7 +71,7 @@ impl View {
                     }
                 });
                 if apart {
-                    figure.text(text(words, (at.0 + out, at.1 + below), style::TICK, align, false));
+                    figure.text(text(words, (at.0 + out, at.1 + below), style::TICK, align));
                     last = Some(at);
                 }
             }
@@ -90,16 +84,16 @@ impl View {
             figure.line(&[(x - style::TICK_LENGTH, y), (x, y)], style::FRAME, theme.ink, canvas);
             widest = widest.max(font::width(words, style::TICK, false));
             let at = (x - style::TICK_LENGTH - 7.0, y + 0.5 * style::TICK * font::CAPITAL);
-            figure.text(text(words, at, style::TICK, Align::Right, false));
+            figure.text(text(words, at, style::TICK, Align::Right));
         }
         let (low, high) = (self.place(left), self.place((0.0, 1.0, 1.0)));
         let beside = (low.0 - style::TICK_LENGTH - 25.0 - widest).max(style::AXIS);
         let middle = (beside, 0.5 * (low.1 + high.1));
-        figure.text(text(&self.z.label, middle, style::AXIS, Align::Centre, true));
+        figure.text(Text { upright: true, ..text(&self.z.label, middle, style::AXIS, Align::Centre) });
         let ([near, right, left], under) = ([near, right, left].map(|at| self.place(at)), 70.0);
         for (label, (from, to)) in [(&self.x.label, (near, right)), (&self.y.label, (left, near))] {
             let at = (0.5 * (from.0 + to.0), self.area.bottom + under);
-            figure.text(text(label, at, style::AXIS, Align::Centre, false));
+            figure.text(text(label, at, style::AXIS, Align::Centre));
         }
     }
 }
@@ -117,8 +111,7 @@ pub(super) fn surface(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str
     let mut entries = meanings(rows, &quantity, &mosaic.cells, theme);
     // a missing cell is a hole, and needs no patch
     entries.retain(|own| own.1 == "at rest");
-    let ends = (LEFT, figure.right());
-    let top = TOP.max(legend(figure, theme, &entries, ends, 146.0) + 18.0);
+    let top = below_legend(figure, theme, &entries);
     let axis = |values: &[f64], range, name: &str| {
         let label = label(rows, name);
         PlotAxis::around(values.iter().copied(), 0.0, 6, &label).or_given(range, 6, &label)

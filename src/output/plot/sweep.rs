@@ -2,15 +2,16 @@
 
 use super::axis::PlotAxis;
 use super::cut::{self, map_with_cuts};
-use super::figure::{Area, Figure, Point};
+use super::figure::{Area, Figure};
 use super::frame::Frame;
 use super::map::map;
-use super::mark::{Caption, REGIMES, Sample, legend, marker, regime};
+use super::mark::{Caption, REGIMES, Sample, regime};
 use super::quantity::{Quantity, quantities, words_of};
 use super::style::{self, Theme};
 use super::surface::{MAX_SURFACE_CELLS, SURFACE, surface};
 use super::swept::{
-    LEAST, LEFT, MARKER_ROOM, SweepPicture, TOP, View, drawn, label, missing_words, thinned, words,
+    LEAST, LEFT, MARKER_ROOM, SweepPicture, View, below_legend, drawn, label, mark_regimes, missing_words,
+    of_each, words,
 };
 use super::walk::{STACKED, walked_both, walked_lines, walked_maps};
 use crate::numeric::short;
@@ -202,16 +203,8 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     };
 
     let mut entries: Vec<(Sample, String)> = Vec::new();
-    if let Some(name) = series {
-        let label = label(rows, name);
-        let (words, unit) = label.split_once(", ").unwrap_or((&label, ""));
-        for (i, value) in each.iter().enumerate() {
-            let words = if i == 0 { format!("{words} {}", short(*value)) } else { short(*value) };
-            entries.push((
-                Sample::Line(ink(i), style::GUIDE, None),
-                format!("{words} {unit}").trim_end().to_owned(),
-            ));
-        }
+    for (i, words) in series.iter().flat_map(|name| of_each(rows, name, &each)).enumerate() {
+        entries.push((Sample::Line(ink(i), style::GUIDE, None), words));
     }
     for (name, shape) in REGIMES {
         if regimes.contains(&name) {
@@ -230,16 +223,14 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     }
     let entries: Vec<(Sample, &str)> =
         entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
-    let ends = (LEFT, figure.right());
-    let top = TOP.max(legend(figure, theme, &entries, ends, 146.0) + 18.0);
+    let top = below_legend(figure, theme, &entries);
 
     let x_label = label(rows, x);
     let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     // Most quantities are never negative; the little room below 0 is for the markers.
     let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
-    let (left, right, bottom) =
-        (Frame::left(figure, &up, LEFT, figure.bottom() - top), figure.right(), figure.bottom());
-    let frame = Frame::new(Area::new(left, top, right, bottom), across, up);
+    let frame = Frame::whole(figure, (LEFT, top), across, up);
+    let Area { left, right, bottom, .. } = frame.area;
     frame.grid(figure, theme);
     for at in &missing {
         if lines {
@@ -261,18 +252,12 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
                 let width = if series.is_some() { style::LINE } else { style::FINE_LINE };
                 frame.dense_line(figure, part.iter().map(point), width, ink(i));
             }
-            let marks: Vec<(Point, &str)> = part
-                .iter()
-                .map(|row| (frame.place(point(row)), regimes.get(*row).copied().unwrap_or("")))
-                .filter(|(at, _)| frame.area.contains(*at))
-                .collect();
+            let marks = part.iter().map(|row| (point(row), regimes.get(*row).copied().unwrap_or("")));
             let room = (right - left) / order.len().max(1) as f64;
             let size = if joined { 0.8 * style::MARKER } else { (0.55 * room).clamp(3.5, style::MARKER) };
             let apart = if joined { MARKER_ROOM * size } else { 0.0 };
-            for (at, word) in thinned(&marks, apart, 1.5 * size) {
-                let (shape, ink) = regime(word, theme);
-                marker(figure, shape, at, size, ink, if size > 6.0 { theme.ink } else { theme.paper });
-            }
+            let edge = if size > 6.0 { theme.ink } else { theme.paper };
+            mark_regimes(figure, &frame, marks, (size, apart), (edge, theme));
         }
     }
     figure.data = drawn(picture, &[(x, ranges.x)]).table();

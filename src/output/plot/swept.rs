@@ -2,8 +2,12 @@
 
 use super::axis::Ranges;
 use super::drawn::{Drawn, as_numbers};
-use super::figure::Point;
+use super::figure::{Figure, Point};
+use super::frame::Frame;
+use super::mark::{Sample, legend, marker, regime};
+use super::style::{Ink, Theme};
 use crate::mechanics::Mechanism;
+use crate::numeric::short;
 use crate::scene::Scene;
 use crate::study::{Column, DIRECTION, Grid, Table, Values, first_crossing, release_line};
 
@@ -11,6 +15,12 @@ pub(super) const LEFT: f64 = 160.0;
 pub(super) const TOP: f64 = 185.0;
 /// What a picture with one frame needs between its captions.
 pub(super) const LEAST: f64 = 420.0;
+
+/// Draws the legend of a picture with one frame; where the frame begins.
+pub(super) fn below_legend(figure: &mut Figure, theme: &Theme, entries: &[(Sample, &str)]) -> f64 {
+    let ends = (LEFT, figure.right());
+    TOP.max(legend(figure, theme, entries, ends, 146.0) + 18.0)
+}
 
 /// The lines over a map, each where it makes sense.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -110,6 +120,18 @@ pub(super) fn label(rows: &Table, name: &str) -> String {
     rows.column(name).map_or_else(|| name.to_owned(), Column::label)
 }
 
+/// The values of the field `name`, for each of which there is a line, as a legend names them.
+pub(super) fn of_each(rows: &Table, name: &str, each: &[f64]) -> Vec<String> {
+    let label = label(rows, name);
+    let (words, unit) = label.split_once(", ").unwrap_or((&label, ""));
+    let named = |(i, value): (usize, &f64)| {
+        let value = short(*value);
+        let words = if i == 0 { format!("{words} {value}") } else { value };
+        format!("{words} {unit}").trim_end().to_owned()
+    };
+    each.iter().enumerate().map(named).collect()
+}
+
 /// What a legend says of cells without a speed, by the outcomes of all cells.
 pub(super) fn missing_words(outcomes: &[&'static str]) -> &'static str {
     let is = |word: &&&str| **word == "not_converged";
@@ -125,8 +147,24 @@ pub(super) fn missing_words(outcomes: &[&'static str]) -> &'static str {
 /// So many times its half height apart, markers on a line are told from each other.
 pub(super) const MARKER_ROOM: f64 = 5.0;
 
+/// Marks points of the data with their regimes, outlined by `edge`, as many as stand `apart`.
+pub(super) fn mark_regimes<'a>(
+    figure: &mut Figure,
+    frame: &Frame,
+    points: impl Iterator<Item = (Point, &'a str)>,
+    (size, apart): (f64, f64),
+    (edge, theme): (Ink, &Theme),
+) {
+    let placed = points.map(|(point, word)| (frame.place(point), word));
+    let marks: Vec<(Point, &str)> = placed.filter(|own| frame.area.contains(own.0)).collect();
+    for (at, word) in thinned(&marks, apart, 1.5 * size) {
+        let (shape, ink) = regime(word, theme);
+        marker(figure, shape, at, size, ink, edge);
+    }
+}
+
 /// The marks of a line that stand `apart` from the one before; where the word changes, `close` is enough.
-pub(super) fn thinned<'a>(marks: &[(Point, &'a str)], apart: f64, close: f64) -> Vec<(Point, &'a str)> {
+fn thinned<'a>(marks: &[(Point, &'a str)], apart: f64, close: f64) -> Vec<(Point, &'a str)> {
     let mut kept: Vec<(Point, &str)> = Vec::new();
     for (at, word) in marks {
         let stands = kept.last().is_none_or(|(last, own)| {

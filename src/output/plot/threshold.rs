@@ -5,11 +5,10 @@ use super::drawn::{Drawn, as_numbers};
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::map::map;
-use super::mark::{Caption, Marker, Sample, legend, marker};
+use super::mark::{Caption, Marker, Sample, marker};
 use super::style::{self, Theme};
 use super::sweep::{NoPicture, distinct, few_lines};
-use super::swept::{LEAST, LEFT, Overlay, SweepPicture, TOP, View, label};
-use crate::numeric::short;
+use super::swept::{LEAST, LEFT, Overlay, SweepPicture, View, below_legend, label, of_each};
 use crate::scene::{Scene, column_names};
 use crate::study::{Column, Grid, Onset, Table, Values};
 
@@ -113,11 +112,7 @@ fn lines(
     };
 
     let mut entries: Vec<(Sample, String)> = Vec::new();
-    for (i, value) in each.iter().enumerate().filter(|_| series.is_some()) {
-        let label = label(rows, series.unwrap_or_default());
-        let (words, unit) = label.split_once(", ").unwrap_or((&label, ""));
-        let words = if i == 0 { format!("{words} {}", short(*value)) } else { short(*value) };
-        let words = format!("{words} {unit}").trim_end().to_owned();
+    for (i, words) in series.iter().flat_map(|name| of_each(rows, name, &each)).enumerate() {
         entries.push((Sample::Line(ink(i), style::GUIDE, None), words));
     }
     let gap = gaps.contains(&true);
@@ -130,16 +125,14 @@ fn lines(
         entries.push((Sample::Ticks(theme.soft), "none in the range".to_owned()));
     }
     let entries: Vec<(Sample, &str)> = entries.iter().map(|(own, words)| (*own, words.as_str())).collect();
-    let ends = (LEFT, figure.right());
-    let top = TOP.max(legend(figure, theme, &entries, ends, 146.0) + 18.0);
+    let top = below_legend(figure, theme, &entries);
 
     let x_label = label(rows, x);
     let across = PlotAxis::around(places.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
     let from_zero = values.iter().copied().chain([0.0]);
     let upward = PlotAxis::around(from_zero, 0.05, 6, up).or_given(ranges.y, 6, up);
-    let (left, right, bottom) =
-        (Frame::left(figure, &upward, LEFT, figure.bottom() - top), figure.right(), figure.bottom());
-    let frame = Frame::new(Area::new(left, top, right, bottom), across, upward);
+    let frame = Frame::whole(figure, (LEFT, top), across, upward);
+    let Area { left, right, bottom, .. } = frame.area;
     frame.grid(figure, theme);
     for row in missing {
         let at = frame.across(places[row]);

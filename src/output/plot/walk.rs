@@ -5,10 +5,10 @@ use super::axis::PlotAxis;
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::frame::Frame;
 use super::map::{Cell, Mosaic, colour_bar, meanings};
-use super::mark::{REGIMES, Sample, legend, marker, regime};
+use super::mark::{REGIMES, Sample, legend, regime};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{LEFT, MARKER_ROOM, SweepPicture, TOP, drawn, label, thinned, words};
+use super::swept::{LEFT, MARKER_ROOM, SweepPicture, TOP, below_legend, drawn, label, mark_regimes, words};
 use crate::study::{DIRECTION, Direction, Table};
 
 /// Whether the rows are those of a walk both ways.
@@ -60,13 +60,12 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
             entries.push((Sample::Marker(shape, regime(name, theme).1), name));
         }
     }
-    let ends = (LEFT, figure.right());
-    let top = TOP.max(legend(figure, theme, &entries, ends, 146.0) + 18.0);
+    let top = below_legend(figure, theme, &entries);
     let x_label = label(rows, x);
     let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
-    let left = Frame::left(figure, &up, LEFT, figure.bottom() - top);
-    let frame = Frame::new(Area::new(left, top, figure.right(), figure.bottom()), across, up);
-    let place = |row: &usize| frame.place((values[*row], quantity.values[*row]));
+    let frame = Frame::whole(figure, (LEFT, top), across, up);
+    let point = |row: &usize| (values[*row], quantity.values[*row]);
+    let place = |row: &usize| frame.place(point(row));
     let pairs: Vec<(Point, Point)> = ups.iter().map(place).zip(downs.iter().map(place)).collect();
     if quantity.words.is_none() {
         pairs.windows(2).for_each(|two| between(figure, two[0], two[1], shade, frame.area));
@@ -80,16 +79,9 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
                 None => figure.line(&points, style::LINE, ink, frame.area),
                 Some(dash) => figure.dashed(&points, style::LINE, ink, dash, frame.area),
             }
-            let marks: Vec<(Point, &str)> = part
-                .iter()
-                .map(|row| (place(row), regimes.get(*row).copied().unwrap_or("")))
-                .filter(|(at, _)| frame.area.contains(*at))
-                .collect();
+            let marks = part.iter().map(|row| (point(row), regimes.get(*row).copied().unwrap_or("")));
             let size = 0.8 * style::MARKER;
-            for (at, word) in thinned(&marks, MARKER_ROOM * size, 1.5 * size) {
-                let (shape, own) = regime(word, theme);
-                marker(figure, shape, at, size, own, ink);
-            }
+            mark_regimes(figure, &frame, marks, (size, MARKER_ROOM * size), (ink, theme));
         }
     }
     figure.data = drawn(picture, &[(x, ranges.x)]).table();
@@ -197,15 +189,8 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
         });
         frame.axes(figure, theme);
         let name = if quantity.words.is_some() && i == 2 { "where they differ" } else { name };
-        figure.text(Text {
-            words: name.to_owned(),
-            at: (0.5 * (left + right), top - 16.0),
-            size: style::AXIS,
-            ink: theme.ink,
-            bold: false,
-            align: Align::Centre,
-            upright: false,
-        });
+        let text = Text::new(name, (0.5 * (left + right), top - 16.0), style::AXIS, theme.ink);
+        figure.text(Text { align: Align::Centre, ..text });
     }
     if quantity.words.is_none() {
         let beside = |panel: usize| {
