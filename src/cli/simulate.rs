@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use interwell::dynamics::{Model, Outcome};
-use interwell::numeric::short;
+use interwell::numeric::{extent, short};
 use interwell::output::{Panel, measured_figure, push_number, run_figure, summary};
 use interwell::study::{
     Keep, Sampling, ended_remedy, sample_times, simulate, simulate_with_trace, yield_warning,
@@ -157,8 +157,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 /// The times from the first to the last of those that are listed, where they are some.
 fn spanned(sampling: &Sampling) -> Option<(f64, f64)> {
     let Sampling::At(times) = sampling else { return None };
-    let first = times.iter().copied().fold(f64::INFINITY, f64::min);
-    let last = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (first, last) = extent(times.iter().copied());
     (first < last).then_some((first, last))
 }
 

@@ -4,6 +4,7 @@ use super::grid::Grid;
 use super::table::{Table, Values};
 use crate::dynamics::{Regime, STANDARD_GRAVITY};
 use crate::mechanics::Mechanism;
+use crate::numeric::extent;
 use crate::scene::{Axis, Excitation, Scene, Start};
 
 /// The fields that the release in closed form joins.
@@ -25,8 +26,8 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
         && scene.start == Start::Rest;
     let limits = axis(grid, LIMIT).filter(|_| asked && axis(grid, AMPLITUDE).is_some())?;
     let well = mechanism.landscape.right_stable()?.x;
-    let from = limits.values.iter().copied().fold(f64::INFINITY, f64::min);
-    let to = limits.values.iter().copied().fold(f64::NEG_INFINITY, f64::max).min(well * 1e3);
+    let (from, most) = extent(limits.values.iter().copied());
+    let to = most.min(well * 1e3);
     if from >= to {
         return None;
     }

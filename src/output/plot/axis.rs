@@ -1,5 +1,6 @@
 //! Axes with their ticks and labels.
 
+use crate::numeric::extent;
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_up};
 
 /// A range of values with its ticks.
@@ -32,9 +33,7 @@ impl PlotAxis {
     /// An axis from the least to the greatest of `values`, with `margin` of that range added at both ends
     /// and some `count` ticks. Values that are not finite do not count; a range of no length is widened.
     pub fn around(values: impl IntoIterator<Item = f64>, margin: f64, count: usize, label: &str) -> Self {
-        let finite = values.into_iter().filter(|value| value.is_finite());
-        let (low, high) = finite
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+        let (low, high) = extent(values.into_iter().filter(|value| value.is_finite()));
         if low > high {
             return Self::between(0.0, 1.0, count, label);
         }
@@ -82,8 +81,7 @@ impl PlotAxis {
     /// whole decades, with some `count` ticks at powers of ten.
     pub fn decades(values: impl IntoIterator<Item = f64>, count: usize, label: &str) -> Self {
         let logs = values.into_iter().filter(|value| value.is_finite() && *value > 0.0).map(f64::log10);
-        let (low, high) =
-            logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), log| (low.min(log), high.max(log)));
+        let (low, high) = extent(logs);
         let (low, high) =
             if low > high { (0.0, 1.0) } else { (low.floor(), high.ceil().max(low.floor() + 1.0)) };
         let every = ((high - low) / count.max(1) as f64).ceil() as i32;

@@ -7,7 +7,7 @@ use super::frame::{Frame, stretched};
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Theme};
 use crate::mechanics::{Landscape, Mechanism};
-use crate::numeric::short;
+use crate::numeric::{extent, short};
 use crate::study::Table;
 
 const LEFT: f64 = 160.0;
@@ -176,7 +176,7 @@ fn scaled((low, high): (f64, f64), units: &[(f64, &'static str)]) -> (f64, &'sta
 fn telling(x: &[f64], values: &[f64], landscape: &Landscape) -> (f64, f64) {
     let range = |from: f64, to: f64| {
         let inside = x.iter().zip(values).filter(|(x, v)| **x >= from && **x <= to && v.is_finite());
-        inside.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, v)| (low.min(*v), high.max(*v)))
+        extent(inside.map(|(_, v)| *v))
     };
     let (low, high) = range(f64::NEG_INFINITY, f64::INFINITY);
     let ends = landscape.equilibria.first().zip(landscape.equilibria.last());

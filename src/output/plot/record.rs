@@ -10,7 +10,7 @@ use super::run::speed_unit;
 use super::style::{self, Ink, Theme};
 use super::swept::LEFT;
 use crate::dynamics::STANDARD_GRAVITY;
-use crate::numeric::short;
+use crate::numeric::{extent, short};
 use crate::scene::{Quantity, Timing};
 use crate::study::{ForceComparison, Identified, Identity, Table};
 
@@ -155,8 +155,7 @@ pub fn measured_force_figure(
         found.positions.iter().zip(values).map(|(x, own)| (x * 1e3, own * scale)).collect()
     };
     let apart: Vec<f64> = found.measured.iter().zip(&found.computed).map(|(m, c)| c - m).collect();
-    let low = found.positions.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = found.positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = extent(found.positions.iter().copied());
     let near = pairs(curve, scale).into_iter().filter(|own| (low * 1e3..=high * 1e3).contains(&own.0));
     let name = "computed";
     let computed = Series { name, series: name, points: near.collect(), ink: theme.ink, kind: Kind::Line };

@@ -12,7 +12,7 @@ use super::panels::{GUTTER, LEFT, Panel, Places};
 use super::style::{self, Ink, Theme};
 use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
 use crate::mechanics::Mechanism;
-use crate::numeric::short;
+use crate::numeric::{extent, short};
 use crate::study::{Table, Trace, Values};
 
 /// The picture of a run from its trace and its summary, with these panels. The trace says which times it
@@ -107,9 +107,7 @@ impl Seen<'_> {
     /// does not press the motion flat.
     fn displacement(&self, x: &[f64]) -> PlotAxis {
         const NEAR: f64 = 0.4;
-        let finite = x.iter().filter(|x| x.is_finite());
-        let (low, high) =
-            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+        let (low, high) = extent(x.iter().copied().filter(|x| x.is_finite()));
         // A mass that does not move is shown between all that it could move to.
         let room = if low < high { NEAR * (high - low) } else { 3.0 * high.abs() };
         let stops = [self.trace.stops.0, self.trace.stops.1];

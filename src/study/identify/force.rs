@@ -1,9 +1,9 @@
 //! Force curve from a slow pull, with its hysteresis, equilibria and barrier.
 
-use super::turns::{Turn, range, turns};
+use super::turns::{Turn, turns};
 use super::{Identified, Identity, Unidentified};
 use crate::numeric::regression::{Fit, least_squares, powers, student};
-use crate::numeric::short;
+use crate::numeric::{extent, short};
 use crate::study::table::{Table, Values};
 
 /// Points of a curve where none are asked for.
@@ -168,7 +168,7 @@ fn through_four(u: f64, values: &[f64]) -> f64 {
 
 /// The samples of rising and of falling position, each sorted by position.
 fn directions(x: &[f64], force: &[f64]) -> [Pull; 2] {
-    let (low, high) = range(x);
+    let (low, high) = extent(x.iter().copied());
     let turns = turns(x, TURN * (high - low));
     let mut pulls = [Pull::new(), Pull::new()];
     let margin = LEFT_OUT * (high - low);

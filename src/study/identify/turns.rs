@@ -1,5 +1,7 @@
 //! Turning points of a noisy record.
 
+use crate::numeric::extent;
+
 /// Noise of values that vary slowly from sample to sample: the standard deviation of what is random in each.
 ///
 /// Third differences of a smooth record vanish, those of independent errors of standard deviation s have
@@ -34,13 +36,8 @@ pub struct Turn {
 /// many independent errors have (twice their expected maximum, s sqrt(2 ln n)), and two standard deviations.
 pub fn reach(values: &[f64], noise: f64) -> f64 {
     let count = values.len().max(2) as f64;
-    let (low, high) = range(values);
+    let (low, high) = extent(values.iter().copied());
     (2.0 * noise * ((2.0 * count.ln()).sqrt() + 1.0)).max(1e-9 * (high - low))
-}
-
-/// The least and the greatest of some values.
-pub fn range(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), own| (low.min(*own), high.max(*own)))
 }
 
 /// The turning points of `values`, maxima and minima in turn: where they go back by more than `back`. The

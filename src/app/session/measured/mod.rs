@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::app::task::Latest;
 use crate::dynamics::Model;
-use crate::numeric::short;
+use crate::numeric::{extent, short};
 use crate::scene::{Channel, Measured, MeasuredText, Quantity, Scene, Timing, Unit};
 use crate::study::{Comparison, ForceComparison};
 
@@ -53,10 +53,8 @@ impl MeasuredRecord {
                 .replacen("The file column", "Column", 1)
         })?;
         let Measured { channels: [across, values], decimal_commas } = read;
-        let least = values.values.iter().copied().fold(f64::INFINITY, f64::min);
-        let greatest = values.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let timing = (across.quantity == Quantity::Time).then(|| Timing::of(&across.values));
-        let (name, range) = (name.to_owned(), (least, greatest));
+        let (name, range) = (name.to_owned(), extent(values.values.iter().copied()));
         Ok(Self { name, across, values, decimal_commas, timing, range })
     }
 
@@ -66,9 +64,8 @@ impl MeasuredRecord {
         match &self.timing {
             Some(timing) => format!("{}{commas}.", timing.describe()),
             None => {
-                let low = self.across.values.iter().copied().fold(f64::INFINITY, f64::min);
-                let high = self.across.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                let [low, high] = [low, high].map(|own| short(own * 1e3));
+                let (low, high) = extent(self.across.values.iter().map(|own| own * 1e3));
+                let (low, high) = (short(low), short(high));
                 format!("{} samples from {low} to {high} mm{commas}.", self.across.values.len())
             }
         }

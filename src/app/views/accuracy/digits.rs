@@ -3,6 +3,7 @@
 use eframe::egui::{Align2, Grid, Pos2, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::ui::style::Style;
+use crate::numeric::extent;
 use crate::study::accuracy::scene::{
     AtTolerance, StepSize, Tolerances, duration, length_mm, moment, small_length, step_name,
 };
@@ -116,9 +117,7 @@ const LEAST: f64 = 1e-16;
 impl Axes {
     fn new(rect: Rect, points: &[(f64, f64)]) -> Self {
         let ends = |of: fn(&(f64, f64)) -> f64| {
-            let logarithms = points.iter().map(|point| of(point).log10());
-            let (low, high) = logarithms
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |ends, own| (ends.0.min(own), ends.1.max(own)));
+            let (low, high) = extent(points.iter().map(|point| of(point).log10()));
             ((low - 0.15).floor(), (high + 0.15).ceil())
         };
         Self { rect, times: ends(|point| point.0), errors: ends(|point| point.1) }

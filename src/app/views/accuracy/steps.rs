@@ -5,6 +5,7 @@ use egui_plot::{HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints,
 
 use crate::app::session::accuracy::Accuracy;
 use crate::app::ui::style::Style;
+use crate::numeric::extent;
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{StepSize, step_name};
 
@@ -194,9 +195,7 @@ fn plot_ui(ui: &mut Ui, style: &Style, area: Rect, known: &StepSize, stops: [Opt
     };
     let (truth, ghost) = (path(&known.truth), path(&known.ghost));
     // what flies apart leaves the picture
-    let (low, high) = truth
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |ends, point| (ends.0.min(point.y), ends.1.max(point.y)));
+    let (low, high) = extent(truth.iter().map(|point| point.y));
     let room = (0.12 * (high - low)).max(1e-6);
     let (low, high) = (low - room, high + room);
     let entries = [
