@@ -86,7 +86,8 @@ pub struct KinkAtWell {
 pub struct Landscape {
     /// Every place where the force vanishes; an interval on which it does, ends and all, counts for none.
     pub equilibria: Vec<Equilibrium>,
-    /// The barrier between the wells: with more than two wells the one nearest to x = 0.
+    /// The barrier between the wells: with more than two wells the one nearest to x = 0, of two as near the
+    /// left one.
     pub barrier: Option<Barrier>,
     /// Local extrema of the force inside the domain, smooth or corners.
     pub extrema: Vec<ForceExtremum>,

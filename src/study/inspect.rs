@@ -187,9 +187,16 @@ fn landscape(landscape: &Landscape, mass: f64) -> Vec<String> {
             format!("{} mJ above both wells", mj(barrier.from_left_j))
         } else {
             let (left, right) = (mj(barrier.from_left_j), mj(barrier.from_right_j));
-            format!("{left} mJ above the left well, {right} mJ above the right one")
+            format!("{left} mJ above the well left of it, {right} mJ above that right of it")
         };
         lines.push(format!("barrier at {} mm, {height}", short(barrier.x * 1e3)));
+        let wells = landscape.equilibria.iter().filter(|own| own.stable).count();
+        if wells > 2 {
+            lines.push(format!(
+                "{wells} wells: of the barriers between them this one is the nearest to x = 0 (of two as near \
+                 the left one); crossings, regime and side are about it alone"
+            ));
+        }
     }
     let list = |items: Vec<String>| items.join(", ");
     if !landscape.extrema.is_empty() {
