@@ -1,9 +1,8 @@
-//! Samples at events, counts of the settled window, and runs that are watched or not.
+//! Samples at events, and counts of the settled window.
 
-use interwell::dynamics::{EventKind, Phase, Request, Run};
+use interwell::dynamics::{EventKind, Phase, Run};
 
 use super::scenes::*;
-use crate::properties::mirror::{assert_mirrored, mirrored};
 
 fn p2() -> interwell::scene::Scene {
     nominal_scene(4.0, 0.36, sine(3.0, 1.5 * 9.80665, 0.0), 10.0)
@@ -116,57 +115,4 @@ fn the_rms_of_the_window_is_that_of_the_samples() {
     // each impact leaves an error of a step
     assert!((r.summary.rms_velocity.unwrap() / mean.sqrt() - 1.0).abs() < 2e-4);
     assert!(r.summary.max_abs_x.unwrap() >= highest && highest <= 4e-3);
-}
-
-#[test]
-fn a_stop_that_is_never_reached_leaves_every_bit_alone() {
-    let times = dense(10.0, 1000);
-    let without = {
-        let mut s = p2();
-        s.stops = interwell::scene::Stops::None;
-        s.start = at(7.0, 0.0);
-        s.excitation = sine(3.0, 1.1 * 9.80665, 0.0);
-        s
-    };
-    let a = model(&without).run(&full(&times));
-    let beyond = a.summary.max_abs_x.unwrap() * (1.0 + 1e-9) * 1e3;
-    for limit in [beyond, beyond * 1.5, 1e6] {
-        let mut with = without.clone();
-        with.stops = rigid(limit, 0.36);
-        let b = model(&with).run(&full(&times));
-        assert_eq!((&a.samples, &a.events), (&b.samples, &b.events), "{limit}");
-        assert_eq!(a.summary.rms_velocity, b.summary.rms_velocity);
-        assert_eq!(a.summary.steps, b.summary.steps);
-    }
-}
-
-#[test]
-fn watching_changes_nothing() {
-    let m = model(&p2());
-    let watched = m.run(&full(&dense(10.0, 3000)));
-    let bare = m.run(&Request::default());
-    assert!(bare.samples.is_empty() && bare.events.is_empty() && bare.summary.ledger.is_none());
-    let (a, b) = (&watched.summary, &bare.summary);
-    assert_eq!(
-        (a.final_x, a.final_v, a.steps, a.evaluations),
-        (b.final_x, b.final_v, b.steps, b.evaluations)
-    );
-    assert_eq!((a.impacts, a.crossings, a.rests, a.regime), (b.impacts, b.crossings, b.rests, b.regime));
-    assert_eq!((a.rms_velocity, a.max_abs_x, a.period), (b.rms_velocity, b.max_abs_x, b.period));
-    assert_eq!(watched.summary.rms_velocity, m.run(&full(&[])).summary.rms_velocity);
-}
-
-#[test]
-fn the_mirrored_scene_gives_the_mirrored_run_bit_for_bit() {
-    let times = dense(10.0, 2000);
-    let s = p2();
-    let mut s = s.clone();
-    s.start = at(4.0, 0.0);
-    let a = model(&s).run(&full(&times));
-    assert!(a.events.len() > 800);
-    assert_mirrored(&a, &model(&mirrored(&s)).run(&full(&times)));
-    // 180 degrees are the same as a negative amplitude
-    let mut turned = mirrored(&s);
-    turned.excitation = sine(3.0, 1.5 * 9.80665, 180.0);
-    assert_mirrored(&a, &model(&turned).run(&full(&times)));
 }

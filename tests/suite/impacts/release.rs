@@ -7,7 +7,7 @@ use interwell::scene::{Excitation, Scene};
 use proptest::prelude::*;
 
 use super::scenes::*;
-use crate::properties::mirror::{assert_mirrored, mirrored};
+use crate::properties::mirror::{assert_mirrored, image};
 
 fn releases(run: &Run) -> Vec<f64> {
     run.events.iter().filter(|e| e.kind == EventKind::Release).map(|e| e.t).collect()
@@ -136,7 +136,7 @@ fn the_release_is_the_next_one_whatever_the_phase() {
             held += 1;
             let scanned = first_fall(&m, press, 30_000).unwrap();
             assert!((t - scanned).abs() < 1e-14, "{phase} {press}: {t} {scanned}");
-            assert_mirrored(&r, &run(&mirrored(&s)));
+            assert_mirrored(&r, &run(&image(&s).unwrap()));
         }
     }
     assert!(held > 350, "{held} of 540");

@@ -32,6 +32,20 @@ fn prototype() -> Geometry {
     }
 }
 
+/// The prototype with every length `scale` times as long, of a material as soft as may be.
+fn scaled(scale: f64) -> Geometry {
+    let group = |g: Group| Group { count: g.count, length: scale * g.length, width: scale * g.width };
+    let p = prototype();
+    Geometry {
+        preload: scale * p.preload,
+        thickness: scale * p.thickness,
+        young: 1e-60,
+        parallel: group(p.parallel),
+        buckling: group(p.buckling),
+        ..p
+    }
+}
+
 #[track_caller]
 fn solve(geometry: &Geometry) -> (ForceCurve, Flexures) {
     Flexures::solve(geometry, 1e-8).unwrap_or_else(|e| panic!("{e}\n{geometry:?}"))

@@ -53,15 +53,6 @@ fn a_dropped_ball_bounces_by_a_geometric_series_and_rests_at_its_sum() {
 }
 
 #[test]
-fn the_quoted_rest_times() {
-    // The digits quoted for e = 0.8 and e = 0.5.
-    for (e, rest) in [(0.8, 4.063712769), (0.5, 1.354570923)] {
-        let run = run(&preset("bouncing-ball", &[&format!("stops.restitution_left={e}")]));
-        near(of_kind(&run, EventKind::Rest)[0].t, rest, 6e-10);
-    }
-}
-
-#[test]
 fn the_ball_of_ballode() {
     // MATLAB's ballode: thrown up from the floor with 20 m/s, g = 9.8, e = 0.9: hits at (2 v0/g)(1 - e^n)/(1
     // - e), rest at (2 v0/g)/(1 - e) = 40.816327 s. The throw itself is no event.

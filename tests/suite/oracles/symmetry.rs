@@ -1,39 +1,16 @@
 //! Bits of mirrored scenes.
 
-use interwell::dynamics::{Model, Run, Side};
+use interwell::dynamics::{Model, Run};
 
+use crate::properties::mirror::assert_mirrored;
 use crate::support::*;
-
-fn mirrored(side: Side) -> Side {
-    if side == Side::Left { Side::Right } else { Side::Left }
-}
-
-/// Asserts that `b` is `a` seen in a mirror, to the last bit.
-#[track_caller]
-fn assert_mirror(a: &Run, b: &Run) {
-    assert_eq!(a.events.len(), b.events.len());
-    for (p, q) in a.events.iter().zip(&b.events) {
-        assert_eq!((p.t, p.kind, p.v_in, p.v_out), (q.t, q.kind, -q.v_in, -q.v_out));
-        assert_eq!(p.side, mirrored(q.side));
-    }
-    assert_eq!(a.samples.len(), b.samples.len());
-    for (p, q) in a.samples.iter().zip(&b.samples) {
-        assert_eq!((p.t, p.x, p.v, p.base_accel), (q.t, -q.x, -q.v, -q.base_accel));
-    }
-    let (p, q) = (&a.summary, &b.summary);
-    assert_eq!((p.final_x, p.final_v), (-q.final_x, -q.final_v));
-    assert_eq!((p.rms_velocity, p.travel(), p.max_abs_x), (q.rms_velocity, q.travel(), q.max_abs_x));
-    assert_eq!((p.regime, p.period, p.outcome), (q.regime, q.period, q.outcome));
-    assert_eq!((p.steps, p.total_impacts, p.rests), (q.steps, q.total_impacts, q.rests));
-    assert_eq!(p.ledger, q.ledger);
-}
 
 /// Runs both, sampled 200 times, and asserts that one mirrors the other and that something moved.
 #[track_caller]
 fn mirror(a: &Model, b: &Model) -> Run {
     let times = every(a.duration() / 200.0, 199);
     let (a, b) = (run_at(a, &times), run_at(b, &times));
-    assert_mirror(&a, &b);
+    assert_mirrored(&a, &b);
     assert!(a.summary.travel().unwrap() > 0.0);
     a
 }

@@ -71,11 +71,6 @@ pub fn image(scene: &Scene) -> Option<Scene> {
     Some(image)
 }
 
-/// The same of a scene that has an image.
-pub fn mirrored(scene: &Scene) -> Scene {
-    image(scene).expect("a scene that can be mirrored")
-}
-
 /// Asserts [`same_in_a_mirror`].
 #[track_caller]
 pub fn assert_mirrored(a: &Run, b: &Run) {

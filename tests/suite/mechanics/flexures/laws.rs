@@ -113,18 +113,9 @@ fn size_does_not_matter() {
     let (curve, flexures) = solve(&prototype());
     let middle = flexures.state(4e-3).unwrap();
     for scale in [1e-9, 1e-3, 1e9] {
-        let p = prototype();
-        let group = |g: &Group| Group { count: g.count, length: scale * g.length, width: scale * g.width };
-        let own = Geometry {
-            preload: scale * p.preload,
-            thickness: scale * p.thickness,
-            young: 1e-60,
-            parallel: group(&p.parallel),
-            buckling: group(&p.buckling),
-            ..p
-        };
+        let own = scaled(scale);
         let (other, others) = solve(&own);
-        let unit = own.young / p.young * scale * scale;
+        let unit = own.young / prototype().young * scale * scale;
         near_relative(other.domain().1, scale * curve.domain().1, 1e-12);
         assert_eq!(other.pieces().len(), curve.pieces().len());
         for x in places(curve.domain().1, 20) {
