@@ -3,17 +3,16 @@
 use eframe::egui::{Key, Modifiers, accesskit::Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::Command;
 use interwell::app::window::Window;
 use interwell::study::accuracy::methods::Scheme;
 
-use crate::support::{LONG, PROJECTED, WIDE, command, session, window};
+use crate::support::{LONG, PROJECTED, WIDE, command, press, session, window};
 
 /// The view over the whole window, with everything worked out.
 fn filled(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {
-    let mut harness = window(preset, size, Settings::default());
+    let mut harness = window(preset, size);
     harness.key_press(Key::Space);
     for view in View::ALL {
         command(&mut harness, Command::Show(view, view == View::Accuracy));
@@ -60,7 +59,7 @@ fn the_table_fills_and_the_step_changes_the_numbers() {
 
 #[test]
 fn a_projector_shows_one_part_at_a_time() {
-    let mut harness = window("paper", PROJECTED, Settings::default());
+    let mut harness = window("paper", PROJECTED);
     harness.key_press(Key::Space);
     command(&mut harness, Command::Show(View::Accuracy, true));
     come(&mut harness);
@@ -77,7 +76,7 @@ fn a_projector_shows_one_part_at_a_time() {
 
 #[test]
 fn closed_it_works_nothing_out() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     harness.run_steps(5);
     let nothing = |harness: &Harness<'_, Window>| {
         let session = &harness.state().session;
@@ -104,8 +103,7 @@ fn closed_it_works_nothing_out() {
 #[test]
 fn covered_it_says_nothing() {
     let mut harness = filled("paper", WIDE);
-    harness.key_press(Key::C);
-    harness.run_steps(3);
+    press(&mut harness, Key::C);
     assert!(!is_there(&harness, "of processor time") && !is_there(&harness, "Path error about"));
 }
 
@@ -119,7 +117,7 @@ fn the_status_line_says_the_error_or_how_long_to_trust() {
         ("first-look", "Chaotic: path reliable up to "),
     ] {
         for size in [WIDE, PROJECTED] {
-            let mut harness = window(preset, size, Settings::default());
+            let mut harness = window(preset, size);
             harness.state_mut().session.wait(LONG);
             harness.run_steps(2);
             let rect = harness.get_by_label_contains(words).rect();

@@ -3,14 +3,13 @@
 use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::ui::settings::Settings;
 use interwell::app::window::Window;
 use interwell::scene::{Excitation, Stops};
 
 use crate::support::{session, window};
 
 fn opened(preset: &str) -> Harness<'static, Window> {
-    let mut harness = window(preset, [1280.0, 1600.0], Settings::default());
+    let mut harness = window(preset, [1280.0, 1600.0]);
     harness.get_by_label("More").click();
     harness.run_steps(3);
     harness.get_by_label("Advanced").click();

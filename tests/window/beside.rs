@@ -3,7 +3,6 @@
 use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::scene::{FieldPath, PRESETS, Transducer};
@@ -15,7 +14,7 @@ const NAMES: [&str; 4] = ["spring 50", "magnets attract", "magnets repel", "load
 
 /// A window with the mechanism alone; the motion stands at its start.
 fn alone(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {
-    let mut harness = window(preset, size, Settings::default());
+    let mut harness = window(preset, size);
     for view in View::ALL {
         command(&mut harness, Command::Show(view, view == View::Mechanism));
     }
@@ -132,7 +131,7 @@ fn a_load_is_drawn_from_a_short_circuit_to_an_open_one() {
 
 #[test]
 fn a_load_has_its_name_where_the_mechanism_shares_a_projected_window() {
-    let mut harness = window("harvester", PROJECTED, Settings::default());
+    let mut harness = window("harvester", PROJECTED);
     harness.run_steps(3);
     let all = painted(&harness);
     let own = all.iter().find(|own| own.0.contains("load 60 ohm"));
@@ -146,7 +145,7 @@ fn springs_and_magnets_have_sliders_under_more() {
         ("magnet", "strength of the magnets of part 2", "mechanism.1.strength_n_mm4", 900.0),
         ("magnet", "gap of the magnets of part 2", "mechanism.1.gap_mm", 13.0),
     ] {
-        let mut harness = window(preset, WIDE, Settings::default());
+        let mut harness = window(preset, WIDE);
         harness.get_by_label("More").click();
         harness.run_steps(15);
         harness.get_by_role_and_label(Role::Slider, name).set_value_accesskit(value);

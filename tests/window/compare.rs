@@ -4,14 +4,13 @@ use eframe::egui::Key;
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::Session;
 use interwell::app::session::pins::{Pin, PinKind};
-use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::dynamics::EventKind;
 use interwell::scene::{Layout, Stops};
 use interwell::study::distances;
 
-use crate::support::{LONG, PROJECTED, WIDE, command, painted, session, wait_until, window};
+use crate::support::{LONG, PROJECTED, WIDE, command, painted, press, session, wait_until, window};
 
 /// Has the motion go on for some seconds, with its pins.
 fn play(session: &mut Session, seconds: f64) {
@@ -41,7 +40,7 @@ fn frames_until(harness: &mut Harness<'static, Window>, what: &str, is_so: impl 
 
 #[test]
 fn a_pin_of_the_scene_lies_on_the_motion_to_the_bit() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.state_mut().session.switch_stops(true);
     harness.state_mut().session.player.speed = 1.0;
     frames_until(&mut harness, "an impact", |session| session.player.watch().events().len() > 3);
@@ -77,7 +76,7 @@ fn a_pin_of_the_scene_lies_on_the_motion_to_the_bit() {
 
 #[test]
 fn a_pin_keeps_its_scene_and_comes_back_in_one_step() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     command(&mut harness, Command::Pin(PinKind::Motion));
     let before = harness.state().session.scene().clone();
     let session = &mut harness.state_mut().session;
@@ -133,17 +132,15 @@ fn without_stops_it_is_another_motion_from_here_on() {
 
 #[test]
 fn there_is_room_for_three() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     for _ in 0..3 {
-        harness.key_press(Key::K);
-        harness.run_steps(2);
+        press(&mut harness, Key::K);
     }
     let letters = |harness: &Harness<'static, Window>| -> String {
         harness.state().session.pins.all().iter().map(Pin::letter).collect()
     };
     assert_eq!(letters(&harness), "ABC");
-    harness.key_press(Key::K);
-    harness.run_steps(2);
+    press(&mut harness, Key::K);
     assert_eq!(letters(&harness), "ABC");
     assert!(harness.state().told().is_some_and(|told| told.contains("unpin one first")));
     harness.get_by_label("Unpin A").click();
@@ -208,7 +205,7 @@ fn a_pin_that_ends_early_stays_there() {
 #[test]
 fn every_view_draws_pins() {
     for size in [WIDE, PROJECTED] {
-        let mut harness = window("first-look", size, Settings::default());
+        let mut harness = window("first-look", size);
         command(&mut harness, Command::Arrange(Layout::Study));
         harness.state_mut().session.player.speed = 1.0;
         for kind in [PinKind::Twin, PinKind::OtherStops, PinKind::Motion] {
@@ -232,19 +229,19 @@ fn every_view_draws_pins() {
 
 #[test]
 fn the_distance_is_shown_beside_the_card() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     command(&mut harness, Command::Pin(PinKind::Twin));
     harness.get_by_label("distance of the pinned motions");
     harness.get_by_label("Before / now").click();
     harness.run_steps(2);
     assert!(harness.query_by_label("distance of the pinned motions").is_none());
-    assert!(harness.state().tiling().shows(View::BeforeNow));
+    assert!(harness.state().tiling.shows(View::BeforeNow));
 }
 
 #[test]
 fn the_table_of_three_pins_needs_no_scrolling_sideways() {
     for size in [WIDE, PROJECTED] {
-        let mut harness = window("paper", size, Settings::default());
+        let mut harness = window("paper", size);
         command(&mut harness, Command::Arrange(Layout::Look));
         for kind in [PinKind::Motion, PinKind::OtherStops, PinKind::Twin] {
             command(&mut harness, Command::Pin(kind));
@@ -261,7 +258,7 @@ fn the_table_of_three_pins_needs_no_scrolling_sideways() {
         command(&mut harness, Command::Show(View::Compare, true));
         harness.get_by_label("Compare").click();
         harness.run_steps(3);
-        let place = harness.state().tiling().place_of(View::Compare).unwrap();
+        let place = harness.state().tiling.place_of(View::Compare).unwrap();
         for name in ["Take A back", "Unpin A", "Unpin B", "Unpin C"] {
             let rect = harness.get_by_label(name).rect();
             assert!(
@@ -280,7 +277,7 @@ fn the_table_of_three_pins_needs_no_scrolling_sideways() {
 
 #[test]
 fn two_motions_stand_side_by_side_and_a_hand_moves_the_present_one_alone() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     for view in View::ALL {
         command(&mut harness, Command::Show(view, view == View::SideBySide));
     }
@@ -296,9 +293,8 @@ fn two_motions_stand_side_by_side_and_a_hand_moves_the_present_one_alone() {
     assert!(own.t == pin.t && own.base_accel == pin.base_accel && (own.x - pin.x).abs() > 1e-3);
     // two drawings and two wells, and one motion that can be taken hold of in each of them
     assert_eq!(harness.query_all_by_label("proof mass").count(), 2);
-    harness.key_press(Key::Space);
-    harness.run_steps(2);
-    let place = harness.state().tiling().place_of(View::SideBySide).unwrap();
+    press(&mut harness, Key::Space);
+    let place = harness.state().tiling.place_of(View::SideBySide).unwrap();
     let masses: Vec<f32> =
         harness.query_all_by_label("proof mass").map(|own| own.rect().center().x).collect();
     assert!(masses.iter().all(|x| *x < place.center().x), "{masses:?}");

@@ -9,18 +9,17 @@ use egui_kittest::{
     kittest::{NodeT as _, Queryable as _},
 };
 use interwell::app::session::pins::PinKind;
-use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::scene::Layout;
 
-use crate::support::{PROJECTED, WIDE, command, is_painted, window};
+use crate::support::{PROJECTED, WIDE, command, is_painted, press, window};
 
 const TRACES: [View; 4] = [View::Displacement, View::Velocity, View::BaseAcceleration, View::Power];
 
 /// The preset `paper` after ten periods, standing.
 fn played(size: [f32; 2]) -> Harness<'static, Window> {
-    let mut harness = window("paper", size, Settings::default());
+    let mut harness = window("paper", size);
     let player = &mut harness.state_mut().session.player;
     player.speed = 10.0;
     (0..4).for_each(|_| player.tick(0.1));
@@ -30,10 +29,10 @@ fn played(size: [f32; 2]) -> Harness<'static, Window> {
 }
 
 fn place(harness: &Harness<'static, Window>, view: View) -> Rect {
-    harness.state().tiling().place_of(view).unwrap()
+    harness.state().tiling.place_of(view).unwrap()
 }
 
-fn wheel(harness: &mut Harness<'static, Window>, at: Pos2, modifiers: Modifiers, up: f32) {
+pub fn wheel(harness: &mut Harness<'static, Window>, at: Pos2, modifiers: Modifiers, up: f32) {
     harness.hover_at(at);
     harness.run_steps(2);
     harness.event(Event::ModifiersChanged(modifiers));
@@ -80,61 +79,55 @@ fn click(harness: &mut Harness<'static, Window>, pos: Pos2, modifiers: Modifiers
 #[test]
 fn cursors_are_off_at_first_and_on_in_all_views_over_time() {
     let mut harness = played(WIDE);
-    assert!(!harness.state().cursors().on);
+    assert!(!harness.state().memory.cursors.on);
     assert!(harness.query_by_label("cursor 1, displacement").is_none());
     for view in TRACES {
         command(&mut harness, Command::Show(view, true));
     }
-    harness.key_press(Key::T);
-    harness.run_steps(3);
+    press(&mut harness, Key::T);
     for name in ["displacement", "velocity", "base", "power"] {
         for which in [1, 2] {
             harness.get_by_role_and_label(Role::Slider, &format!("cursor {which}, {name}"));
         }
     }
     // within what is shown, in their order
-    let [a, b] = harness.state().cursors().at;
+    let [a, b] = harness.state().memory.cursors.at;
     let now = harness.state().session.player.time();
     assert!(now - 2.2 < a && a < b && b < now, "{a} {b} {now}");
-    harness.key_press(Key::T);
-    harness.run_steps(3);
+    press(&mut harness, Key::T);
     assert!(harness.query_by_label("cursor 1, displacement").is_none());
     // where no view over time is seen, one comes
     for view in TRACES {
         command(&mut harness, Command::Show(view, false));
     }
-    harness.key_press(Key::T);
-    harness.run_steps(3);
+    press(&mut harness, Key::T);
     harness.get_by_label("cursor 2, displacement");
 }
 
 #[test]
 fn a_period_is_read_off_between_them() {
     let mut harness = played(WIDE);
-    harness.key_press(Key::T);
-    harness.run_steps(3);
+    press(&mut harness, Key::T);
     let watch = harness.state().session.player.watch().clone();
     // a third of a second apart, by the keyboard: the grid of the keys is 5 ms or less
     let slider = |which: u32| format!("cursor {which}, displacement");
     harness.get_by_label(&slider(1)).focus();
     harness.run_steps(2);
-    let before = harness.state().cursors().at;
-    harness.key_press(Key::ArrowRight);
-    harness.run_steps(2);
-    let step = harness.state().cursors().at[0] - before[0];
+    let before = harness.state().memory.cursors.at;
+    press(&mut harness, Key::ArrowRight);
+    let step = harness.state().memory.cursors.at[0] - before[0];
     assert!(step > 0.0 && step <= 0.01, "{step}");
-    let first = harness.state().cursors().at[0];
+    let first = harness.state().memory.cursors.at[0];
     harness.key_press_modifiers(Modifiers::SHIFT, Key::ArrowLeft);
     harness.run_steps(2);
-    let moved = first - harness.state().cursors().at[0];
+    let moved = first - harness.state().memory.cursors.at[0];
     // ten steps of the grid, which is 2 ms in a stretch of 2 s
     assert!((moved - 0.02).abs() < 1e-9, "{moved}");
     // from event to event
-    let [a, _] = harness.state().cursors().at;
+    let [a, _] = harness.state().memory.cursors.at;
     let next = watch.events().iter().find(|own| own.t > a).unwrap().t;
-    harness.key_press(Key::ArrowUp);
-    harness.run_steps(2);
-    assert_eq!(harness.state().cursors().at[0], next);
+    press(&mut harness, Key::ArrowUp);
+    assert_eq!(harness.state().memory.cursors.at[0], next);
     // the same event a period later: interwell motion of period 1
     let period = watch.model_at(next).forcing_period().unwrap();
     let later = watch
@@ -147,13 +140,13 @@ fn a_period_is_read_off_between_them() {
     harness.get_by_label(&slider(2)).focus();
     harness.run_steps(2);
     for _ in 0..500 {
-        match harness.state().cursors().at[1] {
+        match harness.state().memory.cursors.at[1] {
             own if own == later => break,
             own => harness.key_press(if own < later { Key::ArrowUp } else { Key::ArrowDown }),
         }
         harness.run_steps(2);
     }
-    assert_eq!(harness.state().cursors().at, [next, later]);
+    assert_eq!(harness.state().memory.cursors.at, [next, later]);
     harness.run_steps(2);
     let text = "2 - 1: 0.3333 s = 1 / 3.00 Hz = 1.00 periods";
     harness.get_by_label_contains(text);
@@ -167,21 +160,20 @@ fn a_period_is_read_off_between_them() {
 #[test]
 fn a_click_moves_the_nearer_one_and_ctrl_goes_to_an_event() {
     let mut harness = played(WIDE);
-    harness.key_press(Key::T);
-    harness.run_steps(3);
+    press(&mut harness, Key::T);
     let rect = place(&harness, View::Displacement);
-    let before = harness.state().cursors().at;
+    let before = harness.state().memory.cursors.at;
     let at = pos2(rect.left() + 90.0, rect.center().y);
     click(&mut harness, at, Modifiers::NONE);
-    let after = harness.state().cursors().at;
+    let after = harness.state().memory.cursors.at;
     assert!(after[0] < before[0] - 0.1 && after[1] == before[1], "{before:?} {after:?}");
     // dragged on its line
     let grip = harness.get_by_label("cursor 2, displacement").rect().center();
     drag(&mut harness, grip, grip + vec2(20.0, 0.0), (PointerButton::Primary, Modifiers::NONE));
-    let dragged = harness.state().cursors().at;
+    let dragged = harness.state().memory.cursors.at;
     assert!(dragged[0] == after[0] && dragged[1] > after[1] + 0.03, "{after:?} {dragged:?}");
     click(&mut harness, at, Modifiers::COMMAND);
-    let snapped = harness.state().cursors().at[0];
+    let snapped = harness.state().memory.cursors.at[0];
     assert!(harness.state().session.player.watch().events().iter().any(|own| own.t == snapped));
     assert_ne!(snapped, after[0]);
     // and nothing of it moves the scene or the motion
@@ -190,7 +182,7 @@ fn a_click_moves_the_nearer_one_and_ctrl_goes_to_an_event() {
 
 #[test]
 fn distances_are_read_off_with_their_rate() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     command(&mut harness, Command::Pin(PinKind::Twin));
     let session = &mut harness.state_mut().session;
     session.player.speed = 10.0;
@@ -200,7 +192,7 @@ fn distances_are_read_off_with_their_rate() {
     }
     session.player.set_playing(false);
     command(&mut harness, Command::Cursors);
-    let at = harness.state().cursors().at;
+    let at = harness.state().memory.cursors.at;
     let session = &harness.state().session;
     let pin = session.pins.get('A').unwrap();
     let [first, second] = at.map(|t| (session.player.watch().state_at(t).x - pin.state_at(t).x).abs());
@@ -217,12 +209,12 @@ fn held_axes_stay_through_motion_and_scenes() {
     let mut harness = played(WIDE);
     command(&mut harness, Command::Arrange(Layout::Study));
     let views = [View::Displacement, View::PhasePortrait, View::ForceCurve, View::Well];
-    assert!(views.iter().all(|view| harness.state().chosen_axes(*view) == [None; 2]));
+    assert!(views.iter().all(|view| harness.state().memory.chosen_axes(*view) == [None; 2]));
     for view in views {
         harness.get_by_label(&format!("hold the axes of {}", view.name())).click();
         harness.run_steps(2);
     }
-    let held = views.map(|view| harness.state().chosen_axes(view));
+    let held = views.map(|view| harness.state().memory.chosen_axes(view));
     assert!(held.iter().flatten().all(Option::is_some), "{held:?}");
     // along the displacement they share an axis
     assert!(held[1][0] == held[2][0] && held[2][0] == held[3][0]);
@@ -230,22 +222,21 @@ fn held_axes_stay_through_motion_and_scenes() {
     harness.run_steps(60);
     harness.state_mut().open_another("first-look");
     harness.run_steps(60);
-    assert_eq!(views.map(|view| harness.state().chosen_axes(view)), held);
+    assert_eq!(views.map(|view| harness.state().memory.chosen_axes(view)), held);
     // what is not held goes with its scene
     command(&mut harness, Command::Show(View::Velocity, true));
     let at = place(&harness, View::Velocity).center();
     wheel(&mut harness, at, Modifiers::SHIFT, 100.0);
-    assert!(harness.state().chosen_axes(View::Velocity)[1].is_some());
+    assert!(harness.state().memory.chosen_axes(View::Velocity)[1].is_some());
     harness.state_mut().open_another("paper");
     harness.run_steps(3);
-    assert_eq!(harness.state().chosen_axes(View::Velocity)[1], None);
+    assert_eq!(harness.state().memory.chosen_axes(View::Velocity)[1], None);
     // and what is let go of is by itself again
     harness.hover_at(place(&harness, View::Well).center());
     harness.run_steps(2);
-    harness.key_press(Key::L);
-    harness.run_steps(2);
-    assert_eq!(harness.state().chosen_axes(View::Well), [None; 2]);
-    assert_eq!(harness.state().chosen_axes(View::Displacement), held[0]);
+    press(&mut harness, Key::L);
+    assert_eq!(harness.state().memory.chosen_axes(View::Well), [None; 2]);
+    assert_eq!(harness.state().memory.chosen_axes(View::Displacement), held[0]);
 }
 
 #[test]
@@ -257,7 +248,7 @@ fn wheel_keys_box_and_drag_choose_both_axes() {
     command(&mut harness, Command::Show(View::ForceCurve, true));
     command(&mut harness, Command::HoldAxes);
     command(&mut harness, Command::FreeAxes);
-    let ends = |harness: &Harness<'static, Window>| harness.state().chosen_axes(View::ForceCurve);
+    let ends = |harness: &Harness<'static, Window>| harness.state().memory.chosen_axes(View::ForceCurve);
     let rect = place(&harness, View::ForceCurve);
     let at = pos2(rect.left() + 0.3 * rect.width(), rect.center().y);
     let length = |own: Option<(f64, f64)>| own.map(|own| own.1 - own.0).unwrap();
@@ -287,8 +278,7 @@ fn wheel_keys_box_and_drag_choose_both_axes() {
     let share = length(boxed[0]) / length(after[0]);
     assert!((share - 60.0 / f64::from(rect.width())).abs() < 0.01, "{share}");
     assert!(length(boxed[1]) < 0.5 * length(after[1]));
-    harness.key_press(Key::Num0);
-    harness.run_steps(2);
+    press(&mut harness, Key::Num0);
     assert_eq!(ends(&harness), [None; 2]);
     // the scene and the motion are as they were
     assert!(!harness.state().session.editor.can_undo());
@@ -299,9 +289,8 @@ fn time_that_is_held_lets_the_motion_leave() {
     let mut harness = played(WIDE);
     harness.hover_at(place(&harness, View::Displacement).center());
     harness.run_steps(2);
-    harness.key_press(Key::L);
-    harness.run_steps(2);
-    let [time, _] = harness.state().chosen_axes(View::Displacement);
+    press(&mut harness, Key::L);
+    let [time, _] = harness.state().memory.chosen_axes(View::Displacement);
     let end = time.unwrap().1;
     let player = &mut harness.state_mut().session.player;
     (0..5).for_each(|_| {
@@ -311,10 +300,10 @@ fn time_that_is_held_lets_the_motion_leave() {
     player.set_playing(false);
     harness.run_steps(3);
     assert!(harness.state().session.player.time() > end);
-    assert_eq!(harness.state().chosen_axes(View::Velocity)[0], time);
+    assert_eq!(harness.state().memory.chosen_axes(View::Velocity)[0], time);
     // cursors that are switched on stand where they are seen
     command(&mut harness, Command::Cursors);
-    assert!(harness.state().cursors().at.iter().all(|t| (time.unwrap().0..=end).contains(t)));
+    assert!(harness.state().memory.cursors.at.iter().all(|t| (time.unwrap().0..=end).contains(t)));
 }
 
 #[test]

@@ -3,15 +3,14 @@
 use eframe::egui::{self, Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::ui::settings::Settings;
 use interwell::app::window::Command;
 use interwell::app::window::leave::Next;
 use interwell::app::window::{Wanted, Window};
 
-use crate::support::{WIDE, command, window};
+use crate::support::{WIDE, command, press, window};
 
 pub fn opened() -> Harness<'static, Window> {
-    window("first-look", WIDE, Settings::default())
+    window("first-look", WIDE)
 }
 
 pub fn title(harness: &Harness<'static, Window>) -> String {
@@ -38,8 +37,7 @@ fn unsaved_changes_are_asked_about() {
     // Escape stays
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
     command(&mut harness, Command::Quit);
-    harness.key_press(Key::Escape);
-    harness.run_steps(3);
+    press(&mut harness, Key::Escape);
     assert!(harness.query_by_label("Save the changes?").is_none());
     assert_eq!(harness.state().session.scene().mass_g, 16.0);
 }
@@ -130,8 +128,7 @@ fn no_key_acts_behind_a_dialog_or_in_a_field() {
     let before = seen(&harness);
     let type_all = |harness: &mut Harness<'static, Window>| {
         for key in [Key::P, Key::D, Key::C, Key::Num1, Key::Space, Key::Period, Key::Home, Key::PageUp] {
-            harness.key_press(key);
-            harness.run_steps(2);
+            press(harness, key);
         }
     };
     // unsaved changes: the focus is on a button, which Space would press
@@ -140,21 +137,18 @@ fn no_key_acts_behind_a_dialog_or_in_a_field() {
     harness.get_by_label("Cancel").focus();
     harness.run_steps(2);
     for key in [Key::P, Key::D, Key::C, Key::Num1, Key::Period, Key::Home, Key::PageUp] {
-        harness.key_press(key);
-        harness.run_steps(2);
+        press(&mut harness, key);
     }
     harness.event(Event::Paste(harness_text()));
     harness.run_steps(2);
     assert_eq!(seen(&harness), before);
     assert_eq!(harness.state().session.scene().mass_g, 16.0);
-    harness.key_press(Key::Escape);
-    harness.run_steps(3);
+    press(&mut harness, Key::Escape);
     // a path that cannot be, entered, and typed on
     harness.state_mut().type_path(Wanted::Open);
     harness.run_steps(3);
     harness.event(Event::Text("/nowhere/at/all".into()));
-    harness.key_press(Key::Enter);
-    harness.run_steps(3);
+    press(&mut harness, Key::Enter);
     harness.get_by_label("There is no such file.");
     type_all(&mut harness);
     assert_eq!(seen(&harness), before);
@@ -163,10 +157,8 @@ fn no_key_acts_behind_a_dialog_or_in_a_field() {
     harness.event(Event::Text("xyz".into()));
     harness.run_steps(2);
     assert!(harness.query_all_by_value("/nowhere/at/allxyz").next().is_some());
-    harness.key_press(Key::Escape);
-    harness.run_steps(3);
-    harness.key_press(Key::Num1);
-    harness.run_steps(2);
+    press(&mut harness, Key::Escape);
+    press(&mut harness, Key::Num1);
     assert_eq!(harness.state().session.player.speed, 1e-3);
 }
 
@@ -181,8 +173,7 @@ fn home_goes_back_to_what_was_saved() {
     harness.run_steps(2);
     assert_eq!(harness.state().told(), Some("Saved own.ron"));
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 17.0);
-    harness.key_press(Key::Home);
-    harness.run_steps(3);
+    press(&mut harness, Key::Home);
     assert_eq!(harness.state().session.scene().mass_g, 16.0);
     assert!(!harness.state().session.editor.is_dirty());
 }
@@ -199,7 +190,7 @@ fn takes_its_files_along(preset: &str) {
         std::fs::create_dir_all(place).unwrap();
     }
     // a table beside the scene, and another file of that name where it is saved to
-    let mut harness = window(preset, WIDE, Settings::default());
+    let mut harness = window(preset, WIDE);
     let ctx = harness.ctx.clone();
     harness.state_mut().save_to(&ctx, &one.join("own.ron"));
     let named = |harness: &Harness<'static, Window>| {
@@ -247,7 +238,6 @@ fn enter_closes_a_message() {
     harness.run_steps(2);
     command(&mut harness, Command::About);
     assert!(harness.state().message().is_some());
-    harness.key_press(Key::Enter);
-    harness.run_steps(3);
+    press(&mut harness, Key::Enter);
     assert!(harness.state().message().is_none());
 }

@@ -5,17 +5,16 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::dynamics::EventKind;
 use interwell::study::{Watch, events_table, watched_events};
 
-use crate::support::{PROJECTED, WIDE, command, is_painted, session, settled, sliced, window};
+use crate::support::{PROJECTED, WIDE, command, is_painted, press, session, settled, sliced, window};
 
 /// The preset with the table of events alone, after some seconds, standing.
 fn listed(preset: &str, size: [f32; 2], seconds: usize) -> Harness<'static, Window> {
-    let mut harness = window(preset, size, Settings::default());
+    let mut harness = window(preset, size);
     let player = &mut harness.state_mut().session.player;
     player.speed = 10.0;
     (0..seconds).for_each(|_| player.tick(0.1));
@@ -100,8 +99,7 @@ fn a_row_takes_the_time_there_and_the_present_is_marked() {
     assert!(marked(&harness).contains(&format!("at {at:.5} s")));
     // the keys between events go through the list, which follows
     for _ in 0..40 {
-        harness.key_press(Key::PageUp);
-        harness.run_steps(2);
+        press(&mut harness, Key::PageUp);
     }
     let at = harness.state().session.player.time();
     assert!(marked(&harness).contains(&format!("at {at:.5} s")));
@@ -124,7 +122,7 @@ fn older_events_that_are_gone_are_told() {
 
 #[test]
 fn nothing_that_has_happened_is_said() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.state_mut().session.restart();
     harness.state_mut().session.player.set_playing(false);
     for view in View::ALL {

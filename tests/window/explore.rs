@@ -1,23 +1,21 @@
 //! The layout Explore: the scene turned up and down, asked for while it is looked at.
 
-use eframe::egui::{Key, Modifiers, accesskit::Role};
+use eframe::egui::{Key, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::explore::WalkQuantity;
-use interwell::app::ui::settings::Settings;
 use interwell::app::window::{Command, Window};
 use interwell::scene::{Layout, Start};
 use interwell::study::{Direction, Signal};
 
 use crate::shared::axis;
-use crate::support::{PROJECTED, WIDE, command, wait_until, window};
+use crate::support::{PROJECTED, WIDE, command, press_with_ctrl, wait_until, window};
 
 const AMPLITUDE: &str = "excitation.amplitude_g";
 
 fn open(size: [f32; 2]) -> Harness<'static, Window> {
-    let mut harness = window("first-look", size, Settings::default());
+    let mut harness = window("first-look", size);
     harness.state_mut().session.explore.walks.chosen = Some(axis(AMPLITUDE, (0.8, 1.3, 0.1)));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num5);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::Num5);
     harness
 }
 
@@ -81,14 +79,14 @@ fn another_scene_is_walked_anew_and_a_closed_view_asks_for_nothing() {
 
 #[test]
 fn a_scene_that_cannot_be_walked_says_why() {
-    let mut harness = window("random-shaking", PROJECTED, Settings::default());
+    let mut harness = window("random-shaking", PROJECTED);
     command(&mut harness, Command::Arrange(Layout::Explore));
     harness.get_by_label_contains("that needs shaking that repeats");
 }
 
 #[test]
 fn basins_come_coarse_first_and_a_click_begins_there() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     command(&mut harness, Command::Arrange(Layout::Explore));
     harness.get_by_label("Basins").click();
     wait_until("the basins", || {
@@ -118,7 +116,7 @@ fn basins_come_coarse_first_and_a_click_begins_there() {
 
 #[test]
 fn a_spectrum_has_lines_where_the_motion_repeats() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     command(&mut harness, Command::Arrange(Layout::Explore));
     harness.get_by_label("Spectrum").click();
     wait_until("the spectrum", || {

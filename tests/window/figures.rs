@@ -6,7 +6,6 @@ use std::path::Path;
 use eframe::egui::{Key, Modifiers, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::explore::WalkQuantity;
-use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::app::words::columns::COLUMNS;
@@ -14,26 +13,26 @@ use interwell::scene::Layout;
 use interwell::study::Signal;
 
 use crate::shared::axis;
-use crate::support::{PROJECTED, WIDE, command, sliced, wait_until, window};
+use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, sliced, wait_until, window};
 use crate::written::{arguments, copied};
 
 fn open(harness: &mut Harness<'static, Window>, view: View, path: &Path) {
     command(harness, Command::Figure(Some(view)));
-    harness.state_mut().figures().path = path.display().to_string();
+    harness.state_mut().figures.path = path.display().to_string();
     harness.run_steps(2);
 }
 
-fn press(harness: &mut Harness<'static, Window>, button: &str) {
+fn press_button(harness: &mut Harness<'static, Window>, button: &str) {
     harness.get_by_role_and_label(Role::Button, button).click();
     harness.run_steps(2);
 }
 
 /// Presses Save and waits until the dialog is gone, as it is once the files are there.
 fn save(harness: &mut Harness<'static, Window>) {
-    press(harness, "Save");
+    press_button(harness, "Save");
     wait_until("the figure", || {
         harness.run_steps(1);
-        assert_eq!(harness.state_mut().figures().problem(), None);
+        assert_eq!(harness.state().figures.problem(), None);
         harness.query_by_label("Save a figure").is_none()
     });
     assert!(harness.state().told().is_some_and(|text| text.starts_with("Saved ")));
@@ -57,7 +56,7 @@ fn same_bytes(harness: &mut Harness<'static, Window>, view: View, kind: &str) ->
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str, ending: &str| folder.path().join(format!("{name}.{ending}"));
     open(harness, view, &place("own", kind));
-    harness.state_mut().figures().data = true;
+    harness.state_mut().figures.data = true;
     harness.run_steps(1);
     let line = copy(harness);
     save(harness);
@@ -80,7 +79,7 @@ fn same_bytes(harness: &mut Harness<'static, Window>, view: View, kind: &str) ->
 
 #[test]
 fn of_a_run_and_of_the_force_curve_the_copied_command_makes_the_same_bytes() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.state_mut().session.edit_once(|scene| {
         scene.mass_g = 16.0;
         (scene.run.duration_s, scene.run.settle_s) = (3.0, Some(1.0));
@@ -91,7 +90,7 @@ fn of_a_run_and_of_the_force_curve_the_copied_command_makes_the_same_bytes() {
         let line = same_bytes(&mut harness, View::ForceCurve, kind);
         assert!(line.contains("headless curve first-look") && line.contains("--set mass_g=16"), "{line}");
     }
-    harness.state_mut().figures().titled = false;
+    harness.state_mut().figures.titled = false;
     for (view, panel) in [(View::Displacement, "displacement"), (View::PhasePortrait, "portrait")] {
         let line = same_bytes(&mut harness, view, "svg");
         assert!(line.contains(&format!("--panels {panel}")), "{line}");
@@ -104,36 +103,36 @@ fn of_a_run_and_of_the_force_curve_the_copied_command_makes_the_same_bytes() {
 
 #[test]
 fn a_run_is_drawn_over_the_times_that_are_typed_and_is_as_long_as_they_ask() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.svg");
     open(&mut harness, View::Velocity, &path);
     let long = harness.state().session.scene().run.duration_s;
-    harness.state_mut().figures().times = ["0.5".to_owned(), (long + 1.0).to_string()];
+    harness.state_mut().figures.times = ["0.5".to_owned(), (long + 1.0).to_string()];
     harness.run_steps(1);
     let line = copy(&mut harness);
     let times = format!("--plot-x 0.5:{}", long + 1.0);
     assert!(line.contains(&times) && line.contains(&format!("run.duration_s={}", long + 1.0)), "{line}");
     assert!(line.contains("--panels velocity ") && line.matches("--panels").count() == 1, "{line}");
     // several views in one file; all of them have no need to be named
-    harness.state_mut().figures().panels[0] = true;
+    harness.state_mut().figures.panels[0] = true;
     harness.run_steps(1);
     assert!(copy(&mut harness).contains("--panels displacement --panels velocity "));
-    harness.state_mut().figures().panels = [true; 4];
+    harness.state_mut().figures.panels = [true; 4];
     harness.run_steps(1);
     assert!(!copy(&mut harness).contains("--panels"));
-    harness.state_mut().figures().panels = [false; 4];
+    harness.state_mut().figures.panels = [false; 4];
     harness.run_steps(1);
     harness.get_by_label_contains("at least one is needed");
-    harness.state_mut().figures().panels = [true; 4];
-    harness.state_mut().figures().times = ["2".to_owned(), "1".to_owned()];
+    harness.state_mut().figures.panels = [true; 4];
+    harness.state_mut().figures.times = ["2".to_owned(), "1".to_owned()];
     harness.run_steps(1);
     harness.get_by_label_contains("give two in s, the first one below the second");
 }
 
 #[test]
 fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     let amplitude = axis("excitation.amplitude_g", (0.6, 1.0, 0.2));
     let limit = axis("stops.travel_limit_mm", (1.0, 2.0, 0.5));
     {
@@ -165,11 +164,11 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
 
 #[test]
 fn of_the_basins_the_copied_command_makes_the_same_bytes() {
-    let mut harness = window("uneven-stops", WIDE, Settings::default());
+    let mut harness = window("uneven-stops", WIDE);
     let folder = tempfile::tempdir().unwrap();
     open(&mut harness, View::Basins, &folder.path().join("a.svg"));
     harness.get_by_label_contains("Show this view first");
-    press(&mut harness, "Cancel");
+    press_button(&mut harness, "Cancel");
     harness.state_mut().session.want_basins((-1e-3, 1e-3), (-0.2, 0.2));
     let line = same_bytes(&mut harness, View::Basins, "svg");
     assert!(line.contains("--x-mm -1:1:81 --v -0.2:0.2:81"), "{line}");
@@ -178,15 +177,13 @@ fn of_the_basins_the_copied_command_makes_the_same_bytes() {
 #[test]
 fn a_view_without_a_figure_says_so_and_the_keyboard_alone_saves_one() {
     let folder = tempfile::tempdir().unwrap();
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     for view in [View::Mechanism, View::Compare, View::Power, View::Accuracy] {
         open(&mut harness, view, &folder.path().join("a.pdf"));
         harness.get_by_label_contains("There is no figure of");
-        harness.key_press(Key::Escape);
-        harness.run_steps(2);
+        press(&mut harness, Key::Escape);
     }
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::E);
-    harness.run_steps(2);
+    press_with_ctrl(&mut harness, Key::E);
     harness.get_by_label("Save a figure");
     // the path has the keyboard: what is typed replaces it, and Enter saves
     let path = folder.path().join("typed.svg");
@@ -205,7 +202,7 @@ fn a_view_without_a_figure_says_so_and_the_keyboard_alone_saves_one() {
 #[test]
 fn what_cannot_be_saved_is_said_and_loses_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     let before = harness.state().session.scene().clone();
     open(&mut harness, View::ForceCurve, &folder.path().join("a.jpeg"));
     harness.get_by_label_contains("ends in .pdf, .svg or .png");
@@ -217,26 +214,26 @@ fn what_cannot_be_saved_is_said_and_loses_nothing() {
         ("85", "90", "Text 90: give a size in points, 4 to 36"),
         ("85", "30", "room for text of at most"),
     ] {
-        let figures = harness.state_mut().figures();
+        let figures = &mut harness.state_mut().figures;
         (figures.width, figures.font) = (width.to_owned(), font.to_owned());
         harness.run_steps(2);
         harness.get_by_label_contains(words);
     }
-    harness.state_mut().figures().font = "8".to_owned();
+    harness.state_mut().figures.font = "8".to_owned();
     // the numbers have no place: then the figure has none either
     fs::create_dir(folder.path().join("a.csv")).unwrap();
-    harness.state_mut().figures().data = true;
+    harness.state_mut().figures.data = true;
     harness.run_steps(2);
-    press(&mut harness, "Save");
+    press_button(&mut harness, "Save");
     wait_until("the refusal", || {
         harness.run_steps(1);
-        harness.state_mut().figures().problem().is_some()
+        harness.state().figures.problem().is_some()
     });
     harness.get_by_label_contains("it is a folder");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    assert!(harness.state_mut().figures().path.ends_with("a.pdf"));
+    assert!(harness.state_mut().figures.path.ends_with("a.pdf"));
     assert_eq!(*harness.state().session.scene(), before);
-    harness.state_mut().figures().data = false;
+    harness.state_mut().figures.data = false;
     harness.run_steps(1);
     save(&mut harness);
     assert!(folder.path().join("a.pdf").exists());
@@ -245,7 +242,7 @@ fn what_cannot_be_saved_is_said_and_loses_nothing() {
 #[test]
 fn the_numbers_of_a_figure_do_not_replace_a_table_of_the_scene() {
     let folder = tempfile::tempdir().unwrap();
-    let mut harness = window("paper-table", WIDE, Settings::default());
+    let mut harness = window("paper-table", WIDE);
     let ctx = harness.ctx.clone();
     harness.state_mut().save_to(&ctx, &folder.path().join("own.ron"));
     harness.run_steps(2);
@@ -253,7 +250,7 @@ fn the_numbers_of_a_figure_do_not_replace_a_table_of_the_scene() {
     let table = files().find(|own| own.extension().is_some_and(|own| own == "csv")).unwrap();
     open(&mut harness, View::ForceCurve, &table.with_extension("svg"));
     assert!(harness.query_by_label_contains("is read by this scene").is_none());
-    harness.state_mut().figures().data = true;
+    harness.state_mut().figures.data = true;
     harness.run_steps(2);
     harness.get_by_label_contains("is read by this scene");
     harness.get_by_role_and_label(Role::Button, "Save").click();
@@ -265,13 +262,13 @@ fn the_numbers_of_a_figure_do_not_replace_a_table_of_the_scene() {
 fn a_pasted_scene_is_saved_first_and_a_changed_file_is_not_drawn_as_another() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("own.ron");
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     let text = harness.state().session.editor.text().unwrap();
     harness.event(eframe::egui::Event::Paste(text.clone()));
     harness.run_steps(3);
     open(&mut harness, View::ForceCurve, &folder.path().join("a.svg"));
     harness.get_by_label_contains("save it first");
-    press(&mut harness, "Cancel");
+    press_button(&mut harness, "Cancel");
     let ctx = harness.ctx.clone();
     harness.state_mut().save_to(&ctx, &path);
     harness.run_steps(2);
@@ -281,10 +278,10 @@ fn a_pasted_scene_is_saved_first_and_a_changed_file_is_not_drawn_as_another() {
     let end = at + text[at..].find(',').unwrap();
     fs::write(&path, format!("{}77{}", &text[..at], &text[end..])).unwrap();
     open(&mut harness, View::ForceCurve, &folder.path().join("a.svg"));
-    press(&mut harness, "Save");
+    press_button(&mut harness, "Save");
     wait_until("the refusal", || {
         harness.run_steps(1);
-        harness.state_mut().figures().problem().is_some()
+        harness.state().figures.problem().is_some()
     });
     harness.get_by_label_contains("no longer what was opened");
     assert!(!folder.path().join("a.svg").exists());
@@ -293,7 +290,7 @@ fn a_pasted_scene_is_saved_first_and_a_changed_file_is_not_drawn_as_another() {
 #[test]
 fn the_dialog_stands_whole_on_a_projector_too() {
     for size in [WIDE, PROJECTED] {
-        let mut harness = window("first-look", size, Settings::default());
+        let mut harness = window("first-look", size);
         open(&mut harness, View::Displacement, Path::new("/a.pdf"));
         let screen = harness.ctx.content_rect();
         for name in ["Save", "Copy as command", "Cancel"] {

@@ -3,16 +3,15 @@
 use eframe::egui::{Event, Key, Modifiers, accesskit::Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::ui::settings::Settings;
 use interwell::app::window::Window;
 use interwell::dynamics::{EventKind, Sample};
 use interwell::scene::Stops;
 
-use crate::support::{LONG, WIDE, says, window};
+use crate::support::{LONG, WIDE, press, press_with_ctrl, says, window};
 
 #[test]
 fn it_opens_and_plays() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.get_by_label("Well");
     says(&harness, "Intrawell: will settle in the right-hand well");
     harness.get_by_label_contains("Make it cross");
@@ -20,20 +19,18 @@ fn it_opens_and_plays() {
     harness.run_steps(10);
     let after = harness.state().session.player.time();
     assert!(after > before);
-    harness.key_press(Key::Space);
-    harness.run_steps(3);
+    press(&mut harness, Key::Space);
     let paused = harness.state().session.player.time();
     harness.run_steps(5);
     assert_eq!(harness.state().session.player.time(), paused);
-    harness.key_press(Key::Num5);
-    harness.run_steps(2);
+    press(&mut harness, Key::Num5);
     assert_eq!(harness.state().session.player.speed, 1.0);
 }
 
 #[test]
 fn shaking_harder_and_stops_both_make_it_cross() {
     for harder in [true, false] {
-        let mut harness = window("first-look", WIDE, Settings::default());
+        let mut harness = window("first-look", WIDE);
         harness.run_steps(20);
         let seen = |harness: &Harness<'static, Window>| -> Vec<Sample> {
             harness.state().session.player.watch().samples().iter().copied().collect()
@@ -62,19 +59,17 @@ fn shaking_harder_and_stops_both_make_it_cross() {
         assert!(watch.events().iter().any(|event| event.kind == EventKind::Crossing), "{harder}");
         assert!(harness.query_by_label_contains("Make it cross").is_none());
         // one gesture, one step back
-        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-        harness.run_steps(2);
+        press_with_ctrl(&mut harness, Key::Z);
         let session = &harness.state().session;
         assert_eq!((session.amplitude_g(), session.scene().stops), (Some(0.9), Stops::None));
-        harness.key_press_modifiers(Modifiers::COMMAND, Key::Y);
-        harness.run_steps(2);
+        press_with_ctrl(&mut harness, Key::Y);
         assert!(harness.state().session.editor.is_dirty());
     }
 }
 
 #[test]
 fn a_dragged_slider_is_one_step() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     let rail = harness.get_by_role_and_label(Role::Slider, "amplitude").rect();
     let at = |share: f32| eframe::egui::pos2(rail.left() + share * rail.width(), rail.center().y);
     harness.drag_at(at(0.3));
@@ -94,7 +89,7 @@ fn a_dragged_slider_is_one_step() {
 
 #[test]
 fn a_typed_number_is_one_step() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.get_all_by_role(Role::SpinButton).next().unwrap().click();
     harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
@@ -105,8 +100,7 @@ fn a_typed_number_is_one_step() {
         // half of a number is not meant
         assert_eq!(harness.state().session.amplitude_g(), Some(0.9));
     }
-    harness.key_press(Key::Enter);
-    harness.run_steps(2);
+    press(&mut harness, Key::Enter);
     assert_eq!(harness.state().session.amplitude_g(), Some(1.3));
     assert!(harness.state_mut().session.undo());
     assert_eq!(harness.state().session.amplitude_g(), Some(0.9));
@@ -115,7 +109,7 @@ fn a_typed_number_is_one_step() {
 
 #[test]
 fn a_change_keeps_the_motion_continuous() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.key_press(Key::Num5);
     harness.run_steps(60);
     let session = &mut harness.state_mut().session;
@@ -132,30 +126,26 @@ fn a_change_keeps_the_motion_continuous() {
 
 #[test]
 fn events_time_and_the_start_are_reached() {
-    let mut harness = window("paper", WIDE, Settings::default());
-    harness.key_press(Key::PageDown);
-    harness.run_steps(2);
+    let mut harness = window("paper", WIDE);
+    press(&mut harness, Key::PageDown);
     let first = harness.state().session.player.time();
     assert!(first > 0.0 && !harness.state().session.player.is_playing());
-    harness.key_press(Key::PageDown);
-    harness.run_steps(2);
+    press(&mut harness, Key::PageDown);
     let second = harness.state().session.player.time();
     assert!(second > first);
-    harness.key_press(Key::PageUp);
-    harness.run_steps(2);
+    press(&mut harness, Key::PageUp);
     assert_eq!(harness.state().session.player.time(), first);
     harness.get_by_label("restart").click();
     harness.run_steps(2);
     assert!(harness.state().session.player.time() < first);
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 20.0);
-    harness.key_press(Key::Home);
-    harness.run_steps(2);
+    press(&mut harness, Key::Home);
     assert_eq!(harness.state().session.scene().mass_g, 15.2);
 }
 
 #[test]
 fn a_small_window_shows_it_without_scrolling() {
-    let mut harness = window("first-look", [853.0, 480.0], Settings::default());
+    let mut harness = window("first-look", [853.0, 480.0]);
     harness.run_steps(3);
     let inside =
         |rect: eframe::egui::Rect| rect.right() <= 853.0 && rect.bottom() <= 480.0 && rect.left() >= 0.0;
@@ -172,7 +162,7 @@ fn a_small_window_shows_it_without_scrolling() {
 
 #[test]
 fn a_scene_that_does_not_open_says_why() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.state_mut().open_another("nowhere.ron");
     harness.run_steps(2);
     assert!(harness.state().message().is_some_and(|text| text.contains("no such file")));

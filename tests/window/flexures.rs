@@ -2,7 +2,6 @@
 
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::ui::settings::Settings;
 use interwell::mechanics::FLEXURE_TOLERANCE;
 use interwell::scene::Mechanism;
 
@@ -76,7 +75,7 @@ fn what_cannot_be_solved_is_refused_in_words() {
 
 #[test]
 fn the_slider_of_the_preload() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.get_by_label("More").click();
     harness.run_steps(3);
     harness.get_by_role_and_label(Role::Slider, "preload").set_value_accesskit(2.2);
@@ -92,7 +91,7 @@ fn the_slider_of_the_preload() {
     harness.run_steps(3);
     assert!(harness.query_by_label_contains("was not taken").is_none());
 
-    let mut harness = window("paper-table", WIDE, Settings::default());
+    let mut harness = window("paper-table", WIDE);
     harness.get_by_label("More").click();
     harness.run_steps(3);
     harness.get_by_label("preload");

@@ -1,6 +1,6 @@
 //! The frame of the window: covers, keys, tabs, notes, ways through time, the size on the screen.
 
-use eframe::egui::{self, Key, Modifiers, Rect, ViewportCommand, accesskit::Role, pos2, vec2};
+use eframe::egui::{self, Key, Rect, ViewportCommand, accesskit::Role, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
@@ -10,13 +10,7 @@ use interwell::app::window::Window;
 use interwell::dynamics::EventKind;
 use interwell::scene::{PRESETS, Stops};
 
-use crate::support::{PROJECTED, WIDE, command, window};
-
-/// Presses a key and lets some frames pass.
-fn press(harness: &mut Harness<'_, Window>, key: Key) {
-    harness.key_press(key);
-    harness.run_steps(3);
-}
+use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, window};
 
 /// Lets frames pass until the motion has come to where it was sent.
 fn arrive(harness: &mut Harness<'_, Window>) {
@@ -32,7 +26,7 @@ fn arrive(harness: &mut Harness<'_, Window>) {
 
 #[test]
 fn covered_nothing_of_the_motion_is_seen() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     for view in View::ALL {
         command(&mut harness, Command::Show(view, true));
     }
@@ -56,7 +50,7 @@ fn covered_nothing_of_the_motion_is_seen() {
 
 #[test]
 fn the_next_release_and_crossing_are_found() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     for (key, kind, words) in
         [(Key::R, EventKind::Release, "release, "), (Key::X, EventKind::Crossing, "crossing to the ")]
     {
@@ -78,7 +72,7 @@ fn the_next_release_and_crossing_are_found() {
     press(&mut harness, Key::R);
     assert_eq!(harness.state().told(), Some("No release can come: there are no stops"));
     // and where none comes
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     press(&mut harness, Key::X);
     arrive(&mut harness);
     assert!(harness.state().told().is_some_and(|text| text.starts_with("No crossing up to 100.")));
@@ -86,7 +80,7 @@ fn the_next_release_and_crossing_are_found() {
 
 #[test]
 fn the_end_of_the_run_is_reached_or_given_up() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     let end = harness.state().session.model().duration();
     press(&mut harness, Key::End);
     arrive(&mut harness);
@@ -108,7 +102,7 @@ fn the_end_of_the_run_is_reached_or_given_up() {
 
 #[test]
 fn it_can_be_faster_than_real_time() {
-    let mut harness = window("duffing", WIDE, Settings::default());
+    let mut harness = window("duffing", WIDE);
     for (key, speed) in [(Key::Num6, 10.0), (Key::Num7, 100.0)] {
         press(&mut harness, key);
         let before = harness.state().session.player.time();
@@ -121,7 +115,7 @@ fn it_can_be_faster_than_real_time() {
 
 #[test]
 fn the_notes_are_read_in_the_column_and_in_full() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     let notes = harness.state().session.scene().notes.trim().to_owned();
     harness.get_by_label("About this scene");
     harness.get_by_label("Read on").click();
@@ -139,7 +133,7 @@ fn the_notes_are_read_in_the_column_and_in_full() {
     harness.get_by_label("The scene before changes");
     assert!(harness.query_by_label("About this scene").is_none());
     // a projected window has no room for them
-    let mut harness = window("first-look", PROJECTED, Settings::default());
+    let mut harness = window("first-look", PROJECTED);
     assert!(harness.query_by_label("About this scene").is_none());
     harness.get_by_label("First look").click();
     harness.run_steps(3);
@@ -148,7 +142,7 @@ fn the_notes_are_read_in_the_column_and_in_full() {
 
 #[test]
 fn where_room_is_short_well_and_mechanism_are_seen() {
-    let harness = window("uneven-stops", PROJECTED, Settings::default());
+    let harness = window("uneven-stops", PROJECTED);
     assert_eq!(harness.query_all_by_label("proof mass").count(), 2);
     let tab = |name| harness.get_by_label(name).rect();
     assert!(tab("Displacement").left() > tab("Mechanism").left());
@@ -162,7 +156,7 @@ fn where_room_is_short_well_and_mechanism_are_seen() {
 
 #[test]
 fn more_stands_beside_the_views() {
-    let mut harness = window("paper", PROJECTED, Settings::default());
+    let mut harness = window("paper", PROJECTED);
     harness.get_by_label("More").click();
     harness.run_steps(3);
     let column = harness.get_by_role_and_label(Role::Slider, "preload").rect();
@@ -174,7 +168,7 @@ fn more_stands_beside_the_views() {
 
 #[test]
 fn words_say_what_they_mean() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     harness.state_mut().session.player.set_playing(false);
     let labels = [
         ("reach", "largest distance from the middle"),
@@ -201,9 +195,8 @@ fn words_say_what_they_mean() {
 #[test]
 fn the_mechanism_has_its_share_of_the_height() {
     for key in [Key::Num1, Key::Num2] {
-        let mut harness = window("paper", WIDE, Settings::default());
-        harness.key_press_modifiers(Modifiers::COMMAND, key);
-        harness.run_steps(3);
+        let mut harness = window("paper", WIDE);
+        press_with_ctrl(&mut harness, key);
         let top = |name| harness.get_by_label(name).rect().top();
         // the bar below the views is 60 points high
         let share = (top("Well") - top("Mechanism")) / (WIDE[1] - 60.0 - top("Mechanism"));
@@ -213,13 +206,12 @@ fn the_mechanism_has_its_share_of_the_height() {
 
 #[test]
 fn tabs_go_round_by_key() {
-    let mut harness = window("paper", PROJECTED, Settings::default());
+    let mut harness = window("paper", PROJECTED);
     harness.hover_at(pos2(700.0, 300.0));
     harness.run_steps(2);
     assert_eq!(harness.query_all_by_label("proof mass").count(), 2);
     for (count, is_card) in [(1, false), (1, true), (2, false)] {
-        harness.key_press_modifiers(Modifiers::COMMAND, Key::Tab);
-        harness.run_steps(3);
+        press_with_ctrl(&mut harness, Key::Tab);
         assert_eq!(harness.query_all_by_label("proof mass").count(), count);
         assert_eq!(harness.query_by_label("crosses from").is_some(), is_card);
     }
@@ -227,7 +219,7 @@ fn tabs_go_round_by_key() {
 
 #[test]
 fn escape_leaves_a_view_over_the_window() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     harness.get_by_label("fill the window with Displacement").click();
     harness.run_steps(3);
     harness.get_by_label("all views");
@@ -238,7 +230,7 @@ fn escape_leaves_a_view_over_the_window() {
 
 #[test]
 fn space_presses_what_has_the_focus() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     assert!(harness.state().session.player.is_playing());
     harness.get_by_role_and_label(Role::CheckBox, "Stops").focus();
     harness.run_steps(2);
@@ -266,14 +258,12 @@ fn rings(harness: &Harness<'static, Window>) -> Vec<Rect> {
 
 #[test]
 fn nothing_has_the_focus_unseen() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     harness.state_mut().session.player.set_playing(false);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num2);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::Num2);
     let mut stops = 0;
     for _ in 0..60 {
-        harness.key_press(Key::Tab);
-        harness.run_steps(2);
+        press(&mut harness, Key::Tab);
         let Some(id) = harness.ctx.memory(egui::Memory::focused) else { continue };
         if harness.ctx.text_edit_focused() {
             continue;
@@ -304,7 +294,7 @@ fn a_box_has_an_edge_that_is_seen() {
 #[test]
 fn what_is_on_the_list_of_keys_does_not_overlap() {
     for size in [WIDE, PROJECTED] {
-        let mut harness = window("paper", size, Settings::default());
+        let mut harness = window("paper", size);
         press(&mut harness, Key::F1);
         let (heading, first) = (harness.get_by_label("Keys").rect(), harness.get_by_label("Time").rect());
         assert!(first.top() >= heading.bottom(), "{heading:?} {first:?}");
@@ -369,7 +359,7 @@ fn the_window_fits_the_screen_and_keeps_its_size() {
 
 #[test]
 fn an_event_is_named_by_what_happened() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     let mut kinds = Vec::new();
     for _ in 0..8 {
         press(&mut harness, Key::PageDown);

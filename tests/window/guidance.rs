@@ -6,7 +6,7 @@ use interwell::app::ui::settings::Settings;
 use interwell::dynamics::Regime;
 use interwell::scene::{Excitation, Stops};
 
-use crate::support::{LONG, WIDE, session, window};
+use crate::support::{LONG, WIDE, press, session, window, window_with};
 
 /// What is said of the ways to cross, once it is found.
 fn ways(preset: &str, changes: &[&str]) -> String {
@@ -43,7 +43,7 @@ fn the_ways_to_cross_hold() {
 
 #[test]
 fn the_hint_leads_on_and_ends() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.state_mut().session.player.speed = 1.0;
     harness.get_by_label("Make it cross to the other side.");
     harness.state_mut().session.edit_once(|scene| {
@@ -84,8 +84,7 @@ fn the_hint_leads_on_and_ends() {
     harness.run_steps(3);
     assert!(harness.query_by_label("Dismiss").is_none());
     // the start again, the hint with it
-    harness.key_press(Key::Home);
-    harness.run_steps(3);
+    press(&mut harness, Key::Home);
     harness.get_by_label("Make it cross to the other side.");
     // what is below it stays where it is
     let place = harness.get_by_label("Well").rect();
@@ -97,27 +96,24 @@ fn the_hint_leads_on_and_ends() {
 
 #[test]
 fn what_it_would_take_is_there_on_request() {
-    let mut harness = window("first-look", WIDE, Settings::default());
-    harness.key_press(Key::H);
-    harness.run_steps(2);
+    let mut harness = window("first-look", WIDE);
+    press(&mut harness, Key::H);
     harness.state_mut().session.wait(LONG);
     harness.run_steps(2);
     harness.get_by_label_contains("or with stops at ±");
     // it gives the answer away
-    harness.key_press(Key::C);
-    harness.run_steps(2);
+    press(&mut harness, Key::C);
     assert!(harness.query_by_label_contains("or with stops at ±").is_none());
     assert!(harness.query_by_label_contains("Intrawell: will settle").is_none());
     harness.get_by_label("Covered: what do you expect? C shows it again.");
     harness.key_press(Key::C);
-    harness.key_press(Key::H);
-    harness.run_steps(2);
+    press(&mut harness, Key::H);
     assert!(harness.query_by_label_contains("or with stops at ±").is_none());
 }
 
 #[test]
 fn a_screen_reader_is_told_by_a_new_node() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     let spoken = |harness: &egui_kittest::Harness<'static, interwell::app::window::Window>| {
         let node = harness.get_by_role(Role::Status);
         (node.accesskit_node().id(), node.accesskit_node().label().unwrap_or_default())
@@ -136,14 +132,12 @@ fn a_screen_reader_is_told_by_a_new_node() {
 #[test]
 fn the_projector_can_be_left_again() {
     let mut harness =
-        window("first-look", [853.0, 480.0], Settings { projector: true, ..Settings::default() });
+        window_with("first-look", [853.0, 480.0], Settings { projector: true, ..Settings::default() });
     harness.get_by_label("View").click();
     harness.run_steps(3);
     let row = harness.get_by_label("Projector").rect();
     assert!(row.bottom() < 480.0, "{row:?}");
-    harness.key_press(Key::Escape);
-    harness.run_steps(2);
-    harness.key_press(Key::P);
-    harness.run_steps(2);
+    press(&mut harness, Key::Escape);
+    press(&mut harness, Key::P);
     assert!(!harness.state().settings.projector);
 }

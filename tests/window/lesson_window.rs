@@ -1,6 +1,6 @@
 //! The window of a lesson: its strip, controls, views, notes, glossary and files.
 
-use eframe::egui::{self, Key, Modifiers, accesskit::Role};
+use eframe::egui::{self, Key, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use interwell::app::ui::settings::Settings;
 use interwell::app::ui::style::Style;
@@ -10,15 +10,15 @@ use interwell::scene::lesson::{LESSONS, LessonDocument, Step};
 use interwell::scene::{Document, Stops};
 use interwell::study::result_fields;
 
-use crate::lessons::{OWN, Shown, go_to, is_anywhere, number, opened, own, press, step, until, written};
-use crate::support::{PROJECTED, WIDE, command, sliced, window};
+use crate::lessons::{OWN, Shown, go_to, is_anywhere, number, opened, own, step, until, written};
+use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, sliced, window};
 
 #[test]
 fn a_file_with_faults_shows_them_all() {
     let folder = tempfile::tempdir().unwrap();
     let faulty = OWN.replace("minutes: 5", "minutes: 0").replace("\"stops.travel", "\"stops.trawel");
     let path = written(folder.path(), &faulty);
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.state_mut().open_another(&path);
     harness.run_steps(3);
     let text = harness.state().message().unwrap().to_owned();
@@ -163,17 +163,17 @@ fn only_what_the_lesson_names_can_be_set() {
     assert!(!names.iter().any(|own| own == "amplitude"), "{names:?}");
     assert!(names.iter().any(|own| own == "travel limit ±"), "{names:?}");
     for (view, shown) in [(View::Well, true), (View::Displacement, true), (View::BeforeNow, false)] {
-        assert_eq!(harness.state().tiling().shows(view), shown);
+        assert_eq!(harness.state().tiling.shows(view), shown);
     }
     command(&mut harness, Command::LeaveLesson);
     harness.get_by_label("More");
-    assert!(harness.state().tiling().shows(View::BeforeNow));
+    assert!(harness.state().tiling.shows(View::BeforeNow));
     assert_eq!(harness.state().session.scene().stops, Stops::None);
 }
 
 #[test]
 fn the_first_line_leads_to_the_first_lesson() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.get_by_label_contains("Make it cross");
     let name = LESSONS[0].name.split('-').next().unwrap().trim_start_matches('0');
     harness.get_by_label(&format!("Lesson {name}")).click();
@@ -189,11 +189,9 @@ fn the_lecturer_s_notes_come_only_when_asked_for() {
     let notes = harness.state().lesson().unwrap().lesson().lecturer.clone();
     let begin: String = notes.chars().take(20).collect();
     assert!(!is_anywhere(&harness, &begin));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::L);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::L);
     assert!(is_anywhere(&harness, &begin));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::L);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::L);
     assert!(!is_anywhere(&harness, &begin));
     press(&mut harness, Key::F2);
     assert!(is_anywhere(&harness, "Glossary") && is_anywhere(&harness, "rebounds from a stop"));

@@ -6,17 +6,18 @@ use eframe::egui::{Key, OutputCommand};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use interwell::app::session::lesson::{Records, answers_text};
-use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Wanted, Window};
 use interwell::scene::lesson::{LESSONS, Step};
 
-use crate::support::{LONG, PROJECTED, WIDE, command, is_painted, painted, sliced, wait_until, window};
+use crate::support::{
+    LONG, PROJECTED, WIDE, command, is_painted, painted, press, sliced, wait_until, window,
+};
 
 pub type Shown = Harness<'static, Window>;
 
 pub fn opened(lesson: &str, size: [f32; 2]) -> Shown {
-    let mut harness = window("first-look", size, Settings::default());
+    let mut harness = window("first-look", size);
     harness.state_mut().open_lesson(lesson);
     harness.run_steps(3);
     assert_eq!(harness.state().message(), None);
@@ -68,11 +69,6 @@ pub const OWN: &str = r#"(
 pub fn own(size: [f32; 2]) -> Shown {
     let folder = tempfile::tempdir().unwrap();
     opened(&written(folder.path(), OWN), size)
-}
-
-pub fn press(harness: &mut Shown, key: Key) {
-    harness.key_press(key);
-    harness.run_steps(3);
 }
 
 pub fn number(harness: &Shown) -> usize {
@@ -141,10 +137,10 @@ pub fn written(folder: &Path, text: &str) -> String {
 #[test]
 fn every_lesson_is_gone_through_from_its_first_step_to_its_last() {
     for own in LESSONS {
-        let mut harness = window("first-look", WIDE, Settings::default());
+        let mut harness = window("first-look", WIDE);
         harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
         harness.run_steps(2);
-        let before = (harness.state().session.scene().clone(), harness.state().tiling().clone());
+        let before = (harness.state().session.scene().clone(), harness.state().tiling.clone());
         harness.state_mut().open_lesson(own.name);
         harness.run_steps(3);
         let count = harness.state().lesson().unwrap().lesson().steps.len();
@@ -180,7 +176,7 @@ fn every_lesson_is_gone_through_from_its_first_step_to_its_last() {
         let window = harness.state();
         assert!(window.lesson().is_none() && window.records()[own.name].done);
         // what was there is there again, with the way back
-        assert_eq!((window.session.scene().clone(), window.tiling().clone()), before);
+        assert_eq!((window.session.scene().clone(), window.tiling.clone()), before);
         assert!(harness.state_mut().session.undo());
         assert_eq!(harness.state().session.scene().mass_g, 15.2);
     }
@@ -334,7 +330,7 @@ fn progress_is_kept_and_answers_are_text() {
     for part in ["A stop that helps", "I expected: rattles", "It did: does not move", "Why: pressed"] {
         assert!(text.contains(part), "{text}");
     }
-    let mut again = window("first-look", WIDE, Settings::default());
+    let mut again = window("first-look", WIDE);
     again.state_mut().set_records(records);
     again.state_mut().open_lesson(&path);
     again.run_steps(3);

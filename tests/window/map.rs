@@ -3,12 +3,11 @@
 use eframe::egui::{Key, Modifiers, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::map::Map;
-use interwell::app::ui::settings::Settings;
 use interwell::app::window::Window;
 use interwell::scene::{Layout, Start, Stops, SweepAxis};
 
 use crate::shared::axis;
-use crate::support::{LONG, WIDE, session, wait_for_threads, wait_until, window};
+use crate::support::{LONG, WIDE, press, press_with_ctrl, session, wait_for_threads, wait_until, window};
 
 /// A small map, so that a test takes no longer than it must.
 fn axes(steps: (f64, f64)) -> [SweepAxis; 2] {
@@ -16,10 +15,9 @@ fn axes(steps: (f64, f64)) -> [SweepAxis; 2] {
 }
 
 fn open(preset: &str, size: [f32; 2], steps: (f64, f64)) -> Harness<'static, Window> {
-    let mut harness = window(preset, size, Settings::default());
+    let mut harness = window(preset, size);
     harness.state_mut().session.map.choose(Some(axes(steps)));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::Num3);
     harness
 }
 
@@ -59,7 +57,7 @@ fn it_fills_and_a_click_is_one_step() {
 
 /// A window on a map of 80 000 cells, most of which take ten thousand steps: more than come within a test.
 fn large() -> Harness<'static, Window> {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     let session = &mut harness.state_mut().session;
     session.edit_once(|scene| (scene.run.duration_s, scene.run.recurrence) = (100.0, false));
     session.map.choose(Some(axes((0.005, 0.005))));
@@ -99,8 +97,7 @@ fn hidden_it_computes_nothing() {
     assert!(harness.state().session.map.map().is_none());
     begin(&mut harness);
     assert!(harness.state().session.map.is_running());
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num1);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::Num1);
     assert!(!harness.state().session.map.is_running());
     let known = map(harness.state()).known();
     harness.state_mut().session.stop_working();
@@ -108,8 +105,7 @@ fn hidden_it_computes_nothing() {
     harness.run_steps(3);
     assert_eq!(map(harness.state()).known(), known);
     // what is known is kept
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::Num3);
     assert!(harness.state().session.map.is_running() && map(harness.state()).known() >= known);
 }
 
@@ -197,7 +193,7 @@ fn it_fits() {
 #[test]
 fn every_preset_has_a_map_or_says_why_not() {
     for preset in interwell::scene::PRESETS {
-        let mut harness = window(preset.name, WIDE, Settings::default());
+        let mut harness = window(preset.name, WIDE);
         harness.state_mut().carry_out(
             &eframe::egui::Context::default(),
             interwell::app::window::Command::Arrange(Layout::Map),
@@ -220,9 +216,8 @@ fn ranges(harness: &Harness<'static, Window>) -> [(f64, f64, f64); 2] {
 
 #[test]
 fn it_keeps_its_own_axes_when_it_is_clicked() {
-    let mut harness = window("first-look", WIDE, Settings::default());
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
-    harness.run_steps(3);
+    let mut harness = window("first-look", WIDE);
+    press_with_ctrl(&mut harness, Key::Num3);
     let before = ranges(&harness);
     assert_eq!(before[1], (0.0, 2.0, 0.02));
     let place = harness.get_by_role_and_label(Role::Image, "map").rect();
@@ -291,8 +286,7 @@ fn the_cross_hair_is_dragged_and_stepped() {
     assert_eq!(stops(&harness), Stops::Rigid { travel_limit_mm: 2.0, restitution: 0.36 });
     harness.get_by_role_and_label(Role::Slider, "cross-hair").focus();
     harness.run_steps(2);
-    harness.key_press(Key::ArrowRight);
-    harness.run_steps(2);
+    press(&mut harness, Key::ArrowRight);
     assert_eq!(stops(&harness), Stops::Rigid { travel_limit_mm: 2.25, restitution: 0.36 });
     let session = &mut harness.state_mut().session;
     assert!(session.undo() && session.undo() && *session.scene() == before && !session.undo());
@@ -309,8 +303,7 @@ fn ends_and_steps_are_typed() {
         harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
         harness.event(eframe::egui::Event::Text(text.to_owned()));
         harness.run_steps(2);
-        harness.key_press(Key::Enter);
-        harness.run_steps(3);
+        press(&mut harness, Key::Enter);
     };
     enter("across, from", "0.5");
     enter("across, step", "0.5");

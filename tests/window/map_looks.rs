@@ -5,7 +5,6 @@ use eframe::egui::{Event, Key, Modifiers, Pos2, Shape, accesskit::Role, pos2, ve
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::export::map_command_line;
 use interwell::app::session::map::Map;
-use interwell::app::ui::settings::Settings;
 use interwell::app::window::{Command, Window};
 use interwell::app::words::columns::{COLUMNS, column_info};
 use interwell::output::Projection;
@@ -13,7 +12,9 @@ use interwell::scene::{Layout, Stops, SweepAxis};
 use interwell::study::{Cell, STANDARD_COLUMNS, line_meets};
 
 use crate::shared::axis;
-use crate::support::{LONG, PROJECTED, WIDE, command, is_painted, painted, session, sliced, window};
+use crate::support::{
+    LONG, PROJECTED, WIDE, click_on, command, is_painted, painted, press, session, sliced, window,
+};
 
 /// A small map, so that a test takes no longer than it must.
 fn axes(steps: (f64, f64)) -> [SweepAxis; 2] {
@@ -22,7 +23,7 @@ fn axes(steps: (f64, f64)) -> [SweepAxis; 2] {
 
 /// A window on a map that is whole, paused so that no frame differs.
 fn open(size: [f32; 2], steps: (f64, f64)) -> Harness<'static, Window> {
-    let mut harness = window("paper", size, Settings::default());
+    let mut harness = window("paper", size);
     harness.state_mut().session.player.set_playing(false);
     harness.state_mut().session.map.choose(Some(axes(steps)));
     command(&mut harness, Command::Arrange(Layout::Map));
@@ -43,11 +44,6 @@ fn click(harness: &mut Harness<'static, Window>, at: Pos2) {
     harness.run_steps(3);
 }
 
-fn press(harness: &mut Harness<'static, Window>, label: &str) {
-    harness.get_by_label(label).click();
-    harness.run_steps(3);
-}
-
 fn stops_mm(harness: &Harness<'static, Window>) -> f64 {
     let Stops::Rigid { travel_limit_mm, .. } = harness.state().session.scene().stops else { panic!("stops") };
     travel_limit_mm
@@ -64,7 +60,7 @@ fn rms(cell: &Cell) -> f64 {
 #[test]
 fn a_click_on_the_surface_takes_the_scene_there() {
     let mut harness = open(WIDE, (0.25, 0.25));
-    press(&mut harness, "Surface");
+    click_on(&mut harness, "Surface");
     let rect = harness.get_by_role_and_label(Role::Image, "map as a surface").rect();
     let [left, top, right, bottom] = [rect.left(), rect.top(), rect.right(), rect.bottom()].map(f64::from);
     let projection = Projection { left, top, right, bottom };
@@ -86,7 +82,7 @@ fn a_click_on_the_surface_takes_the_scene_there() {
 #[test]
 fn cuts_are_rows_of_the_table_and_lead_to_their_cells() {
     let mut harness = open(WIDE, (0.25, 0.25));
-    press(&mut harness, "Cuts");
+    click_on(&mut harness, "Cuts");
     assert!(is_painted(&harness, "at travel limit 1.5 mm") && is_painted(&harness, "at amplitude 1 g"));
     let own = map(harness.state());
     for (upright, at, count) in [(true, 2, 5), (false, 2, 9)] {
@@ -148,7 +144,7 @@ fn every_column_is_a_quantity_with_its_unit() {
     let mut harness = open(WIDE, (0.5, 0.5));
     harness.get_by_role_and_label(Role::ComboBox, "map of RMS velocity").click();
     harness.run_steps(4);
-    press(&mut harness, "Reach");
+    click_on(&mut harness, "Reach");
     assert_eq!(harness.state().session.map.quantity().column, "max_abs_x_m");
     assert!(is_painted(&harness, "reach (mm)"));
     for own in COLUMNS.iter().flat_map(|group| group.1) {
@@ -247,8 +243,8 @@ fn the_trail_is_where_the_motion_has_been() {
             .chain([[None, Some(16.0)], [Some(2.0), Some(16.0)]])
             .collect::<Vec<_>>()
     );
-    press(&mut harness, "Trail");
-    press(&mut harness, "Clear the trail");
+    click_on(&mut harness, "Trail");
+    click_on(&mut harness, "Clear the trail");
     assert_eq!(trail(&mut harness), [[Some(2.0), Some(16.0)]]);
     assert_eq!(lines(&harness), 0);
 }
@@ -270,7 +266,7 @@ fn the_cost_of_a_frame_does_not_grow_with_the_map() {
     let count = |steps: (f64, f64), look: &[&str], column: &str| {
         let mut harness = open(WIDE, steps);
         harness.state_mut().session.map.show(column_info(column).unwrap());
-        look.iter().for_each(|label| press(&mut harness, label));
+        look.iter().for_each(|label| click_on(&mut harness, label));
         let place = harness.get_by_label("Recompute").rect();
         harness.hover_at(place.left_top() - vec2(400.0, 80.0));
         harness.run_steps(3);
@@ -291,7 +287,7 @@ fn nothing_is_cut_in_any_look() {
     for size in [WIDE, [1920.0, 1080.0], PROJECTED] {
         let mut harness = open(size, (0.25, 0.25));
         for label in ["Cuts", "Surface", "From above"] {
-            press(&mut harness, label);
+            click_on(&mut harness, label);
             assert_eq!(sliced(&harness), Vec::<String>::new(), "{size:?} {label}");
             if label != "Surface" {
                 let place = harness.get_by_role_and_label(Role::Image, "cut across").rect();
@@ -312,8 +308,7 @@ fn keys_enlarge_and_go_back() {
     harness.get_by_role_and_label(Role::Slider, "cross-hair").focus();
     harness.run_steps(2);
     let mut key = |key: Key| {
-        harness.key_press(key);
-        harness.run_steps(3);
+        press(&mut harness, key);
         ranges(&harness)
     };
     let once = key(Key::Plus);
@@ -329,7 +324,7 @@ fn keys_enlarge_and_go_back() {
 #[test]
 fn a_range_that_cannot_be_is_refused_where_it_was_typed() {
     let mut harness = open(WIDE, (0.25, 0.25));
-    press(&mut harness, "Range");
+    click_on(&mut harness, "Range");
     let before = harness.state().session.map_axes();
     for (name, text, words) in [
         ("up, step", "0", "step"),
@@ -342,8 +337,7 @@ fn a_range_that_cannot_be_is_refused_where_it_was_typed() {
         harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
         harness.event(Event::Text(text.to_owned()));
         harness.run_steps(2);
-        harness.key_press(Key::Enter);
-        harness.run_steps(3);
+        press(&mut harness, Key::Enter);
         assert_eq!(harness.state().session.map_axes(), before, "{name}");
         assert!(painted(&harness).iter().any(|own| own.0.contains(words)), "{name}: {words}");
     }
@@ -356,7 +350,7 @@ fn a_range_that_cannot_be_is_refused_where_it_was_typed() {
 
 #[test]
 fn fields_that_are_offered_have_names_of_their_own() {
-    let harness = window("first-look", WIDE, Settings::default());
+    let harness = window("first-look", WIDE);
     let fields = harness.state().session.map_fields();
     for path in ["mechanism.parallel.length_mm", "mechanism.buckling.length_mm", "mechanism.young_gpa"] {
         assert!(fields.iter().any(|own| own == path), "{path}");

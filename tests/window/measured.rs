@@ -12,7 +12,7 @@ use interwell::app::window::{Command, Wanted, Window};
 use interwell::scene::{Excitation, Quantity, Unit};
 use interwell::study::{Comparison, Keep, simulate};
 
-use crate::support::{PROJECTED, WIDE, command, is_painted, sliced, wait_until, window};
+use crate::support::{PROJECTED, WIDE, command, is_painted, press, sliced, wait_until, window};
 
 /// A column of the run of the session's scene, at these times in s.
 fn column(session: &Session, times: &[f64], name: &str) -> Vec<f64> {
@@ -41,7 +41,7 @@ fn instrument(session: &Session, folder: &Path) -> PathBuf {
 
 /// A window on the prototype, in which a file was dropped and is read.
 fn dropped(path: impl Fn(&Session) -> PathBuf, size: [f32; 2]) -> Harness<'static, Window> {
-    let mut harness = window("paper", size, Settings::default());
+    let mut harness = window("paper", size);
     command(&mut harness, Command::PlayPause);
     let path = path(&harness.state().session);
     let ctx = harness.ctx.clone();
@@ -53,7 +53,7 @@ fn dropped(path: impl Fn(&Session) -> PathBuf, size: [f32; 2]) -> Harness<'stati
 fn read(harness: &mut Harness<'static, Window>) {
     wait_until("the file is read", || {
         harness.run_steps(1);
-        harness.state_mut().measured_dialog().is_none_or(|own| own.known().is_some())
+        harness.state_mut().columns.as_mut().is_none_or(|own| own.known().is_some())
     });
     harness.run_steps(3);
 }
@@ -78,7 +78,7 @@ fn comparison(harness: &mut Harness<'static, Window>) -> Comparison {
 fn a_dropped_record_lies_over_the_displacement_and_the_shift_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = dropped(|session| instrument(session, folder.path()), WIDE);
-    let known = harness.state_mut().measured_dialog().unwrap().known().unwrap().unwrap().clone();
+    let known = harness.state_mut().columns.as_mut().unwrap().known().unwrap().unwrap().clone();
     assert_eq!((known.across.quantity, known.values.quantity), (Quantity::Time, Quantity::Displacement));
     assert_eq!((known.across.column.as_str(), known.values.column.as_str()), ("Time [ms]", "Laser A [mm]"));
     assert!(known.decimal_commas && known.across.values.len() == 4000);
@@ -89,8 +89,8 @@ fn a_dropped_record_lies_over_the_displacement_and_the_shift_is_found() {
     // the button has the keyboard
     harness.key_press(Key::Enter);
     harness.run_steps(4);
-    assert!(harness.state_mut().measured_dialog().is_none());
-    assert!(harness.state().tiling().shows(View::Measured) && is_painted(&harness, "measured"));
+    assert!(harness.state().columns.is_none());
+    assert!(harness.state().tiling.shows(View::Measured) && is_painted(&harness, "measured"));
     let apart = comparison(&mut harness);
     assert!(apart.rms.1 > 20.0, "{:?}", apart.rms);
     harness.get_by_label_contains("Compared with the run of the scene from rest, 0 to");
@@ -115,8 +115,7 @@ fn a_dropped_record_lies_over_the_displacement_and_the_shift_is_found() {
 fn the_numbers_follow_the_scene_and_say_when_the_motion_is_another() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = dropped(|session| instrument(session, folder.path()), WIDE);
-    harness.key_press(Key::Enter);
-    harness.run_steps(3);
+    press(&mut harness, Key::Enter);
     harness.state_mut().session.measured.shift_to(-0.25, true);
     assert!(comparison(&mut harness).rms.0 < 1e-7);
     // the zero of the sensor
@@ -153,22 +152,21 @@ fn a_fault_is_one_sentence_and_loses_nothing() {
     let mut harness = dropped(|_| path.clone(), WIDE);
     // no unit tells what is meant by the second column
     harness.get_by_label_contains("Choose the unit of `Weg`");
-    let dialog = harness.state_mut().measured_dialog().unwrap();
+    let dialog = harness.state_mut().columns.as_mut().unwrap();
     dialog.choose(1, (1, Unit::of_word("mm", Quantity::Displacement)));
     read(&mut harness);
     harness.get_by_label_contains("Line 4: t_s = 1 does not come after 2");
-    let dialog = harness.state_mut().measured_dialog().unwrap();
+    let dialog = harness.state_mut().columns.as_mut().unwrap();
     dialog.choose(1, (2, Unit::of_word("mN", Quantity::Force)));
     read(&mut harness);
     harness.get_by_label_contains("A force over time has no curve to lie over");
     // over the position its times do not matter
-    let dialog = harness.state_mut().measured_dialog().unwrap();
+    let dialog = harness.state_mut().columns.as_mut().unwrap();
     dialog.choose(0, (1, Unit::of_word("mm", Quantity::Displacement)));
     read(&mut harness);
     harness.get_by_label_contains("3 samples from 1 to 3 mm");
-    harness.key_press(Key::Escape);
-    harness.run_steps(3);
-    assert!(harness.state_mut().measured_dialog().is_none());
+    press(&mut harness, Key::Escape);
+    assert!(harness.state().columns.is_none());
     assert!(harness.state().session.measured.over.is_none());
     harness.state_mut().open_measured(&folder.path().join("not-there.csv"));
     read(&mut harness);
@@ -202,7 +200,7 @@ fn a_measured_acceleration_can_shake_the_base() {
     std::fs::write(&path, format!("t,stage\n{text}")).unwrap();
     harness.state_mut().open_measured(&path);
     read(&mut harness);
-    let dialog = harness.state_mut().measured_dialog().unwrap();
+    let dialog = harness.state_mut().columns.as_mut().unwrap();
     dialog.choose(0, (0, Unit::of_word("ms", Quantity::Time)));
     dialog.choose(1, (1, Unit::of_word("g", Quantity::Acceleration)));
     read(&mut harness);
@@ -213,7 +211,7 @@ fn a_measured_acceleration_can_shake_the_base() {
     // over the acceleration of the base it lies all the same
     harness.get_by_label("Lay it over").click();
     harness.run_steps(4);
-    assert!(harness.state().tiling().shows(View::BaseAcceleration));
+    assert!(harness.state().tiling.shows(View::BaseAcceleration));
     assert_eq!(comparison(&mut harness).times.len(), 200);
 }
 
@@ -235,7 +233,7 @@ fn a_pull_lies_over_the_force_curve() {
     harness.get_by_label_contains("position, by its name");
     harness.key_press(Key::Enter);
     harness.run_steps(4);
-    assert!(harness.state().tiling().shows(View::ForceCurve) && is_painted(&harness, "measured"));
+    assert!(harness.state().tiling.shows(View::ForceCurve) && is_painted(&harness, "measured"));
     let Differences::Force(found) = differences(&mut harness) else { panic!("a motion") };
     assert!((found.rms.0 - 1e-3).abs() < 1e-15 && found.positions.len() == 1200, "{:?}", found.rms);
     harness.get_by_label_contains("RMS difference");
@@ -248,16 +246,15 @@ fn it_is_opened_by_key_argument_and_path() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.csv");
     std::fs::write(&path, "t_s,x_mm\n0,1\n1,1.5\n2,-1\n").unwrap();
-    let mut window = Window::open(path.to_str(), Settings::default(), std::sync::Arc::new(|| ())).unwrap();
-    assert!(window.measured_dialog().is_some());
-    let mut harness = crate::support::window("paper", PROJECTED, Settings::default());
+    let window = Window::open(path.to_str(), Settings::default(), std::sync::Arc::new(|| ())).unwrap();
+    assert!(window.columns.is_some());
+    let mut harness = crate::support::window("paper", PROJECTED);
     harness.state_mut().type_path(Wanted::Measured);
     harness.run_steps(2);
     harness.get_by_label("Open which measured data?");
     harness.event(eframe::egui::Event::Text(path.to_str().unwrap().into()));
     harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    harness.run_steps(2);
+    press(&mut harness, Key::Enter);
     read(&mut harness);
     harness.get_by_label_contains("3 samples from 0 to 2 s");
     assert_eq!(sliced(&harness), Vec::<String>::new());
@@ -274,6 +271,6 @@ fn it_is_opened_by_key_argument_and_path() {
     // in a lesson it waits
     command(&mut harness, Command::OpenLesson(interwell::scene::lesson::LESSONS[0].name));
     harness.state_mut().take_dropped(&ctx, &path);
-    assert!(harness.state_mut().measured_dialog().is_none());
+    assert!(harness.state().columns.is_none());
     assert_eq!(harness.state().told(), Some("Leave the lesson first"));
 }

@@ -4,20 +4,19 @@
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::ui::settings::Settings;
 use interwell::app::window::Command;
 use interwell::app::window::Window;
 use interwell::app::words::fields::info;
 use interwell::scene::{FieldPath, PRESETS, Stops};
 
-use crate::support::{LONG, command, is_painted, painted, session, sliced, window};
+use crate::support::{LONG, command, is_painted, painted, press, press_with_ctrl, session, sliced, window};
 
 const WIDE: [f32; 2] = [1280.0, 720.0];
 /// In points: 1280x720 and 900x600 pixels, as they are and projected.
 const SIZES: [[f32; 2]; 4] = [WIDE, [900.0, 600.0], [853.0, 480.0], [600.0, 400.0]];
 
 fn opened(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {
-    window(preset, size, Settings::default())
+    window(preset, size)
 }
 
 /// Changes a number of the scene by a gesture of its own, and waits for what it comes to.
@@ -61,8 +60,7 @@ fn a_run_that_ended_begins_again() {
     let mut harness = shaken_out();
     let ended_at = harness.state().session.player.time();
     harness.key_press(Key::Num3);
-    harness.key_press(Key::Space);
-    harness.run_steps(2);
+    press(&mut harness, Key::Space);
     let session = &harness.state().session;
     assert!(session.player.is_playing() && session.player.time() < 0.5 * ended_at);
     // stops free it where it is
@@ -84,8 +82,7 @@ fn the_lesson_says_what_the_scene_does() {
     assert_eq!(harness.state().session.crosses(), Some(false));
     assert!(harness.query_by_label_contains("it crossed").is_none());
     harness.get_by_label("Now it does not cross.");
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::Z);
     harness.state_mut().session.wait(LONG);
     harness.run_steps(3);
     harness.get_by_label("Between these stops it crossed, without more shaking.");
@@ -116,8 +113,7 @@ fn no_lesson_asks_for_what_is_about_to_happen() {
     harness.get_by_label("Now it will cross.");
     harness.run_steps(200);
     set(&mut harness, "excitation.amplitude_g", 0.9);
-    harness.key_press(Key::Space);
-    harness.run_steps(2);
+    press(&mut harness, Key::Space);
     harness.get_by_label("Now with stops.");
     stops_on(&mut harness);
     assert_eq!(harness.state().session.crosses(), Some(true));
@@ -134,12 +130,10 @@ fn the_lesson_comes_back() {
     let mut harness = opened("first-look", WIDE);
     let lesson = "Make it cross to the other side.";
     for (key, there) in [(Key::H, false), (Key::H, true), (Key::H, false), (Key::Home, true)] {
-        harness.key_press(key);
-        harness.run_steps(3);
+        press(&mut harness, key);
         assert_eq!(harness.query_by_label(lesson).is_some(), there, "{key:?}");
     }
-    harness.key_press(Key::H);
-    harness.run_steps(3);
+    press(&mut harness, Key::H);
     command(&mut harness, Command::OpenPreset("first-look"));
     harness.get_by_label(lesson);
 }
@@ -152,8 +146,7 @@ fn changes_are_discarded_by_name_and_come_back() {
     harness.run_steps(3);
     assert_eq!(harness.state().session.scene().mass_g, 15.2);
     assert!(harness.state().told().is_some_and(|text| text.contains("brings them back")));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::Z);
     assert_eq!(harness.state().session.scene().mass_g, 20.0);
 }
 
@@ -183,8 +176,7 @@ fn names_stand_where_the_thing_is_drawn() {
 #[test]
 fn the_force_is_that_which_holds_the_mass() {
     let mut harness = opened("paper", WIDE);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num2);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::Num2);
     assert!(is_painted(&harness, "holds the mass there") && is_painted(&harness, "force to the right (N)"));
     assert!(!is_painted(&harness, "force of the mechanism"));
 }
@@ -251,8 +243,7 @@ fn what_stands_in_rows_is_whole() {
         harness.run_steps(3);
         let last = harness.get_by_label_contains("Full screen").rect();
         assert!(last.bottom() < size[1], "{size:?} {last:?}");
-        harness.key_press(Key::Escape);
-        harness.run_steps(3);
+        press(&mut harness, Key::Escape);
     }
     // the card has all of its rows
     let mut harness = opened("first-look", WIDE);
@@ -286,8 +277,7 @@ fn notes_in_the_column_end_with_a_sentence() {
 fn the_keys_are_all_there() {
     for size in SIZES {
         let mut harness = opened("first-look", size);
-        harness.key_press(Key::F1);
-        harness.run_steps(3);
+        press(&mut harness, Key::F1);
         harness.get_by_label("Time");
         if size == WIDE {
             // whole, without scrolling

@@ -2,7 +2,6 @@
 
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::scene::{Excitation, Stops};
 
@@ -17,7 +16,7 @@ fn shake(scene: &mut interwell::scene::Scene, g: f64) {
 
 #[test]
 fn the_model_of_then_is_shown() {
-    let mut harness = window("paper", [1280.0, 720.0], Settings::default());
+    let mut harness = window("paper", [1280.0, 720.0]);
     harness.state_mut().session.player.speed = 1.0;
     harness.run_steps(40);
     let early = 0.5 * harness.state().session.player.time();
@@ -75,7 +74,7 @@ fn a_dragged_slider_does_not_fill_the_memory() {
 
 #[test]
 fn a_stop_of_the_well_stands_at_its_travel_limit() {
-    let mut harness = window("paper", [1280.0, 720.0], Settings::default());
+    let mut harness = window("paper", [1280.0, 720.0]);
     let ctx = harness.ctx.clone();
     harness.state_mut().session.player.set_playing(false);
     for view in View::ALL {

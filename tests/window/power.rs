@@ -1,11 +1,10 @@
 //! Power of a transducer in the window, and the search for the best stops.
 
-use eframe::egui::{Event, Key, Modifiers, accesskit::Role};
+use eframe::egui::{Key, accesskit::Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::session::Session;
 use interwell::app::session::explore::WalkQuantity;
-use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::app::words::columns::column_info;
@@ -13,8 +12,10 @@ use interwell::scene::{Excitation, FieldPath, Layout, Stops, Transducer};
 
 use crate::shared::axis;
 use crate::support::{
-    LONG, PROJECTED, WIDE, command, is_painted, painted, settled, sliced, wait_until, window,
+    LONG, PROJECTED, WIDE, command, is_painted, painted, press, press_with_ctrl, settled, sliced, wait_until,
+    window,
 };
+use crate::typing::type_into;
 
 const LIMIT: &str = "stops.travel_limit_mm";
 const LOAD: &str = "transducer.load_ohm";
@@ -30,7 +31,7 @@ fn number(session: &Session, path: &str) -> Option<f64> {
 
 /// A window with the view of the power alone.
 fn alone(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {
-    let mut harness = window(preset, size, Settings::default());
+    let mut harness = window(preset, size);
     for view in View::ALL {
         command(&mut harness, Command::Show(view, view == View::Power));
     }
@@ -60,11 +61,11 @@ fn the_view_says_what_the_load_takes() {
 
 #[test]
 fn a_tile_among_others_has_the_mean_and_its_axis_fits() {
-    let mut harness = window("harvester", WIDE, Settings::default());
+    let mut harness = window("harvester", WIDE);
     command(&mut harness, Command::Show(View::Power, true));
     harness.state_mut().session.wait_settled(LONG);
     harness.run_steps(3);
-    assert!(harness.state().tiling().place_of(View::Power).unwrap().height() < 250.0);
+    assert!(harness.state().tiling.place_of(View::Power).unwrap().height() < 250.0);
     assert!(is_painted(&harness, "Into the load: mean 326 µW"));
     assert_eq!(sliced(&harness), [""; 0]);
     // the name of the axis would reach into the legend
@@ -178,19 +179,12 @@ fn means_of_a_motion_that_has_not_settled_are_called_so() {
 
 #[test]
 fn the_load_is_a_slider_and_takes_both_its_ends_typed() {
-    let mut harness = window("harvester", WIDE, Settings::default());
+    let mut harness = window("harvester", WIDE);
     harness.get_by_label("More").click();
     harness.run_steps(15);
     harness.get_by_role_and_label(Role::Slider, "coupling");
     let mut typed = |text: &str| {
-        harness.get_by_role_and_label(Role::SpinButton, "load").click();
-        harness.run_steps(2);
-        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-        harness.run_steps(1);
-        harness.event(Event::Text(text.to_owned()));
-        harness.run_steps(2);
-        harness.key_press(Key::Enter);
-        harness.run_steps(2);
+        type_into(&mut harness, "load", text);
         number(&harness.state().session, LOAD).unwrap()
     };
     assert_eq!(typed("inf"), f64::INFINITY);
@@ -205,8 +199,7 @@ fn the_load_is_a_slider_and_takes_both_its_ends_typed() {
     // a press of an arrow key on the slider is a step by ratio
     harness.get_by_role_and_label(Role::Slider, "load").focus();
     harness.run_steps(2);
-    harness.key_press(Key::ArrowRight);
-    harness.run_steps(2);
+    press(&mut harness, Key::ArrowRight);
     let load = number(&harness.state().session, LOAD).unwrap();
     assert!((61.0..72.0).contains(&load), "{load}");
 }
@@ -227,7 +220,7 @@ fn the_map_and_the_walks_go_over_the_load() {
         map.cell(column, 1).unwrap().0.summary().unwrap().harvest.unwrap().mean_load_power.unwrap()
     };
     assert!(power(1) > power(0) && power(2) > power(3), "{:?}", [0, 1, 2, 3].map(power));
-    let mut harness = window("harvester", WIDE, Settings::default());
+    let mut harness = window("harvester", WIDE);
     harness.state_mut().session.explore.walks.chosen = Some(axis(LOAD, (20.0, 80.0, 20.0)));
     command(&mut harness, Command::Arrange(Layout::Explore));
     harness.get_by_label("Power").click();
@@ -323,14 +316,13 @@ fn what_has_no_best_stops_says_so() {
 
 #[test]
 fn the_window_offers_the_search_and_marks_its_answer_on_the_map() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     harness.state_mut().session.edit_once(|scene| {
         (scene.run.duration_s, scene.run.settle_s) = (4.0, Some(2.0));
     });
     let axes = [axis(LIMIT, (1.0, 3.0, 0.5)), axis("excitation.amplitude_g", (0.5, 1.5, 0.5))];
     harness.state_mut().session.map.choose(Some(axes));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num3);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::Num3);
     // beside the slider and among the tools of the map
     harness.get_by_label("Find the best stops");
     harness.get_by_label("Best stops").click();
@@ -351,7 +343,7 @@ fn the_window_offers_the_search_and_marks_its_answer_on_the_map() {
 
 #[test]
 fn the_search_has_a_button_where_a_projector_has_room_for_it() {
-    let mut harness = window("paper", PROJECTED, Settings::default());
+    let mut harness = window("paper", PROJECTED);
     let inside = harness.ctx.content_rect();
     for (role, name) in [
         (Role::Slider, "amplitude"),
@@ -370,7 +362,7 @@ fn the_search_has_a_button_where_a_projector_has_room_for_it() {
     harness.state_mut().session.best.close();
     // two sliders of stops, or a narrower window, leave no room
     for (preset, size) in [("uneven-stops", PROJECTED), ("paper", [640.0, 480.0])] {
-        let harness = window(preset, size, Settings::default());
+        let harness = window(preset, size);
         assert_eq!(harness.query_all_by_label("Best stops").count(), 0, "{preset}");
         harness.get_by_label("More");
     }
@@ -378,7 +370,7 @@ fn the_search_has_a_button_where_a_projector_has_room_for_it() {
 
 #[test]
 fn a_lesson_does_not_give_the_best_stops_away() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     harness.state_mut().open_lesson("08-design-it");
     harness.run_steps(3);
     assert!(harness.state().lesson().is_some());

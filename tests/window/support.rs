@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Rect, Role, Shape};
+use eframe::egui::{Key, Modifiers, Rect, Role, Shape};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use interwell::app::session::Session;
@@ -37,7 +37,12 @@ pub fn wait_for_threads(window: &Window) {
 }
 
 /// A window on a built-in scene, with its first answers there.
-pub fn window(preset: &str, size: [f32; 2], settings: Settings) -> Harness<'static, Window> {
+pub fn window(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {
+    window_with(preset, size, Settings::default())
+}
+
+/// The same with these settings.
+pub fn window_with(preset: &str, size: [f32; 2], settings: Settings) -> Harness<'static, Window> {
     let mut window = Window::open(Some(preset), settings, Arc::new(|| ())).unwrap();
     window.session.wait_settled(LONG);
     let draw = |ui: &mut eframe::egui::Ui, window: &mut Window| {
@@ -54,6 +59,24 @@ pub fn window(preset: &str, size: [f32; 2], settings: Settings) -> Harness<'stat
 pub fn command(harness: &mut Harness<'_, Window>, command: Command) {
     let ctx = harness.ctx.clone();
     harness.state_mut().carry_out(&ctx, command);
+    harness.run_steps(3);
+}
+
+/// Clicks on what is called so, and lets some frames pass.
+pub fn click_on(harness: &mut Harness<'_, Window>, label: &str) {
+    harness.get_by_label(label).click();
+    harness.run_steps(3);
+}
+
+/// Presses a key, and lets some frames pass.
+pub fn press(harness: &mut Harness<'_, Window>, key: Key) {
+    harness.key_press(key);
+    harness.run_steps(3);
+}
+
+/// Presses a key with Ctrl, and lets some frames pass.
+pub fn press_with_ctrl(harness: &mut Harness<'_, Window>, key: Key) {
+    harness.key_press_modifiers(Modifiers::COMMAND, key);
     harness.run_steps(3);
 }
 

@@ -3,16 +3,15 @@
 use eframe::egui::{Event, Key, Modifiers, accesskit::Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use interwell::app::ui::settings::Settings;
 use interwell::app::window::Window;
 use interwell::scene::{Excitation, FieldPath, Stops};
 
-use crate::support::{LONG, command, wait_until, window};
+use crate::support::{LONG, command, press, wait_until, window};
 
 const TALL: [f32; 2] = [1280.0, 1600.0];
 
 fn opened(preset: &str) -> Harness<'static, Window> {
-    let mut harness = window(preset, TALL, Settings::default());
+    let mut harness = window(preset, TALL);
     harness.get_by_label("More").click();
     harness.run_steps(3);
     harness.get_by_label("Advanced").click();
@@ -21,15 +20,14 @@ fn opened(preset: &str) -> Harness<'static, Window> {
 }
 
 /// Types into the field beside the slider called `name`, and leaves it by Enter.
-fn type_into(harness: &mut Harness<'static, Window>, name: &str, text: &str) {
+pub fn type_into(harness: &mut Harness<'static, Window>, name: &str, text: &str) {
     harness.get_by_role_and_label(Role::SpinButton, name).click();
     harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.run_steps(1);
     harness.event(Event::Text(text.to_owned()));
     harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    harness.run_steps(2);
+    press(harness, Key::Enter);
 }
 
 fn number(harness: &Harness<'static, Window>, path: &str) -> f64 {
@@ -47,8 +45,7 @@ fn a_field_that_is_passed_through_writes_nothing() {
             harness.get_all_by_role(Role::SpinButton).nth(i).unwrap().click();
             harness.run_steps(2);
             // the field is a text while it is edited
-            harness.key_press(Key::Enter);
-            harness.run_steps(2);
+            press(&mut harness, Key::Enter);
             assert_eq!(*harness.state().session.scene(), before, "{preset}: field {i} by a click and Enter");
         }
         for i in 0..80 {
@@ -125,7 +122,7 @@ fn what_two_fields_say_together_is_said_with_their_names() {
 
 #[test]
 fn the_stops_that_are_off_come_when_they_are_moved() {
-    let mut harness = window("first-look", [1280.0, 720.0], Settings::default());
+    let mut harness = window("first-look", [1280.0, 720.0]);
     let slider = harness.get_by_role_and_label(Role::Slider, "travel limit ±");
     slider.set_value_accesskit(2.25);
     harness.run_steps(3);
@@ -139,34 +136,31 @@ fn the_stops_that_are_off_come_when_they_are_moved() {
     };
     assert_eq!(shown(&harness), Some(2.25));
     // the start again, the stops that would come with it
-    harness.key_press(Key::Home);
-    harness.run_steps(3);
+    press(&mut harness, Key::Home);
     assert_eq!((stops(&harness), shown(&harness)), (Stops::None, Some(1.5)));
 }
 
 #[test]
 fn a_scene_of_other_size_gets_stops_and_shaking_of_its_own() {
-    let mut harness = window("duffing", [1280.0, 720.0], Settings::default());
+    let mut harness = window("duffing", [1280.0, 720.0]);
     harness.get_by_role_and_label(Role::CheckBox, "Stops").click();
     harness.run_steps(3);
     let Stops::Rigid { travel_limit_mm, .. } = harness.state().session.scene().stops else { panic!() };
     assert!((100.0..500.0).contains(&travel_limit_mm), "{travel_limit_mm}");
     harness.get_by_role_and_label(Role::Slider, "amplitude").focus();
     harness.run_steps(2);
-    harness.key_press(Key::ArrowRight);
-    harness.run_steps(2);
+    press(&mut harness, Key::ArrowRight);
     let Excitation::Sine { amplitude_g, .. } = harness.state().session.scene().excitation else { panic!() };
     assert!(amplitude_g > 0.0377 && amplitude_g < 0.0385, "{amplitude_g}");
 }
 
 #[test]
 fn presses_of_a_key_are_one_step_and_one_before() {
-    let mut harness = window("first-look", [1280.0, 720.0], Settings::default());
+    let mut harness = window("first-look", [1280.0, 720.0]);
     harness.get_by_role_and_label(Role::Slider, "amplitude").focus();
     harness.run_steps(2);
     for _ in 0..5 {
-        harness.key_press(Key::ArrowRight);
-        harness.run_steps(2);
+        press(&mut harness, Key::ArrowRight);
     }
     let before = |harness: &Harness<'static, Window>| {
         let card = harness.state().session.before_card().cloned();
@@ -176,14 +170,12 @@ fn presses_of_a_key_are_one_step_and_one_before() {
     // the hand rests: what comes then is another gesture
     harness.run_steps(80);
     assert!(!harness.state().session.editor.in_gesture());
-    harness.key_press(Key::ArrowRight);
-    harness.run_steps(2);
+    press(&mut harness, Key::ArrowRight);
     assert_eq!(before(&harness), Some(0.95));
     // another field is another gesture at once
     harness.get_by_role_and_label(Role::Slider, "travel limit ±").focus();
     harness.run_steps(2);
-    harness.key_press(Key::ArrowRight);
-    harness.run_steps(2);
+    press(&mut harness, Key::ArrowRight);
     assert_eq!(before(&harness), Some(0.96));
     let session = &mut harness.state_mut().session;
     assert!(session.undo() && session.scene().stops == Stops::None && session.amplitude_g() == Some(0.96));
@@ -193,7 +185,7 @@ fn presses_of_a_key_are_one_step_and_one_before() {
 
 #[test]
 fn what_takes_long_can_be_stopped_and_a_newer_change_takes_its_place() {
-    let mut harness = window("first-look", [1280.0, 720.0], Settings::default());
+    let mut harness = window("first-look", [1280.0, 720.0]);
     harness.state_mut().session.edit_once(|scene| scene.run.duration_s = 1e9);
     harness.run_steps(2);
     assert!(harness.state().session.sentence().text.starts_with("Working out"));
@@ -248,7 +240,7 @@ fn the_card_shows_whatever_was_changed() {
 
 #[test]
 fn a_hover_text_stays_away_from_what_was_just_changed() {
-    let mut harness = window("first-look", [1280.0, 720.0], Settings::default());
+    let mut harness = window("first-look", [1280.0, 720.0]);
     let rail = harness.get_by_role_and_label(Role::Slider, "amplitude").rect();
     let at = |share: f32| eframe::egui::pos2(rail.left() + share * rail.width(), rail.center().y);
     let explained = |harness: &Harness<'static, Window>| {

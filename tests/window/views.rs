@@ -3,19 +3,18 @@
 use eframe::egui::{Key, Modifiers, Pos2, accesskit::Role, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use interwell::app::ui::settings::Settings;
 use interwell::app::views::{Memory, Span, View, energy};
 use interwell::app::window::Command;
 use interwell::app::window::Window;
 use interwell::app::window::layouts::Room;
 use interwell::scene::{Layout, PRESETS, Stops};
 
-use crate::support::{PROJECTED, WIDE, command, session, window};
+use crate::cursors::wheel;
+use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, session, window};
 
 fn study(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {
-    let mut harness = window(preset, size, Settings::default());
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num2);
-    harness.run_steps(3);
+    let mut harness = window(preset, size);
+    press_with_ctrl(&mut harness, Key::Num2);
     harness
 }
 
@@ -38,15 +37,14 @@ fn every_view_draws_every_scene() {
         harness.run_steps(20);
         assert!(harness.state().message().is_none(), "{}", preset.name);
         for view in View::ALL {
-            assert!(harness.state().tiling().shows(view), "{}: {}", preset.name, view.name());
+            assert!(harness.state().tiling.shows(view), "{}: {}", preset.name, view.name());
         }
         // looked at under the pointer, in the past and held by hand
         for x in [300.0, 500.0, 700.0, 900.0, 1100.0] {
             harness.hover_at(pos2(x, 400.0));
             harness.run_steps(1);
         }
-        harness.key_press(Key::PageUp);
-        harness.run_steps(2);
+        press(&mut harness, Key::PageUp);
         harness.state_mut().session.player.hold(1e-3);
         harness.run_steps(2);
     }
@@ -56,39 +54,36 @@ fn every_view_draws_every_scene() {
 fn layouts_switch() {
     let mut harness = study("first-look", WIDE);
     for view in [View::PhasePortrait, View::ForceCurve, View::Energy, View::Well] {
-        assert!(harness.state().tiling().shows(view), "{}", view.name());
+        assert!(harness.state().tiling.shows(view), "{}", view.name());
         harness.get_by_label(view.name());
     }
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num1);
-    harness.run_steps(3);
-    assert!(!harness.state().tiling().shows(View::PhasePortrait));
+    press_with_ctrl(&mut harness, Key::Num1);
+    assert!(!harness.state().tiling.shows(View::PhasePortrait));
     assert!(harness.query_by_label("Phase portrait").is_none());
     // the own arrangement is what was there first, and then what becomes of it
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num4);
-    harness.run_steps(3);
+    press_with_ctrl(&mut harness, Key::Num4);
     command(&mut harness, Command::Show(View::Velocity, true));
     command(&mut harness, Command::Show(View::BeforeNow, false));
     command(&mut harness, Command::Arrange(Layout::Study));
-    assert!(!harness.state().tiling().shows(View::Velocity));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num4);
-    harness.run_steps(3);
+    assert!(!harness.state().tiling.shows(View::Velocity));
+    press_with_ctrl(&mut harness, Key::Num4);
     let window = harness.state();
-    assert!(window.tiling().shows(View::Velocity) && !window.tiling().shows(View::BeforeNow));
-    let kept = window.own_arrangement().cloned();
+    assert!(window.tiling.shows(View::Velocity) && !window.tiling.shows(View::BeforeNow));
+    let kept = window.own.clone();
     assert!(kept.is_some());
     // it outlives the scene and the program
     harness.state_mut().open_another("paper");
-    assert_eq!(harness.state().own_arrangement(), kept.as_ref());
-    let mut again = self::window("paper", WIDE, Settings::default());
-    again.state_mut().set_own_arrangement(kept);
+    assert_eq!(harness.state().own, kept);
+    let mut again = self::window("paper", WIDE);
+    again.state_mut().own = kept;
     command(&mut again, Command::ArrangeOwn);
-    assert!(again.state().tiling().shows(View::Velocity) && !again.state().tiling().shows(View::BeforeNow));
+    assert!(again.state().tiling.shows(View::Velocity) && !again.state().tiling.shows(View::BeforeNow));
 }
 
 #[test]
 fn a_projector_has_room_for_the_study() {
     let mut harness = study("paper", PROJECTED);
-    assert_eq!(harness.state().tiling().room(), Room::Compact);
+    assert_eq!(harness.state().tiling.room(), Room::Compact);
     for name in ["Well", "Mechanism", "Phase portrait", "Force curve", "Displacement", "Energy"] {
         let rect = harness.get_by_label(name).rect();
         assert!(
@@ -105,8 +100,7 @@ fn a_projector_has_room_for_the_study() {
 #[test]
 fn a_click_in_the_phase_portrait_places_the_mass() {
     let mut harness = study("first-look", WIDE);
-    harness.key_press(Key::Space);
-    harness.run_steps(3);
+    press(&mut harness, Key::Space);
     let before = harness.state().session.player.state();
     let rect = harness.get_by_label("states of the mass").rect();
     let at = pos2(rect.left() + 0.3 * rect.width(), rect.top() + 0.35 * rect.height());
@@ -121,7 +115,7 @@ fn a_click_in_the_phase_portrait_places_the_mass() {
 
 #[test]
 fn a_stop_dragged_in_the_force_curve_is_one_step() {
-    let mut harness = window("paper", WIDE, Settings::default());
+    let mut harness = window("paper", WIDE);
     for view in View::ALL {
         command(&mut harness, Command::Show(view, view == View::ForceCurve));
     }
@@ -154,8 +148,7 @@ fn the_energy_view_says_what_the_ledger_says() {
     harness.run_steps(80);
     harness.state_mut().session.player.hold(0.5e-3);
     harness.state_mut().session.player.let_go();
-    harness.key_press(Key::Space);
-    harness.run_steps(3);
+    press(&mut harness, Key::Space);
     let session = &harness.state().session;
     let (watch, now) = (session.player.watch(), session.player.time());
     let model = session.model();
@@ -184,20 +177,11 @@ fn a_stop_that_cannot_be_moves_no_axis() {
 
 #[test]
 fn the_wheel_zooms_all_traces() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     command(&mut harness, Command::Show(View::Velocity, true));
     let rect = harness.get_by_label("Velocity").rect();
-    harness.hover_at(rect.left_bottom() + eframe::egui::vec2(150.0, 60.0));
-    harness.run_steps(2);
-    harness.event(eframe::egui::Event::MouseWheel {
-        unit: eframe::egui::MouseWheelUnit::Point,
-        delta: eframe::egui::vec2(0.0, 100.0),
-        phase: eframe::egui::TouchPhase::Move,
-        source: eframe::egui::MouseWheelSource::Wheel,
-        modifiers: Modifiers::NONE,
-    });
-    harness.run_steps(10);
-    assert!(harness.state().timeline().window.is_some());
+    wheel(&mut harness, rect.left_bottom() + eframe::egui::vec2(150.0, 60.0), Modifiers::NONE, 100.0);
+    assert!(harness.state().memory.timeline.window.is_some());
 }
 
 #[test]
@@ -217,40 +201,29 @@ fn axes_stand_still_while_the_wells_move_apart() {
 
 #[test]
 fn a_displacement_is_zoomed_with_shift_and_back() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     let rect = harness.get_by_label("Displacement").rect();
     let at = rect.left_bottom() + eframe::egui::vec2(200.0, 120.0);
-    harness.hover_at(at);
-    harness.run_steps(2);
-    harness.event(eframe::egui::Event::MouseWheel {
-        unit: eframe::egui::MouseWheelUnit::Point,
-        delta: eframe::egui::vec2(0.0, 100.0),
-        phase: eframe::egui::TouchPhase::Move,
-        source: eframe::egui::MouseWheelSource::Wheel,
-        modifiers: Modifiers::SHIFT,
-    });
-    harness.event(eframe::egui::Event::ModifiersChanged(Modifiers::SHIFT));
-    harness.run_steps(6);
-    let [time, ends] = harness.state().chosen_axes(View::Displacement);
-    let ((low, high), window) = (ends.unwrap(), harness.state().timeline().window);
+    wheel(&mut harness, at, Modifiers::SHIFT, 100.0);
+    let [time, ends] = harness.state().memory.chosen_axes(View::Displacement);
+    let ((low, high), window) = (ends.unwrap(), harness.state().memory.timeline.window);
     assert!(time.is_none() && window.is_none() && high - low < 17.5 && high > low, "{low} {high}");
-    harness.event(eframe::egui::Event::ModifiersChanged(Modifiers::NONE));
     harness.ctx.options_mut(|options| options.input_options.max_double_click_delay = 5.0);
     for _ in 0..2 {
         harness.drag_at(at);
         harness.drop_at(at);
     }
     harness.run_steps(4);
-    assert_eq!(harness.state().chosen_axes(View::Displacement), [None; 2]);
+    assert_eq!(harness.state().memory.chosen_axes(View::Displacement), [None; 2]);
 }
 
 #[test]
 fn the_phase_portrait_shows_points_only() {
     let mut harness = study("paper", WIDE);
-    assert!(!harness.state().points_only());
+    assert!(!harness.state().memory.points_only);
     harness.get_by_label("points only").click();
     harness.run_steps(3);
-    assert!(harness.state().points_only());
+    assert!(harness.state().memory.points_only);
     let before = harness.state().session.player.watch().ledger().by_hand_j;
     // and the choice is no click on the states below it
     assert_eq!(before, 0.0);
@@ -258,7 +231,7 @@ fn the_phase_portrait_shows_points_only() {
 
 #[test]
 fn a_view_without_room_says_so() {
-    let mut harness = window("first-look", WIDE, Settings::default());
+    let mut harness = window("first-look", WIDE);
     for view in View::ALL {
         command(&mut harness, Command::Show(view, true));
     }

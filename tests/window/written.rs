@@ -2,7 +2,6 @@
 
 use eframe::egui::{Event, OutputCommand};
 use egui_kittest::Harness;
-use interwell::app::ui::settings::Settings;
 use interwell::app::window::Command;
 use interwell::app::window::Window;
 use interwell::scene::Layout;
@@ -57,7 +56,7 @@ pub fn arguments(line: &str) -> Vec<String> {
 #[test]
 fn a_motion_that_was_changed_on_its_way_is_reproduced() {
     for preset in ["first-look", "uneven-stops", "bouncing-ball"] {
-        let mut harness = window(preset, WIDE, Settings::default());
+        let mut harness = window(preset, WIDE);
         harness.state_mut().session.player.speed = 1.0;
         harness.run_steps(50);
         harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
@@ -94,7 +93,7 @@ fn a_motion_that_was_changed_on_its_way_is_reproduced() {
 
 #[test]
 fn a_motion_that_no_scene_continues_is_said_to_be_another() {
-    let mut harness = window("paper-ramp", WIDE, Settings::default());
+    let mut harness = window("paper-ramp", WIDE);
     harness.run_steps(5);
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
     harness.run_steps(5);

@@ -47,7 +47,6 @@ pub struct FigureOrder {
     pub(super) scene: Scene,
     pub(super) subject: Subject,
     pub(super) sheet: Sheet,
-    /// Its kind of file.
     format: Format,
     /// The sheet as options.
     layout: Vec<Argument>,

@@ -40,9 +40,7 @@ pub enum LessonAct {
     Choose(usize),
     Back,
     Next,
-    /// Show or hide the hint.
     Hint,
-    /// The lesson that comes after this one.
     NextLesson(&'static str),
 }
 

@@ -16,7 +16,6 @@ const MOST_STEPS: usize = 500;
 /// How messages call a scene that came as text.
 const PASTED: &str = "the pasted scene";
 
-/// The scene of the window.
 #[derive(Debug, Clone)]
 pub struct Editor {
     /// The document; its scene is what is edited.
@@ -32,7 +31,6 @@ pub struct Editor {
 }
 
 impl Editor {
-    /// An editor on a scene.
     pub fn new(document: Document) -> Self {
         let (saved, named) = (document.scene.clone(), document.scene.clone());
         Self { document, saved, named, undo: Vec::new(), redo: Vec::new(), gesture: None }
@@ -52,7 +50,6 @@ impl Editor {
         Self { named: named.map_or_else(|| own.saved.clone(), |named| named.scene), ..own }
     }
 
-    /// Opens a scene file or a built-in scene.
     pub fn open(spec: &str) -> Result<Self, SceneError> {
         Document::load(spec).map(Self::new)
     }

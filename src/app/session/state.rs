@@ -46,7 +46,6 @@ pub struct Card {
     pub thresholds: Option<Thresholds>,
 }
 
-/// An open scene.
 pub struct Session {
     /// The scene and the way back.
     pub editor: Editor,
@@ -59,7 +58,6 @@ pub struct Session {
     pub(super) thresholds: Latest<Thresholds>,
     /// The travel limit in mm with which it would cross; searched for only when somebody asks.
     pub(super) stops_that_cross: Latest<Option<f64>>,
-    /// How accurate the motion is.
     pub accuracy: Accuracy,
     pub map: Mapping,
     /// What the views of the layout Explore show.

@@ -37,7 +37,6 @@ pub struct Knob<'a> {
     pub width: f32,
 }
 
-/// How a value was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum How {
     /// At once: typed, or set by a screen reader.
@@ -45,7 +44,6 @@ pub enum How {
     Once,
     /// By a press of an arrow key, of which more may follow.
     Pressed,
-    /// On the way of a drag.
     Dragged,
 }
 
@@ -55,7 +53,6 @@ pub struct Turn {
     /// The new value, where it changed.
     pub value: Option<f64>,
     pub how: How,
-    /// Whether a drag has ended.
     pub ended: bool,
 }
 

@@ -48,7 +48,6 @@ const PURPLE: Color32 = Color32::from_rgb(204, 121, 167);
 /// The colours and widths of one appearance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
-    /// Whether the ground is dark.
     pub dark: bool,
     /// Whether lines are to be seen from the last row.
     pub projector: bool,
@@ -101,7 +100,6 @@ impl Style {
         self.pick(Color32::from_rgb(140, 92, 0), ORANGE)
     }
 
-    /// The outline of the proof mass.
     pub fn mass_edge(&self) -> Color32 {
         self.pick(Color32::from_rgb(122, 84, 0), Color32::from_rgb(255, 214, 128))
     }
@@ -153,7 +151,6 @@ impl Style {
         if self.projector { 1.4 * points } else { points }
     }
 
-    /// A cursor over time.
     pub fn cursor_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.3), self.kind(Kind::Irregular))
     }
@@ -229,7 +226,6 @@ impl Style {
         Stroke::new(self.width(2.0), self.ink())
     }
 
-    /// Axis ticks and grid.
     pub fn grid_stroke(&self) -> Stroke {
         Stroke::new(1.0, self.grid())
     }

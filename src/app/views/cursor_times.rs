@@ -10,7 +10,6 @@ const FIRST: [f64; 2] = [0.5, 0.75];
 /// Two times.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Cursors {
-    /// Whether they are shown.
     pub on: bool,
     /// Their times in s.
     pub at: [f64; 2],

@@ -24,7 +24,6 @@ const SHORT: [(&str, &str); 5] = [
     ("at rest on a stop", "at rest"),
 ];
 
-/// An entry of the legend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sign {
     Line(Stroke),
@@ -34,7 +33,6 @@ pub enum Sign {
     Ring(Stroke),
     Shade(Color32),
     Dots(Color32),
-    /// Plus signs.
     Pluses(Color32),
     Ticks(Stroke),
 }

@@ -89,7 +89,6 @@ fn head_ui(ui: &mut Ui, context: &mut ViewContext<'_>, over: &Overlay) {
     });
 }
 
-/// Shift and stretch.
 fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     let model = session.model();
     let period = model.forcing_period().unwrap_or(model.characteristic_time());

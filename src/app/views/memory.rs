@@ -26,9 +26,7 @@ pub struct Memory {
     pub figure: Option<View>,
     /// Measured data are to be opened.
     pub open_measured: bool,
-    /// The view under the pointer.
     pub hovered: Option<View>,
-    /// What the traces share.
     pub timeline: Timeline,
     /// Two cursors over time.
     pub cursors: Cursors,
@@ -135,7 +133,6 @@ pub(super) struct Drawing {
 
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PointerState {
-    /// Where a box begins.
     pub corner: Option<Pos2>,
     /// A click that waits whether it is the first of two, and since when.
     pub clicked: Option<((usize, usize), f64)>,

@@ -19,9 +19,7 @@ const STEP_ROOM: f64 = 1.05;
 /// Displacements in m from left to right.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// The left end.
     pub low: f64,
-    /// The right end.
     pub high: f64,
 }
 

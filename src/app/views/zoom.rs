@@ -21,7 +21,6 @@ struct Chosen {
     held: bool,
 }
 
-/// The ends of all axes.
 #[derive(Debug, Clone, Default)]
 pub struct Axes {
     chosen: HashMap<Axis, Chosen>,

@@ -110,9 +110,7 @@ pub(super) enum Part {
     /// A row of the list of keys alone: its heading, the keys, and what they do.
     Row(&'static str, &'static str, &'static str),
     Menu(&'static str, &'static [Part]),
-    /// A line between commands.
     Line,
-    /// The built-in scenes.
     Presets,
     /// The scene files opened last.
     Recent,
@@ -126,7 +124,6 @@ pub(super) enum Part {
     Lessons,
 }
 
-/// How the key of a command is listed.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Listed {
     No,
@@ -152,7 +149,6 @@ const fn control_shift(key: Key) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
 }
 
-/// A step back.
 pub const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
 
 /// What the way back to the scene as it was opened is called.

@@ -24,7 +24,6 @@ pub struct Figures {
     pub width: String,
     /// Size of the text in points.
     pub font: String,
-    /// With title, subtitle and footer.
     pub titled: bool,
     /// The numbers that are drawn go beside the figure.
     pub data: bool,

@@ -19,7 +19,6 @@ pub(super) enum Asked {
 }
 
 impl Figures {
-    /// Draws the question.
     pub(super) fn ui(&mut self, ui: &Ui, view: View, session: &Session, memory: &Memory) -> Option<Asked> {
         let answer = dialog(ui.ctx(), "figure").show(ui.ctx(), |ui| {
             ui.set_width(dialog_width(ui, 560.0));

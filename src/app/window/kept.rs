@@ -1,9 +1,6 @@
 //! What the window keeps from one start of the program to the next.
 
 use eframe::{Storage, get_value, set_value};
-use egui_tiles::Tree;
-
-use crate::app::views::View;
 
 use super::Window;
 use super::size::WindowSize;
@@ -34,16 +31,6 @@ impl Window {
         if let Some(own) = &self.own {
             set_value(storage, OWN, own);
         }
-    }
-
-    /// A person's own arrangement of the views, where there is one.
-    pub fn own_arrangement(&self) -> Option<&Tree<View>> {
-        self.own.as_ref()
-    }
-
-    /// Takes over an arrangement that was kept.
-    pub fn set_own_arrangement(&mut self, own: Option<Tree<View>>) {
-        self.own = own;
     }
 
     /// Has the window be of a size that was kept: none at the first start.

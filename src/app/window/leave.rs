@@ -13,7 +13,6 @@ pub enum Next {
     Text(String),
     /// A file that is still to be chosen.
     Choose,
-    /// The window is closed.
     Quit,
 }
 

@@ -17,11 +17,6 @@ impl Window {
         self.columns = Some(MeasuredDialog::new(path, &self.wake));
     }
 
-    /// The question for the columns of measured data, while it stands.
-    pub fn measured_dialog(&mut self) -> Option<&mut MeasuredDialog> {
-        self.columns.as_mut()
-    }
-
     /// Lays a record over the computed, in the view of its quantity, with a card beside Before / now.
     pub fn lay(&mut self, record: MeasuredRecord) {
         let view = match record.values.quantity {

@@ -48,7 +48,6 @@ pub(super) enum Ended {
     Laid(Box<MeasuredRecord>),
     /// It shakes the base: the file, and its columns.
     Shaken(PathBuf, Box<MeasuredRecord>),
-    /// Nothing is done.
     Cancelled,
 }
 

@@ -22,7 +22,6 @@ struct Notice {
     since: Option<f64>,
 }
 
-/// The messages over the window.
 #[derive(Debug, Default)]
 pub(super) struct Messages {
     /// The title and text of one that waits to be read.
@@ -71,7 +70,6 @@ impl Messages {
         self.told.as_ref().map(|told| told.text.as_str())
     }
 
-    /// Drops the short message.
     pub fn drop_told(&mut self) {
         self.told = None;
     }
@@ -81,7 +79,6 @@ impl Messages {
         Self { waiting: None, told: self.told.take() }
     }
 
-    /// Draws both.
     pub fn ui(&mut self, ui: &Ui) {
         self.waiting_ui(ui);
         self.told_ui(ui);

@@ -94,7 +94,6 @@ impl Window {
         }
     }
 
-    /// Draws it all.
     pub fn ui(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
         if !self.waits_for_answer() {

@@ -13,7 +13,6 @@ use super::wanted::Wanted;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PathDialog {
     pub wanted: Wanted,
-    /// The path so far.
     pub path: String,
     /// The field has had the keyboard.
     begun: bool,
@@ -21,7 +20,6 @@ pub(super) struct PathDialog {
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Ended {
-    /// With this file.
     Chosen(PathBuf),
     Cancelled,
 }

@@ -236,7 +236,6 @@ impl Window {
         self.session.player.go_to(Goal::First(kind, until));
     }
 
-    /// Shows the notes of the scene.
     fn say_notes(&mut self) {
         if let Some(lesson) = self.lesson().map(|own| own.lesson()) {
             let (title, goal) = (lesson.title.clone(), lesson.goal.clone());

@@ -5,7 +5,6 @@ use eframe::egui::Ui;
 use crate::app::views::View;
 
 use super::Window;
-use super::figure::Figures;
 use super::figure_dialog::Asked;
 use super::wanted::Wanted;
 
@@ -14,10 +13,6 @@ impl Window {
     pub(super) fn ask_figure(&mut self, view: Option<View>) {
         let view = view.or(self.filled).or(self.memory.hovered).unwrap_or(View::Displacement);
         self.figures.open(view, &self.session, &self.memory);
-    }
-
-    pub fn figures(&mut self) -> &mut Figures {
-        &mut self.figures
     }
 
     pub(super) fn figure_ui(&mut self, ui: &Ui) {

@@ -11,7 +11,7 @@ use crate::app::session::editor::Editor;
 use crate::app::session::{CannotRun, Session};
 use crate::app::task::{Latest, Wake};
 use crate::app::ui::settings::Settings;
-use crate::app::views::{Cursors, Memory, Timeline, View};
+use crate::app::views::{Memory, View};
 use crate::app::words::announce::Announcer;
 use crate::scene::{Layout, PRESETS};
 use crate::system::files;
@@ -31,17 +31,15 @@ use super::wanted::Chosen;
 /// How many of the scenes opened last are kept.
 const MOST_RECENT: usize = 8;
 
-/// Everything that the window shows.
 pub struct Window {
-    /// The open scene.
     pub session: Session,
     /// What a person wants whatever the scene.
     pub settings: Settings,
-    pub(super) tiling: Tiling,
+    pub tiling: Tiling,
     pub(super) arrangement: Arrangement,
     /// A person's own arrangement, kept between two starts.
-    pub(super) own: Option<Tree<View>>,
-    pub(super) memory: Memory,
+    pub own: Option<Tree<View>>,
+    pub memory: Memory,
     pub(super) more: bool,
     pub(super) filled: Option<View>,
     pub(super) covered: bool,
@@ -73,9 +71,9 @@ pub struct Window {
     /// A path that is typed where there is no dialog.
     pub(super) typed: Option<PathDialog>,
     /// The figure that is asked for, and how figures are laid out.
-    pub(super) figures: Figures,
+    pub figures: Figures,
     /// Measured data whose columns are being chosen.
-    pub(super) columns: Option<MeasuredDialog>,
+    pub columns: Option<MeasuredDialog>,
     /// Input that waits for the next frame.
     pub(super) deferred: DeferredInput,
     pub(super) hint: hint::Hint,
@@ -195,31 +193,6 @@ impl Window {
             || self.columns.is_some()
             || self.shortcuts.is_some()
             || self.glossary
-    }
-
-    /// What the traces share.
-    pub fn timeline(&self) -> &Timeline {
-        &self.memory.timeline
-    }
-
-    /// The cursors over time.
-    pub fn cursors(&self) -> &Cursors {
-        &self.memory.cursors
-    }
-
-    /// The ends that a hand has chosen for the axes of a view, to the right and upwards.
-    pub fn chosen_axes(&self, view: View) -> [Option<(f64, f64)>; 2] {
-        self.memory.chosen_axes(view)
-    }
-
-    /// Whether the phase portrait shows a point a period and no path.
-    pub fn points_only(&self) -> bool {
-        self.memory.points_only
-    }
-
-    /// The views and where they stand.
-    pub fn tiling(&self) -> &Tiling {
-        &self.tiling
     }
 
     /// Puts the views where the arrangement has them.

@@ -87,7 +87,6 @@ impl BestStops {
         sentence(&found, asked.column, &asked.range, run.duration_s)
     }
 
-    /// Takes in what has come.
     pub(super) fn poll(&mut self) {
         let Some(job) = &self.job else { return };
         let (mut preview, mut answer) = (None, None);

@@ -49,7 +49,6 @@ impl<Q: PartialEq + Clone, P: Send + 'static> Explored<Q, P> {
         self.job = Job::start(wake, move |cancel, each| study(&question, cancel, each));
     }
 
-    /// Takes in what has come.
     pub fn poll(&mut self) {
         let Some(job) = &self.job else { return };
         let more = job.take(|part| self.parts.push(part));

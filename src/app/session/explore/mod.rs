@@ -23,7 +23,6 @@ pub struct Explore {
 }
 
 impl Explore {
-    /// Takes in what has come.
     pub(super) fn poll(&mut self) {
         self.walks.found.poll();
         self.basins.poll();

@@ -21,7 +21,6 @@ impl PartialEq for SpectrumQuestion {
     }
 }
 
-/// The spectrum of a session.
 pub struct Spectra {
     pub signal: Signal,
     /// The spectrum, or why there is none.

@@ -36,7 +36,6 @@ pub enum Turn {
     Same,
     /// This scene from its start, playing or standing.
     Show(Box<Document>, bool),
-    /// The lesson is over.
     Leave,
 }
 
@@ -106,7 +105,6 @@ impl OpenLesson {
         &self.lesson().steps[self.progress.step]
     }
 
-    /// What was done in the step.
     pub fn answer(&self) -> &Answer {
         &self.progress.answers[self.progress.step]
     }
@@ -159,7 +157,6 @@ impl OpenLesson {
         (0..self.lesson().steps.len()).all(|number| self.is_settled(number))
     }
 
-    /// Whether this is the last step.
     pub fn is_last(&self) -> bool {
         self.progress.step + 1 == self.lesson().steps.len()
     }
@@ -198,7 +195,6 @@ impl OpenLesson {
         self.enter(self.progress.step + 1)
     }
 
-    /// Goes a step back.
     pub fn go_back(&mut self) -> Turn {
         let Some(number) = self.progress.step.checked_sub(1) else { return Turn::Stay };
         match self.enter(number) {
@@ -357,7 +353,6 @@ impl OpenLesson {
         }
     }
 
-    /// Shows the hint, or hides it.
     pub fn turn_hint(&mut self) {
         self.hinted = !self.hinted;
     }

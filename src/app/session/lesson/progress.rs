@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::lesson::{Lesson, Step};
 
-/// What was done in a step.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Answer {
@@ -20,17 +19,14 @@ pub struct Answer {
     pub outcome: Option<String>,
     /// Why, in a word of the student's own.
     pub why: String,
-    /// The task was done.
     pub met: bool,
     /// The settings with which it was done, as the command line takes them.
     pub with: String,
 }
 
-/// What was done in a lesson.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Progress {
-    /// The lesson's title.
     pub title: String,
     /// The step that was open last.
     pub step: usize,

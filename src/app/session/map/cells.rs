@@ -101,7 +101,6 @@ impl Map {
         self.cells.is_empty()
     }
 
-    /// How many cells are known.
     pub fn known(&self) -> usize {
         self.known
     }

@@ -39,7 +39,6 @@ pub struct Question {
     pub ledger: Option<&'static str>,
 }
 
-/// The map of a session.
 #[derive(Default)]
 pub struct Mapping {
     /// What the map shows, where it is not the RMS velocity.
@@ -117,7 +116,6 @@ impl Mapping {
         }
     }
 
-    /// What the map shows.
     pub fn quantity(&self) -> &'static ColumnInfo {
         self.quantity.unwrap_or(&COLUMNS[0].1[0])
     }

@@ -28,7 +28,6 @@ pub enum PinKind {
     Twin,
 }
 
-/// A pinned motion.
 pub struct Pin {
     letter: char,
     kind: PinKind,
@@ -61,7 +60,6 @@ impl Pin {
         &self.scene
     }
 
-    /// What has been seen of it.
     pub fn watch(&self) -> &Watch {
         &self.watch
     }
@@ -110,7 +108,6 @@ impl Pin {
     }
 }
 
-/// The pinned motions.
 #[derive(Default)]
 pub struct Pins {
     all: Vec<Pin>,
@@ -137,7 +134,6 @@ impl Pins {
         self.all.iter().any(|pin| pin.is_behind(t))
     }
 
-    /// Takes one away.
     pub fn unpin(&mut self, letter: char) {
         self.all.retain(|pin| pin.letter != letter);
     }

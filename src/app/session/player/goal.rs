@@ -15,7 +15,6 @@ use super::Player;
 const SHARE: Duration = Duration::from_millis(12);
 const STRETCH: f64 = 2.0;
 
-/// Where the motion is to go.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
     /// To this time in s.

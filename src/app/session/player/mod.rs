@@ -40,7 +40,6 @@ const LONGEST_FRAME: f64 = 0.1;
 /// Time on the screen in s that a single step takes.
 const STEP: f64 = 1.0 / 30.0;
 
-/// A motion that is played.
 #[derive(Debug, Clone)]
 pub struct Player {
     watch: Watch,
@@ -109,7 +108,6 @@ impl Player {
         }
     }
 
-    /// From the start again.
     pub fn restart(&mut self, model: &Model) {
         let keeps_ledgers = self.watch.keeps_ledgers();
         self.watch = Watch::new(model);
@@ -215,7 +213,6 @@ impl Player {
         self.watch.model_at(self.time())
     }
 
-    /// Whether the past is shown.
     pub fn is_past(&self) -> bool {
         self.past.is_some()
     }
@@ -224,7 +221,6 @@ impl Player {
         self.past.map_or_else(|| self.watch.now(), |t| self.watch.state_at(t))
     }
 
-    /// What has been seen.
     pub fn watch(&self) -> &Watch {
         &self.watch
     }

@@ -27,7 +27,6 @@ const LOW: f32 = 330.0;
 /// Length of a tick in points.
 const TICK: f32 = 4.0;
 
-/// The map on the screen.
 pub struct Coordinates {
     /// The cells.
     pub rect: Rect,
