@@ -32,7 +32,7 @@ fn shaken() {
         format!("Intrawell: will settle in the right-hand well, {between}; RMS velocity about {speed} mm/s.")
     });
     assert!(likely.any(|own| text.starts_with(&own)), "{text}");
-    assert!(text.contains("g short of crossing, which takes about 1.1"), "{text}");
+    assert!(text.contains("g short of crossing at about 1.1"), "{text}");
 
     let (kind, text) = of("first-look", &[&stops(1.5)]);
     let expected = "Interwell: will cross twice a period, from stop to stop at ±1.5 mm; \
@@ -51,7 +51,7 @@ fn shaken() {
         kind == Kind::Intrawell && text.starts_with("Hopping: will leave the right-hand stop every period"),
         "{text}"
     );
-    assert!(text.contains("g short of crossing, which takes 0.9"), "{text}");
+    assert!(text.contains("g short of crossing at 0.9"), "{text}");
 
     let (kind, text) = of("duffing", &[]);
     assert!(

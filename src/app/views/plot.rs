@@ -1,6 +1,6 @@
 //! Plots with axes of their own, as several views have them.
 
-use eframe::egui::{Rect, TextStyle, Ui, UiBuilder, vec2};
+use eframe::egui::{AsIdSalt, Rect, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{GridMark, Plot};
 
 use crate::app::ui::style::Style;
@@ -25,7 +25,7 @@ pub fn plot_place(ui: &mut Ui, style: &Style, rect: Rect) -> Ui {
 }
 
 /// A plot whose axes no hand moves, without a grid: that is drawn in the colours of the views.
-pub fn still_plot<'a>(name: &str) -> Plot<'a> {
+pub fn still_plot<'a>(name: impl AsIdSalt) -> Plot<'a> {
     Plot::new(name)
         .allow_drag(false)
         .allow_scroll(false)

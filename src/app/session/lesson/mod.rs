@@ -365,11 +365,6 @@ impl OpenLesson {
         }
     }
 
-    /// Whether a verdict is being worked out.
-    pub fn is_judging(&self) -> bool {
-        self.options.is_running() || self.goal.is_running()
-    }
-
     /// Waits for the verdict that is being worked out, at most so long.
     pub fn wait(&mut self, most: Duration) {
         self.options.wait(most);

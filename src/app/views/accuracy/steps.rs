@@ -1,7 +1,7 @@
 //! The run in fixed steps over the true one, and its errors in numbers.
 
 use eframe::egui::{self, ComboBox, Rect, TextStyle, Ui, UiBuilder, vec2};
-use egui_plot::{HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Points};
+use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, Points};
 
 use crate::app::session::accuracy::Accuracy;
 use crate::app::ui::style::Style;
@@ -11,7 +11,7 @@ use crate::study::accuracy::scene::{StepSize, step_name};
 
 use super::super::ViewContext;
 use super::super::legend::{LEGEND, Sign, legend};
-use super::super::plot::{marks, plain};
+use super::super::plot::{marks, plot_place, still_plot};
 use super::waiting::waiting_ui;
 
 /// Ends of the slider in s, and steps with a name.
@@ -208,30 +208,19 @@ fn plot_ui(ui: &mut Ui, style: &Style, area: Rect, known: &StepSize, stops: [Opt
     let is_low = area.height() < LOW;
     let (time_label, axis) = if is_low { ("", "mm") } else { ("time (s)", "displacement (mm)") };
     let rect = Rect::from_min_max(area.min + vec2(0.0, LEGEND), area.max - vec2(MARGIN, 0.0));
-    let mut ui = ui.new_child(UiBuilder::new().max_rect(rect));
-    ui.style_mut().text_styles.insert(TextStyle::Body, style.small());
-    ui.visuals_mut().override_text_color = Some(style.faint());
+    let mut ui = plot_place(ui, style, rect);
     let (end, edge) = (known.drawn, 0.02 * (high - low));
-    Plot::new(("step size", end.to_bits()))
+    still_plot(("step size", end.to_bits()))
         .allow_drag([true, false])
-        .allow_scroll(false)
         .allow_zoom([true, false])
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .show_background(false)
-        .show_grid(false)
+        .allow_double_click_reset(true)
         .default_x_bounds(0.0, end)
         .default_y_bounds(low, high)
         .x_axis_label(time_label)
         .y_axis_label(axis)
         .y_axis_min_width(AXIS_WIDTH)
-        .set_margin_fraction(vec2(0.0, 0.0))
         .x_grid_spacer(|input| marks(input.bounds.0, input.bounds.1, columns))
         .y_grid_spacer(|_| marks(low + edge, high - edge, rows))
-        .x_axis_formatter(|mark, _| plain(mark))
-        .y_axis_formatter(|mark, _| plain(mark))
-        .label_formatter(|_| None)
-        .show_crosshair(false)
         .show(&mut ui, |plot| {
             let seen = plot.plot_bounds();
             plot.set_plot_bounds(PlotBounds::from_min_max([seen.min()[0], low], [seen.max()[0], high]));

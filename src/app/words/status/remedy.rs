@@ -50,7 +50,7 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
         (false, false) => match found.frees_at.filter(|frees| *frees > g) {
             Some(frees) => format!("Frees at {} g, crosses from {least} g{gaps}.", grams_up(frees)),
             None => {
-                format!("{about}{} g short of crossing, which takes {least} g{gaps}.", grams_apart(from - g))
+                format!("{about}{} g short of crossing at {least} g{gaps}.", grams_apart(from - g))
             }
         },
     };

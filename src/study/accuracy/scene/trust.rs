@@ -52,16 +52,6 @@ impl Course {
             Self::Chaotic { until, .. } | Self::Sensitive { until } | Self::Coarse { until } => Some(until),
         }
     }
-
-    /// The word in a table.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Kept => "kept",
-            Self::Chaotic { .. } => "chaotic",
-            Self::Sensitive { .. } => "sensitive",
-            Self::Coarse { .. } => "coarse",
-        }
-    }
 }
 
 /// The error of a run, known by its change against a tighter tolerance.
