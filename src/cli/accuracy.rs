@@ -20,8 +20,8 @@ pub struct Arguments {
     #[arg(value_name = "SCENE", conflicts_with_all = ["case", "list", "picture"])]
     pub scene: Option<String>,
 
-    /// With a scene: what fixed steps make of it, each in s or as a fraction such as 1/60; stops clamp and
-    /// bounce
+    /// With a scene: run it in fixed steps too, each in s or as a fraction such as 1/60; a step that ends
+    /// beyond a stop is put onto it, and the mass bounces there
     #[arg(long, value_name = "S1,S2,..", allow_hyphen_values = true, requires = "scene")]
     pub step_s: Option<String>,
 

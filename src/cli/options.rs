@@ -233,8 +233,8 @@ impl Common {
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("picture").multiple(true))]
 pub struct PlotOptions {
-    /// Draw a picture; the name ends in .png, .svg or .pdf. A run is drawn from samples of its own, over the
-    /// times that --at spans
+    /// Draw a picture; the name ends in .png, .svg or .pdf. That of `simulate` has samples of its own, over
+    /// the times from the first to the last of --at
     #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
     pub plot: Option<PathBuf>,
 

@@ -41,7 +41,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true)]
     pub over: Vec<String>,
 
-    /// What is to be largest: a number of the summary, such as mean_power_w, into the load, of a scene
+    /// What is to be largest: a number of the summary. mean_power_w, the power into the load, needs a scene
     /// with a transducer
     #[arg(long, value_name = "COLUMN", default_value = "rms_velocity_m_per_s", visible_alias = "maximize")]
     pub maximise: String,
@@ -51,16 +51,17 @@ pub struct Arguments {
     pub subject_to: Vec<String>,
 
     /// What the design is for, in place of the scene's own excitation: the excitation and run of another
-    /// scene, a record (CSV), or values of a field, each with *WEIGHT after it if it is to count otherwise
-    /// than once (repeatable; the mean is what is largest)
+    /// scene, a record (CSV), or values of a field; *WEIGHT after one is its weight, otherwise 1
+    /// (repeatable; the weighted mean over all is what is to be largest)
     #[arg(long, value_name = "SCENE|FILE|FIELD=a,b,c", allow_hyphen_values = true)]
     pub environment: Vec<String>,
 
-    /// A tolerance of a field: what the worst and the lowest twentieth of 200 samples give (repeatable)
+    /// A tolerance of a field: writes the worst of 200 samples and what all but a twentieth of them reach
+    /// (repeatable)
     #[arg(long, value_name = "FIELD=+-1%|+-0.05", allow_hyphen_values = true)]
     pub vary: Vec<String>,
 
-    /// Seed of these samples
+    /// Seed of the samples of --vary
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub seed: u64,
 }
