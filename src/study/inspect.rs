@@ -193,7 +193,7 @@ fn landscape(landscape: &Landscape, mass: f64) -> Vec<String> {
         let wells = landscape.equilibria.iter().filter(|own| own.stable).count();
         if wells > 2 {
             lines.push(format!(
-                "{wells} wells: of the barriers between them this one is the nearest to x = 0 (of two as near \
+                "{wells} wells: of the barriers between them this is the nearest to x = 0 (of two as near \
                  the left one); crossings, regime and side are about it alone"
             ));
         }

@@ -1,6 +1,7 @@
 //! One impact without any other force: contact time, rebound, depth, force and loss against closed forms.
 
 use interwell::dynamics::Request;
+use interwell::numeric::bisect;
 
 use super::*;
 
@@ -12,11 +13,7 @@ const HERTZ_TIME: f64 = 2.943_275_184_324_704_7;
 fn restitution(p: f64) -> f64 {
     // atanh forms keep digits where p is small: ln((1 + p)/(1 - p e)) = ln1p(p) - ln1p(-p e)
     let excess = |e: f64| p.ln_1p() - (-p * e).ln_1p() - p * (1.0 + e);
-    let (mut low, mut high) = (1e-12, (1.0 / p).min(1.0));
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        *(if excess(middle) > 0.0 { &mut high } else { &mut low }) = middle;
-    }
+    let (low, high) = bisect(1e-12, (1.0 / p).min(1.0), 200, |e| excess(e) <= 0.0);
     0.5 * (low + high)
 }
 

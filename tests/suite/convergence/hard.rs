@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use interwell::dynamics::{EventKind, Outcome, STANDARD_GRAVITY, Side};
+use interwell::numeric::bisect;
 
 use crate::support::*;
 
@@ -49,11 +50,7 @@ fn a_fast_ripple_decides_a_release() {
     let excess = |t: f64| a * (TAU * slow * t).sin() + ripple * (TAU * 1000.0 * slow * t).sin() - 2.0;
     let step = 1e-6;
     let n = (0..1_000_000).find(|n| excess(f64::from(*n) * step) > 0.0).unwrap();
-    let (mut low, mut high) = (f64::from(n - 1) * step, f64::from(n) * step);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if excess(middle) > 0.0 { high = middle } else { low = middle }
-    }
+    let (_, high) = bisect(f64::from(n - 1) * step, f64::from(n) * step, 60, |t| excess(t) <= 0.0);
     let run = run(&model);
     let releases = of_kind(&run, EventKind::Release);
     assert_eq!(run.events[0].kind, EventKind::Rest);

@@ -3,6 +3,7 @@
 
 use interwell::dynamics::{EventKind, Outcome};
 use interwell::mechanics::{ForceCurve, Piece};
+use interwell::numeric::bisect;
 use interwell::scene::{Excitation, Mechanism};
 
 use super::scenes::*;
@@ -77,21 +78,7 @@ fn a_rebound_from_a_stop_where_the_force_is_flat() {
     let w = std::f64::consts::TAU;
     let gap =
         |t: f64| t - t * t + (1.0 - (w * t).cos()) / (w * w) - (1.0 - (2.0 * w * t).cos()) / (16.0 * w * w);
-    let (mut low, mut high) = (0.5, 1.5);
-    while high - low > 1e-15 {
-        let middle = 0.5 * (low + high);
-        if gap(middle) > 0.0 {
-            low = middle
-        } else {
-            high = middle
-        }
-        if middle == low && middle == high {
-            break;
-        }
-        if (high - low) < 4e-16 {
-            break;
-        }
-    }
+    let (low, _) = bisect(0.5, 1.5, 60, |t| gap(t) > 0.0);
     s.run.tolerance = 1e-12;
     let t = run(&s).events[0].t;
     assert!((t - low).abs() < 1e-10, "{t} {low}");

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use interwell::dynamics::{EventKind, Model, Outcome, Request, Run, Sample};
+use interwell::numeric::bisect;
 use interwell::scene::{Excitation, Scene};
 use proptest::prelude::*;
 
@@ -31,12 +32,7 @@ fn first_fall(m: &Model, press: f64, n: usize) -> Option<f64> {
     assert_eq!(samples.len(), n + 1);
     let falls = |pair: &&[Sample]| pair[0].base_accel < press && pair[1].base_accel >= press;
     let [before, after] = samples.windows(2).find(falls)? else { unreachable!() };
-    let (mut low, mut high) = (before.t, after.t);
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if net(middle) > 0.0 { low = middle } else { high = middle }
-    }
-    Some(high)
+    Some(bisect(before.t, after.t, 100, |t| net(t) > 0.0).1)
 }
 
 /// |F(D)|/m of the nominal cubic.

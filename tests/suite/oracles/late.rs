@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
 use interwell::dynamics::{EventKind, Model, Request, STANDARD_GRAVITY, Side};
+use interwell::numeric::bisect;
 
 use crate::support::*;
 
@@ -75,12 +76,7 @@ fn a_slow_ramp_releases_after_a_million_seconds() {
     // excess of the drive over the press at phase `turns` of a cycle
     let excess = |cycle: f64, turns: f64| rate * ((cycle + turns) / frequency) * (TAU * turns).sin() - press;
     let cycle = (0..).map(f64::from).find(|n| excess(*n, 0.25 + 1e-7) > 0.0).unwrap();
-    let (mut low, mut high) = (0.0, 0.25);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if excess(cycle, middle) < 0.0 { low = middle } else { high = middle }
-    }
-    let release = (cycle + high) / frequency;
+    let release = (cycle + bisect(0.0, 0.25, 60, |turns| excess(cycle, turns) < 0.0).1) / frequency;
     let run = run(&scene(release + 2.0));
     let releases = of_kind(&run, EventKind::Release);
     assert_eq!((cycle, release.round()), (120482.0, 963858.0));

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use interwell::dynamics::{EventKind, Model, Outcome};
+use interwell::numeric::bisect;
 
 use crate::support::*;
 
@@ -47,12 +48,7 @@ fn release(press: f64, push: f64, tau: f64, amplitude: f64, until: f64) -> Optio
     let net = |t: f64| press + push * (-t / tau).exp() - amplitude * (TAU * t).sin();
     let step = 1e-5;
     let first = (0..(until / step) as usize).find(|i| net((i + 1) as f64 * step) < 0.0)?;
-    let (mut low, mut high) = (first as f64 * step, (first + 1) as f64 * step);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        *(if net(middle) < 0.0 { &mut high } else { &mut low }) = middle;
-    }
-    Some(high)
+    Some(bisect(first as f64 * step, (first + 1) as f64 * step, 60, |t| net(t) >= 0.0).1)
 }
 
 /// The sine drive pulls the mass off the right-hand stop where a_b is positive.
@@ -100,11 +96,7 @@ fn a_dip_of_the_net_force_during_the_decay_is_not_missed() {
         (0..300_000).map(|i| net(f64::from(i) * 1e-6)).fold(f64::INFINITY, f64::min)
     };
     // the push at which the dip just touches 0
-    let (mut low, mut high) = (-0.9, 0.5);
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        *(if least(middle) < 0.0 { &mut low } else { &mut high }) = middle;
-    }
+    let (low, high) = bisect(-0.9, 0.5, 50, |push| least(push) < 0.0);
     for (push, dips) in [(low - 1e-6, true), (high + 1e-6, false)] {
         let run = run(&pressed(press, amplitude, transducer, -push, 0.3));
         assert_eq!(!of_kind(&run, EventKind::Release).is_empty(), dips, "{push}");
