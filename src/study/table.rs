@@ -158,6 +158,14 @@ impl Table {
         }
     }
 
+    /// The words of the column called `name`; none where it has other values or is not there.
+    pub fn words(&self, name: &str) -> &[&'static str] {
+        match self.column(name).map(|own| &own.values) {
+            Some(Values::Words(words)) => words,
+            _ => &[],
+        }
+    }
+
     /// The table with these of its columns alone, in this order.
     #[must_use]
     pub fn only(&self, names: &[String]) -> Self {

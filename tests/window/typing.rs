@@ -160,7 +160,8 @@ fn presses_of_a_key_are_one_step_and_one_before() {
     harness.get_by_role_and_label(Role::Slider, "amplitude").focus();
     harness.run_steps(2);
     for _ in 0..5 {
-        press(&mut harness, Key::ArrowRight);
+        harness.key_press(Key::ArrowRight);
+        harness.run_steps(2);
     }
     let before = |harness: &Harness<'static, Window>| {
         let card = harness.state().session.before_card().cloned();

@@ -11,7 +11,7 @@ use crate::app::words::numbers::{below, decimals_for, three};
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::short;
 use crate::scene::{Quantity, Start};
-use crate::study::{Table, Values, metres};
+use crate::study::{Table, metres};
 
 use super::ViewContext;
 
@@ -185,10 +185,6 @@ fn found_ui(ui: &mut Ui, context: &ViewContext<'_>, over: &Overlay) {
 }
 
 fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
-    let words = |name: &str| match table.column(name).map(|own| &own.values) {
-        Some(Values::Words(words)) => words.clone(),
-        _ => Vec::new(),
-    };
     let numbers = |name: &str| table.numbers(name).unwrap_or_default();
     let ink = if current { style.ink() } else { style.faint() };
     let columns = ["measured", "computed", "difference", "difference_percent"].map(numbers);
@@ -197,13 +193,13 @@ fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
             ui.label(RichText::new(name).color(style.faint()));
         }
         ui.end_row();
-        for (row, (name, unit)) in words("quantity").iter().zip(words("unit")).enumerate() {
+        for (row, (name, unit)) in table.words("quantity").iter().zip(table.words("unit")).enumerate() {
             let [measured, computed, difference, percent] = columns.map(|own| own[row]);
             // neither has any
             if !difference.is_finite() && measured.is_nan() && computed.is_nan() {
                 continue;
             }
-            let (scale, unit) = match unit {
+            let (scale, unit) = match *unit {
                 "m" => (1e3, ", mm"),
                 "m/s" => (1e3, ", mm/s"),
                 "m/s2" => (1.0 / STANDARD_GRAVITY, ", g"),

@@ -8,7 +8,6 @@ use super::figure::{Area, Figure, Point, Text, fitted};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, legend, marker};
 use super::style::{self, Ink, Theme};
-use super::swept::words;
 use crate::scene::PROGRAM;
 use crate::study::Table;
 use crate::study::accuracy::{OWN, PROBLEMS};
@@ -25,7 +24,7 @@ const LEAST: f64 = 1e-17;
 
 /// The picture of a table as [`work_table`](crate::study::accuracy::Report::work_table) gives it.
 pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
-    let (problems, methods) = (words(table, "problem"), words(table, "method"));
+    let (problems, methods) = (table.words("problem"), table.words("method"));
     let column = |name: &str| table.numbers(name).unwrap_or_default();
     let (errors, times) = (column("error"), column("cpu_s"));
     let distinct = |all: &[&'static str]| {

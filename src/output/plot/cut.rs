@@ -7,7 +7,7 @@ use super::map::{Lines, Map};
 use super::mark::{REGIMES, Sample, regime};
 use super::quantity::Quantity;
 use super::style::{self, Theme};
-use super::swept::{Cut, LEFT, MARKER_ROOM, SweepPicture, below_legend, label, mark_regimes, words};
+use super::swept::{Cut, LEFT, MARKER_ROOM, SweepPicture, below_legend, label, mark_regimes};
 use crate::numeric::short;
 use crate::study::line_meets;
 
@@ -95,7 +95,7 @@ impl Panel {
         let (along, range) = if upright { (y, picture.ranges.y) } else { (x, picture.ranges.x) };
         let quantity = Quantity::of(rows, picture.quantity);
         let numbers = |name: &str| rows.numbers(name).unwrap_or_default();
-        let (at, places, regimes) = (numbers(&cut.column), numbers(along), words(rows, "regime"));
+        let (at, places, regimes) = (numbers(&cut.column), numbers(along), rows.words("regime"));
         let mut marks: Vec<(Point, &str)> = (0..rows.rows())
             .filter(|row| at[*row] == cut.value)
             .map(|row| ((places[row], quantity.values[row]), regimes.get(row).copied().unwrap_or("")))

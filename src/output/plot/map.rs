@@ -8,7 +8,7 @@ use super::frame::Frame;
 use super::mark::{Sample, cross};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{LEFT, Overlay, SweepPicture, below_legend, drawn, label, missing_words, words};
+use super::swept::{LEFT, Overlay, SweepPicture, below_legend, drawn, label, missing_words};
 use crate::study::{Edges, Table, first_crossing_edge};
 
 /// What a cell of a map shows.
@@ -37,7 +37,7 @@ impl Mosaic {
     ) -> Self {
         let (xs, ys) = (rows.numbers(x).unwrap_or_default(), rows.numbers(y).unwrap_or_default());
         let (across, up) = (Edges::new(xs), Edges::new(ys));
-        let regimes = words(rows, "regime");
+        let regimes = rows.words("regime");
         let mut cells = vec![Cell::Missing; across.values.len() * up.values.len()];
         for i in (0..rows.rows()).filter(|i| shown(*i)) {
             if let (Some(column), Some(row)) = (across.place(xs[i]), up.place(ys[i])) {
@@ -195,7 +195,7 @@ pub(super) fn meanings(
         entries.push((Sample::Patch(theme.rest, Some(theme.rest_hatch)), "at rest"));
     }
     if cells.contains(&Cell::Missing) {
-        let why = if quantity.velocity { missing_words(words(rows, "outcome")) } else { "no value" };
+        let why = if quantity.velocity { missing_words(rows.words("outcome")) } else { "no value" };
         entries.push((Sample::Crossed(theme.paper, theme.soft), why));
     }
     entries

@@ -13,7 +13,7 @@ use super::style::{self, Ink, Theme};
 use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::{extent, short};
-use crate::study::{Table, Trace, Values};
+use crate::study::{Table, Trace};
 
 /// The picture of a run from its trace and its summary, with these panels. The trace says which times it
 /// shows; `ranges` may give the axis of the displacement, in mm.
@@ -134,7 +134,7 @@ impl Seen<'_> {
         let impacts = Some(&trace.impacts).filter(|_| self.has(Panel::Displacement));
         let column = |table: &Table, name: &str| table.numbers(name).unwrap_or_default().to_vec();
         if let Some(impacts) = impacts {
-            let sides = words(impacts.column("side").map(|column| &column.values));
+            let sides = impacts.words("side");
             let times = column(impacts, "t_s");
             for (at, side) in times.iter().zip(sides).filter(|own| shown.contains(own.0)) {
                 let stop = if *side == "left" { trace.stops.0 } else { trace.stops.1 };
@@ -246,13 +246,6 @@ pub fn speed_unit(values: impl Iterator<Item = f64>) -> (f64, &'static str) {
     if greatest < 2.0 { (1e3, "mm/s") } else { (1.0, "m/s") }
 }
 
-fn words(values: Option<&Values>) -> &[&'static str] {
-    match values {
-        Some(Values::Words(words)) => words,
-        _ => &[],
-    }
-}
-
 /// Spans at rest, shaded; neighbours nearer than a part of a pixel are one.
 fn rests(figure: &mut Figure, frame: &Frame, trace: &Trace, ink: Ink) {
     let from = trace.rests.numbers("from_s").unwrap_or_default();
@@ -285,7 +278,7 @@ fn impacts(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
     /// So far apart the wall is still seen between them.
     const APART: f64 = 4.5;
     let times = trace.impacts.numbers("t_s").unwrap_or_default();
-    let sides = words(trace.impacts.column("side").map(|column| &column.values));
+    let sides = trace.impacts.words("side");
     let mut last = [f64::NEG_INFINITY; 2];
     let shown = trace.shown_from..=trace.shown_to;
     for (t, side) in times.iter().zip(sides).filter(|impact| shown.contains(impact.0)) {

@@ -9,7 +9,7 @@ use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, dot};
 use super::run::speed_unit;
 use super::style::{self, Ink, Theme};
-use super::swept::{LEAST, LEFT, below_legend, label, words};
+use super::swept::{LEAST, LEFT, below_legend, label};
 use crate::numeric::short;
 use crate::study::{DIRECTION, Direction, IMPACTS, Table, Values};
 
@@ -64,7 +64,7 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
         entries.push((Sample::Patch(theme.wall_fill(), None), "stop"));
     }
     let (across, up) = columns_of(rows, over, phase_deg.is_some());
-    let ways = words(rows, DIRECTION);
+    let ways = rows.words(DIRECTION);
     let both = [Direction::Up, Direction::Down].iter().all(|way| ways.contains(&way.name()));
     let panels: &[Option<Direction>] =
         if both { &[Some(Direction::Up), Some(Direction::Down)] } else { &[None] };
@@ -123,7 +123,7 @@ fn drawn(rows: &Table, over: Option<&str>, states: bool, inside: impl Fn(f64) ->
     let own: &[&str] = if states { &["x_m", "v_m_per_s"] } else { &["phase_deg", "v_in_m_per_s"] };
     let names: Vec<&str> = over.into_iter().chain(own.iter().copied()).collect();
     let columns: Vec<&[f64]> = names.iter().map(|name| rows.numbers(name).unwrap_or_default()).collect();
-    let (kind, ways) = (kind_of(rows, states), words(rows, DIRECTION));
+    let (kind, ways) = (kind_of(rows, states), rows.words(DIRECTION));
     let (across, _) = columns_of(rows, over, states);
     let mut drawn = Drawn::new(names, if ways.is_empty() { &[] } else { &[DIRECTION] });
     for row in (0..rows.rows()).filter(|row| inside(across.values[*row])) {
@@ -145,7 +145,7 @@ fn kind_of(rows: &Table, states: bool) -> impl Fn(usize) -> usize {
         Some(Values::Counts(counts)) => counts.as_slice(),
         _ => &[],
     };
-    let sides = words(rows, "side");
+    let sides = rows.words("side");
     move |row| match states {
         true => usize::from(impacts.get(row).copied().flatten().is_some_and(|count| count > 0)),
         false => usize::from(sides.get(row) == Some(&"right")),

@@ -11,7 +11,7 @@ use super::style::{self, Theme};
 use super::surface::{MAX_SURFACE_CELLS, SURFACE, surface};
 use super::swept::{
     LEAST, LEFT, MARKER_ROOM, SweepPicture, View, below_legend, drawn, label, mark_regimes, missing_words,
-    of_each, words,
+    of_each,
 };
 use super::walk::{STACKED, walked_both, walked_lines, walked_maps};
 use crate::numeric::short;
@@ -121,7 +121,7 @@ pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) ->
         ([x, y], None) => map(&mut figure, picture, (x, y), theme),
         (other, None) => return Err(NoPicture::Fields(other.len())),
     }
-    let ways = words(rows, DIRECTION);
+    let ways = rows.words(DIRECTION);
     let walked = [Direction::Up, Direction::Down].into_iter().filter(|way| ways.contains(&way.name()));
     let walked: Vec<Direction> = walked.collect();
     caption.draw(&mut figure, theme, &sweep_about(grid, scene, &walked, until_settled), LEFT);
@@ -194,7 +194,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     let SweepPicture { rows, ranges, .. } = *picture;
     let values = rows.numbers(x).unwrap_or_default();
     let quantity = Quantity::of(rows, picture.quantity);
-    let regimes = words(rows, "regime");
+    let regimes = rows.words("regime");
     let of_series = series.and_then(|name| rows.numbers(name)).unwrap_or_default();
     let each = if series.is_some() { distinct(of_series) } else { vec![f64::NAN] };
     let ink = |i: usize| match each.len() {
@@ -218,7 +218,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     if !missing.is_empty() {
         let dotted = Sample::Line(theme.soft, style::LINE, Some(style::DOT));
         let dotted = if lines { dotted } else { Sample::Ticks(theme.soft) };
-        let why = if quantity.velocity { missing_words(words(rows, "outcome")) } else { "no value" };
+        let why = if quantity.velocity { missing_words(rows.words("outcome")) } else { "no value" };
         entries.push((dotted, why.to_owned()));
     }
     let entries: Vec<(Sample, &str)> =

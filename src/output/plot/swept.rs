@@ -9,7 +9,7 @@ use super::style::{Ink, Theme};
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
 use crate::scene::Scene;
-use crate::study::{Column, DIRECTION, Grid, Table, Values, first_crossing, release_line};
+use crate::study::{Column, DIRECTION, Grid, Table, first_crossing, release_line};
 
 pub(super) const LEFT: f64 = 160.0;
 pub(super) const TOP: f64 = 185.0;
@@ -90,8 +90,8 @@ pub(super) fn drawn(picture: &SweepPicture, asked: &[(&str, Option<(f64, f64)>)]
     let fields = grid.columns();
     let value = rows.column(quantity).and_then(as_numbers);
     let names = fields.iter().map(String::as_str).chain(value.is_some().then_some(*quantity));
-    let ways = words(rows, DIRECTION);
-    let regimes = words(rows, "regime");
+    let ways = rows.words(DIRECTION);
+    let regimes = rows.words("regime");
     let mut drawn = Drawn::new(names, if ways.is_empty() { &["regime"] } else { &["regime", DIRECTION] });
     let columns: Vec<&[f64]> = fields.iter().filter_map(|name| rows.numbers(name)).collect();
     for row in 0..rows.rows() {
@@ -107,13 +107,6 @@ pub(super) fn drawn(picture: &SweepPicture, asked: &[(&str, Option<(f64, f64)>)]
         }
     }
     drawn
-}
-
-pub(super) fn words<'a>(rows: &'a Table, name: &str) -> &'a [&'static str] {
-    match rows.column(name).map(|column| &column.values) {
-        Some(Values::Words(words)) => words,
-        _ => &[],
-    }
 }
 
 pub(super) fn label(rows: &Table, name: &str) -> String {

@@ -8,18 +8,18 @@ use super::map::{Cell, Mosaic, colour_bar, meanings};
 use super::mark::{REGIMES, Sample, legend, regime};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{LEFT, MARKER_ROOM, SweepPicture, TOP, below_legend, drawn, label, mark_regimes, words};
+use super::swept::{LEFT, MARKER_ROOM, SweepPicture, TOP, below_legend, drawn, label, mark_regimes};
 use crate::study::{DIRECTION, Direction, Table};
 
 /// Whether the rows are those of a walk both ways.
 pub(super) fn walked_both(rows: &Table) -> bool {
-    let ways = words(rows, DIRECTION);
+    let ways = rows.words(DIRECTION);
     [Direction::Up, Direction::Down].iter().all(|way| ways.contains(&way.name()))
 }
 
 /// The rows that were walked in a direction, in ascending order of the field `x`.
 fn walked(rows: &Table, x: &[f64], direction: Direction) -> Vec<usize> {
-    let ways = words(rows, DIRECTION);
+    let ways = rows.words(DIRECTION);
     let mut order: Vec<usize> = (0..rows.rows()).filter(|i| ways[*i] == direction.name()).collect();
     order.sort_by(|a, b| x[*a].total_cmp(&x[*b]));
     order
@@ -40,7 +40,7 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
     let SweepPicture { rows, ranges, .. } = *picture;
     let values = rows.numbers(x).unwrap_or_default();
     let quantity = Quantity::of(rows, picture.quantity);
-    let regimes = words(rows, "regime");
+    let regimes = rows.words("regime");
     let shade = theme.shaking.over(theme.paper, 0.3);
     let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
     let [ups, downs] = [Direction::Up, Direction::Down].map(|way| walked(rows, values, way));
@@ -138,7 +138,7 @@ fn panels(figure: &Figure, y: &PlotAxis, top: f64) -> [Area; 3] {
 pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &str), theme: &Theme) {
     let SweepPicture { rows, ranges, .. } = *picture;
     let quantity = Quantity::of(rows, picture.quantity);
-    let ways = words(rows, DIRECTION);
+    let ways = rows.words(DIRECTION);
     let [up, down] = [Direction::Up, Direction::Down]
         .map(|way| Mosaic::new(rows, (x, y), &quantity, |row| ways[row] == way.name()));
     let bar = quantity.axis(0.0, 6);
