@@ -60,7 +60,8 @@ fn a_run_that_ended_begins_again() {
     let mut harness = shaken_out();
     let ended_at = harness.state().session.player.time();
     harness.key_press(Key::Num3);
-    press(&mut harness, Key::Space);
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
     let session = &harness.state().session;
     assert!(session.player.is_playing() && session.player.time() < 0.5 * ended_at);
     // stops free it where it is
