@@ -107,7 +107,7 @@ fn one_threshold_for_every_present_amplitude() {
         let mut known: Option<String> = None;
         for amplitude in ["0.3", "1", "1.3", "5"] {
             let (_, text) = of(preset, &[change, &format!("excitation.amplitude_g={amplitude}")]);
-            let told = ["crosses from ", "which takes ", "takes "];
+            let told = ["crosses from ", "short of crossing at ", "takes "];
             let place =
                 told.into_iter().find_map(|words| text.split_once(words)).unwrap_or_else(|| panic!("{text}"));
             let number = place.1.split(" g").next().unwrap().to_owned();
