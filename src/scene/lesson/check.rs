@@ -24,6 +24,7 @@ const MOST_STARTS: usize = 1000;
 const MOST_SEEDS: u32 = 1000;
 /// The longest title, and the longest goal.
 const LONGEST_TITLE: usize = 60;
+/// The most minutes of a lesson.
 const MOST_MINUTES: u32 = 90;
 
 /// The fields of a whole walk.

@@ -69,6 +69,7 @@ impl<'a> Subject<'a> {
         self.scene
     }
 
+    /// The run of the scene.
     pub(super) fn run(&self) -> Result<&Summary, Unjudged> {
         once(&self.run, || {
             let run = self.together(&[self.model(self.scene)?])?;
