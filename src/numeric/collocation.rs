@@ -29,6 +29,8 @@ pub struct Collocation {
     legendre: Vec<Values<f64>>,
     /// Integrals from -1 to each point of the interpolating polynomial that is 1 at point k, 0 at the others.
     integrals: Vec<Values<f64>>,
+    /// The same from -1 to 0.
+    halves: Values<f64>,
 }
 
 impl Collocation {
@@ -43,7 +45,8 @@ impl Collocation {
         let none = [Lanes([0.0; GROUP]); MOST_GROUPS];
         let points = groups * GROUP;
         let all = || vec![none; points];
-        let mut own = Self { groups, places: none, weights: none, legendre: all(), integrals: all() };
+        let (legendre, integrals) = (all(), all());
+        let mut own = Self { groups, places: none, weights: none, legendre, integrals, halves: none };
         for (i, (place, weight)) in even_half(points / 2).into_iter().enumerate() {
             for (i, place) in [(i, -place), (points - 1 - i, place)] {
                 own.places[i / GROUP].0[i % GROUP] = place;
@@ -60,10 +63,11 @@ impl Collocation {
         for k in 0..points {
             let mut one = none;
             one[k / GROUP].0[k % GROUP] = 1.0;
+            let one = own.coefficients(&one);
             for group in 0..groups {
-                let one = own.coefficients(&one);
                 own.integrals[k][group] = own.integral(&one, own.places[group], Lanes::all).0;
             }
+            own.halves[k / GROUP].0[k % GROUP] = own.integral(&one, 0.0, |own| own).0;
         }
         own
     }
@@ -84,6 +88,11 @@ impl Collocation {
     #[inline(always)]
     pub fn total<T: Scalar>(&self, values: &Values<T>) -> T {
         self.product(&self.weights, values)
+    }
+
+    /// The integral from -1 to 0.
+    pub fn half<T: Scalar>(&self, values: &Values<T>) -> T {
+        self.product(&self.halves, values)
     }
 
     /// What is `first` at -1 and has these slopes, at each point.
@@ -178,6 +187,7 @@ mod tests {
                     assert!((sum - 0.5 - exact(place)).abs() < 1e-14, "{points} {power} {i}");
                 }
                 assert!((own.total(&values) - exact(1.0)).abs() < 1e-14);
+                assert!((own.half(&values) - exact(0.0)).abs() < 1e-14);
                 let (integral, value) = own.integral(&own.coefficients(&values), 0.3, |own| own);
                 assert!((integral - exact(0.3)).abs() < 1e-14 && (value - 0.3_f64.powi(power)).abs() < 1e-13);
             }

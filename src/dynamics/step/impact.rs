@@ -30,9 +30,11 @@
 //!
 //! both analytic from end to end. m is nearly constant, and found by iteration: each sweep integrates the
 //! slopes that the last m and t give, by collocation at Gauss-Legendre points, and takes the error to some
-//! hundredths or less. (Picard iteration at these points: Clenshaw and Norton 1963, "The solution of
-//! nonlinear ordinary differential equations in Chebyshev series".) The singularities of an elastic
-//! impact, where c^5 = 1, lie on an ellipse about -1 and 1 with half axes of sum 2, whatever the speed.
+//! hundredths or less. It takes the slopes of t on to the new m, to first order, since t depends on m as q
+//! does, and m on t only by what the drive changes. (Picard iteration at these points: Clenshaw and Norton
+//! 1963, "The solution of nonlinear ordinary differential equations in Chebyshev series".) The singularities
+//! of an elastic impact, where c^5 = 1, lie on an ellipse about -1 and 1 with half axes of sum 2, whatever
+//! the speed.
 
 use std::cell::OnceCell;
 
@@ -97,7 +99,7 @@ pub(crate) struct Impact<T> {
     /// Speed at touch.
     pub struck: T,
     /// m at touch, and what no m is above.
-    first: T,
+    pub first: T,
     pub most: T,
     /// Terms of [`STRETCH`].
     terms: usize,
@@ -106,12 +108,12 @@ pub(crate) struct Impact<T> {
     pub root: Values<T>,
     pub speed: Values<T>,
     pub time: Values<T>,
-    amplitude_slope: Values<T>,
+    pub amplitude_slope: Values<T>,
     pub time_slope: Values<T>,
     /// By how much the last sweep changed them, over m and the time that the impact takes.
     change: Values<T>,
     /// The slopes of m and t in polynomials of Legendre, once they are asked for.
-    between: OnceCell<[Values<T>; 2]>,
+    pub between: OnceCell<[Values<T>; 2]>,
 }
 
 /// The motion at a place: root of the depth, inward speed, and what t and m change by over y.
@@ -120,7 +122,9 @@ pub(crate) struct Place<N> {
     pub root: N,
     pub speed: N,
     pub time_slope: N,
-    amplitude_slope: N,
+    pub amplitude_slope: N,
+    /// By how much ln w changes with ln m, everything else as it is.
+    gain: N,
 }
 
 /// How an impact ends.
@@ -238,33 +242,30 @@ impl<T: Scalar> Impact<T> {
         None
     }
 
-    /// Sweeps until m and t at the end stand still; both. What is kept at the points then goes with the last
-    /// slopes.
+    /// Sweeps until m and t at the end stand still; both.
     #[inline(always)]
     fn iterate(&mut self, tolerance: T) -> Option<(T, T)> {
         let groups = self.rule.groups();
-        self.amplitude[..groups].fill(Lanes::all(self.first));
-        self.time[..groups].fill(Lanes::zero());
+        // About the time that it takes, and how much of it has passed at the points.
+        let (mut m, mut t) = (self.first, self.first * self.first / self.struck * T::of(3.0));
+        self.amplitude[..groups].fill(Lanes::all(m));
         self.amplitude_slope[..groups].fill(Lanes::zero());
         self.time_slope[..groups].fill(Lanes::zero());
-        // About the time that it takes.
-        let (mut m, mut t) = (self.first, self.first * self.first / self.struck * T::of(3.0));
+        for group in 0..groups {
+            let y = self.rule.places(group);
+            let passed = (Lanes::of(2.0) + y * (Lanes::of(3.0) - y * y)) * Lanes::of(0.25);
+            self.time[group] = Lanes::all(t) * passed;
+        }
         let (mut last, mut rate) = (T::of(1.0), T::zero());
         for sweep in 0..MOST_SWEEPS {
             self.sweep((m, t));
             m = self.first + self.rule.total(&self.amplitude_slope);
             t = self.rule.total(&self.time_slope);
             let change = self.rule.total(&self.change);
-            self.rule.integrals(self.first, &self.amplitude_slope, &mut self.amplitude);
-            self.rule.integrals(T::zero(), &self.time_slope, &mut self.time);
             if sweep > 0 {
                 rate = rate.larger(change / last);
                 // (the first change is from no slopes at all, and tells no rate)
                 if sweep > 1 && change * rate <= tolerance {
-                    for group in 0..groups {
-                        let own = self.motion_at(group);
-                        (self.root[group], self.speed[group]) = (own.root, own.speed);
-                    }
                     return Some((m, t));
                 }
                 if !(rate < T::of(0.5)) {
@@ -272,21 +273,38 @@ impl<T: Scalar> Impact<T> {
                 }
             }
             last = change;
+            self.rule.integrals(T::zero(), &self.time_slope, &mut self.time);
         }
         None
     }
 
-    /// The slopes that m and t give, at all points.
+    /// m at all points by the slopes that the last m and t give, and the motion with it, to first order in its
+    /// change.
     #[inline(always)]
     fn sweep(&mut self, (m, t): (T, T)) {
         let all = Lanes::<GROUP, T>::all;
         let (inverse_time, inverse_amplitude) = (all(T::of(1.0) / t), all(T::of(3.0) / m));
+        let (mut passing, mut gains): (Values<T>, Values<T>) =
+            ([Lanes::zero(); MOST_GROUPS], [Lanes::zero(); MOST_GROUPS]);
         for group in 0..self.rule.groups() {
             let own = self.motion_at(group);
-            self.change[group] = (own.time_slope - self.time_slope[group]).abs() * inverse_time
-                + (own.amplitude_slope - self.amplitude_slope[group]).abs() * inverse_amplitude;
-            self.time_slope[group] = own.time_slope;
+            self.change[group] =
+                (own.amplitude_slope - self.amplitude_slope[group]).abs() * inverse_amplitude;
             self.amplitude_slope[group] = own.amplitude_slope;
+            (self.root[group], self.speed[group]) = (own.root, own.speed);
+            (passing[group], gains[group]) = (own.time_slope, own.gain);
+        }
+        let last = self.amplitude;
+        self.rule.integrals(self.first, &self.amplitude_slope, &mut self.amplitude);
+        let (one, two, inverse) = (Lanes::of(1.0), Lanes::of(2.0), all(T::of(1.0) / self.first));
+        for group in 0..self.rule.groups() {
+            let grown = (self.amplitude[group] - last[group]) * inverse;
+            let gain = gains[group];
+            self.root[group] = self.root[group] * (one + grown);
+            self.speed[group] = self.speed[group] * (one + gain * grown);
+            let slope = passing[group] * (one + (two - gain) * grown);
+            self.change[group] += (slope - self.time_slope[group]).abs() * inverse_time;
+            self.time_slope[group] = slope;
         }
     }
 
@@ -305,22 +323,30 @@ impl<T: Scalar> Impact<T> {
         sqrt: impl Fn(N) -> N,
         [m, t, y]: [N; 3],
     ) -> Place<N> {
-        let (one, two, four) = (N::of(1.0), N::of(2.0), N::of(4.0));
+        let (one, two) = (N::of(1.0), N::of(2.0));
         let (stiffness, loss) = (all(self.stop.stiffness), all(self.stop.loss));
         let pressing = all(self.pressing);
         let c = one - y * y;
         let elastic = stiffness * (m * m * m);
-        let r = sqrt(self.r_of(elastic, c, pressing));
+        let square = c * c;
+        let shape = N::of(0.8) * elastic * ((one + c) * (one + square) + square * square);
+        let r_square = shape - two * pressing * (one + c);
+        let r = sqrt(r_square);
         let q = -(y * m * r);
         let stretch = self.stretch(loss * q);
         let (w, u) = (q * stretch, m * c);
         let changed = self.changed(all, [t, u * u, w]);
-        let z = loss * w;
-        let b = (changed - z * pressing) / (one + z);
-        let net = elastic - pressing;
-        let time_slope = four * u / (r * stretch * (one - c * c * b / net));
-        let amplitude_slope = w * b * time_slope / (two * m * net);
-        Place { root: u, speed: w, time_slope, amplitude_slope }
+        let z = one + loss * w;
+        // (1 + a w) B, and (1 + a w) D (1 - c^2 B/D)
+        let b = changed - loss * w * pressing;
+        let net = (elastic - pressing) * z;
+        let rest = net - square * b;
+        let (r_stretch, m_rest) = (r * stretch, m * rest);
+        let inverse = one / (r_stretch * r_stretch * m_rest);
+        let slope = two * u * r_stretch * inverse;
+        // d ln q/d ln m is 1 + 3/2 of the elastic share of r^2, d ln w/d ln q is (1 + a w)/stretch^2
+        let gain = z * (r_square + N::of(1.5) * shape) * m_rest * inverse;
+        Place { root: u, speed: w, time_slope: two * slope * m * net, amplitude_slope: slope * w * b, gain }
     }
 
     /// Change of the inward acceleration by everything but the stop since touch, at a time, a depth and a
@@ -336,63 +362,9 @@ impl<T: Scalar> Impact<T> {
         -(force + base + all(self.damping) * w)
     }
 
-    /// The square of r, `elastic` being k m^3.
-    #[inline(always)]
-    fn r_of<N: Number>(&self, elastic: N, c: N, pressing: N) -> N {
-        let (one, square) = (N::of(1.0), c * c);
-        let sum = (one + c) * (one + square) + square * square;
-        N::of(0.8) * elastic * sum - N::of(2.0) * pressing * (one + c)
-    }
-
     /// w/q at p = a q.
     #[inline(always)]
     fn stretch<N: Number>(&self, p: N) -> N {
         STRETCH[..self.terms].iter().rev().fold(N::zero(), |sum, c| sum * p + N::of(*c))
-    }
-
-    /// m at `y`, and the time there with its slope, by the slopes between the points.
-    #[inline(always)]
-    fn sums<N: Number>(&self, y: N, all: impl Fn(T) -> N + Copy) -> (N, (N, N)) {
-        let slopes = [&self.amplitude_slope, &self.time_slope];
-        let [m, t] = self.between.get_or_init(|| slopes.map(|own| self.rule.coefficients(own)));
-        (all(self.first) + self.rule.integral(m, y, all).0, self.rule.integral(t, y, all))
-    }
-
-    /// The time at `y` and its slope.
-    pub fn time_at(&self, y: T) -> (T, T) {
-        self.sums(y, |own| own).1
-    }
-
-    /// The motion and the time at `y`.
-    pub fn at(&self, y: T) -> (Place<T>, T) {
-        let (m, (t, _)) = self.sums(y, |own| own);
-        (self.motion(|own| own, T::sqrt, [m, t, y]), t)
-    }
-
-    /// The same as exact as at the ends: the slopes between the points are not, what they add up to is.
-    pub fn exactly_at(&self, y: T) -> (Place<T>, T) {
-        let start = T::of(-1.0);
-        let (mut m, mut t): (Values<T>, Values<T>) =
-            ([Lanes::zero(); MOST_GROUPS], [Lanes::zero(); MOST_GROUPS]);
-        for group in 0..self.rule.groups() {
-            let own = self.between((start, y), group).0;
-            (m[group], t[group]) = (own.amplitude_slope, own.time_slope);
-        }
-        let half = (y - start) * T::of(0.5);
-        let (m, t) = (self.first + self.rule.total(&m) * half, self.rule.total(&t) * half);
-        (self.motion(|own| own, T::sqrt, [m, t, y]), t)
-    }
-
-    /// The motion at the points between two places, and the time there.
-    pub fn between(&self, (from, to): (T, T), group: usize) -> (Place<Lanes<GROUP, T>>, Lanes<GROUP, T>) {
-        let half = (to - from) * T::of(0.5);
-        let y = self.rule.places(group).map(|place: T| from + half * (T::of(1.0) + place));
-        let (m, (t, _)) = self.sums(y, Lanes::all);
-        (self.motion(Lanes::all, |own| own.map(T::sqrt), [m, t, y]), t)
-    }
-
-    /// The base's acceleration.
-    pub fn base(&self, t: T) -> T {
-        self.series.a[..DRIVE_TERMS].iter().rev().fold(T::zero(), |sum, c| sum * t + *c)
     }
 }

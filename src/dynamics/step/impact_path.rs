@@ -1,6 +1,6 @@
 //! Reading of an impact that was solved in one step: position, time, integrals, dissipation, largest force.
 
-use super::impact::Impact;
+use super::impact::{DRIVE_TERMS, Impact, Place};
 use super::path::{InStop, Path};
 use crate::dynamics::result::Phase;
 use crate::dynamics::series::ROOM;
@@ -16,6 +16,57 @@ const HALVINGS: u32 = 30;
 const MOST_STEPS: usize = 60;
 
 impl<T: Scalar> Impact<T> {
+    /// m at `y`, and the time there with its slope, by the slopes between the points.
+    #[inline(always)]
+    fn sums<N: Number>(&self, y: N, all: impl Fn(T) -> N + Copy) -> (N, (N, N)) {
+        let slopes = [&self.amplitude_slope, &self.time_slope];
+        let [m, t] = self.between.get_or_init(|| slopes.map(|own| self.rule.coefficients(own)));
+        (all(self.first) + self.rule.integral(m, y, all).0, self.rule.integral(t, y, all))
+    }
+
+    /// The time at `y` and its slope.
+    fn time_at(&self, y: T) -> (T, T) {
+        self.sums(y, |own| own).1
+    }
+
+    /// Root of the depth where y is 0: m, which hardly changes.
+    fn turn(&self) -> T {
+        self.first + self.rule.half(&self.amplitude_slope)
+    }
+
+    /// The motion and the time at `y`.
+    fn at(&self, y: T) -> (Place<T>, T) {
+        let (m, (t, _)) = self.sums(y, |own| own);
+        (self.motion(|own| own, T::sqrt, [m, t, y]), t)
+    }
+
+    /// The same as exact as at the ends: the slopes between the points are not, what they add up to is.
+    fn exactly_at(&self, y: T) -> (Place<T>, T) {
+        let start = T::of(-1.0);
+        let (mut m, mut t): (Values<T>, Values<T>) =
+            ([Lanes::zero(); MOST_GROUPS], [Lanes::zero(); MOST_GROUPS]);
+        for group in 0..self.rule.groups() {
+            let own = self.between((start, y), group).0;
+            (m[group], t[group]) = (own.amplitude_slope, own.time_slope);
+        }
+        let half = (y - start) * T::of(0.5);
+        let (m, t) = (self.first + self.rule.total(&m) * half, self.rule.total(&t) * half);
+        (self.motion(|own| own, T::sqrt, [m, t, y]), t)
+    }
+
+    /// The motion at the points between two places, and the time there.
+    fn between(&self, (from, to): (T, T), group: usize) -> (Place<Lanes<GROUP, T>>, Lanes<GROUP, T>) {
+        let half = (to - from) * T::of(0.5);
+        let y = self.rule.places(group).map(|place: T| from + half * (T::of(1.0) + place));
+        let (m, (t, _)) = self.sums(y, Lanes::all);
+        (self.motion(Lanes::all, |own| own.map(T::sqrt), [m, t, y]), t)
+    }
+
+    /// The base's acceleration.
+    fn base(&self, t: T) -> T {
+        self.series.a[..DRIVE_TERMS].iter().rev().fold(T::zero(), |sum, c| sum * t + *c)
+    }
+
     /// The parameter at which the first of what `of` gives at y, with its slope, is `time`; it begins with a
     /// guess.
     fn parameter_by(&self, of: impl Fn(T) -> (T, T), time: T, guess: T) -> T {
@@ -71,16 +122,16 @@ impl<T: Scalar> Path<T> for Impact<T> {
     /// The parabola through touch, turn and separation: it turns where the motion does, and nothing else is
     /// read of it, since an impact that reaches the barrier is no such step.
     fn scaled(&self, _: T) -> [T; ROOM] {
-        let most = self.at(T::zero()).0.root;
-        let height = self.sign * (most * most) * T::of(4.0);
+        let turn = self.turn();
+        let height = self.sign * (turn * turn) * T::of(4.0);
         let mut scaled = [T::zero(); ROOM];
         (scaled[0], scaled[1], scaled[2]) = (self.surface, height, -height);
         scaled
     }
     fn position(&self, parameter: T) -> T {
         let y = parameter - T::of(1.0);
-        // At the turn, which is read of nearly every impact, m alone counts, and it hardly changes.
-        let root = if y == T::zero() { self.at(y) } else { self.exactly_at(y) }.0.root;
+        // (the turn is read of nearly every impact)
+        let root = if y == T::zero() { self.turn() } else { self.exactly_at(y).0.root };
         self.surface + self.sign * (root * root)
     }
     fn velocity(&self, parameter: T) -> T {
