@@ -2,7 +2,7 @@
 
 use super::axis::{PlotAxis, Ranges};
 use super::drawn::Drawn;
-use super::figure::{Area, Figure, Point};
+use super::figure::{Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Sample};
 use super::style::{self, Ink, Theme};
@@ -73,7 +73,7 @@ pub fn exponents_figure(
     }
     let top = below_legend(&mut figure, theme, &entries);
     let frame = Frame::whole(&figure, (LEFT, top), across, up);
-    let Area { left: _, right: _, bottom, .. } = frame.area;
+    let bottom = frame.area.bottom;
     frame.grid(&mut figure, theme);
     frame.horizontal(&mut figure, 0.0, style::THIN, theme.ink, None);
     let mut order: Vec<usize> = (0..places.len()).collect();
