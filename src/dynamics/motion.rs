@@ -106,7 +106,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
     }
 
     /// Passes a call to the recorder, and to the log where there is one.
-    #[inline]
+    #[inline(always)] // so that only what is kept of the call is made
     pub fn tell(&mut self, told: Call<T>) {
         if let Some(log) = &mut self.log {
             log.add(told);

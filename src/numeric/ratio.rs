@@ -16,6 +16,9 @@ impl Ratio {
     /// back to it (3.1 is 31/10). None where a term of the lowest form would pass 2^53: such
     /// numbers are best taken as having no common measure.
     pub fn of_decimals(a: f64, b: f64) -> Option<Self> {
+        if a == b && a > 0.0 && a.is_finite() {
+            return Some(Self { numerator: 1, denominator: 1 }); // as a rule: a sine is the clock
+        }
         let positive = |value| Decimal::shortest(value).filter(|own| own.digits > 0);
         let (a, b) = (positive(a)?, positive(b)?);
         let shift = a.exponent - b.exponent;
@@ -63,6 +66,8 @@ mod tests {
         assert_eq!(ratio(3.1, 3.0), Some((31, 30)));
         assert_eq!(ratio(0.1, 0.3), Some((1, 3)));
         assert_eq!(ratio(6.0, 3.0), Some((2, 1)));
+        assert_eq!([0.1, 3.0, 1.234_567_890_123_456_7].map(|a| ratio(a, a)), [Some((1, 1)); 3]);
+        assert_eq!([0.0, -1.0, f64::INFINITY, f64::NAN].map(|a| ratio(a, a)), [None; 4]);
         assert_eq!(ratio(1e-3, 2e5), Some((1, 200_000_000)));
         assert_eq!(ratio(1e-9, 1e9), None);
         // Sixteen digits are few enough, seventeen are not.

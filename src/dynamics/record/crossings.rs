@@ -1,10 +1,11 @@
 //! Recording of the crossings of the barrier within a step.
 
-use super::barrier::StepCrossings;
+use super::barrier::{StepCrossings, side_of};
 use super::recorder::Recorder;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::result::{EventKind, Side};
 use crate::dynamics::series::ROOM;
+use crate::dynamics::step::chord::Chord;
 use crate::dynamics::step::path::{Path, StepView};
 use crate::numeric::Scalar;
 
@@ -12,6 +13,14 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     /// Records the crossings of the barrier within a step that starts `gap` to the right of it and ends on
     /// `end_side`.
     pub fn crossings<P: Path<T>>(&mut self, step: &StepView<T, P>, gap: T, end_side: i8) {
+        // Where the velocity keeps its sign the ends decide.
+        if end_side == self.barrier_side
+            && end_side == side_of(gap, T::zero())
+            && let Some((y, _)) = step.path.in_time()
+            && Chord::new(y, (gap, step.x), (step.length, step.v), step.bound, step.limits).is_monotone()
+        {
+            return;
+        }
         let mut g = step.path.scaled(step.whole);
         g[0] = gap;
         let Some(crossings) = StepCrossings::new(&mut g[..step.path.known()], self.barrier_side, end_side)

@@ -76,7 +76,7 @@ impl<T: Scalar> Call<T> {
 
 impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     /// Records a call; `base` is the acceleration of the base in m/s^2.
-    #[inline]
+    #[inline(always)]
     pub fn tell(&mut self, told: &Call<T>, base: impl FnMut(&Instant<T>) -> f64) {
         match told {
             Call::Stand { at, until, state, phase } => self.stand(at, until, *state, *phase, base),

@@ -102,11 +102,11 @@ impl Later {
 impl<T: Scalar> Log<T> {
     pub fn new() -> Self {
         Self {
-            entries: Vec::with_capacity(96),
-            coefficients: Vec::with_capacity(1024),
+            entries: Vec::with_capacity(192),
+            coefficients: Vec::with_capacity(2048),
             integrals: Vec::with_capacity(64),
-            marks: Vec::with_capacity(64),
-            labels: Vec::new(),
+            marks: Vec::with_capacity(128),
+            labels: Vec::with_capacity(4),
         }
     }
 
@@ -249,9 +249,8 @@ impl<T: Scalar> Log<T> {
             let mirrored = match self.entries[index].clone() {
                 Entry::Step(step) => {
                     let first = self.coefficients.len();
-                    for place in step.first..step.first + step.known + step.base {
-                        self.coefficients.push(minus(self.coefficients[place]));
-                    }
+                    self.coefficients.extend_from_within(step.first..step.first + step.known + step.base);
+                    self.coefficients[first..].iter_mut().for_each(|own| *own = minus(*own));
                     Entry::Step(Kept {
                         origin: minus(step.origin),
                         at: instant(&step.at),

@@ -136,6 +136,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         (to > from).then_some((from, to))
     }
 
+    #[inline]
     pub fn in_window(&self, at: &Instant<T>) -> bool {
         self.clock.between(&self.window.0, at) >= T::zero()
             && self.clock.between(at, &self.window.1) > T::zero()
@@ -152,6 +153,7 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
     }
 
     /// Lists an event, where events are listed.
+    #[inline]
     pub fn event(&mut self, at: &Instant<T>, kind: EventKind, side: Side, v_in: f64, v_out: f64) {
         if let Some(events) = &mut self.events {
             events.push(Event { t: self.clock.seconds(at), kind, side, v_in, v_out });

@@ -193,7 +193,7 @@ impl Judge {
 
     /// Begins to keep the observations for replay.
     pub fn begin_tape(&mut self) {
-        self.tape = Some(Vec::new());
+        self.tape = Some(Vec::with_capacity(64));
     }
 
     /// Ends keeping them.

@@ -85,6 +85,7 @@ impl Strobes {
         }
         self.recent[number as usize % LONGEST] = state;
         if number >= self.from && self.opening.len() < LONGEST {
+            self.opening.reserve(LONGEST - self.opening.len());
             self.opening.push(state);
         }
         self.seen += 1;
@@ -177,6 +178,9 @@ impl Crossings {
                 // (one near the edge may have its partner before the window)
                 *waiting = None;
             }
+        }
+        if self.recent.is_empty() {
+            self.recent.reserve(2 * LONGEST);
         }
         self.recent.push_back((time, side));
         let needed = self.waiting.iter().flatten().min().copied().unwrap_or(number + 1);

@@ -69,7 +69,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 self.crossings(step, gap, end_side);
             }
         }
-        if self.next_strobe.is_some() {
+        let into = |strobe: &Instant<T>| self.clock.between(&step.at, strobe);
+        if self.next_strobe.as_ref().is_some_and(|strobe| into(strobe) < step.duration) {
             self.strobes(step);
         }
         if !self.listings.is_empty() {

@@ -90,8 +90,11 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 limits,
             };
             let deviations = || polynomial::chord_deviations(&series.y[..=settings.order], length);
-            let clear = x - limits.0 > end.bound && limits.1 - x > end.bound
-                || Chord { deviations: deviations(), ..chord }.is_clear() == (true, true);
+            let clear = x - limits.0 > end.bound && limits.1 - x > end.bound || {
+                let square = length * length;
+                let bends = ((series.y[2] + series.y[2]) * square, end.acceleration * square);
+                Chord { deviations: deviations(), bends, ..chord }.stays_clear()
+            };
             let mut event_free = clear && end.v.is_finite();
             // (without a barrier it is infinitely far away)
             let gap = chord.start - now.barrier.unwrap_or(T::of(f64::NEG_INFINITY));

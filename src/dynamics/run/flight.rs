@@ -32,15 +32,16 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let (stepper, state) = (&mut self.stepper, &self.state);
         let mode = stepper.mode(state);
         stepper.series.begin(state.x - mode.origin, state.v);
-        if let Some(flight) = flight {
-            if let Some((end, length, landing)) = stepper.rebound(state, flight, left) {
-                let on_the_stop = (mode.end(end).0, landing.v);
-                return self.arrive((length, length), landing.bound, on_the_stop, None, Some(end));
-            }
-            stepper.seed(state);
-            stepper.series.begin(state.x - mode.origin, state.v);
+        let alone = stepper.drive.circuit().is_none();
+        let enough = flight.is_some_and(|flight| alone && stepper.expand_for(state, flight));
+        if enough
+            && let Some(flight) = flight
+            && let Some((end, length, landing)) = stepper.rebound(state, flight, left)
+        {
+            let on_the_stop = (mode.end(end).0, landing.v);
+            return self.arrive((length, length), landing.bound, on_the_stop, None, Some(end));
         }
-        let step = stepper.choose_step(state, flight, left);
+        let step = stepper.choose_step(state, (flight, enough), left);
         self.take_any(step)
     }
 

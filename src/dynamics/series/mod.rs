@@ -74,6 +74,30 @@ impl<T: Number> Series<T> {
         drive: &D,
         cursor: &mut D::Cursor,
     ) {
+        self.extend_while(
+            order,
+            force,
+            damping,
+            drive,
+            cursor,
+            #[inline(always)]
+            |_, _| true,
+        );
+    }
+
+    /// Adds coefficients up to `order`, as long as `more` asks for another one after the last, which it is
+    /// told with its order.
+    #[inline(always)]
+    pub fn extend_while<D: Tail<T>>(
+        &mut self,
+        order: usize,
+        force: &PieceForce<T>,
+        damping: T,
+        drive: &D,
+        cursor: &mut D::Cursor,
+        mut more: impl FnMut(usize, T) -> bool,
+    ) {
+        let mut last = self.known - 1;
         let Self { y, a, forces, inverse, .. } = self;
         let known = self.known - 2..order.min(MAX_ORDER) - 1; // the bound spares a look at each index
         // The shape of the force is decided once.
@@ -87,6 +111,11 @@ impl<T: Number> Series<T> {
                     cursor,
                     #[inline(always)]
                     $force,
+                    #[inline(always)]
+                    |k, c| {
+                        last = k;
+                        more(k, c)
+                    },
                 )
             };
         }
@@ -106,7 +135,7 @@ impl<T: Number> Series<T> {
                 recur!(false, |k, y, more| forces.nested(y, k, more));
             }
         }
-        self.known = order + 1;
+        self.known = last + 1;
     }
 
     /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones have been asked for before.
@@ -215,7 +244,7 @@ pub(crate) fn natural_steps<const W: usize>(
 }
 
 /// The recurrence of the equation of motion over the orders `known`, the force's coefficients and what is
-/// added to them by `force`.
+/// added to them by `force`; ends early once there need not be `more`.
 #[inline(always)]
 fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
     known: std::ops::Range<usize>,
@@ -224,8 +253,9 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
     drive: &D,
     cursor: &mut D::Cursor,
     mut force: impl FnMut(usize, &[T; ROOM], Option<T>) -> T,
+    mut more: impl FnMut(usize, T) -> bool,
 ) {
-    each_order::<0>(
+    each_order_while::<0>(
         T::QUICK && SIMPLE,
         known,
         #[inline(always)]
@@ -239,7 +269,9 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
                 Some(push) => drag + push,
                 None => drag,
             };
-            y[k + 2] = -(force(k, y, base) + drag) * inverse[k + 2];
+            let next = -(force(k, y, base) + drag) * inverse[k + 2];
+            y[k + 2] = next;
+            more(k + 2, next)
         },
     );
 }
@@ -252,16 +284,33 @@ pub(crate) fn each_order<const USUAL: usize>(
     orders: std::ops::Range<usize>,
     mut next: impl FnMut(usize),
 ) {
+    each_order_while::<USUAL>(
+        unrolled,
+        orders,
+        #[inline(always)]
+        |k| {
+            next(k);
+            true
+        },
+    );
+}
+
+/// The same up to the first that ends it.
+#[inline(always)]
+fn each_order_while<const USUAL: usize>(
+    unrolled: bool,
+    orders: std::ops::Range<usize>,
+    mut next: impl FnMut(usize) -> bool,
+) {
     let mut rest = orders.start;
     if unrolled && orders.start == USUAL {
         macro_rules! each {
             ($($k:literal)*) => {
                 $(
                     if $k >= USUAL {
-                        if orders.end <= $k {
+                        if orders.end <= $k || !next($k) {
                             return;
                         }
-                        next($k);
                     }
                 )*
             };
@@ -270,6 +319,36 @@ pub(crate) fn each_order<const USUAL: usize>(
         rest = 20;
     }
     for k in rest..orders.end {
-        next(k);
+        if !next(k) {
+            return;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_series_that_stops_early_and_goes_on_has_the_same_bits() {
+        for degree in [0, 1, 2, 3, 9] {
+            let force = PieceForce::new((0..=degree).map(|k| 0.7 - 0.3 * f64::from(k)).collect());
+            let drive = crate::dynamics::drive::tone::Harmonic { curvature: -1.3 };
+            let begun = || {
+                let mut series = Series::<f64>::new(force.degree());
+                drive.seed(0.4, -0.2, &mut series.a);
+                series.begin(0.3, 0.5);
+                series
+            };
+            let mut whole = begun();
+            whole.extend(18, &force, 0.1, &drive, &mut ());
+            for stop in [3, 4, 7, 17, 18] {
+                let mut parts = begun();
+                parts.extend_while(18, &force, 0.1, &drive, &mut (), |k, _| k < stop);
+                assert_eq!(parts.known, stop + 1);
+                parts.extend(18, &force, 0.1, &drive, &mut ());
+                assert_eq!((parts.y, parts.known), (whole.y, whole.known), "{degree} {stop}");
+            }
+        }
     }
 }

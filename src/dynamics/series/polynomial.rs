@@ -2,6 +2,7 @@
 //!
 //! They take coefficients alone, so that a logged step is read as one that has just been computed.
 
+use super::each_order;
 use super::order::ROOM;
 use crate::numeric::{GaussLegendre, Number, Scalar};
 
@@ -65,14 +66,19 @@ pub(crate) fn curvature<T: Number>(y: &[T], t: T) -> T {
 #[inline(always)]
 pub(crate) fn chord_deviations<T: Number>(y: &[T], h: T) -> (T, T, T) {
     let (mut second, mut third, mut fourth, mut power) = (T::zero(), T::zero(), T::zero(), h);
-    for (k, c) in y.iter().enumerate().skip(2) {
-        power = power * h;
-        let term = c.abs() * power * T::whole(k * (k - 1));
-        second += term;
-        let term = term * T::whole(k - 2);
-        third += term;
-        fourth += term * T::whole(k.saturating_sub(3));
-    }
+    each_order::<2>(
+        T::QUICK,
+        2..y.len(),
+        #[inline(always)]
+        |k| {
+            power = power * h;
+            let term = y[k].abs() * power * T::whole(k * (k - 1));
+            second += term;
+            let term = term * T::whole(k - 2);
+            third += term;
+            fourth += term * T::whole(k.saturating_sub(3));
+        },
+    );
     (second * T::of(0.125), third * T::of(0.125), fourth * T::of(0.125))
 }
 
@@ -87,46 +93,49 @@ pub(crate) fn integrals<T: Number, const WORK: bool>(
     from: T,
     to: T,
 ) -> (T, T) {
-    let length = to - from;
-    let (mut squared, mut power) = (T::zero(), T::zero());
-    let (nodes, weights) = (rule.nodes(), rule.weights());
-    let mut done = 0;
-    // Four at a time, each by name: arrays would go through memory.
-    while nodes.len() - done >= 4 {
-        let time = |i: usize| from + length * nodes[done + i];
-        let times = (time(0), time(1), time(2), time(3));
-        let v = at_four_times(y.len(), |k| y[k] * T::whole(k), 1, times);
-        let weight = |i: usize| weights[done + i];
-        squared += v.0 * v.0 * weight(0);
-        squared += v.1 * v.1 * weight(1);
-        squared += v.2 * v.2 * weight(2);
-        squared += v.3 * v.3 * weight(3);
-        if WORK {
-            let base = at_four_times(a.len(), |k| a[k], 0, times);
-            power += base.0 * v.0 * weight(0);
-            power += base.1 * v.1 * weight(1);
-            power += base.2 * v.2 * weight(2);
-            power += base.3 * v.3 * weight(3);
-        }
-        done += 4;
+    let mut sums = (T::zero(), T::zero());
+    let points = rule.nodes().len();
+    let whole = points - points % 4;
+    for first in (0..whole).step_by(4) {
+        at_nodes::<T, WORK, 4>(y, a, rule, first, (from, to), &mut sums);
     }
-    while done < nodes.len() {
-        let time = from + length * nodes[done];
-        let mut v = T::zero();
-        for k in (1..y.len()).rev() {
-            v = v * time + y[k] * T::whole(k);
-        }
-        squared += v * v * weights[done];
-        if WORK {
-            let mut base = T::zero();
-            for c in a.iter().rev() {
-                base = base * time + *c;
-            }
-            power += base * v * weights[done];
-        }
-        done += 1;
+    match points % 4 {
+        1 => at_nodes::<T, WORK, 1>(y, a, rule, whole, (from, to), &mut sums),
+        2 => at_nodes::<T, WORK, 2>(y, a, rule, whole, (from, to), &mut sums),
+        3 => at_nodes::<T, WORK, 3>(y, a, rule, whole, (from, to), &mut sums),
+        _ => {}
     }
-    (squared * length, power * length)
+    (sums.0 * (to - from), sums.1 * (to - from))
+}
+
+/// Adds what `COUNT` nodes from the one numbered `first` on contribute to them, up to four side by side.
+#[inline(always)]
+fn at_nodes<T: Number, const WORK: bool, const COUNT: usize>(
+    y: &[T],
+    a: &[T],
+    rule: &GaussLegendre<T>,
+    first: usize,
+    (from, to): (T, T),
+    (squared, power): &mut (T, T),
+) {
+    let (length, nodes) = (to - from, &rule.nodes()[first..first + COUNT]);
+    let weights = &rule.weights()[first..first + COUNT];
+    // Each by name: arrays would go through memory. What is there twice is computed once.
+    let time = |i: usize| from + length * nodes[i.min(COUNT - 1)];
+    let times = (time(0), time(1), time(2), time(3));
+    let v = at_four_times(y.len(), |k| y[k] * T::whole(k), 1, times);
+    let base = if WORK { at_four_times(a.len(), |k| a[k], 0, times) } else { v };
+    macro_rules! add {
+        ($($own:tt)*) => {
+            $(if $own < COUNT {
+                *squared += v.$own * v.$own * weights[$own];
+                if WORK {
+                    *power += base.$own * v.$own * weights[$own];
+                }
+            })*
+        };
+    }
+    add!(0 1 2 3);
 }
 
 /// The integral of the square over (from, to) within the step.

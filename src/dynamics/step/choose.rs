@@ -7,24 +7,26 @@
 use super::settings::{RESIDUAL, ROUNDINGS};
 use super::stepper::{MOST_HALVINGS, Step, Stepper};
 use crate::dynamics::drive::Drive;
-use crate::dynamics::series::{Endpoint, SEEDED};
+use crate::dynamics::series::Endpoint;
 use crate::dynamics::state::{BY_JERK, MotionState, Touch};
 use crate::numeric::Scalar;
 
-/// The order up to which the series of a rebound is extended at once: all that the drive's first coefficients
-/// are there for.
-const FEW: usize = SEEDED + 1;
-
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// Extends the series as far as the step needs; none where the coefficients are not finite.
+    /// Extends the series as far as the step needs, where it is not `enough` for a `flight`; none where the
+    /// coefficients are not finite.
     ///
     /// Coefficients may vanish one after the other without the next one vanishing (a high power from its flat
     /// middle, tones that cancel), and then the last ones promise too long a step. So each step is checked
     /// against the equation of motion at its end, and halved until it holds.
     #[inline(always)]
-    pub fn choose_step(&mut self, state: &MotionState<T>, flight: Option<T>, left: T) -> Option<Step<T>> {
+    pub fn choose_step(
+        &mut self,
+        state: &MotionState<T>,
+        (flight, enough): (Option<T>, bool),
+        left: T,
+    ) -> Option<Step<T>> {
         let length = match flight {
-            Some(flight) if self.drive.circuit().is_none() && self.expand_for(state, flight) => flight,
+            Some(flight) if enough => flight,
             _ => {
                 self.expand(state);
                 let natural = self.natural_step();
@@ -103,31 +105,30 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
 
     /// Extends the series, just begun, until two terms in a row are negligible over `flight`, against the
     /// rebound's own speed; false where the full order is not enough for that.
+    #[inline(never)] // it is large
     pub fn expand_for(&mut self, state: &MotionState<T>, flight: T) -> bool {
         let negligible = state.v.abs() * T::of(self.settings.tolerance * 0.1);
         let mode = self.mode(state);
         let (order, damping) = (self.settings.order, self.equation.damping);
         let Self { series, drive, cursor, .. } = self;
-        let mut known = series.known;
-        let mut power = T::of(1.0);
-        let mut small = 0;
-        while known <= order {
-            if known == series.known {
-                // the first few are always needed; a drive goes on once for each of the others
-                series.extend(known.max(FEW).min(order), &mode.force, damping, *drive, cursor);
-            }
-            power = power * flight;
-            if known >= 3 {
-                let term = (series.y[known] * power).abs() * T::whole(known);
-                small = if term <= negligible { small + 1 } else { 0 };
-            }
-            known += 1;
-            if small == 2 {
-                series.known = known;
-                return true;
-            }
-        }
-        false
+        let (mut power, mut small) = (flight, 0);
+        series.extend_while(
+            order,
+            &mode.force,
+            damping,
+            *drive,
+            cursor,
+            #[inline(always)]
+            |k, c| {
+                if k > 2 {
+                    power = power * flight;
+                    let term = (c * power).abs() * T::whole(k);
+                    small = if term <= negligible { small + 1 } else { 0 };
+                }
+                small < 2
+            },
+        );
+        small == 2
     }
 
     /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and

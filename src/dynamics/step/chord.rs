@@ -6,6 +6,9 @@ use crate::numeric::Scalar;
 /// Safety factor on the bounds by which a step is clear of a surface: rounding never decides it.
 pub(crate) const CLEARANCE: f64 = 1.0625;
 
+/// A share of the way that rounding is far below.
+pub(crate) const ROUNDING: f64 = 1e-9;
+
 /// A step of free flight.
 pub(crate) struct Chord<T> {
     /// Displacement at its start and at its end.
@@ -47,6 +50,25 @@ impl<T: Scalar> Chord<T> {
         let low = self.start.smaller(self.end) - deviation > self.limits.0;
         let high = self.start.larger(self.end) + deviation < self.limits.1;
         (low, high)
+    }
+
+    /// Whether it stays above the low and below the high end of the mode, since its own ends do, or it has
+    /// just `left` that one, and one of them is its lowest or its highest place.
+    #[inline(always)]
+    pub fn stays_between(&self, left: (bool, bool)) -> (bool, bool) {
+        let (margin, (low, high)) = (self.bound * T::of(ROUNDING), self.limits);
+        let (monotone, bends) = (self.is_monotone(), self.bends_one_way());
+        let above = (self.end - low > margin) & ((self.start > low) | left.0);
+        let below = (high - self.end > margin) & ((self.start < high) | left.1);
+        let (falls, rises) = (self.bends.0 < T::zero(), self.bends.0 > T::zero());
+        (above & (monotone | (bends & falls)), below & (monotone | (bends & rises)))
+    }
+
+    /// Whether it is clear of both ends of the mode, by its chord or by its ends.
+    #[inline(always)]
+    pub fn stays_clear(&self) -> bool {
+        let (clear, between) = (self.is_clear(), self.stays_between((false, false)));
+        (clear.0 | between.0) & (clear.1 | between.1)
     }
 
     /// Whether the velocity keeps its sign, by its chord or since the acceleration does.

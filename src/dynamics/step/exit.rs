@@ -77,9 +77,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         &self,
         state: &MotionState<T>,
         h: T,
-        &Endpoint { y: end, bound, .. }: &Endpoint<T>,
+        &Endpoint { y: end, v, acceleration, bound }: &Endpoint<T>,
     ) -> Option<(T, End)> {
-        let zero = T::zero();
         let mode = self.mode(state);
         let n = self.series.known;
         let mut first: Option<(T, End)> = None;
@@ -91,9 +90,10 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             }
             let (y, to) = (&self.series.y[..n], end + mode.origin);
             let deviations = polynomial::chord_deviations(y, h);
-            let (ways, bends) = ((zero, zero), (zero, zero));
+            let square = h * h;
+            let (ways, bends) = ((state.v * h, v * h), ((y[2] + y[2]) * square, acceleration * square));
             let chord = Chord { start: state.x, end: to, bound, deviations, ways, bends, limits };
-            if chord.is_clear() == (true, true) {
+            if chord.stays_clear() {
                 return None;
             }
         }

@@ -63,22 +63,26 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
 
     /// The flight of a rebound back to its stop: its end, its length, and where it leads; none where it may
     /// be longer than `flight`, or is too far from a parabola for its end to be known without a search.
-    /// Expects the series to be begun.
+    /// Expects the series to be extended far enough.
     #[inline(always)]
     pub fn rebound(&mut self, state: &MotionState<T>, flight: T, left: T) -> Option<(End, T, Endpoint<T>)> {
         let Some(Touch { end, multiplicity: BY_SPEED }) = state.touch else { return None };
         let (level, kind) = self.mode(state).end(end);
         let border = self.drive.segment_end(state.segment);
         let before = |border| flight < self.clock.between(&state.at, &border);
-        let alone = self.drive.circuit().is_none();
         let stop = matches!(kind, EndKind::Stop | EndKind::Compliant);
-        if !stop || !alone || !(flight < left) || !border.is_none_or(before) {
+        if !stop || !(flight < left) || !border.is_none_or(before) {
             return None;
         }
-        if !self.expand_for(state, flight) {
-            return None;
-        }
-        let length = self.parabola_like(end.sign(), flight)?;
+        let (sign, y) = (end.sign(), &self.series.y[1..self.series.known]);
+        // (where their number is known, the loops over them are unrolled)
+        let length = match y {
+            [a, b, c, d] => parabola_like(&[*a, *b, *c, *d], sign, flight),
+            [a, b, c, d, e] => parabola_like(&[*a, *b, *c, *d, *e], sign, flight),
+            [a, b, c, d, e, f] => parabola_like(&[*a, *b, *c, *d, *e, *f], sign, flight),
+            [a, b, c, d, e, f, g] => parabola_like(&[*a, *b, *c, *d, *e, *f, *g], sign, flight),
+            _ => parabola_like(y, sign, flight),
+        }?;
         let landing = self.series.state(length);
         // Nowhere near the other end.
         let (other, _) = self.mode(state).end(end.other());
@@ -87,53 +91,53 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         }
         Some((end, length, landing))
     }
+}
 
-    /// Where gap / time, positive at 0 and falling all the way up to `flight`, is 0.
-    #[inline(always)]
-    fn parabola_like(&self, sign: T, flight: T) -> Option<T> {
-        let zero = T::zero();
-        let y = &self.series.y[1..self.series.known];
-        // The slope is that of the parabola, give or take what all the others can come to.
-        let mut others = zero;
-        for (k, c) in y.iter().enumerate().skip(2).rev() {
-            others = others * flight + c.abs() * T::whole(k);
-        }
-        let others = others * flight;
-        let falls = sign * y[1];
-        if !(falls > others) {
-            return None;
-        }
-        if y.iter().rev().fold(zero, |gap, c| gap * flight - sign * *c) > zero {
-            return None;
-        }
-        let gap = |t: T| {
-            let (mut value, mut slope, mut bend) = (zero, zero, zero);
-            for c in y.iter().rev() {
-                bend = bend * t + slope;
-                slope = slope * t + value;
-                value = value * t - sign * *c;
-            }
-            (value, slope, bend)
-        };
-        let mut t = -(y[0] / y[1]);
-        for _ in 0..MOST_STEPS {
-            let (value, slope, bend) = gap(t);
-            let newton = value / slope;
-            let bend_share = newton * bend / slope;
-            let change = newton + newton * bend_share;
-            t -= change;
-            if !(t > zero && t <= flight) {
-                return None;
-            }
-            let close = T::of(T::ROUGH);
-            if change.abs() <= t * close && bend_share.abs() <= close {
-                // what is left is the third power of that
-                return Some(T::at_root(t, |t| {
-                    let (value, slope, _) = gap(t);
-                    (value, slope)
-                }));
-            }
-        }
-        None
+/// Where gap / time, positive at 0 and falling all the way up to `flight`, is 0; `y` are the coefficients of
+/// the displacement but for the constant.
+#[inline(always)]
+fn parabola_like<T: Scalar>(y: &[T], sign: T, flight: T) -> Option<T> {
+    let zero = T::zero();
+    // The slope is that of the parabola, give or take what all the others can come to.
+    let mut others = zero;
+    for (k, c) in y.iter().enumerate().skip(2).rev() {
+        others = others * flight + c.abs() * T::whole(k);
     }
+    let others = others * flight;
+    let falls = sign * y[1];
+    if !(falls > others) {
+        return None;
+    }
+    if y.iter().rev().fold(zero, |gap, c| gap * flight - sign * *c) > zero {
+        return None;
+    }
+    let gap = |t: T| {
+        let (mut value, mut slope, mut bend) = (zero, zero, zero);
+        for c in y.iter().rev() {
+            bend = bend * t + slope;
+            slope = slope * t + value;
+            value = value * t - sign * *c;
+        }
+        (value, slope, bend)
+    };
+    let mut t = -(y[0] / y[1]);
+    for _ in 0..MOST_STEPS {
+        let (value, slope, bend) = gap(t);
+        let newton = value / slope;
+        let bend_share = newton * bend / slope;
+        let change = newton + newton * bend_share;
+        t -= change;
+        if !(t > zero && t <= flight) {
+            return None;
+        }
+        let close = T::of(T::ROUGH);
+        if change.abs() <= t * close && bend_share.abs() <= close {
+            // what is left is the third power of that
+            return Some(T::at_root(t, |t| {
+                let (value, slope, _) = gap(t);
+                (value, slope)
+            }));
+        }
+    }
+    None
 }

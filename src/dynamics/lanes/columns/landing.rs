@@ -4,7 +4,7 @@
 
 use super::{Clocks, Columns};
 use crate::dynamics::series::polynomial;
-use crate::dynamics::step::chord::{CLEARANCE, Chord};
+use crate::dynamics::step::chord::{CLEARANCE, Chord, ROUNDING};
 use crate::numeric::{Lanes, Scalar, single_root};
 
 /// Where steps lead.
@@ -17,9 +17,6 @@ pub(super) struct Arrivals<const W: usize> {
     /// The drive and its time derivative per unit amplitude.
     pub unit: (Lanes<W>, Lanes<W>),
 }
-
-/// A share of the way that rounding is far below.
-pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Three columns.
 type Three<const W: usize> = (Lanes<W>, Lanes<W>, Lanes<W>);

@@ -5,7 +5,7 @@
 //! must stay equal to the bit.
 
 use super::Columns;
-use super::landing::{Arrivals, ROUNDING};
+use super::landing::Arrivals;
 use crate::dynamics::drive::tone::Harmonic;
 use crate::dynamics::lanes::trial::Trial;
 use crate::dynamics::record::event_free::MARGIN;
@@ -83,13 +83,8 @@ impl<const W: usize> Columns<W> {
             let leaves = 2.0 * self.v.0[lane].abs() * to.length.0[lane] > bound * CLEARANCE;
             let clear_low = clear_low | (leaves & (touch < 0.0));
             let clear_high = clear_high | (leaves & (touch > 0.0));
-            // between the ends, where the lowest or the highest place is one of them
-            let margin = bound * ROUNDING;
-            let above = (chord.end - limits.0 > margin) & ((chord.start > limits.0) | (touch < 0.0));
-            let below = (limits.1 - chord.end > margin) & ((chord.start < limits.1) | (touch > 0.0));
-            let bends = chord.bends_one_way();
-            let clear_low = clear_low | (above & (monotone | (bends & (chord.bends.0 < 0.0))));
-            let clear_high = clear_high | (below & (monotone | (bends & (chord.bends.0 > 0.0))));
+            let between = chord.stays_between((touch < 0.0, touch > 0.0));
+            let (clear_low, clear_high) = (clear_low | between.0, clear_high | between.1);
             clear.0[lane] = clear_low | landed[lane];
             clear.1[lane] = clear_high | landed[lane];
             let (own_low, own_high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
