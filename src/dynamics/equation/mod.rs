@@ -56,19 +56,10 @@ impl<T: Scalar> Equation<T> {
                 _ => (T::of(x), EndKind::Break),
             };
             let last = index + 1 == curve.pieces().len();
-            let (low, low_kind) =
-                end(left, index == 0, rigid(left_stop), left_stop.is_some_and(|s| s.x >= left));
-            let (high, high_kind) =
-                end(right, last, rigid(right_stop), right_stop.is_some_and(|s| s.x <= right));
-            modes.push(Mode {
-                piece: index,
-                force: PieceForce::new(coefficients),
-                origin: T::of(piece.origin),
-                low,
-                high,
-                low_kind,
-                high_kind,
-            });
+            let low = end(left, index == 0, rigid(left_stop), left_stop.is_some_and(|s| s.x >= left));
+            let high = end(right, last, rigid(right_stop), right_stop.is_some_and(|s| s.x <= right));
+            let (place, force) = ((index, T::of(piece.origin)), PieceForce::new(coefficients));
+            modes.push(Mode::new(place, force, low, high));
         }
         let stop = |at: Option<StopAt>, sign: T| {
             at.map(|s| {
@@ -89,6 +80,7 @@ impl<T: Scalar> Equation<T> {
                 modes = cut(modes, T::of(at.x));
             }
         }
+        modes.iter_mut().for_each(Mode::expand_about_stops);
         let damping = T::of(model.total_damping() * unit) / T::of(model.mass);
         Self { damping, modes, left, right, compliant, unit }
     }

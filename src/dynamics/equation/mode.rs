@@ -61,9 +61,43 @@ pub(crate) struct Mode<T> {
     pub high: T,
     pub low_kind: EndKind,
     pub high_kind: EndKind,
+    /// Coefficients of force over mass about its low and its high end, where that is a stop's and the force of
+    /// degree 4 or more.
+    about: [Vec<T>; 2],
 }
 
 impl<T: Scalar> Mode<T> {
+    /// Of a piece of the force curve, between two ends.
+    pub fn new(
+        (piece, origin): (usize, T),
+        force: PieceForce<T>,
+        (low, low_kind): (T, EndKind),
+        (high, high_kind): (T, EndKind),
+    ) -> Self {
+        Self { piece, force, origin, low, high, low_kind, high_kind, about: [Vec::new(), Vec::new()] }
+    }
+
+    /// Expands the force about the stops at its ends.
+    pub(super) fn expand_about_stops(&mut self) {
+        for (end, place) in [(End::Low, 0), (End::High, 1)] {
+            let (level, kind) = self.end(end);
+            if self.force.degree() > 3 && matches!(kind, EndKind::Stop | EndKind::Compliant) {
+                self.force.about(level - self.origin, &mut self.about[place]);
+            }
+        }
+    }
+
+    /// Coefficients of force over mass about `x`, where that is the stop at an end and they are known;
+    /// otherwise none.
+    #[inline]
+    pub fn about(&self, end: End, x: T) -> &[T] {
+        match end {
+            End::Low if x == self.low => &self.about[0],
+            End::High if x == self.high => &self.about[1],
+            _ => &[],
+        }
+    }
+
     #[inline]
     pub fn end(&self, end: End) -> (T, EndKind) {
         match end {

@@ -57,7 +57,7 @@ impl<T: Number> ForceSeries<T> {
             [c0, c1, c2] => self.cubic([*c0, *c1, *c2, T::zero()], y[0]).coefficient(y, k, None),
             [c0, c1, c2, c3] => self.cubic([*c0, *c1, *c2, *c3], y[0]).coefficient(y, k, None),
             _ => {
-                self.prepare(force, y, k..k + 1);
+                self.prepare((force, &[]), y, k..k + 1);
                 self.nested(y, k, None)
             }
         }
@@ -70,9 +70,15 @@ impl<T: Number> ForceSeries<T> {
         Cubic { about, row: &mut self.row }
     }
 
-    /// Makes ready for coefficients of these orders of a force of degree 4 or more; the lower ones are known.
+    /// Makes ready for coefficients of these orders of a force of degree 4 or more, where its own about y\[0]
+    /// are known with those; the lower ones are known.
     #[inline(always)]
-    pub fn prepare(&mut self, force: &PieceForce<T>, y: &[T; ROOM], orders: std::ops::Range<usize>) {
+    pub fn prepare(
+        &mut self,
+        (force, about): (&PieceForce<T>, &[T]),
+        y: &[T; ROOM],
+        orders: std::ops::Range<usize>,
+    ) {
         let Some(last) = orders.end.checked_sub(1) else { return };
         if orders.start == 0 {
             if self.degree != force.degree() {
@@ -80,8 +86,12 @@ impl<T: Number> ForceSeries<T> {
                 self.rows.fill(T::zero());
             }
             let row = &mut self.rows[..=self.degree];
-            row.copy_from_slice(force.coefficients());
-            shift(row, y[0]);
+            if about.is_empty() {
+                row.copy_from_slice(force.coefficients());
+                shift(row, y[0]);
+            } else {
+                row.copy_from_slice(about);
+            }
         } else if last > self.last {
             for n in 1..orders.start {
                 self.sum(y, n, self.last - n + 1..self.degree.min(last - n + 1));
@@ -304,7 +314,7 @@ mod tests {
             let mut found = Vec::new();
             for end in ends {
                 let part = found.len()..*end;
-                series.prepare(&force, &y, part.clone());
+                series.prepare((&force, &[]), &y, part.clone());
                 found.extend(part.map(|k| series.nested(&y, k, None)));
             }
             assert_eq!(found, one_by_one, "{ends:?}");

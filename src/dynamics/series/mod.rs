@@ -76,7 +76,7 @@ impl<T: Number> Series<T> {
     ) {
         self.extend_while(
             order,
-            force,
+            (force, &[]),
             damping,
             drive,
             cursor,
@@ -86,12 +86,12 @@ impl<T: Number> Series<T> {
     }
 
     /// Adds coefficients up to `order`, as long as `more` asks for another one after the last, which it is
-    /// told with its order.
+    /// told with its order. Those of the force about where the series begins need not be known.
     #[inline(always)]
     pub fn extend_while<D: Tail<T>>(
         &mut self,
         order: usize,
-        force: &PieceForce<T>,
+        (force, about): (&PieceForce<T>, &[T]),
         damping: T,
         drive: &D,
         cursor: &mut D::Cursor,
@@ -131,7 +131,7 @@ impl<T: Number> Series<T> {
                 recur!(true, |k, y, more| cubic.coefficient(y, k, more));
             }
             _ => {
-                forces.prepare(force, y, known.clone());
+                forces.prepare((force, about), y, known.clone());
                 recur!(false, |k, y, more| forces.nested(y, k, more));
             }
         }
@@ -344,7 +344,7 @@ mod tests {
             whole.extend(18, &force, 0.1, &drive, &mut ());
             for stop in [3, 4, 7, 17, 18] {
                 let mut parts = begun();
-                parts.extend_while(18, &force, 0.1, &drive, &mut (), |k, _| k < stop);
+                parts.extend_while(18, (&force, &[]), 0.1, &drive, &mut (), |k, _| k < stop);
                 assert_eq!(parts.known, stop + 1);
                 parts.extend(18, &force, 0.1, &drive, &mut ());
                 assert_eq!((parts.y, parts.known), (whole.y, whole.known), "{degree} {stop}");

@@ -11,6 +11,9 @@ use crate::dynamics::series::Endpoint;
 use crate::dynamics::state::{BY_JERK, MotionState, Touch};
 use crate::numeric::Scalar;
 
+/// The order that the series of most rebounds is enough with.
+const FEW: usize = 8;
+
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// Extends the series as far as the step needs, where it is not `enough` for a `flight`; none where the
     /// coefficients are not finite.
@@ -111,24 +114,31 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let mode = self.mode(state);
         let (order, damping) = (self.settings.order, self.equation.damping);
         let Self { series, drive, cursor, .. } = self;
+        let about = state.touch.map_or(&[][..], |touch| mode.about(touch.end, state.x));
         let (mut power, mut small) = (flight, 0);
-        series.extend_while(
-            order,
-            &mode.force,
-            damping,
-            *drive,
-            cursor,
-            #[inline(always)]
-            |k, c| {
-                if k > 2 {
-                    power = power * flight;
-                    let term = (c * power).abs() * T::whole(k);
-                    small = if term <= negligible { small + 1 } else { 0 };
-                }
-                small < 2
-            },
-        );
-        small == 2
+        // (the longer the series may get, the more of a force of high degree is made ready for it)
+        for order in [order.min(FEW), order] {
+            series.extend_while(
+                order,
+                (&mode.force, about),
+                damping,
+                *drive,
+                cursor,
+                #[inline(always)]
+                |k, c| {
+                    if k > 2 {
+                        power = power * flight;
+                        let term = (c * power).abs() * T::whole(k);
+                        small = if term <= negligible { small + 1 } else { 0 };
+                    }
+                    small < 2
+                },
+            );
+            if small == 2 {
+                return true;
+            }
+        }
+        false
     }
 
     /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and
