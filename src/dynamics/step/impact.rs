@@ -284,8 +284,8 @@ impl<T: Scalar> Impact<T> {
     fn sweep(&mut self, (m, t): (T, T)) {
         let all = Lanes::<GROUP, T>::all;
         let (inverse_time, inverse_amplitude) = (all(T::of(1.0) / t), all(T::of(3.0) / m));
-        let (mut passing, mut gains): (Values<T>, Values<T>) =
-            ([Lanes::zero(); MOST_GROUPS], [Lanes::zero(); MOST_GROUPS]);
+        let none: Values<T> = [Lanes::zero(); MOST_GROUPS];
+        let (mut passing, mut gains) = (none, none);
         for group in 0..self.rule.groups() {
             let own = self.motion_at(group);
             self.change[group] =
