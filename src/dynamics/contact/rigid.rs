@@ -1,5 +1,6 @@
 //! Impacts on a rigid stop, and the sum of what remains of a chatter.
 
+use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
 use crate::dynamics::motion::Motion;
@@ -63,12 +64,17 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return false;
         }
         self.tell(Call::Chatter { at: self.state.at, v: speed });
+        self.rest_after(until, end);
+        true
+    }
+
+    /// The mass, whose last flights end at `until`, rests from there on.
+    pub fn rest_after(&mut self, until: Instant<T>, end: End) {
         self.stand(until, Phase::Free);
         self.state.v = T::zero();
         self.steps += 1;
         self.stepper.work.add(self.stepper.costs.check);
         self.state.touch = None;
         self.begin_rest(end);
-        true
     }
 }

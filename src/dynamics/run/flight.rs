@@ -25,7 +25,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         self.stepper.seed(&self.state);
         self.stepper.evaluations += 1;
         let flight = match self.stepper.pressed_rebound(&self.state) {
-            Some((end, rates)) if self.sum_chatter(end, rates) => return None,
+            Some((end, rates)) if self.sum_chatter(end, rates) || self.will_rest(end, rates[0]) => {
+                return None;
+            }
             Some((end, rates)) => self.stepper.short_flight(&self.state, end, rates),
             None => None,
         };
