@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use interwell::dynamics::{Arrival, Model, Pursuit, Request};
+use interwell::dynamics::{Arrival, EventKind, Model, Pursuit, Request};
 use interwell::scene::{Document, Files};
 use interwell::study::*;
 use interwell::system::threads::Pool;
@@ -256,6 +256,38 @@ fn a_pursuit_has_the_same_bits_in_any_number_of_lanes() {
         }
         let released = alone.iter().any(|own| own.starts_with("Released"));
         assert_eq!(released, model.stop_positions().1.is_some());
+    }
+}
+
+/// Rebounds that are passed over do not change where a mass is released, nor when.
+#[test]
+fn a_pursuit_comes_to_the_first_release_of_the_run() {
+    for changes in [
+        ["excitation.amplitude_g=1.14", "stops.restitution=0.36"],
+        ["excitation.amplitude_g=2", "stops.restitution=0.9"],
+    ] {
+        let model = preset("paper", &changes).with_recurrence(false);
+        let period = model.forcing_period().unwrap();
+        for own in 0..60 {
+            let start = (1.5e-3 * (f64::from(own) / 30.0 - 1.0), f64::from(own % 11 - 5) / 10.0);
+            let pursuit = Pursuit {
+                start,
+                known: &[],
+                regions: &[],
+                repeats_from: u64::MAX,
+                most_periods: 60,
+                releases: own as u32 % 2,
+            };
+            let run = model.with_start(start).with_duration(10.0 * period, 0.0);
+            let events = run.run(&Request { events: true, ..Request::default() }).events;
+            let release =
+                events.iter().filter(|event| event.kind == EventKind::Release).nth(own as usize % 2);
+            let release = release.unwrap();
+            let arrival = &model.pursue_in_lanes(&[pursuit], 1).unwrap()[0];
+            let Arrival::Released { identity, periods } = arrival else { panic!("{arrival:?}") };
+            assert_eq!(identity.side, release.side, "{own}");
+            assert_eq!(*periods, (release.t / period).ceil() as u64, "{own}");
+        }
     }
 }
 
