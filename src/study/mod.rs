@@ -9,6 +9,7 @@ mod alternatives;
 mod amplitudes;
 mod basins;
 mod best;
+mod bisection;
 mod cell;
 mod cells;
 mod contact;
