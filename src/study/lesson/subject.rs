@@ -191,13 +191,13 @@ impl<'a> Subject<'a> {
 
     fn together(&self, models: &[Model]) -> Result<Vec<Summary>, Unjudged> {
         let (task, request) = (self.task, self.request());
+        let model = |own: usize| Ok((models[own].clone(), request));
         let summary = |run: &Run| {
             (task.tick)();
-            run.summary
+            Box::new(run.summary)
         };
-        let runs =
-            shared_runs(self.pool, task, models.len(), |own| Ok((models[own].clone(), request)), summary);
-        runs.ok_or(Unjudged::Cancelled)
+        let runs = shared_runs(self.pool, task, models.len(), model, summary).ok_or(Unjudged::Cancelled)?;
+        Ok(runs.into_iter().map(|own| *own).collect())
     }
 
     /// The model of a scene that differs from the subject's in a few fields.
