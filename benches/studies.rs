@@ -12,7 +12,7 @@ use interwell::dynamics::STANDARD_GRAVITY;
 use interwell::study::{
     Answer, Basins, Branch, BranchEvent, Carry, EvenRange, ExponentOptions, Family, Grid, Onset, Orbit, Scan,
     SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, Sweep, SweepOptions, Table, Task,
-    branch, check_step, exponents, result_fields, spectrum, threshold, threshold_table,
+    branch, check_lesson, exponents, result_fields, spectrum, threshold, threshold_table,
 };
 use interwell::system::threads::Pool;
 
@@ -244,12 +244,10 @@ fn lessons(pool: &Pool) {
     let all = interwell::scene::lesson::LESSONS;
     let load = |name: &str| interwell::scene::lesson::LessonDocument::load(name, &result_fields()).unwrap();
     let documents: Vec<_> = all.iter().map(|own| load(own.name)).collect();
-    let of = |own: usize| (0..documents[own].lesson.steps.len()).map(move |step| (own, step));
-    let steps: Vec<(usize, usize)> = (0..documents.len()).flat_map(of).collect();
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };
-    let check = |(): &mut (), part: usize| check_step(&documents[steps[part].0], steps[part].1, &task);
-    pool.map(steps.len(), || (), check).unwrap();
+    let check = |(): &mut (), number: usize| check_lesson(&documents[number], Some(pool), &task);
+    pool.map(documents.len(), || (), check).unwrap();
 }
 
 /// Wall time, since that is what jobs are for, and beside it without the waits for a processor that others

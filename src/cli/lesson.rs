@@ -6,7 +6,7 @@ use clap::Args;
 use interwell::output::Sink;
 use interwell::scene::Fault;
 use interwell::scene::lesson::{LESSONS, LessonDocument, LessonError, Step, TEMPLATE};
-use interwell::study::{LessonFinding, LessonReport, Task, Unjudged, check_step, result_fields};
+use interwell::study::{LessonFinding, LessonReport, Task, Unjudged, check_lesson, result_fields};
 use interwell::system::files;
 
 use super::failure::Failure;
@@ -110,15 +110,12 @@ fn checked(options: &Arguments, common: &Common) -> Result<(String, Option<Failu
     };
     let documents = specs.iter().map(|spec| load(spec)).collect::<Result<Vec<_>, _>>()?;
     let task = Task { tick: &|| (), cancel: interrupt::listen() };
-    let of = |document: usize| (0..documents[document].lesson.steps.len()).map(move |step| (document, step));
-    let steps: Vec<(usize, usize)> = (0..documents.len()).flat_map(of).collect();
-    let check = |_: &mut (), part: usize| check_step(&documents[steps[part].0], steps[part].1, &task);
-    let checked = pool(common)?.map(steps.len(), || (), check).map_err(|error| match error {
+    let pool = pool(common)?;
+    let check = |_: &mut (), number: usize| check_lesson(&documents[number], Some(&pool), &task);
+    let reports = pool.map(documents.len(), || (), check).map_err(|error| match error {
         Unjudged::Cancelled => Failure::interrupted(),
         Unjudged::Scene { .. } => Failure::Failed(anyhow::anyhow!("a scene of the lesson: {error}")),
     })?;
-    let mut reports = vec![LessonReport::default(); documents.len()];
-    steps.iter().zip(checked).for_each(|((document, _), own)| reports[*document].add(own));
     let mut text = String::new();
     let mut wrong: Vec<String> = Vec::new();
     for (document, report) in documents.iter().zip(&reports) {

@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use super::Task;
 use super::amplitudes::thresholds_on;
+use super::bisection::multiple;
 use super::family::Family;
 use super::fields::{Read, SummaryField};
 use super::push::frees_at;
 use super::settled::settled;
 use super::shared_runs::shared_runs;
 use super::table::{Table, Values};
-use super::thresholds::{Onset, longest, multiple};
+use super::thresholds::{Onset, longest};
 use crate::dynamics::{Model, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::numeric::round::decade;

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::Task;
+use super::bisection::multiple;
 use super::push::{AMPLITUDE, frees_at, holding_push};
-use super::thresholds::{Onset, Scan, longest, multiple, threshold_on};
+use super::thresholds::{Onset, Scan, longest, threshold_on};
 use crate::dynamics::{Model, Regime, Request};
 use crate::mechanics::Mechanism;
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};

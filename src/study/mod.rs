@@ -9,6 +9,7 @@ mod alternatives;
 mod amplitudes;
 mod basins;
 mod best;
+mod bisection;
 mod cell;
 mod cells;
 mod contact;
@@ -84,8 +85,8 @@ pub use identify::{
 };
 pub use inspect::inspect;
 pub use lesson::{
-    Lack, LessonFinding, LessonReport, Subject, Unjudged, Value, check_lesson, check_step, goal_lack,
-    options_that_hold, result_fields,
+    Lack, LessonFinding, LessonReport, Subject, Unjudged, Value, check_lesson, goal_lack, options_that_hold,
+    result_fields,
 };
 pub use levels::{Levels, STRIDES};
 pub use map::{first_crossing, release_line};

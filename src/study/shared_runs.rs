@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use super::Task;
 use crate::dynamics::{Model, Request, Run};
-use crate::system::threads::{Pool, share};
+use crate::system::threads::{Pool, Queue, share_from};
 
 /// The answers of `count` runs, in order, by the threads of a pool or by this one. `model` gives the model of
 /// a number with what is asked of it, or the answer where there is nothing to run, and `answer` is read off
@@ -15,6 +15,18 @@ pub(super) fn shared_runs<'q, R: Send>(
     count: usize,
     model: impl Fn(usize) -> Result<(Model, Request<'q>), R> + Sync,
     answer: impl Fn(&Run) -> R + Sync,
+) -> Option<Vec<R>> {
+    let queue = Queue::new(count, pool.map_or(1, Pool::count));
+    runs_from(pool, task, &|held| queue.take(held), model, |_, run| answer(run))
+}
+
+/// The same of the numbers that `take` gives, as of a [`Queue`]. Each answer is told its number.
+pub(super) fn runs_from<'q, R: Send>(
+    pool: Option<&Pool>,
+    task: &'q Task,
+    take: &(dyn Fn(usize) -> Option<usize> + Sync),
+    model: impl Fn(usize) -> Result<(Model, Request<'q>), R> + Sync,
+    answer: impl Fn(usize, &Run) -> R + Sync,
 ) -> Option<Vec<R>> {
     let work = |take: &dyn Fn(usize) -> Option<usize>| {
         let answers = RefCell::new(Vec::new());
@@ -28,10 +40,10 @@ pub(super) fn shared_runs<'q, R: Send>(
             }
         };
         let mut ended = |number: usize, _: &Model, run: Run| {
-            answers.borrow_mut().push((number, answer(&run)));
+            answers.borrow_mut().push((number, answer(number, &run)));
         };
         Model::run_from(&mut next, &mut ended);
         if task.is_cancelled() { Err(()) } else { Ok(answers.into_inner()) }
     };
-    share(pool, count, work).ok()
+    share_from(pool, take, work).ok()
 }

@@ -5,20 +5,20 @@
 //! answer is, and the changes above it are counted. Each run goes on until its motion repeats, so that a
 //! crossing on the way to a motion that does not cross is no answer.
 
-use std::collections::VecDeque;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::Task;
+use super::bisection::{between, next_between};
 use super::cell::CellFaults;
 use super::family::Family;
 use super::grid::Grid;
 use super::push::{AMPLITUDE, frees_at};
-use super::shared_runs::shared_runs;
+use super::shared_runs::{runs_from, shared_runs};
 use super::table::Table;
 use crate::dynamics::{Model, Regime, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene, Start};
-use crate::system::threads::Pool;
+use crate::system::threads::{Pool, Queue};
 
 /// What begins at a threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,10 +127,14 @@ pub(super) fn threshold_on(
     }
     let mut found = Found { value: None, windows: 0, without_gap: None };
     let (mut before, mut last) = (None, false);
-    for (value, does) in scan.values.iter().zip(search.ask(&scan.values, task.tick)?) {
+    let mut asked = search.scan(scan)?;
+    for (value, does) in scan.values.iter().zip(asked.of_scan.iter().map(|own| *own == Some(true))) {
         match (does, found.value) {
             (true, None) => {
-                let located = search.locate(before, *value, scan.resolution)?;
+                let located = match before {
+                    Some(before) => search.locate(&mut asked.between, (before, *value), scan.resolution)?,
+                    None => *value,
+                };
                 (found.value, found.without_gap) = (Some(located), Some(located));
             }
             (true, Some(_)) if !last => {
@@ -213,13 +217,33 @@ fn from_rest(scene: &Scene) -> Scene {
     Scene { start: Start::Rest, ..scene.clone() }
 }
 
+/// Runs that a thread has under way from which on a further one shares their lanes, and values of a bisection
+/// that are then asked at a time.
+const COMPANY: usize = 5;
+const IN_COMPANY: usize = 3;
+
+/// What is known of the values of a scan and of those of the bisection at its first change, which come in the
+/// order in which they were asked: no answer where a run is under way.
+struct Asked {
+    of_scan: Vec<Option<bool>>,
+    between: Vec<(f64, Option<bool>)>,
+}
+
+impl Asked {
+    /// The values of the scan between which the answer changes first, once nothing below is open.
+    fn first_change(&self, values: &[f64]) -> Option<(f64, f64)> {
+        let first = self.of_scan.iter().position(|own| *own != Some(false)).filter(|first| *first > 0)?;
+        (self.of_scan[first] == Some(true)).then(|| (values[first - 1], values[first]))
+    }
+}
+
 struct Search<'a> {
     trial: &'a Scene,
     family: Family<'a>,
     onset: Onset,
     task: &'a Task<'a>,
     pool: Option<&'a Pool>,
-    /// Values of a bisection that are asked at a time.
+    /// Values of a bisection that are asked at a time, by themselves.
     ahead: usize,
 }
 
@@ -235,19 +259,57 @@ impl<'a> Search<'a> {
         Self { trial, family, onset, task, pool: None, ahead: 1 }
     }
 
-    /// Which of the values do it; calls `tick` for each.
-    fn ask(&self, values: &[f64], tick: &(dyn Fn() + Sync)) -> Option<Vec<bool>> {
-        let told = |does: bool| {
-            tick();
-            does
+    /// Runs the scan, and what can be asked meanwhile of the bisection that follows it: in the lanes it takes
+    /// little more time.
+    fn scan(&self, scan: &Scan) -> Option<Asked> {
+        let Scan { values, resolution, .. } = scan;
+        let queue = Queue::new(values.len(), self.pool.map_or(1, Pool::count));
+        let asked = Mutex::new(Asked { of_scan: vec![None; values.len()], between: Vec::new() });
+        let lock = || asked.lock().unwrap_or_else(PoisonError::into_inner);
+        let take = |held: usize| {
+            let ahead = match held {
+                0 => self.ahead,
+                COMPANY.. => self.ahead.max(IN_COMPANY),
+                _ => 1,
+            };
+            let mut own = lock();
+            let span = own.first_change(values);
+            let Some(next) = span.and_then(|span| next_between(&own.between, span, *resolution, ahead))
+            else {
+                return queue.take(held);
+            };
+            own.between.push((next, None));
+            Some(values.len() + own.between.len() - 1)
+        };
+        let told = |number: usize, does: bool| match number.checked_sub(values.len()) {
+            Some(place) => lock().between[place].1 = Some(does),
+            None => {
+                lock().of_scan[number] = Some(does);
+                (self.task.tick)();
+            }
         };
         let model = |number: usize| {
-            let model = self.family.model(values[number]).map_err(|_| told(false))?;
-            let until_settled = Some(longest(&model));
-            Ok((model, Request { until_settled, ..Request::default() }))
+            let value = values.get(number).copied();
+            let value = value.unwrap_or_else(|| lock().between[number - values.len()].0);
+            self.model(value).ok_or_else(|| told(number, false))
         };
-        let does = |run: &Run| told(self.onset.is_in(&run.summary));
+        let does = |number: usize, run: &Run| told(number, self.onset.is_in(&run.summary));
+        runs_from(self.pool, self.task, &take, model, does)?;
+        Some(asked.into_inner().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Which of the values do it.
+    fn ask(&self, values: &[f64]) -> Option<Vec<bool>> {
+        let model = |number: usize| self.model(values[number]).ok_or(false);
+        let does = |run: &Run| self.onset.is_in(&run.summary);
         shared_runs(self.pool, self.task, values.len(), model, does)
+    }
+
+    /// The model of a value, where there is one, and what is asked of it.
+    fn model(&self, value: f64) -> Option<(Model, Request<'a>)> {
+        let model = self.family.model(value).ok()?;
+        let until_settled = Some(longest(&model));
+        Some((model, Request { until_settled, ..Request::default() }))
     }
 
     /// The faults of the model at the first of the values, where none of them makes one that can do it.
@@ -274,50 +336,27 @@ impl<'a> Search<'a> {
     }
 
     /// The least multiple of the resolution, as far as bisection tells, that does it, between a value that
-    /// does not and one that does.
-    fn locate(&self, before: Option<f64>, value: f64, resolution: f64) -> Option<f64> {
-        let (Some(mut low), mut high) = (before, value) else { return Some(value) };
-        let mut known: Vec<(f64, bool)> = Vec::new();
+    /// does not and one that does; of some it may be known.
+    fn locate(&self, asked: &mut Vec<(f64, Option<bool>)>, span: (f64, f64), resolution: f64) -> Option<f64> {
+        loop {
+            let known = asked.len();
+            while let Some(next) = next_between(asked, span, resolution, self.ahead) {
+                asked.push((next, None));
+            }
+            let next: Vec<f64> = asked[known..].iter().map(|own| own.0).collect();
+            if next.is_empty() {
+                break;
+            }
+            let does = self.ask(&next)?;
+            asked[known..].iter_mut().zip(does).for_each(|(own, does)| own.1 = Some(does));
+        }
+        let (mut low, mut high) = span;
         while let Some(middle) = between(low, high, resolution) {
-            let Some((_, does)) = known.iter().find(|own| own.0 == middle) else {
-                let next = self.next_ones((low, high), resolution);
-                let does = self.ask(&next, &|| ())?;
-                known.extend(next.into_iter().zip(does));
-                continue;
-            };
-            match does {
+            match asked.contains(&(middle, Some(true))) {
                 true => high = middle,
                 false => low = middle,
             }
         }
         Some(high)
     }
-
-    /// The value that is asked next, and those that may be asked after it: as many as there are threads for.
-    fn next_ones(&self, span: (f64, f64), resolution: f64) -> Vec<f64> {
-        let (mut spans, mut values) = (VecDeque::from([span]), Vec::new());
-        while values.len() < self.ahead
-            && let Some((low, high)) = spans.pop_front()
-        {
-            if let Some(middle) = between(low, high, resolution) {
-                values.push(middle);
-                spans.extend([(low, middle), (middle, high)]);
-            }
-        }
-        values
-    }
-}
-
-/// The multiple of `resolution` in the middle between two values; none where none lies between them.
-fn between(low: f64, high: f64, resolution: f64) -> Option<f64> {
-    let middle = multiple(0.5 * (low + high), resolution);
-    let near = [middle, multiple(middle - resolution, resolution), multiple(middle + resolution, resolution)];
-    near.into_iter().find(|own| *own > low && *own < high)
-}
-
-/// The multiple of `unit` nearest to a value; of a decimal unit the decimal itself.
-pub(super) fn multiple(value: f64, unit: f64) -> f64 {
-    let count = (value / unit).round();
-    let whole = (1.0 / unit).round();
-    if (whole * unit - 1.0).abs() < 1e-9 { count / whole } else { count * unit }
 }

@@ -160,7 +160,16 @@ pub fn share<R: Send, E: Send>(
     work: impl Fn(&dyn Fn(usize) -> Option<usize>) -> Result<Vec<(usize, R)>, E> + Sync,
 ) -> Result<Vec<R>, E> {
     let queue = Queue::new(count, pool.map_or(1, Pool::count));
-    let part = || work(&|held| queue.take(held));
+    share_from(pool, &|held| queue.take(held), work)
+}
+
+/// The same of all numbers that `take` gives, as of a [`Queue`], in their order.
+pub fn share_from<R: Send, E: Send>(
+    pool: Option<&Pool>,
+    take: &(dyn Fn(usize) -> Option<usize> + Sync),
+    work: impl Fn(&dyn Fn(usize) -> Option<usize>) -> Result<Vec<(usize, R)>, E> + Sync,
+) -> Result<Vec<R>, E> {
+    let part = || work(&take);
     let mut all: Vec<(usize, R)> = match pool {
         Some(pool) => pool.map(pool.count(), || (), |(), _| part())?.into_iter().flatten().collect(),
         None => part()?,
@@ -174,6 +183,12 @@ const SOON: Duration = Duration::from_millis(1);
 
 /// The most that leave at once.
 const MOST: usize = 256;
+
+/// What a thread adds to the number of runs that it holds when it asks for more than its lanes need. It gets
+/// some of the last ones, so many for each thread: begun early they take turns with those before them, and
+/// all end about together, while begun in turn they would leave more and more lanes empty.
+pub const ENOUGH: usize = 1 << 30;
+const LAST: usize = 16;
 
 /// Numbers from 0 on that threads take from each other, each of them once.
 #[derive(Debug)]
@@ -213,6 +228,10 @@ impl Queue {
     }
 
     fn take_from(&self, state: &mut Taken, held: usize) -> Option<usize> {
+        let (enough, held) = (held >= ENOUGH, held % ENOUGH);
+        if enough && self.count - state.next > LAST * self.threads {
+            return None;
+        }
         let has_its_share = held > 0 && held >= self.count.div_ceil(self.threads);
         if state.stopped || state.next == self.count || has_its_share || self.is_full(state) {
             return None;

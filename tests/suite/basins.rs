@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use interwell::dynamics::{Arrival, Model, Pursuit, Request};
+use interwell::dynamics::{Arrival, EventKind, Model, Pursuit, Request};
 use interwell::scene::{Document, Files};
 use interwell::study::*;
 use interwell::system::threads::Pool;
@@ -256,6 +256,34 @@ fn a_pursuit_has_the_same_bits_in_any_number_of_lanes() {
         }
         let released = alone.iter().any(|own| own.starts_with("Released"));
         assert_eq!(released, model.stop_positions().1.is_some());
+    }
+}
+
+/// Rebounds that are passed over do not change where a mass is released, nor when.
+#[test]
+fn a_pursuit_comes_to_the_first_release_of_the_run() {
+    for (amplitude, restitution) in [(1.14, 0.36), (1.5, 0.7)] {
+        let amplitude = format!("excitation.amplitude_g={amplitude}");
+        let restitution = format!("stops.restitution={restitution}");
+        let model = preset("paper", &[&amplitude, &restitution]).with_recurrence(false);
+        let period = model.forcing_period().unwrap();
+        let mut released = 0;
+        for own in 0..60_u32 {
+            let start = (1.5e-3 * (f64::from(own) / 30.0 - 1.0), f64::from(own % 11) / 10.0 - 0.5);
+            let (known, regions, repeats_from, releases) = (&[], &[], u64::MAX, own % 2);
+            let pursuit = Pursuit { start, known, regions, repeats_from, most_periods: 60, releases };
+            let run = model.with_start(start).with_duration(10.0 * period, 0.0);
+            let events = run.run(&Request { events: true, ..Request::default() }).events;
+            let release =
+                events.iter().filter(|event| event.kind == EventKind::Release).nth(releases as usize);
+            let arrival = &model.pursue_in_lanes(&[pursuit], 1).unwrap()[0];
+            if let (Some(release), Arrival::Released { identity, periods }) = (release, arrival) {
+                assert_eq!(identity.side, release.side, "{own}");
+                assert_eq!(*periods, (release.t / period).ceil() as u64, "{own}");
+                released += 1;
+            }
+        }
+        assert!(released > 50, "{released}");
     }
 }
 

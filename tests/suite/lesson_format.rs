@@ -32,8 +32,7 @@ fn met(text: &str) -> bool {
     let own = read(text).unwrap_or_else(|error| panic!("{error}"));
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
     let scene = own.begin(0);
-    let subject =
-        Subject::new(&scene.scene, &scene.files, (own.lesson.seeds, own.lesson.walk.as_ref()), &task);
+    let subject = Subject::new(&scene.scene, &scene.files, &own.lesson, &task);
     goal_lack(&own.lesson.steps[0], &subject, &subject).unwrap().is_none()
 }
 
@@ -43,7 +42,7 @@ fn holds(condition: &str, more: &str) -> bool {
 
 fn checked(text: &str) -> LessonReport {
     let own = read(text).unwrap_or_else(|error| panic!("{error}"));
-    check_lesson(&own, &Task { tick: &|| (), cancel: &AtomicBool::new(false) }).unwrap()
+    check_lesson(&own, None, &Task { tick: &|| (), cancel: &AtomicBool::new(false) }).unwrap()
 }
 
 #[test]
@@ -302,7 +301,7 @@ fn the_check_finds_what_a_lesson_must_not_have() {
 fn a_check_can_be_cancelled() {
     let own = read(&text("Do(ask: \"Do.\", goal: Present(\"result.impacts\"), solution: []),", "")).unwrap();
     let cancel = AtomicBool::new(true);
-    let error = check_lesson(&own, &Task { tick: &|| (), cancel: &cancel }).unwrap_err();
+    let error = check_lesson(&own, None, &Task { tick: &|| (), cancel: &cancel }).unwrap_err();
     assert_eq!(error.to_string(), "cancelled");
 }
 

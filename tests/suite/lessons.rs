@@ -18,7 +18,7 @@ fn built_in(number: usize) -> &'static str {
 
 fn checked(text: &str) -> LessonReport {
     let own = read(text).unwrap_or_else(|error| panic!("{error}"));
-    check_lesson(&own, &Task { tick: &|| (), cancel: &AtomicBool::new(false) }).unwrap()
+    check_lesson(&own, None, &Task { tick: &|| (), cancel: &AtomicBool::new(false) }).unwrap()
 }
 
 /// Asserts that a lesson has predictions and tasks, and neither a fault nor a warning.

@@ -1,5 +1,6 @@
 //! Impacts on a rigid stop, and the sum of what remains of a chatter.
 
+use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
 use crate::dynamics::motion::Motion;
@@ -63,12 +64,61 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             return false;
         }
         self.tell(Call::Chatter { at: self.state.at, v: speed });
+        self.rest_after(until, end);
+        true
+    }
+
+    /// After a rebound that is pressed back with this acceleration: where it and those after it are sure to
+    /// end in rest before the next stroboscopic state, those of a pursuit are passed over, since what comes
+    /// later does not depend on them.
+    ///
+    /// As long as the acceleration towards the stop stays between a and b, a flight from the speed v takes 2
+    /// v / a at most, goes v^2 / (2 a) far and is followed by one from q v at most, q = e (b / a)^(1/2): all
+    /// of them take no longer than 2 v / (a (1 - q)). Bounds of a and b over twice the time that they would
+    /// take if nothing changed are known from the drive at its ends and its second derivative, and from what
+    /// force and damping change where a is half as much as now at least, and b four times a at most.
+    pub fn will_rest(&mut self, end: End, acceleration: T) -> bool {
+        let Self { stepper, record, state, .. } = &self;
+        let (Some(_), Some(stop), Some(bend), Some(strobe)) =
+            (&record.goal, stepper.equation.stop(end), stepper.drive.bend(), &record.next_strobe)
+        else {
+            return false;
+        };
+        let (one, two, speed) = (T::of(1.0), T::of(2.0), state.v.abs());
+        let whole = T::of(4.0) * speed / (acceleration * (one - stop.restitution));
+        let before = |border: &Instant<T>| whole < stepper.clock.between(&state.at, border);
+        if !before(strobe) || !before(&stepper.segment_limit(state)) || record.in_window(&state.at) {
+            return false;
+        }
+        let until = stepper.clock.advance(&state.at, whole);
+        let mode = stepper.mode(state);
+        let (level, other) = (mode.end(end).0, mode.end(end.other()).0);
+        let height = speed * speed / acceleration;
+        let push = mode.force.steepest((level - mode.origin).abs() + height) * height;
+        let drag = stepper.equation.damping * two * speed;
+        let base = stepper.drive.acceleration(&stepper.clock, &until, state.segment);
+        let last = stop.acceleration - end.sign::<T>() * base;
+        let aside = bend * whole * whole * T::of(0.125) + push;
+        let low = acceleration.smaller(last) - (aside + drag);
+        let high = acceleration.larger(last) + aside;
+        let slower = one - stop.restitution * (high / low).sqrt();
+        let rests = height < (level - other).abs()
+            && low > T::of(0.5) * acceleration
+            && high < T::of(4.0) * low
+            && two * speed < low * slower * whole;
+        if rests {
+            self.rest_after(until, end);
+        }
+        rests
+    }
+
+    /// The mass, whose last flights end at `until`, rests from there on.
+    pub fn rest_after(&mut self, until: Instant<T>, end: End) {
         self.stand(until, Phase::Free);
         self.state.v = T::zero();
         self.steps += 1;
         self.stepper.work.add(self.stepper.costs.check);
         self.state.touch = None;
         self.begin_rest(end);
-        true
     }
 }

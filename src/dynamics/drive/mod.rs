@@ -53,6 +53,11 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
         1
     }
 
+    /// Bound of the second derivative at any time, where there is a simple one.
+    fn bend(&self) -> Option<T> {
+        None
+    }
+
     /// Fills the first `SEEDED` coefficients of `a`, at `at`.
     fn seed(
         &self,

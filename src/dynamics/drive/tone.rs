@@ -156,6 +156,10 @@ impl<T: Scalar> Tail<T> for Sine<T> {
 impl<T: Scalar> Drive<T> for Sine<T> {
     const ODD: bool = true;
 
+    fn bend(&self) -> Option<T> {
+        Some((self.tone.amplitude * self.tone.curvature()).abs())
+    }
+
     #[inline(always)]
     fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Cursor) {
         let (s, d) = match last {

@@ -61,6 +61,12 @@ impl<T: Scalar> PieceForce<T> {
         }
         (f, slope, size * T::of(2.0 * T::EPSILON))
     }
+
+    /// Bound of the slope up to `reach` on either side of the origin.
+    pub fn steepest(&self, reach: T) -> T {
+        let terms = self.coefficients.iter().enumerate().skip(1).rev();
+        terms.fold(T::zero(), |sum, (k, c)| sum * reach + c.abs() * T::whole(k))
+    }
 }
 
 /// Makes coefficients of powers of a displacement those of powers of its difference from `y`.

@@ -61,8 +61,8 @@ pub(crate) struct Mode<T> {
     pub high: T,
     pub low_kind: EndKind,
     pub high_kind: EndKind,
-    /// Coefficients of force over mass about its low and its high end, where that is a stop's and the force of
-    /// degree 4 or more.
+    /// Coefficients of force over mass about its low and its high end, where that is a stop's and the force
+    /// of degree 4 or more.
     about: [Vec<T>; 2],
 }
 

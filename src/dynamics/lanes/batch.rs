@@ -1,5 +1,7 @@
 //! Batch: motions in groups by the degree of their force, and the steps that a group takes together.
 
+use std::collections::VecDeque;
+
 use super::columns::{Columns, LaneMotion};
 use super::trial::Trial;
 use crate::dynamics::drive::form::clock;
@@ -13,6 +15,7 @@ use crate::dynamics::series::{SEEDED, Series};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::stepper::Step;
 use crate::numeric::{GaussLegendre, Lanes};
+use crate::system::threads::ENOUGH;
 
 /// Steps of a group between two checks of the budget and the cancel flag.
 const BATCH_STEPS: u64 = 256;
@@ -39,6 +42,7 @@ pub(super) struct Prepared<'a> {
 /// Where runs come from, and where they go.
 pub(super) trait Source<'a> {
     /// One more run; none where there is none at present, and with none under way where there is none left.
+    /// Where those under way fill the lanes, [`ENOUGH`] more are told.
     fn next(&mut self, under_way: usize) -> Option<Prepared<'a>>;
 
     /// Takes a motion that has ended, what it began as, and its outcome.
@@ -65,8 +69,8 @@ struct Group<const W: usize> {
     trial: Box<Trial<W>>,
     /// The motion in each lane.
     lanes: [Option<usize>; W],
-    /// Motions that wait for a lane.
-    waiting: Vec<usize>,
+    /// Motions that wait for a lane, in turn.
+    waiting: VecDeque<usize>,
     rounds: u64,
 }
 
@@ -111,12 +115,13 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         loop {
             let fullest = (0..self.groups.len()).max_by_key(|own| self.groups[*own].ready());
             let ready = fullest.map_or(0, |own| self.groups[own].ready());
-            if ready >= W || !self.start_next() {
+            if ready >= W || !self.start_next(0) {
                 if ready >= FEWEST.min(W / 2) {
+                    while ready >= W && self.under_way() < 2 * W && self.start_next(ENOUGH) {}
                     return fullest;
                 }
                 self.finish_alone();
-                if !self.start_next() {
+                if !self.start_next(0) {
                     return None;
                 }
             }
@@ -143,11 +148,15 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Starts the next run; false where there is none, or no room.
-    fn start_next(&mut self) -> bool {
+    fn under_way(&self) -> usize {
+        self.members.len() - self.free.len()
+    }
+
+    /// Starts the next run; false where there is none, or no room. `enough` is [`ENOUGH`] where the lanes are
+    /// full, else 0.
+    fn start_next(&mut self, enough: usize) -> bool {
         let Some(place) = self.free.last().copied() else { return false };
-        let under_way = self.members.len() - self.free.len();
-        let Some(own) = self.source.next(under_way) else { return false };
+        let Some(own) = self.source.next(self.under_way() + enough) else { return false };
         self.free.pop();
         let clock = clock(own.model, own.equation.unit);
         let (model, request) = (own.model, own.request);
@@ -174,7 +183,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     /// Lets a member wait for a lane of the group of its force, once its steps are event-free.
     fn wait(&mut self, place: usize) {
         if let Some(group) = self.prepare(place) {
-            self.groups[group].waiting.push(place);
+            self.groups[group].waiting.push_back(place);
         }
     }
 
@@ -210,7 +219,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
                         series: Box::new(Series::new(force.degree())),
                         trial: Box::new(Trial::new()),
                         lanes: [None; W],
-                        waiting: Vec::new(),
+                        waiting: VecDeque::new(),
                         rounds: 0,
                     });
                     self.groups.len() - 1
@@ -263,7 +272,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     fn fill(&mut self, group: usize) {
         for lane in 0..W {
             if self.groups[group].lanes[lane].is_none() {
-                let Some(place) = self.groups[group].waiting.pop() else { return };
+                let Some(place) = self.groups[group].waiting.pop_front() else { return };
                 self.load(group, lane, place);
             }
         }
@@ -301,7 +310,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
         match self.prepare(place) {
             Some(other) if other == group => self.load(group, lane, place),
-            Some(other) => self.groups[other].waiting.push(place),
+            Some(other) => self.groups[other].waiting.push_back(place),
             None => {}
         }
     }

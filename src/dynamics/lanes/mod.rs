@@ -28,12 +28,12 @@ use crate::dynamics::result::{Arrival, Outcome, Pursuit, Request, Run};
 use crate::dynamics::run::ending::Begun;
 use crate::dynamics::run::pursue::pursue_alone;
 use crate::system::clock::ThreadClock;
+use crate::system::threads::ENOUGH;
 use batch::{Batch, Prepared, Source};
 use columns::LaneMotion;
 
 /// Lanes where registers hold eight numbers: two registers a column, so that one addition need not wait for
 /// the last.
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 const WIDEST: usize = 16;
 
 /// Runs of which what they are made of is kept together, and given back when all of them have ended.
@@ -53,8 +53,9 @@ impl Model {
     }
 
     /// The same with models that are asked for while others are under way, so that several threads may take
-    /// them from each other. `next` is told how many are under way here and gives a number, a model, and what
-    /// is asked of it: none where there is none at present, and with none under way where there is none left.
+    /// them from each other. `next` is told how many are under way here, and [`ENOUGH`] more where these fill
+    /// the lanes, and gives a number, a model, and what is asked of it: none where there is none at present,
+    /// and with none under way where there is none left.
     /// `ended` gets each run with its number and model as soon as it has ended. No CPU time is told.
     pub fn run_from<'q>(
         next: &mut dyn FnMut(usize) -> Option<(usize, Self, Request<'q>)>,
@@ -107,7 +108,8 @@ fn run_all(models: &[Model], request: &Request, most: usize) -> Vec<Run> {
     let watch = ThreadClock::start();
     let mut runs: Vec<Option<Run>> = models.iter().map(|_| None).collect();
     let mut all = models.iter().cloned().enumerate().map(|(place, model)| (place, model, *request));
-    run_from(most, &mut |_| all.next(), &mut |place, _, run| runs[place] = Some(run));
+    let mut next = |held: usize| if held < ENOUGH || all.len() <= WIDEST { all.next() } else { None };
+    run_from(most, &mut next, &mut |place, _, run| runs[place] = Some(run));
     let share = watch.seconds() / models.len() as f64;
     runs.iter_mut().flatten().for_each(|run| run.summary.cpu_s = share);
     runs.into_iter().flatten().collect()

@@ -24,11 +24,15 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         }
         self.stepper.seed(&self.state);
         self.stepper.evaluations += 1;
-        let flight = match self.stepper.pressed_rebound(&self.state) {
+        let pressed = self.stepper.pressed_rebound(&self.state);
+        let flight = match pressed {
             Some((end, rates)) if self.sum_chatter(end, rates) => return None,
             Some((end, rates)) => self.stepper.short_flight(&self.state, end, rates),
             None => None,
         };
+        if flight.is_some_and(|_| pressed.is_some_and(|(end, rates)| self.will_rest(end, rates[0]))) {
+            return None;
+        }
         let (stepper, state) = (&mut self.stepper, &self.state);
         let mode = stepper.mode(state);
         stepper.series.begin(state.x - mode.origin, state.v);

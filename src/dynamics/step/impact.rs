@@ -278,8 +278,8 @@ impl<T: Scalar> Impact<T> {
         None
     }
 
-    /// m at all points by the slopes that the last m and t give, and the motion with it, to first order in its
-    /// change.
+    /// m at all points by the slopes that the last m and t give, and the motion with it, to first order in
+    /// its change.
     #[inline(always)]
     fn sweep(&mut self, (m, t): (T, T)) {
         let all = Lanes::<GROUP, T>::all;

@@ -68,6 +68,17 @@ pub struct Lesson {
     pub lecturer: String,
 }
 
+impl Lesson {
+    /// The conditions of its steps.
+    pub fn conditions(&self) -> impl Iterator<Item = &Condition> {
+        self.steps.iter().flat_map(|step| match step {
+            Step::Say(_) | Step::Explain(_) => Vec::new(),
+            Step::Predict { options, .. } => options.iter().map(|option| &option.holds).collect(),
+            Step::Do { goal, .. } => vec![goal],
+        })
+    }
+}
+
 /// A view that a lesson shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub enum LessonView {

@@ -3,7 +3,7 @@
 use super::design::NoBest;
 use super::evaluate::{Evaluator, Judged};
 use super::search::{Found, resolution, rounded};
-use crate::study::thresholds::multiple;
+use crate::study::bisection::multiple;
 
 /// The value falls by this share of itself.
 const FALL: f64 = 0.1;

@@ -3,7 +3,7 @@
 use super::design::{DesignRange, NoBest, Optimum};
 use super::evaluate::{Evaluator, Judged};
 use crate::numeric::round::{ONE_TWO_FIVE, round_down};
-use crate::study::thresholds::multiple;
+use crate::study::bisection::multiple;
 
 /// Places of the scan between two of the coarse one that goes before it.
 const COARSE: usize = 4;

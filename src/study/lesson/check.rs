@@ -1,10 +1,13 @@
 //! A lesson run from its first step to its last.
 
+use std::rc::Rc;
+
 use super::judge::{Unjudged, goal_lack, holds, options_that_hold};
 use super::subject::Subject;
 use crate::numeric::short;
 use crate::scene::lesson::{Condition, LessonDocument, Step};
 use crate::study::Task;
+use crate::system::threads::Pool;
 
 /// A bound is moved by this share of it, to see whether a verdict sits on an edge.
 const MOVED: f64 = 0.01;
@@ -34,77 +37,77 @@ pub struct LessonReport {
     pub warnings: Vec<LessonFinding>,
 }
 
-impl LessonReport {
-    /// Adds what further steps come to.
-    pub fn add(&mut self, other: Self) {
-        self.predictions += other.predictions;
-        self.tasks += other.tasks;
-        self.wrong.extend(other.wrong);
-        self.warnings.extend(other.warnings);
-    }
-}
-
 /// Runs a lesson: the start of every task must fail, its solution must pass, of the options of every
 /// prediction exactly one must hold; then once more with each bound moved by 1 % up and down. Bounds on
 /// fields of the scene that no control of the lesson changes are not moved: they are settings, and exact.
-pub fn check_lesson(document: &LessonDocument, task: &Task) -> Result<LessonReport, Unjudged> {
+pub fn check_lesson(
+    document: &LessonDocument,
+    pool: Option<&Pool>,
+    task: &Task,
+) -> Result<LessonReport, Unjudged> {
     let mut report = LessonReport::default();
+    let mut last: Option<Rc<Subject>> = None;
     for number in 0..document.lesson.steps.len() {
-        report.add(check_step(document, number, task)?);
+        // a step begins with the scene with which the one before ended, unless it changes that
+        let [begin, end] = [document.begin(number), document.end(number)].map(|own| {
+            let same = last.take().filter(|last| *last.scene() == own.scene);
+            let new = || Rc::new(Subject::new(&own.scene, &own.files, &document.lesson, task).on(pool));
+            Rc::clone(last.insert(same.unwrap_or_else(new)))
+        });
+        check_step(&mut report, document, number, (&begin, &end))?;
     }
     Ok(report)
 }
 
-/// The same for one step, by its number from 0.
-pub fn check_step(document: &LessonDocument, number: usize, task: &Task) -> Result<LessonReport, Unjudged> {
+/// The same for one step, by its number from 0, between two scenes.
+fn check_step(
+    report: &mut LessonReport,
+    document: &LessonDocument,
+    number: usize,
+    (begin, end): (&Subject, &Subject),
+) -> Result<(), Unjudged> {
     let lesson = &document.lesson;
-    let mut report = LessonReport::default();
-    if let Some(step) = lesson.steps.get(number) {
-        let of = (lesson.seeds, lesson.walk.as_ref());
-        let (begin, end) = (document.begin(number), document.end(number));
-        let begin = Subject::new(&begin.scene, &begin.files, of, task);
-        let end = Subject::new(&end.scene, &end.files, of, task);
-        let finding = |part: &str, problem: String| {
-            let field = format!("steps.{number}.{part}");
-            LessonFinding { step: number, field, problem }
-        };
-        let mut near = |part: &str, condition: &Condition, subject: &Subject| {
-            let turned = turned_by(condition, &lesson.controls, subject, &begin)?;
-            report.warnings.extend(turned.into_iter().map(|problem| finding(part, problem)));
-            Ok(())
-        };
-        match step {
-            Step::Say(_) | Step::Explain(_) => {}
-            Step::Predict { options, .. } => {
-                report.predictions += 1;
-                let held = options_that_hold(step, &end, &begin)?;
-                let right: Vec<&str> =
-                    options.iter().zip(&held).filter(|own| *own.1).map(|own| own.0.text.as_str()).collect();
-                if right.len() != 1 {
-                    let problem = match right.len() {
-                        0 => "none of the options holds; exactly one must".to_owned(),
-                        _ => format!("these options hold, and only one may: {}", right.join("; ")),
-                    };
-                    report.wrong.push(finding("options", problem));
-                }
-                for (index, option) in options.iter().enumerate() {
-                    near(&format!("options.{index}.holds"), &option.holds, &end)?;
-                }
+    let finding = |part: &str, problem: String| {
+        let field = format!("steps.{number}.{part}");
+        LessonFinding { step: number, field, problem }
+    };
+    let mut near = |part: &str, condition: &Condition, subject: &Subject| {
+        let turned = turned_by(condition, &lesson.controls, subject, begin)?;
+        report.warnings.extend(turned.into_iter().map(|problem| finding(part, problem)));
+        Ok(())
+    };
+    let step = &lesson.steps[number];
+    match step {
+        Step::Say(_) | Step::Explain(_) => {}
+        Step::Predict { options, .. } => {
+            report.predictions += 1;
+            let held = options_that_hold(step, end, begin)?;
+            let right: Vec<&str> =
+                options.iter().zip(&held).filter(|own| *own.1).map(|own| own.0.text.as_str()).collect();
+            if right.len() != 1 {
+                let problem = match right.len() {
+                    0 => "none of the options holds; exactly one must".to_owned(),
+                    _ => format!("these options hold, and only one may: {}", right.join("; ")),
+                };
+                report.wrong.push(finding("options", problem));
             }
-            Step::Do { goal, .. } => {
-                report.tasks += 1;
-                if goal_lack(step, &begin, &begin)?.is_none() {
-                    report.wrong.push(finding("goal", "is met before anything is done".to_owned()));
-                }
-                if goal_lack(step, &end, &begin)?.is_some() {
-                    report.wrong.push(finding("solution", "does not meet the goal".to_owned()));
-                }
-                near("goal", goal, &begin)?;
-                near("goal", goal, &end)?;
+            for (index, option) in options.iter().enumerate() {
+                near(&format!("options.{index}.holds"), &option.holds, end)?;
             }
         }
+        Step::Do { goal, .. } => {
+            report.tasks += 1;
+            if goal_lack(step, begin, begin)?.is_none() {
+                report.wrong.push(finding("goal", "is met before anything is done".to_owned()));
+            }
+            if goal_lack(step, end, begin)?.is_some() {
+                report.wrong.push(finding("solution", "does not meet the goal".to_owned()));
+            }
+            near("goal", goal, begin)?;
+            near("goal", goal, end)?;
+        }
     }
-    Ok(report)
+    Ok(())
 }
 
 /// The bounds of a condition that turn its verdict where they are moved, a sentence each.

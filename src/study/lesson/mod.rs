@@ -6,7 +6,7 @@ mod fields;
 mod judge;
 mod subject;
 
-pub use check::{LessonFinding, LessonReport, check_lesson, check_step};
+pub use check::{LessonFinding, LessonReport, check_lesson};
 pub use fields::Value;
 pub use fields::result_fields;
 pub use judge::{Lack, Unjudged, goal_lack, options_that_hold};

@@ -4,22 +4,23 @@ use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
 
 use super::judge::Unjudged;
-use crate::dynamics::{Model, Outcome, Request, Summary};
+use crate::dynamics::{Model, Request, Run, Summary};
 use crate::mechanics::Mechanism;
-use crate::scene::{Axis, Excitation, FieldPath, Files, Scene, Start, SweepAxis};
+use crate::scene::lesson::{Condition, Lesson};
+use crate::scene::{Axis, Excitation, FieldPath, Files, Scene, Start};
+use crate::study::fields::SummaryField;
+use crate::study::shared_runs::shared_runs;
 use crate::study::up_and_down::walk_over;
 use crate::study::{Family, Task};
-
-/// Runs that go side by side.
-const TOGETHER: usize = 32;
+use crate::system::threads::Pool;
 
 /// What is judged: a scene, and what it is compared with.
 pub struct Subject<'a> {
     scene: &'a Scene,
     files: &'a Files,
     task: &'a Task<'a>,
-    seeds: u32,
-    walk: Option<&'a SweepAxis>,
+    pool: Option<&'a Pool>,
+    lesson: &'a Lesson,
     mechanism: OnceCell<Arc<Mechanism>>,
     run: OnceCell<Summary>,
     from: RefCell<Vec<(Start, Summary)>>,
@@ -36,19 +37,14 @@ pub(super) struct Turns {
 }
 
 impl<'a> Subject<'a> {
-    /// Of a scene whose files are at hand, for a lesson with these `seeds` and this `walk`.
-    pub fn new(
-        scene: &'a Scene,
-        files: &'a Files,
-        (seeds, walk): (Option<u32>, Option<&'a SweepAxis>),
-        task: &'a Task<'a>,
-    ) -> Self {
+    /// Of a scene whose files are at hand, in a step of a lesson.
+    pub fn new(scene: &'a Scene, files: &'a Files, lesson: &'a Lesson, task: &'a Task<'a>) -> Self {
         Self {
             scene,
             files,
             task,
-            seeds: seeds.unwrap_or(0),
-            walk,
+            pool: None,
+            lesson,
             mechanism: OnceCell::new(),
             run: OnceCell::new(),
             from: RefCell::default(),
@@ -62,6 +58,12 @@ impl<'a> Subject<'a> {
     #[must_use]
     pub fn with_mechanism(self, mechanism: Arc<Mechanism>) -> Self {
         Self { mechanism: OnceCell::from(mechanism), ..self }
+    }
+
+    /// The same with the threads of a pool to run it.
+    #[must_use]
+    pub fn on(self, pool: Option<&'a Pool>) -> Self {
+        Self { pool, ..self }
     }
 
     /// The scene.
@@ -100,7 +102,9 @@ impl<'a> Subject<'a> {
                 }
                 self.model(&scene)
             };
-            let models = (1..=u64::from(self.seeds)).map(of_seed).collect::<Result<Vec<_>, _>>()?;
+            let models = (1..=u64::from(self.lesson.seeds.unwrap_or(0)))
+                .map(of_seed)
+                .collect::<Result<Vec<_>, _>>()?;
             self.together(&models)
         });
         runs.map(Vec::as_slice)
@@ -114,88 +118,86 @@ impl<'a> Subject<'a> {
             let own = path
                 .get(self.scene)
                 .ok_or_else(|| Unjudged::of(&axis.field, "the scene has no such field"))?;
-            let before: Vec<f64> = axis.values.iter().copied().filter(|value| *value < own).collect();
-            let after: Vec<f64> = axis.values.iter().rev().copied().filter(|value| *value > own).collect();
-            let last = |values: Vec<f64>| {
-                let all: Vec<f64> = values.into_iter().chain([own]).collect();
-                let mut last = None;
-                self.walk(&axis.field, &all, |_, summary| {
-                    last = Some(*summary);
-                    true
-                })?;
-                last.ok_or(Unjudged::Cancelled)
-            };
-            Ok([last(before)?, last(after)?])
+            let mut before: Vec<f64> = axis.values.iter().copied().filter(|value| *value < own).collect();
+            let mut after: Vec<f64> =
+                axis.values.iter().rev().copied().filter(|value| *value > own).collect();
+            before.push(own);
+            after.push(own);
+            let [up, down] = self.walks(&axis.field, [before, after], |_, last, _, summary| {
+                *last = Some(*summary);
+                true
+            })?;
+            up.zip(down).map(|(up, down)| [up, down]).ok_or(Unjudged::Cancelled)
         })
     }
 
     /// Where the motion begins to cross and ends to, over the whole walk.
     pub(super) fn turns(&self) -> Result<Turns, Unjudged> {
         let turns = once(&self.turns, || {
-            let axis = self.axis()?;
-            let (mut up, mut down) = (None, None);
-            self.walk(&axis.field, &axis.values, |value, summary| {
-                up = (summary.crossings > 0).then_some(value);
-                up.is_none()
-            })?;
-            let downwards: Vec<f64> = axis.values.iter().rev().copied().collect();
-            let mut ended = false;
-            self.walk(&axis.field, &downwards, |value, summary| {
-                ended = summary.crossings == 0;
-                down = if ended { down } else { Some(value) };
-                !ended
-            })?;
-            Ok(Turns { up_crosses_from: up, down_crosses_to: down.filter(|_| ended) })
+            let Axis { field, values, .. } = self.axis()?;
+            let downwards: Vec<f64> = values.iter().rev().copied().collect();
+            // the last value at which it crosses, and whether it crosses at the last of all
+            let walks =
+                self.walks(&field, [values, downwards], |way, own: &mut (_, bool), value, summary| {
+                    own.1 = summary.crossings > 0;
+                    own.0 = if own.1 { Some(value) } else { own.0 };
+                    own.1 == (way == 1)
+                });
+            let [up, down] = walks?;
+            Ok(Turns { up_crosses_from: up.0, down_crosses_to: down.0.filter(|_| !down.1) })
         });
         turns.copied()
     }
 
     fn axis(&self) -> Result<Axis, Unjudged> {
-        let axis = self.walk.ok_or_else(|| Unjudged::of("walk", "the lesson has none"))?;
+        let axis = self.lesson.walk.as_ref().ok_or_else(|| Unjudged::of("walk", "the lesson has none"))?;
         Axis::from_scene(axis, self.scene).map_err(|(_, problem)| Unjudged::of("walk", &problem))
     }
 
-    /// Runs the scene with one value after the other, each from where the one before ended, until `each` has
-    /// seen enough.
-    fn walk(
+    /// Runs the scene over two rows of values side by side, each run from where the one before ended, until
+    /// `each` has seen enough; what that, told the number of the row, makes of it.
+    fn walks<S: Default + Send>(
         &self,
         field: &str,
-        values: &[f64],
-        mut each: impl FnMut(f64, &Summary) -> bool,
-    ) -> Result<(), Unjudged> {
+        rows: [Vec<f64>; 2],
+        each: impl Fn(usize, &mut S, f64, &Summary) -> bool + Sync,
+    ) -> Result<[S; 2], Unjudged> {
         let mechanism = self.mechanism_of(self.scene)?;
         let family = Family::new(self.scene, self.files, &mechanism, field);
-        let request = Request { carry: true, ..self.request() };
-        let mut ended = Ok(());
-        let unfit = walk_over(&family, values, &request, |value, run| {
-            ended = self.ended(&run.summary);
-            ended.is_ok() && each(value, &run.summary)
-        });
-        match unfit {
-            0 => ended,
-            _ => Err(Unjudged::of(field, "a value of the walk makes no scene that can be run")),
-        }
+        let (task, request) = (self.task, Request { carry: true, ..self.request() });
+        let walk = |_: &mut (), row: usize| {
+            let mut seen = S::default();
+            let unfit = walk_over(&family, &rows[row], &request, |value, run| {
+                (task.tick)();
+                !task.is_cancelled() && each(row, &mut seen, value, &run.summary)
+            });
+            match unfit {
+                _ if task.is_cancelled() => Err(Unjudged::Cancelled),
+                0 => Ok(seen),
+                _ => Err(Unjudged::of(field, "a value of the walk makes no scene that can be run")),
+            }
+        };
+        let seen = match self.pool {
+            Some(pool) => pool.map(2, || (), walk)?,
+            None => vec![walk(&mut (), 0)?, walk(&mut (), 1)?],
+        };
+        seen.try_into().map_err(|_| Unjudged::Cancelled)
     }
 
-    fn request(&self) -> Request<'_> {
-        Request { ledger: true, cancel: Some(self.task.cancel), ..Request::default() }
+    fn request(&self) -> Request<'a> {
+        let ledger = self.lesson.conditions().any(needs_ledger);
+        Request { ledger, cancel: Some(self.task.cancel), ..Request::default() }
     }
 
     fn together(&self, models: &[Model]) -> Result<Vec<Summary>, Unjudged> {
-        let mut summaries = Vec::with_capacity(models.len());
-        for models in models.chunks(TOGETHER) {
-            for run in Model::run_together(models, &self.request()) {
-                self.ended(&run.summary)?;
-                summaries.push(run.summary);
-            }
-        }
-        Ok(summaries)
-    }
-
-    fn ended(&self, summary: &Summary) -> Result<(), Unjudged> {
-        (self.task.tick)();
-        let cancelled = self.task.is_cancelled() || matches!(summary.outcome, Outcome::Cancelled { .. });
-        if cancelled { Err(Unjudged::Cancelled) } else { Ok(()) }
+        let (task, request) = (self.task, self.request());
+        let model = |own: usize| Ok((models[own].clone(), request));
+        let summary = |run: &Run| {
+            (task.tick)();
+            Box::new(run.summary)
+        };
+        let runs = shared_runs(self.pool, task, models.len(), model, summary).ok_or(Unjudged::Cancelled)?;
+        Ok(runs.into_iter().map(|own| *own).collect())
     }
 
     /// The model of a scene that differs from the subject's in a few fields.
@@ -221,6 +223,13 @@ impl<'a> Subject<'a> {
             false => build(),
         }
     }
+}
+
+/// Whether a condition names a field of the energy ledger.
+fn needs_ledger(condition: &Condition) -> bool {
+    let name = condition.field().and_then(|field| field.split_once('.'));
+    let field = name.and_then(|(_, name)| SummaryField::find(name));
+    field.is_some_and(|field| field.needs_ledger) || condition.parts().iter().any(needs_ledger)
 }
 
 /// The value of `cell`, made where there is none yet.

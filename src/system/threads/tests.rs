@@ -123,6 +123,17 @@ fn no_thread_holds_more_than_its_share() {
 }
 
 #[test]
+fn a_thread_with_enough_gets_some_of_the_last() {
+    let queue = Queue::new(40, 2);
+    assert_eq!([16, 16 + ENOUGH].map(|held| queue.take(held)), [Some(0), None]);
+    (1..8).for_each(|own| assert_eq!(queue.take(0), Some(own)));
+    assert_eq!(
+        [17 + ENOUGH, 19 + ENOUGH, 20 + ENOUGH].map(|held| queue.take(held)),
+        [Some(8), Some(9), None]
+    );
+}
+
+#[test]
 fn a_panic_in_a_part_ends_all() {
     let pool = Pool::new(2).unwrap();
     let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {

@@ -57,10 +57,9 @@ pub(super) fn judge<T>(
     verdict: impl FnOnce(&Step, Subject<'_>, &Subject<'_>) -> Result<T, Unjudged>,
 ) -> Option<Verdict<T>> {
     let (lesson, begin) = (&document.lesson, document.begin(number));
-    let of = (lesson.seeds, lesson.walk.as_ref());
     let task = Task { tick: &|| (), cancel };
-    let before = Subject::new(&begin.scene, &begin.files, of, &task);
-    let subject = Subject::new(&own.scene, &own.files, of, &task);
+    let before = Subject::new(&begin.scene, &begin.files, lesson, &task);
+    let subject = Subject::new(&own.scene, &own.files, lesson, &task);
     match verdict(&lesson.steps[number], subject, &before) {
         Ok(verdict) => Some(Ok(verdict)),
         Err(Unjudged::Cancelled) => None,

@@ -1,0 +1,70 @@
+//! Bisection among the multiples of a resolution, of which several may be asked at a time.
+
+use std::collections::VecDeque;
+
+/// The next value of a bisection that is to be asked, that which follows from what is known or, where it is
+/// under way (without an answer), one of those that may be asked after it; none where so many are, `ahead`.
+pub(super) fn next_between(
+    asked: &[(f64, Option<bool>)],
+    span: (f64, f64),
+    resolution: f64,
+    ahead: usize,
+) -> Option<f64> {
+    let (mut spans, mut under_way) = (VecDeque::from([span]), 0);
+    while under_way < ahead
+        && let Some((low, high)) = spans.pop_front()
+    {
+        let Some(middle) = between(low, high, resolution) else { continue };
+        match asked.iter().find(|own| own.0 == middle) {
+            None => return Some(middle),
+            Some((_, Some(true))) => spans.push_front((low, middle)),
+            Some((_, Some(false))) => spans.push_front((middle, high)),
+            Some((_, None)) => {
+                under_way += 1;
+                spans.extend([(low, middle), (middle, high)]);
+            }
+        }
+    }
+    None
+}
+
+/// The multiple of `resolution` in the middle between two values; none where none lies between them.
+pub(super) fn between(low: f64, high: f64, resolution: f64) -> Option<f64> {
+    let middle = multiple(0.5 * (low + high), resolution);
+    let near = [middle, multiple(middle - resolution, resolution), multiple(middle + resolution, resolution)];
+    near.into_iter().find(|own| *own > low && *own < high)
+}
+
+/// The multiple of `unit` nearest to a value; of a decimal unit the decimal itself.
+pub(super) fn multiple(value: f64, unit: f64) -> f64 {
+    let count = (value / unit).round();
+    let whole = (1.0 / unit).round();
+    if (whole * unit - 1.0).abs() < 1e-9 { count / whole } else { count * unit }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_asked_ahead_changes_nothing() {
+        for (ahead, at) in [1, 2, 3, 7].into_iter().flat_map(|ahead| [0.51, 0.77, 1.0].map(|at| (ahead, at)))
+        {
+            let mut asked: Vec<(f64, Option<bool>)> = Vec::new();
+            loop {
+                while let Some(next) = next_between(&asked, (0.5, 1.0), 0.01, ahead) {
+                    asked.push((next, None));
+                }
+                let open = asked.iter().filter(|own| own.1.is_none()).count();
+                assert!(open <= ahead);
+                // the last that was asked is answered first
+                let Some(own) = asked.iter_mut().rfind(|own| own.1.is_none()) else { break };
+                own.1 = Some(own.0 >= at);
+            }
+            let does = |own: f64| asked.contains(&(own, Some(true)));
+            let least = (51..100).map(|own| f64::from(own) / 100.0).find(|own| does(*own)).unwrap_or(1.0);
+            assert_eq!(least, at);
+            assert!(ahead > 1 || asked.len() <= 6);
+        }
+    }
+}
