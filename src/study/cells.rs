@@ -15,7 +15,7 @@ use super::table::Table;
 use crate::dynamics::{Model, Request, Run};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
-use crate::system::threads::{Pool, Queue};
+use crate::system::threads::{Pool, Queue, UnderWay};
 
 /// A scene, the grid over it, and the mechanisms that its cells share.
 #[derive(Debug)]
@@ -156,7 +156,7 @@ impl Cells {
         let threads = pool.count() as u64;
         let ahead = question.most_cells().clamp(threads, AHEAD * threads) as usize;
         let cell = |number: usize| slice.row(from + number as u64);
-        let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, Ran<Q::Answer>)| {
+        let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, Ran<Q::Answer>)| {
             self.ask(question, &cell, task, next, done);
         };
         let count = (slice.rows() - from) as usize;
@@ -171,7 +171,7 @@ impl Cells {
         (count, rows, ahead): (usize, usize, usize),
         pool: &Pool,
         task: &Task,
-        work: impl Fn(&dyn Fn(usize) -> Option<usize>, &dyn Fn(usize, Ran<Q::Answer>)) + Sync,
+        work: impl Fn(&dyn Fn(UnderWay) -> Option<usize>, &dyn Fn(usize, Ran<Q::Answer>)) + Sync,
         mut write: impl FnMut(&Table, &Tally) -> Result<bool, E>,
     ) -> Result<Tally, SweepEnd<E>> {
         let (mut tally, mut end) = (Tally::default(), None);
@@ -230,7 +230,7 @@ impl Cells {
         question: &Q,
         cell: &dyn Fn(usize) -> u64,
         task: &Task,
-        next: &dyn Fn(usize) -> Option<usize>,
+        next: &dyn Fn(UnderWay) -> Option<usize>,
         done: &dyn Fn(usize, Ran<Q::Answer>),
     ) {
         let request = Request { cancel: Some(task.cancel), ..question.request() };
@@ -241,7 +241,7 @@ impl Cells {
             }
         };
         let mut scene = self.base.clone();
-        let mut next = |under_way: usize| loop {
+        let mut next = |under_way: UnderWay| loop {
             // Before it waits for more, which there may be none of any more.
             if task.is_cancelled() {
                 return None;

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use super::Task;
 use crate::dynamics::{Model, Request, Run};
-use crate::system::threads::{Pool, Queue, share_from};
+use crate::system::threads::{Pool, Queue, UnderWay, share_from};
 
 /// The answers of `count` runs, in order, by the threads of a pool or by this one. `model` gives the model of
 /// a number with what is asked of it, or the answer where there is nothing to run, and `answer` is read off
@@ -24,13 +24,13 @@ pub(super) fn shared_runs<'q, R: Send>(
 pub(super) fn runs_from<'q, R: Send>(
     pool: Option<&Pool>,
     task: &'q Task,
-    take: &(dyn Fn(usize) -> Option<usize> + Sync),
+    take: &(dyn Fn(UnderWay) -> Option<usize> + Sync),
     model: impl Fn(usize) -> Result<(Model, Request<'q>), R> + Sync,
     answer: impl Fn(usize, &Run) -> R + Sync,
 ) -> Option<Vec<R>> {
-    let work = |take: &dyn Fn(usize) -> Option<usize>| {
+    let work = |take: &dyn Fn(UnderWay) -> Option<usize>| {
         let answers = RefCell::new(Vec::new());
-        let mut next = |under_way: usize| loop {
+        let mut next = |under_way: UnderWay| loop {
             let number = take(under_way).filter(|_| !task.is_cancelled())?;
             match model(number) {
                 Ok((model, request)) => {

@@ -18,7 +18,7 @@ use super::table::Table;
 use crate::dynamics::{Model, Regime, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene, Start};
-use crate::system::threads::{Pool, Queue};
+use crate::system::threads::{Pool, Queue, UnderWay};
 
 /// What begins at a threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -266,8 +266,8 @@ impl<'a> Search<'a> {
         let queue = Queue::new(values.len(), self.pool.map_or(1, Pool::count));
         let asked = Mutex::new(Asked { of_scan: vec![None; values.len()], between: Vec::new() });
         let lock = || asked.lock().unwrap_or_else(PoisonError::into_inner);
-        let take = |held: usize| {
-            let ahead = match held {
+        let take = |held: UnderWay| {
+            let ahead = match held.runs {
                 0 => self.ahead,
                 COMPANY.. => self.ahead.max(IN_COMPANY),
                 _ => 1,

@@ -10,7 +10,7 @@ use super::slice::Slice;
 use super::table::Table;
 use crate::dynamics::{Model, Request, Run};
 use crate::scene::{Fault, Scene};
-use crate::system::threads::Pool;
+use crate::system::threads::{Pool, UnderWay};
 
 /// In which directions the last field of a grid is walked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,7 +105,7 @@ impl Cells {
             Walk { begin: row * length, direction: directions[way as usize], done: 0, last: None }
         };
         let (request, length) = (Request { carry: true, ..question.request() }, length as usize);
-        let work = |take: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, Ran<Q::Answer>)| {
+        let work = |take: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, Ran<Q::Answer>)| {
             let mut scene = self.base.clone();
             // those that are to go on here, and those under way, by number
             let (ready, walking) = (RefCell::new(Vec::new()), RefCell::new(BTreeMap::new()));
@@ -121,7 +121,7 @@ impl Cells {
                     ready.borrow_mut().push((number, walk));
                 }
             };
-            let mut next = |under_way: usize| loop {
+            let mut next = |under_way: UnderWay| loop {
                 if task.is_cancelled() {
                     return None;
                 }

@@ -79,7 +79,7 @@ impl Pool {
     pub fn in_order<R: Send>(
         &self,
         (count, each, ahead): (usize, usize, usize),
-        work: impl Fn(&dyn Fn(usize) -> Option<usize>, &dyn Fn(usize, R)) + Sync,
+        work: impl Fn(&dyn Fn(UnderWay) -> Option<usize>, &dyn Fn(usize, R)) + Sync,
         mut leave: impl FnMut(Vec<R>) -> bool,
     ) {
         let queue = Queue { ahead, ..Queue::new(count, self.count()) };
@@ -93,9 +93,9 @@ impl Pool {
                     let _ = farewell.0.send(News::Done(done));
                     held.borrow_mut().1 = Instant::now();
                 };
-                let take = |under_way: usize| {
+                let take = |under_way: UnderWay| {
                     queue.take(under_way).or_else(|| {
-                        let idle = under_way == 0;
+                        let idle = under_way.runs == 0;
                         idle.then(&send)?;
                         queue.wait()
                     })
@@ -157,7 +157,7 @@ impl Pool {
 pub fn share<R: Send, E: Send>(
     pool: Option<&Pool>,
     count: usize,
-    work: impl Fn(&dyn Fn(usize) -> Option<usize>) -> Result<Vec<(usize, R)>, E> + Sync,
+    work: impl Fn(&dyn Fn(UnderWay) -> Option<usize>) -> Result<Vec<(usize, R)>, E> + Sync,
 ) -> Result<Vec<R>, E> {
     let queue = Queue::new(count, pool.map_or(1, Pool::count));
     share_from(pool, &|held| queue.take(held), work)
@@ -166,8 +166,8 @@ pub fn share<R: Send, E: Send>(
 /// The same of all numbers that `take` gives, as of a [`Queue`], in their order.
 pub fn share_from<R: Send, E: Send>(
     pool: Option<&Pool>,
-    take: &(dyn Fn(usize) -> Option<usize> + Sync),
-    work: impl Fn(&dyn Fn(usize) -> Option<usize>) -> Result<Vec<(usize, R)>, E> + Sync,
+    take: &(dyn Fn(UnderWay) -> Option<usize> + Sync),
+    work: impl Fn(&dyn Fn(UnderWay) -> Option<usize>) -> Result<Vec<(usize, R)>, E> + Sync,
 ) -> Result<Vec<R>, E> {
     let part = || work(&take);
     let mut all: Vec<(usize, R)> = match pool {
@@ -184,10 +184,17 @@ const SOON: Duration = Duration::from_millis(1);
 /// The most that leave at once.
 const MOST: usize = 256;
 
-/// What a thread adds to the number of runs that it holds when it asks for more than its lanes need. It gets
-/// some of the last ones, so many for each thread: begun early they take turns with those before them, and
-/// all end about together, while begun in turn they would leave more and more lanes empty.
-pub const ENOUGH: usize = 1 << 30;
+/// What a thread holds when it asks for a number.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct UnderWay {
+    /// Runs that are under way.
+    pub runs: usize,
+    /// Whether they fill its lanes. It then gets some of the last numbers only, [`LAST`] for each thread:
+    /// begun early these runs take turns with those before them, and all end about together, while begun in
+    /// turn they would leave more and more lanes empty.
+    pub full: bool,
+}
+
 const LAST: usize = 16;
 
 /// Numbers from 0 on that threads take from each other, each of them once.
@@ -214,9 +221,9 @@ impl Queue {
         Self { count, ahead: usize::MAX, threads, state: Mutex::default(), moved: Condvar::new() }
     }
 
-    /// One more number for a thread that holds so many. None where none is left, or at present none is for
+    /// One more number for a thread that holds this. None where none is left, or at present none is for
     /// this thread: of few numbers none holds more than its share.
-    pub fn take(&self, held: usize) -> Option<usize> {
+    pub fn take(&self, held: UnderWay) -> Option<usize> {
         self.take_from(&mut self.lock(), held)
     }
 
@@ -224,15 +231,14 @@ impl Queue {
     fn wait(&self) -> Option<usize> {
         let is_full = |own: &mut Taken| !own.stopped && own.next < self.count && self.is_full(own);
         let mut state = self.moved.wait_while(self.lock(), is_full).unwrap_or_else(PoisonError::into_inner);
-        self.take_from(&mut state, 0)
+        self.take_from(&mut state, UnderWay::default())
     }
 
-    fn take_from(&self, state: &mut Taken, held: usize) -> Option<usize> {
-        let (enough, held) = (held >= ENOUGH, held % ENOUGH);
-        if enough && self.count - state.next > LAST * self.threads {
+    fn take_from(&self, state: &mut Taken, held: UnderWay) -> Option<usize> {
+        if held.full && self.count - state.next > LAST * self.threads {
             return None;
         }
-        let has_its_share = held > 0 && held >= self.count.div_ceil(self.threads);
+        let has_its_share = held.runs > 0 && held.runs >= self.count.div_ceil(self.threads);
         if state.stopped || state.next == self.count || has_its_share || self.is_full(state) {
             return None;
         }

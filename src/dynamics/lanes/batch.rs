@@ -15,7 +15,7 @@ use crate::dynamics::series::{SEEDED, Series};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::stepper::Step;
 use crate::numeric::{GaussLegendre, Lanes};
-use crate::system::threads::ENOUGH;
+use crate::system::threads::UnderWay;
 
 /// Steps of a group between two checks of the budget and the cancel flag.
 const BATCH_STEPS: u64 = 256;
@@ -42,8 +42,7 @@ pub(super) struct Prepared<'a> {
 /// Where runs come from, and where they go.
 pub(super) trait Source<'a> {
     /// One more run; none where there is none at present, and with none under way where there is none left.
-    /// Where those under way fill the lanes, [`ENOUGH`] more are told.
-    fn next(&mut self, under_way: usize) -> Option<Prepared<'a>>;
+    fn next(&mut self, under_way: UnderWay) -> Option<Prepared<'a>>;
 
     /// Takes a motion that has ended, what it began as, and its outcome.
     fn ended(&mut self, own: &Prepared<'a>, motion: LaneMotion<'a>, begun: &Begun<f64>, outcome: Outcome);
@@ -115,13 +114,13 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         loop {
             let fullest = (0..self.groups.len()).max_by_key(|own| self.groups[*own].ready());
             let ready = fullest.map_or(0, |own| self.groups[own].ready());
-            if ready >= W || !self.start_next(0) {
+            if ready >= W || !self.start_next(false) {
                 if ready >= FEWEST.min(W / 2) {
-                    while ready >= W && self.under_way() < 2 * W && self.start_next(ENOUGH) {}
+                    while ready >= W && self.under_way() < 2 * W && self.start_next(true) {}
                     return fullest;
                 }
                 self.finish_alone();
-                if !self.start_next(0) {
+                if !self.start_next(false) {
                     return None;
                 }
             }
@@ -152,11 +151,10 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         self.members.len() - self.free.len()
     }
 
-    /// Starts the next run; false where there is none, or no room. `enough` is [`ENOUGH`] where the lanes are
-    /// full, else 0.
-    fn start_next(&mut self, enough: usize) -> bool {
+    /// Starts the next run; false where there is none, or no room. `full`: the lanes are.
+    fn start_next(&mut self, full: bool) -> bool {
         let Some(place) = self.free.last().copied() else { return false };
-        let Some(own) = self.source.next(self.under_way() + enough) else { return false };
+        let Some(own) = self.source.next(UnderWay { runs: self.under_way(), full }) else { return false };
         self.free.pop();
         let clock = clock(own.model, own.equation.unit);
         let (model, request) = (own.model, own.request);

@@ -28,7 +28,7 @@ use crate::dynamics::result::{Arrival, Outcome, Pursuit, Request, Run};
 use crate::dynamics::run::ending::Begun;
 use crate::dynamics::run::pursue::pursue_alone;
 use crate::system::clock::ThreadClock;
-use crate::system::threads::ENOUGH;
+use crate::system::threads::UnderWay;
 use batch::{Batch, Prepared, Source};
 use columns::LaneMotion;
 
@@ -53,12 +53,11 @@ impl Model {
     }
 
     /// The same with models that are asked for while others are under way, so that several threads may take
-    /// them from each other. `next` is told how many are under way here, and [`ENOUGH`] more where these fill
-    /// the lanes, and gives a number, a model, and what is asked of it: none where there is none at present,
+    /// them from each other. `next` is told what is under way here and gives a number, a model, and what is asked of it: none where there is none at present,
     /// and with none under way where there is none left.
     /// `ended` gets each run with its number and model as soon as it has ended. No CPU time is told.
     pub fn run_from<'q>(
-        next: &mut dyn FnMut(usize) -> Option<(usize, Self, Request<'q>)>,
+        next: &mut dyn FnMut(UnderWay) -> Option<(usize, Self, Request<'q>)>,
         ended: &mut dyn FnMut(usize, &Self, Run),
     ) {
         run_from(usize::MAX, next, ended);
@@ -74,7 +73,7 @@ impl Model {
         &self,
         pursuits: &[Pursuit],
         cancel: Option<&AtomicBool>,
-        next: &mut dyn FnMut(usize) -> Option<usize>,
+        next: &mut dyn FnMut(UnderWay) -> Option<usize>,
         ended: &mut dyn FnMut(usize, Arrival),
     ) {
         pursue(self, pursuits, &Request { cancel, ..Request::default() }, usize::MAX, (next, ended));
@@ -108,7 +107,7 @@ fn run_all(models: &[Model], request: &Request, most: usize) -> Vec<Run> {
     let watch = ThreadClock::start();
     let mut runs: Vec<Option<Run>> = models.iter().map(|_| None).collect();
     let mut all = models.iter().cloned().enumerate().map(|(place, model)| (place, model, *request));
-    let mut next = |held: usize| if held < ENOUGH || all.len() <= WIDEST { all.next() } else { None };
+    let mut next = |held: UnderWay| if !held.full || all.len() <= WIDEST { all.next() } else { None };
     run_from(most, &mut next, &mut |place, _, run| runs[place] = Some(run));
     let share = watch.seconds() / models.len() as f64;
     runs.iter_mut().flatten().for_each(|run| run.summary.cpu_s = share);
@@ -117,7 +116,7 @@ fn run_all(models: &[Model], request: &Request, most: usize) -> Vec<Run> {
 
 fn run_from<'q>(
     most: usize,
-    next: &mut dyn FnMut(usize) -> Option<(usize, Model, Request<'q>)>,
+    next: &mut dyn FnMut(UnderWay) -> Option<(usize, Model, Request<'q>)>,
     ended: &mut dyn FnMut(usize, &Model, Run),
 ) {
     let mut whole = false;
@@ -140,12 +139,12 @@ struct Berth<'q> {
 /// Runs of models. Those that cannot share their steps with others are run alone.
 struct Runs<'a, 'q, 'r> {
     berths: std::slice::Iter<'a, OnceCell<Box<Berth<'q>>>>,
-    next: &'r mut dyn FnMut(usize) -> Option<(usize, Model, Request<'q>)>,
+    next: &'r mut dyn FnMut(UnderWay) -> Option<(usize, Model, Request<'q>)>,
     ended: &'r mut dyn FnMut(usize, &Model, Run),
 }
 
 impl<'a> Source<'a> for Runs<'a, '_, '_> {
-    fn next(&mut self, under_way: usize) -> Option<Prepared<'a>> {
+    fn next(&mut self, under_way: UnderWay) -> Option<Prepared<'a>> {
         let berth = self.berths.as_slice().first()?;
         loop {
             let (place, model, request) = (self.next)(under_way)?;
@@ -171,7 +170,7 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
 }
 
 /// What gives the places of pursuits, and what gets what they have come to.
-type Through<'r> = (&'r mut dyn FnMut(usize) -> Option<usize>, &'r mut dyn FnMut(usize, Arrival));
+type Through<'r> = (&'r mut dyn FnMut(UnderWay) -> Option<usize>, &'r mut dyn FnMut(usize, Arrival));
 
 /// Pursues motions of one model.
 fn pursue(model: &Model, pursuits: &[Pursuit], request: &Request, most: usize, (next, ended): Through) {
@@ -190,7 +189,7 @@ fn pursue(model: &Model, pursuits: &[Pursuit], request: &Request, most: usize, (
             run_batch(&mut Pursuits { prepared, next, ended }, most);
         }
         _ => {
-            while let Some(place) = next(0) {
+            while let Some(place) = next(UnderWay::default()) {
                 ended(place, pursue_alone(model, &pursuits[place], request));
             }
         }
@@ -200,12 +199,12 @@ fn pursue(model: &Model, pursuits: &[Pursuit], request: &Request, most: usize, (
 /// Pursuits, each by its place.
 struct Pursuits<'r, P> {
     prepared: P,
-    next: &'r mut dyn FnMut(usize) -> Option<usize>,
+    next: &'r mut dyn FnMut(UnderWay) -> Option<usize>,
     ended: &'r mut dyn FnMut(usize, Arrival),
 }
 
 impl<'a, P: Fn(usize) -> Prepared<'a>> Source<'a> for Pursuits<'_, P> {
-    fn next(&mut self, under_way: usize) -> Option<Prepared<'a>> {
+    fn next(&mut self, under_way: UnderWay) -> Option<Prepared<'a>> {
         (self.next)(under_way).map(&self.prepared)
     }
 

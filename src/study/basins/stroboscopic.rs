@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::dynamics::{Arrival, Model, Outcome, Pursuit, Request};
 use crate::study::exponents::{ExponentOptions, average_exponents};
-use crate::system::threads::{Pool, share};
+use crate::system::threads::{Pool, UnderWay, share};
 
 /// A displacement and a velocity in units of the scene's scales.
 type Point = [f64; 2];
@@ -107,13 +107,13 @@ impl Stroboscope<'_> {
 
     /// What pursuits come to, in their order; `tick` is called for each. None where it was cancelled.
     pub fn pursue(&self, pursuits: &[Pursuit], tick: &(dyn Fn(&Pursuit) + Sync)) -> Option<Vec<Arrival>> {
-        let work = |next: &dyn Fn(usize) -> Option<usize>| {
+        let work = |next: &dyn Fn(UnderWay) -> Option<usize>| {
             let mut arrivals = Vec::new();
             let mut ended = |place: usize, arrival| {
                 tick(&pursuits[place]);
                 arrivals.push((place, arrival));
             };
-            let mut next = |held: usize| next(held).filter(|_| !self.is_cancelled());
+            let mut next = |held: UnderWay| next(held).filter(|_| !self.is_cancelled());
             self.model.pursue(pursuits, Some(self.cancel), &mut next, &mut ended);
             if self.is_cancelled() { Err(()) } else { Ok(arrivals) }
         };

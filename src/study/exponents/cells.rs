@@ -9,7 +9,7 @@ use crate::study::cells::{Built, Cells};
 use crate::study::table::Table;
 use crate::study::walk::without_a_period;
 use crate::study::{Grid, Task};
-use crate::system::threads::Pool;
+use crate::system::threads::{Pool, UnderWay};
 
 /// Cells that may be begun, for each thread, before the first of them is over.
 const AHEAD: usize = 32;
@@ -86,9 +86,9 @@ impl ExponentCells {
         mut write: impl FnMut(&Table) -> Result<bool, E>,
     ) -> Result<ExponentTally, SweepEnd<E>> {
         let cells = self.cells.grid.cells() as usize;
-        let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, Found)| {
+        let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, Found)| {
             let mut scene = self.cells.base.clone();
-            while let Some(number) = next(0) {
+            while let Some(number) = next(UnderWay::default()) {
                 let model = self.cells.model(number as u64, &mut scene, task).and_then(Result::ok);
                 let found = model.map(|model| exponents(&model, options, task.cancel));
                 if task.is_cancelled() {

@@ -1,14 +1,22 @@
 use super::*;
 
+fn held(runs: usize) -> UnderWay {
+    UnderWay { runs, full: false }
+}
+
+fn full(runs: usize) -> UnderWay {
+    UnderWay { runs, full: true }
+}
+
 #[test]
 fn results_come_in_order_and_none_is_begun_too_far_ahead() {
     for threads in [1, 2, 5] {
         let pool = Pool::new(threads).unwrap();
         let (begun, left) = (Mutex::new(0), Mutex::new(Vec::new()));
-        let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-            while let Some(first) = next(0) {
+        let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+            while let Some(first) = next(held(0)) {
                 // two at a time where there are two, the later one first
-                let pair = [next(1), Some(first)];
+                let pair = [next(held(1)), Some(first)];
                 for i in pair.into_iter().flatten() {
                     *begun.lock().unwrap() += 1;
                     done(i, i * i);
@@ -46,8 +54,8 @@ fn ends<R: Send + 'static>(work: impl FnOnce() -> R + Send + 'static) -> R {
 fn one_that_gives_up_while_the_others_wait_ends_all() {
     for (threads, after) in (1..=8).flat_map(|threads| [0, 1, 3, 40].map(|after| (threads, after))) {
         let left = ends(move || {
-            let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-                while let Some(number) = next(0) {
+            let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+                while let Some(number) = next(held(0)) {
                     if number == after {
                         return sleep(Duration::from_millis(5)); // the others wait for it by then
                     }
@@ -69,8 +77,8 @@ fn one_that_gives_up_while_the_others_wait_ends_all() {
 fn a_panic_where_they_leave_ends_all() {
     for threads in 1..=8 {
         assert!(ends(move || {
-            let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-                std::iter::from_fn(|| next(0)).for_each(|number| done(number, number));
+            let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+                std::iter::from_fn(|| next(held(0))).for_each(|number| done(number, number));
             };
             let leave = |own: Vec<usize>| own.iter().all(|number| *number < 9 || panic!("the ninth"));
             let run = || Pool::new(threads).unwrap().in_order((usize::MAX, 1, 3), work, leave);
@@ -83,9 +91,9 @@ fn a_panic_where_they_leave_ends_all() {
 fn results_of_a_number_leave_together_or_up_to_its_end() {
     for (threads, each) in (1..=8).flat_map(|threads| [1, 7, 255, 256, 257, 300, 700].map(|n| (threads, n))) {
         let all = 2000 / each + 3;
-        let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-            while let Some(number) = next(0) {
-                let pair = [Some(number), next(1)]; // side by side
+        let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+            while let Some(number) = next(held(0)) {
+                let pair = [Some(number), next(held(1))]; // side by side
                 for row in 0..each {
                     pair.iter().flatten().for_each(|own| done(own * each + row, own * each + row));
                 }
@@ -107,8 +115,8 @@ fn results_of_a_number_leave_together_or_up_to_its_end() {
 #[test]
 fn shared_results_come_in_order_and_an_error_is_told() {
     let pool = Pool::new(3).unwrap();
-    let squares = |next: &dyn Fn(usize) -> Option<usize>| {
-        Ok::<_, ()>(std::iter::from_fn(|| next(0)).map(|i| (i, i * i)).collect())
+    let squares = |next: &dyn Fn(UnderWay) -> Option<usize>| {
+        Ok::<_, ()>(std::iter::from_fn(|| next(held(0))).map(|i| (i, i * i)).collect())
     };
     assert_eq!(share(Some(&pool), 100, squares), Ok((0..100).map(|i| i * i).collect()));
     assert_eq!(share(None, 0, squares), Ok(Vec::new()));
@@ -118,26 +126,23 @@ fn shared_results_come_in_order_and_an_error_is_told() {
 #[test]
 fn no_thread_holds_more_than_its_share() {
     let queue = Queue::new(5, 2);
-    assert_eq!([0, 1, 2].map(|held| queue.take(held)), [Some(0), Some(1), Some(2)]);
-    assert_eq!([3, 0, 2, 1, 0].map(|held| queue.take(held)), [None, Some(3), Some(4), None, None]);
+    assert_eq!([0, 1, 2].map(|runs| queue.take(held(runs))), [Some(0), Some(1), Some(2)]);
+    assert_eq!([3, 0, 2, 1, 0].map(|runs| queue.take(held(runs))), [None, Some(3), Some(4), None, None]);
 }
 
 #[test]
 fn a_thread_with_enough_gets_some_of_the_last() {
     let queue = Queue::new(40, 2);
-    assert_eq!([16, 16 + ENOUGH].map(|held| queue.take(held)), [Some(0), None]);
-    (1..8).for_each(|own| assert_eq!(queue.take(0), Some(own)));
-    assert_eq!(
-        [17 + ENOUGH, 19 + ENOUGH, 20 + ENOUGH].map(|held| queue.take(held)),
-        [Some(8), Some(9), None]
-    );
+    assert_eq!([held(16), full(16)].map(|own| queue.take(own)), [Some(0), None]);
+    (1..8).for_each(|own| assert_eq!(queue.take(held(0)), Some(own)));
+    assert_eq!([17, 19, 20].map(|runs| queue.take(full(runs))), [Some(8), Some(9), None]);
 }
 
 #[test]
 fn a_panic_in_a_part_ends_all() {
     let pool = Pool::new(2).unwrap();
-    let work = |next: &dyn Fn(usize) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-        while let Some(number) = next(0) {
+    let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
+        while let Some(number) = next(held(0)) {
             assert!(number != 3, "part 3");
             done(number, number);
         }
