@@ -53,8 +53,8 @@ impl Model {
     }
 
     /// The same with models that are asked for while others are under way, so that several threads may take
-    /// them from each other. `next` is told what is under way here and gives a number, a model, and what is asked of it: none where there is none at present,
-    /// and with none under way where there is none left.
+    /// them from each other. `next` is told what is under way here and gives a number, a model, and what is
+    /// asked of it: none where there is none at present, and with none under way where there is none left.
     /// `ended` gets each run with its number and model as soon as it has ended. No CPU time is told.
     pub fn run_from<'q>(
         next: &mut dyn FnMut(UnderWay) -> Option<(usize, Self, Request<'q>)>,
