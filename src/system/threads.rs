@@ -189,12 +189,13 @@ const MOST: usize = 256;
 pub struct UnderWay {
     /// Runs that are under way.
     pub runs: usize,
-    /// Whether they fill its lanes. It then gets some of the last numbers only, [`LAST`] for each thread:
-    /// begun early these runs take turns with those before them, and all end about together, while begun in
-    /// turn they would leave more and more lanes empty.
+    /// Whether they fill its lanes. It is then given a number only from the last of all, 16 for each thread:
+    /// these runs begin early, take turns with those before them, and all end about together. Begun in turn
+    /// they would leave more and more lanes empty.
     pub full: bool,
 }
 
+/// The last numbers that a thread with full lanes is given, for each thread.
 const LAST: usize = 16;
 
 /// Numbers from 0 on that threads take from each other, each of them once.
