@@ -1,10 +1,12 @@
 //! `basins`: the attractor that each start goes to, a row a start.
 
+use std::convert::Infallible;
 use std::path::PathBuf;
 
 use clap::Args;
-use interwell::output::{basins_figure, basins_manifest, can_show_starts};
+use interwell::output::{basins_figure, basins_manifest, can_show_starts, rows};
 use interwell::study::{Answer, Basins, EvenRange, NoBasins, Starts, StartsError, Task};
+use interwell::system::threads::Pool;
 
 use super::failure::Failure;
 use super::options::{Common, PlotOptions};
@@ -88,7 +90,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let answer = basins.answer(&task).filter(|_| basins.is_whole());
     bar.finish_and_clear();
     let answer = answer.ok_or_else(Failure::interrupted)?;
-    write_rows(&mut sinks[0], &basins, &answer)?;
+    write_rows(&mut sinks[0], &basins, &answer, &pool)?;
     write_table(&mut sinks[3], &answer.attractors_table())?;
     if let Some(picture) = picture {
         picture
@@ -107,20 +109,28 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Rows that are turned into a table at a time.
-const ROWS: usize = 1 << 15;
+/// Rows that a thread turns into text at a time.
+const ROWS: usize = 1 << 14;
 
 fn write_rows(
     sink: &mut Option<interwell::output::Sink>,
     basins: &Basins,
     answer: &Answer,
+    pool: &Pool,
 ) -> Result<(), Failure> {
-    write_table(sink, &answer.table(basins, 0, ROWS))?;
-    for begin in (ROWS..answer.rows.len()).step_by(ROWS) {
+    write_table(sink, &answer.table(basins, 0, 0))?;
+    let begins: Vec<usize> = (0..answer.rows.len()).step_by(ROWS).collect();
+    for begins in begins.chunks(pool.count()) {
         if interrupt::came() {
             return Err(Failure::interrupted());
         }
-        write_text(sink, &interwell::output::rows(&answer.table(basins, begin, begin + ROWS), 0..ROWS))?;
+        let text = |(): &mut (), part: usize| -> Result<String, Infallible> {
+            Ok(rows(&answer.table(basins, begins[part], begins[part] + ROWS), 0..ROWS))
+        };
+        let Ok(texts) = pool.map(begins.len(), || (), text);
+        for text in texts {
+            write_text(sink, &text)?;
+        }
     }
     Ok(())
 }

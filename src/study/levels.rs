@@ -5,7 +5,7 @@
 
 use super::grid::Grid;
 
-/// The strides of the levels, coarse first; each divides the one before.
+/// The strides of the levels, coarse first: powers of two, 1 at last.
 pub const STRIDES: [usize; 4] = [8, 4, 2, 1];
 
 /// The cells of a grid, coarse first.
@@ -27,15 +27,18 @@ impl Levels {
     /// The levels of a grid with axes of these lengths, slowest first.
     pub fn of_lengths(lengths: Vec<usize>) -> Self {
         let cells: u64 = lengths.iter().map(|length| *length as u64).product();
-        let mut order = Vec::with_capacity(cells as usize);
-        let mut ends = [0; STRIDES.len()];
-        for (level, stride) in STRIDES.iter().enumerate() {
-            let on = |index: &u64, stride: usize| places(&lengths, *index).all(|p| p.is_multiple_of(stride));
-            let before = level.checked_sub(1).map(|coarser| STRIDES[coarser]);
-            let new = |index: &u64| on(index, *stride) && before.is_none_or(|coarser| !on(index, coarser));
-            order.extend((0..cells).filter(new));
-            ends[level] = order.len();
+        let mut new: [Vec<u64>; STRIDES.len()] = Default::default();
+        for index in 0..cells {
+            // a power of two divides all places where it divides their bits together
+            let bits = places(&lengths, index).fold(0, |bits, place| bits | place);
+            new[STRIDES.partition_point(|stride| !bits.is_multiple_of(*stride))].push(index);
         }
+        let mut end = 0;
+        let ends = new.each_ref().map(|cells| {
+            end += cells.len();
+            end
+        });
+        let order = new.concat();
         Self { order, ends, lengths }
     }
 
