@@ -189,9 +189,9 @@ const MOST: usize = 256;
 pub struct UnderWay {
     /// Runs that are under way.
     pub runs: usize,
-    /// Whether they fill its lanes. It is then given a number only from the last of all, 16 for each thread:
-    /// these runs begin early, take turns with those before them, and all end about together. Begun in turn
-    /// they would leave more and more lanes empty.
+    /// Whether they fill its lanes. A [`Queue`] then gives it only the last of all numbers, 16 for each
+    /// thread: these runs begin early, take turns with those before them, and all end about together. Begun
+    /// in turn they would leave more and more lanes empty.
     pub full: bool,
 }
 

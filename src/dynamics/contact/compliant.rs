@@ -227,9 +227,13 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// The root of the depth is 0 again.
     fn leave_stop(&mut self, end: End) {
         self.record.separate(&self.state.at, end.side(), self.state.v);
-        self.state.enter(end.other());
+        let sign = end.sign::<T>();
+        // one mode inward; more where a break lies so close outside the surface that the step has passed both
+        while sign * (self.stepper.mode(&self.state).end(end).0 - self.state.x) > T::zero() {
+            self.state.enter(end.other());
+        }
         self.state.contact = Contact::Free;
-        let outward = end.sign::<T>() * self.state.v;
+        let outward = sign * self.state.v;
         if outward < T::zero() {
             self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
         } else {

@@ -104,7 +104,8 @@ pub(crate) struct Impact<T> {
     /// Terms of [`STRETCH`].
     terms: usize,
     amplitude: Values<T>,
-    /// At the points: root of the depth, inward speed, time, and what m and t change by over y.
+    /// At the points: root of the depth, inward speed, time (as the last sweep began), and what m and t
+    /// change by over y.
     pub root: Values<T>,
     pub speed: Values<T>,
     pub time: Values<T>,

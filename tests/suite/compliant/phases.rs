@@ -142,6 +142,36 @@ fn a_break_of_the_curve_deep_in_a_stop_is_passed_and_passed_back() {
 }
 
 #[test]
+fn a_break_of_the_curve_next_to_the_surface_is_passed_with_it() {
+    let events = |below_mm: f64, tolerance: f64, v: f64| {
+        let kink = preset("paper", &[]).mechanism().landscape.kinks.last().unwrap().x;
+        let limit = 1e3 * kink - below_mm;
+        let stops = format!("Hertz(travel_limit_mm: {limit:?}, stiffness_n_per_m1_5: 1e8, loss_s_per_m: 2)");
+        let model = preset(
+            "paper",
+            &[
+                &format!("stops={stops}"),
+                &format!("start=At(x_mm: 0, v_m_per_s: {v})"),
+                "excitation=Sine(frequency_hz: 5, amplitude_g: 1.4)",
+                &format!("run.tolerance={tolerance}"),
+                "run.duration_s=0.15",
+                "run.settle_s=0",
+            ],
+        );
+        run(&model).events.iter().map(|own| (own.kind, own.side)).collect::<Vec<_>>()
+    };
+    for v in [0.3, 0.45] {
+        let clear = events(1e-3, 1e-9, v);
+        assert!(clear.iter().filter(|own| own.0 == EventKind::Contact).count() > 1, "{clear:?}");
+        for tolerance in [1e-3, 1e-5, 1e-8] {
+            for below_mm in [0.0, 2e-15, 4e-15, 1e-14, 1e-13, 1e-12, 1e-11] {
+                assert_eq!(events(below_mm, tolerance, v), clear, "{below_mm} {tolerance} {v}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_contact_that_reaches_the_end_of_the_curve_ends_the_run() {
     let changes = [
         "stops=Hertz(travel_limit_mm: 7.9, stiffness_n_per_m1_5: 1, loss_s_per_m: 0)",
