@@ -23,6 +23,7 @@ const ROUNDS: usize = 9;
 
 fn main() {
     flexures();
+    against_the_cubic();
     duration();
     impacts();
     map_size();
@@ -111,6 +112,29 @@ fn flexures() {
                 run.steps
             );
         }
+    }
+}
+
+/// Runs of the flexures beside the same of the cubic of their span, without stops.
+fn against_the_cubic() {
+    println!("\n| without stops, at 1e-6 | cubic, a run | flexures, a run | ratio |");
+    println!("| --- | --- | --- | --- |");
+    let names = ["nominal-cubic", "paper"];
+    let at = |name: &str, amplitude: f64| {
+        let amplitude = format!("excitation.amplitude_g={amplitude}");
+        shared::preset(name, &["stops=None", "run.tolerance=1e-6", &amplitude])
+    };
+    let one = names.map(|name| alone_and_together(&at(name, 1.1)));
+    let unlike = names.map(|name| {
+        let all: Vec<Model> = (0..shared::rounds(2001)).map(|i| at(name, 1.1 + 1e-6 * i as f64)).collect();
+        cpu_of(&all, true) / all.len() as f64
+    });
+    for (what, [cubic, flexures]) in [
+        ("1.1 g, alone", one.map(|own| own.0)),
+        ("1.1 g, among 128 like it", one.map(|own| own.1)),
+        ("2001 from 1.1 to 1.102 g, batched", unlike),
+    ] {
+        println!("| {what} | {:.0} us | {:.0} us | {:.1} |", cubic * 1e6, flexures * 1e6, flexures / cubic);
     }
 }
 
