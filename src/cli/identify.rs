@@ -22,6 +22,7 @@ Examples:
   interwell --headless identify decay.csv --of damping --out ratio.csv --plot decay.png
   interwell --headless identify laser.csv --of damping --from 2.1 --to 6 --column 'laser (mm)'
   interwell --headless identify bounce.csv --of restitution --time Zeit --time-unit ms --column Weg --unit mm
+  interwell --headless identify shaken.csv --of restitution --base base_accel_m_per_s2 --summary e.json
   interwell --headless identify impacts.csv --of restitution --impact-times
   interwell --headless identify pull.csv --of force --points 201 --out force.csv
   interwell --headless curve --set 'mechanism=Table(path: \"/data/force.csv\", tolerance: 1e-3)'";
@@ -33,8 +34,8 @@ pub struct Arguments {
     #[arg(value_name = "FILE")]
     pub file: Option<PathBuf>,
 
-    /// What is identified: damping (of a free decay), restitution (of bounces) or force (over position, of a
-    /// slow pull)
+    /// What is identified: damping (of a free decay), restitution (of impacts on stops) or force (over
+    /// position, of a slow pull)
     #[arg(long, value_name = "WHAT", value_parser = ["damping", "restitution", "force"])]
     pub of: Option<String>,
 
@@ -49,6 +50,22 @@ pub struct Arguments {
     /// Of restitution: the rows are impacts, and their times are all that is known
     #[arg(long)]
     pub impact_times: bool,
+
+    /// Of restitution: column of the base's acceleration, which makes the flights smoother
+    #[arg(long, value_name = "COLUMN")]
+    pub base: Option<String>,
+
+    /// Of restitution: unit of the base's acceleration: m/s^2 or g [default: as the column's name ends]
+    #[arg(long, value_name = "UNIT")]
+    pub base_unit: Option<String>,
+
+    /// Of restitution: about where the left stop is [default: the leftmost impacts]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+    pub left_mm: Option<f64>,
+
+    /// Of restitution: about where the right stop is [default: the rightmost impacts]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+    pub right_mm: Option<f64>,
 
     /// Of force: points of the curve, 4 to 100000 [default: 101]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=100_000))]
@@ -75,6 +92,13 @@ impl Arguments {
 
     fn of(&self) -> &str {
         self.of.as_deref().unwrap_or_default()
+    }
+
+    /// What is asked of the record for the base's acceleration.
+    fn base(&self) -> Ask {
+        let (column, unit) = (self.base.clone(), self.base_unit.clone());
+        let options = ("--base", "--base-unit");
+        Ask { quantities: vec![Quantity::Acceleration], column, unit, options }
     }
 }
 
@@ -106,7 +130,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         if let Some(timing) = timing {
             say(&format!("{name}: {}", timing.describe()));
         }
-        found.summary.iter().for_each(|own| say(&format!("{name}: {}", own.describe())));
+        found.summary.iter().for_each(|number| say(&format!("{name}: {}", number.describe())));
         found.remarks.iter().for_each(|remark| say(&format!("{name}: {remark}")));
     }
     Ok(())
@@ -125,6 +149,10 @@ fn fits(options: &Arguments, common: &Common) -> Result<(), Failure> {
     };
     let wrong = [
         given("--impact-times", options.impact_times, "restitution"),
+        given("--base", options.base.is_some(), "restitution"),
+        given("--base-unit", options.base_unit.is_some(), "restitution"),
+        given("--left-mm", options.left_mm.is_some(), "restitution"),
+        given("--right-mm", options.right_mm.is_some(), "restitution"),
         given("--points", options.points.is_some(), "force"),
         given("--position", options.positions.position.is_some(), "force"),
         given("--position-unit", options.positions.position_unit.is_some(), "force"),
@@ -133,7 +161,7 @@ fn fits(options: &Arguments, common: &Common) -> Result<(), Failure> {
         return Err(Failure::argument(format!("{option} belongs to --of {only}, not to --of {of}")));
     }
     let timed = [("--from", options.from.is_some()), ("--to", options.to.is_some())];
-    if let Some((option, _)) = timed.into_iter().find(|own| own.1 && of == "force") {
+    if let Some((option, _)) = timed.into_iter().find(|option| option.1 && of == "force") {
         return Err(Failure::argument(format!("{option} cuts a record over time; --of force has none")));
     }
     if let Some(option) = common.given(true).filter(|option| *option != "--jobs") {
@@ -144,7 +172,37 @@ fn fits(options: &Arguments, common: &Common) -> Result<(), Failure> {
     {
         return Err(Failure::argument(format!("--from {from} --to {to}: give a time before and one after")));
     }
-    Ok(())
+    of_record(options)
+}
+
+/// Refuses places of stops that cannot be, and what is given beside impact times.
+fn of_record(options: &Arguments) -> Result<(), Failure> {
+    let places = [("--left-mm", options.left_mm), ("--right-mm", options.right_mm)];
+    let endless = |(option, place): &(&'static str, Option<f64>)| {
+        place.filter(|place| !place.is_finite()).map(|place| (*option, place))
+    };
+    if let Some((option, place)) = places.iter().find_map(endless) {
+        return Err(Failure::argument(format!("{option} {place}: give the place of the stop in mm")));
+    }
+    if let (Some(left), Some(right)) = (options.left_mm, options.right_mm)
+        && !(left < right)
+    {
+        let message = "the left stop is the one at the lesser displacement; exchange them";
+        return Err(Failure::argument(format!("--left-mm {left} --right-mm {right}: {message}")));
+    }
+    if options.base.is_none() && options.base_unit.is_some() {
+        return Err(Failure::argument("--base-unit is the unit of a column: name the column by --base"));
+    }
+    let given = [places[0].1.map(|_| "--left-mm"), places[1].1.map(|_| "--right-mm")];
+    let beside =
+        options.base.as_ref().map(|_| "--base").into_iter().chain(given.into_iter().flatten()).next();
+    match beside.filter(|_| options.impact_times) {
+        Some(option) => {
+            let message = "a record of impact times has no displacement; leave one of them out";
+            Err(Failure::argument(format!("{option} with --impact-times: {message}")))
+        }
+        None => Ok(()),
+    }
 }
 
 /// What is identified, and the record that it is identified from.
@@ -164,10 +222,10 @@ fn answer(options: &Arguments, quiet: bool) -> Result<Answer, Failure> {
     match options.of() {
         "force" => {
             let asks = [options.positions.positions(), options.columns.values(&[Quantity::Force])];
-            let [x, own] = read(options, quiet, &asks)?.channels;
+            let [x, values] = read(options, quiet, &asks)?.channels;
             let points = options.points.map_or(FORCE_POINTS, |points| points as usize);
-            let found = force(&x.values, &own.values, points);
-            Ok(Answer { timing: None, found, across: x.values, values: own })
+            let found = force(&x.values, &values.values, points);
+            Ok(Answer { timing: None, found, across: x.values, values })
         }
         "restitution" if options.impact_times => {
             let [times] = cut(options, read(options, quiet, &[times])?)?.channels;
@@ -176,10 +234,21 @@ fn answer(options: &Arguments, quiet: bool) -> Result<Answer, Failure> {
             Ok(Answer { timing: None, found, across: Vec::new(), values })
         }
         "restitution" => {
-            let values = options.columns.values(&[Quantity::Displacement]);
-            let [times, values] = cut(options, read(options, quiet, &[times, values])?)?.channels;
+            let asks = [times, options.columns.values(&[Quantity::Displacement])];
+            let (channels, base) = match &options.base {
+                None => (cut(options, read(options, quiet, &asks)?)?.channels, None),
+                Some(_) => {
+                    let [times, values] = asks;
+                    let record = read(options, quiet, &[times, values, options.base()])?;
+                    let [times, values, base] = cut(options, record)?.channels;
+                    ([times, values], Some(base.values))
+                }
+            };
+            let [times, values] = channels;
             let (timing, times) = (Some(Timing::of(&times.values)), times.values);
-            Ok(Answer { timing, found: restitution(&times, &values.values), across: times, values })
+            let given = [options.left_mm, options.right_mm].map(|place| place.map(|mm| mm * 1e-3));
+            let found = restitution(&times, &values.values, base.as_deref(), given);
+            Ok(Answer { timing, found, across: times, values })
         }
         _ => {
             let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
@@ -194,7 +263,8 @@ fn answer(options: &Arguments, quiet: bool) -> Result<Answer, Failure> {
 fn read<const N: usize>(options: &Arguments, quiet: bool, asks: &[Ask; N]) -> Result<Measured<N>, Failure> {
     let record = read_measured(options.file(), asks).map_err(|problem| about(options.file(), problem))?;
     if !quiet {
-        let read = record.channels.iter().map(|own| format!("{} from `{}`", own.quantity.name(), own.column));
+        let from = |channel: &Channel| format!("{} from `{}`", channel.quantity.name(), channel.column);
+        let read = record.channels.iter().map(from);
         let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
         say(&format!("{}: {}{commas}", options.file().display(), read.collect::<Vec<_>>().join(", ")));
     }

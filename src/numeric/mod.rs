@@ -11,6 +11,7 @@ mod extent;
 pub mod fit;
 mod lanes;
 mod number;
+pub mod orthogonal;
 mod periodogram;
 pub mod pieces;
 mod quadrature;

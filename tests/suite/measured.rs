@@ -5,6 +5,7 @@ mod curve;
 mod damping;
 mod drive;
 mod force;
+mod impacts;
 mod pictures;
 mod reading;
 mod restitution;
@@ -25,9 +26,13 @@ impl Noise {
 
     /// The next one (Box and Muller 1958).
     pub fn next(&mut self) -> f64 {
-        let mut even = || (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-        let (radius, angle) = ((-2.0 * (1.0 - even()).ln()).sqrt(), TAU * even());
+        let (radius, angle) = ((-2.0 * (1.0 - self.even()).ln()).sqrt(), TAU * self.even());
         radius * angle.cos()
+    }
+
+    /// A number from 0 to 1, all equally likely.
+    pub fn even(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
 

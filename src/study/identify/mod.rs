@@ -33,10 +33,13 @@ impl Identity {
     pub fn describe(&self) -> String {
         let column = Column { name: self.name.to_owned(), values: Values::Words(Vec::new()) };
         let (unit, label) = (column.unit(), column.label());
-        let name = label.strip_suffix(unit).map_or(label.as_str(), |own| own.trim_end_matches(", "));
+        let name = label.strip_suffix(unit).map_or(label.as_str(), |name| name.trim_end_matches(", "));
         let [value, low, high] = [self.value, self.interval.0, self.interval.1].map(short);
         let text = format!("{name} {value} {unit}");
-        format!("{} (95 % interval {low} to {high})", text.trim_end())
+        match self.interval.0.is_nan() {
+            true => text.trim_end().to_owned(),
+            false => format!("{} (95 % interval {low} to {high})", text.trim_end()),
+        }
     }
 }
 
@@ -101,12 +104,42 @@ pub enum Unidentified {
     NoDecay,
     /// No impact was found.
     #[error(
-        "no turning point is an impact (a jump of the velocity with {least} samples on either side): sample \
-         faster, or cut the record by --from and --to"
+        "no turning point is an impact: at none does the velocity jump by more than noise (of standard \
+         deviation {noise}) and a smooth turn explain. Impacts show where the flights after them hold \
+         {enough} samples: sample faster, cut the record by --from and --to, or give the places of the stops \
+         by --left-mm and --right-mm"
     )]
     NoImpact {
-        /// Samples that are needed on either side.
-        least: usize,
+        /// Noise of the values, in SI.
+        noise: String,
+        /// Samples that a rebound should have.
+        enough: usize,
+    },
+    /// The rebounds are too short.
+    #[error(
+        "the rebounds hold at most {longest} samples at {rate} a second, and {enough} are needed: take {needed} \
+         samples a second or more"
+    )]
+    Slow {
+        /// Samples of the longest rebound.
+        longest: usize,
+        /// Samples a second.
+        rate: String,
+        /// The rate at which the longest rebound has enough.
+        needed: String,
+        /// Samples that it should have.
+        enough: usize,
+    },
+    /// The rebounds are lost in noise.
+    #[error(
+        "{found} contacts with a stop, but noise (of standard deviation {noise}) hides the velocities about \
+         them: record more impacts, harder ones, or with less noise"
+    )]
+    Noisy {
+        /// Contacts.
+        found: usize,
+        /// Noise of the values, in SI.
+        noise: String,
     },
     /// Times of impacts that follow no bounces.
     #[error("{0} impact times follow no bounces of one restitution; at least 4 are needed: {1}")]

@@ -36,7 +36,7 @@ fn without_noise_the_ratio_of_each_impact_has_its_digits() {
         let end = impacts[3] + 0.4 * (impacts[4] - impacts[3]);
         let times: Vec<f64> = (0..).map(|i| f64::from(i) * 1e-4).take_while(|t| *t < end).collect();
         let x: Vec<f64> = times.iter().map(|t| height(*t)).collect();
-        let found = restitution(&times, &x).unwrap();
+        let found = restitution(&times, &x, None, [None; 2]).unwrap();
         let column = |name: &str| found.rows.numbers(name).unwrap();
         assert_eq!(found.rows.rows(), 4, "{e}");
         for k in 0..4 {
@@ -60,7 +60,7 @@ fn with_noise_and_jitter_the_intervals_hold_the_ratio_in_95_of_100_records() {
             let mut value =
                 |t: &f64| height((t + jitter * 5e-4 * random.next()).max(0.0)) + noise * random.next();
             let x: Vec<f64> = times.iter().map(&mut value).collect();
-            let found = restitution(&times, &x).unwrap();
+            let found = restitution(&times, &x, None, [None; 2]).unwrap();
             hits += u64::from(holds(number(&found, "restitution"), e));
             let column = |name: &str| found.rows.numbers(name).unwrap();
             let ends = column("restitution_low").iter().zip(column("restitution_high"));
@@ -79,7 +79,10 @@ fn smooth_turns_are_no_impacts() {
     let mut random = Noise::new(1);
     for noise in [0.0, 1e-5] {
         let x: Vec<f64> = times.iter().map(|t| 1e-3 * (20.0 * t).sin() + noise * random.next()).collect();
-        assert!(matches!(restitution(&times, &x), Err(Unidentified::NoImpact { .. })), "{noise}");
+        assert!(
+            matches!(restitution(&times, &x, None, [None; 2]), Err(Unidentified::NoImpact { .. })),
+            "{noise}"
+        );
     }
 }
 

@@ -1,0 +1,147 @@
+//! Polynomials of all degrees through samples, with the errors of their values and slopes.
+
+/// The most coefficients.
+pub const MOST_TERMS: usize = 7;
+
+/// Polynomials of up to [`MOST_TERMS`] coefficients that fit samples in the sense of least squares.
+///
+/// Method: a sum of polynomials orthonormal over the samples (Forsythe 1957), whose coefficients are
+/// independent: with errors of variance 1 in the samples each has variance 1, and leaving out the last ones
+/// gives the fit of a lower degree.
+#[derive(Debug, Clone)]
+pub struct Orthogonal {
+    centre: f64,
+    scale: f64,
+    /// Of the recurrence b p_next = (u - a) p - b_before p_before, and p_0.
+    a: [f64; MOST_TERMS],
+    b: [f64; MOST_TERMS],
+    first: f64,
+    coefficients: [f64; MOST_TERMS],
+    squares: [f64; MOST_TERMS],
+    terms: usize,
+    samples: usize,
+}
+
+/// Value and derivatives of a polynomial at a place. The variances are those for errors of variance 1 in
+/// the samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tangent {
+    /// The value.
+    pub value: f64,
+    /// The first derivative.
+    pub slope: f64,
+    /// The second derivative.
+    pub bend: f64,
+    /// Variance of the value.
+    pub of_value: f64,
+    /// Variance of the slope.
+    pub of_slope: f64,
+    /// Covariance of value and slope.
+    pub of_both: f64,
+}
+
+impl Orthogonal {
+    /// The fit to `values` at `places`, which increase.
+    pub fn fit(places: &[f64], values: &[f64]) -> Self {
+        let samples = places.len();
+        let (from, to) = (places.first().map_or(0.0, |x| *x), places.last().map_or(0.0, |x| *x));
+        let (centre, scale) = (0.5 * (from + to), (0.5 * (to - from)).max(f64::MIN_POSITIVE));
+        let first = 1.0 / (samples as f64).sqrt();
+        let zero = [0.0; MOST_TERMS];
+        let (mut a, mut b, mut coefficients, mut squares) = (zero, zero, zero, zero);
+        let places: Vec<f64> = places.iter().map(|x| (x - centre) / scale).collect();
+        let mut rest = values.to_vec();
+        let (mut now, mut before) = (vec![first; samples], vec![0.0; samples]);
+        let mut terms = 0;
+        while terms < MOST_TERMS.min(samples) {
+            let k = terms;
+            coefficients[k] = now.iter().zip(&rest).map(|(p, r)| p * r).sum();
+            rest.iter_mut().zip(&now).for_each(|(r, p)| *r -= coefficients[k] * p);
+            squares[k] = rest.iter().map(|r| r * r).sum();
+            a[k] = places.iter().zip(&now).map(|(u, p)| u * p * p).sum();
+            let before_b = if k == 0 { 0.0 } else { b[k - 1] };
+            for ((u, p), q) in places.iter().zip(&mut now).zip(&mut before) {
+                (*p, *q) = ((u - a[k]) * *p - before_b * *q, *p);
+            }
+            b[k] = now.iter().map(|p| p * p).sum::<f64>().sqrt();
+            now.iter_mut().for_each(|p| *p /= b[k]);
+            terms += 1;
+        }
+        Self { centre, scale, a, b, first, coefficients, squares, terms, samples }
+    }
+
+    /// How many samples are fitted.
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// The sum of the squared residuals of the polynomial with so many coefficients; `None` where there are
+    /// fewer samples.
+    pub fn square(&self, terms: usize) -> Option<f64> {
+        (1..=self.terms).contains(&terms).then(|| self.squares[terms - 1])
+    }
+
+    /// The polynomial with so many coefficients, of which there are no more than samples, at a place.
+    pub fn at(&self, place: f64, terms: usize) -> Tangent {
+        let u = (place - self.centre) / self.scale;
+        let mut tangent =
+            Tangent { value: 0.0, slope: 0.0, bend: 0.0, of_value: 0.0, of_slope: 0.0, of_both: 0.0 };
+        // value and two derivatives of a polynomial and the one before it
+        let (mut p, mut before) = ([self.first, 0.0, 0.0], [0.0; 3]);
+        for k in 0..terms.min(self.terms) {
+            let c = self.coefficients[k];
+            tangent.value += c * p[0];
+            tangent.slope += c * p[1] / self.scale;
+            tangent.bend += c * p[2] / self.scale.powi(2);
+            tangent.of_value += p[0] * p[0];
+            tangent.of_slope += (p[1] / self.scale).powi(2);
+            tangent.of_both += p[0] * p[1] / self.scale;
+            let (shift, below) = (u - self.a[k], if k == 0 { 0.0 } else { self.b[k - 1] });
+            let next = [
+                shift * p[0] - below * before[0],
+                shift * p[1] + p[0] - below * before[1],
+                shift * p[2] + 2.0 * p[1] - below * before[2],
+            ];
+            (p, before) = (next.map(|value| value / self.b[k]), p);
+        }
+        tangent
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::regression::{least_squares, powers};
+
+    #[test]
+    fn value_slope_and_errors_are_those_of_the_normal_equations() {
+        let places: Vec<f64> = (0..23).map(|i| 3.0 + 0.01 * f64::from(i) + 1e-3 * f64::from(i % 3)).collect();
+        let values: Vec<f64> = places.iter().map(|x| (7.0 * x).sin() + 0.01 * (900.0 * x).cos()).collect();
+        let fit = Orthogonal::fit(&places, &values);
+        let (at, scale) = (2.97, 0.1);
+        let rows: Vec<([f64; 4], f64)> =
+            places.iter().zip(&values).map(|(x, y)| (powers((x - at) / scale), *y)).collect();
+        let exact = least_squares(&rows).unwrap();
+        let variance = fit.square(4).unwrap() / exact.freedom as f64;
+        let found = fit.at(at, 4);
+        let pairs = [
+            (found.value, exact.coefficients[0]),
+            (found.slope * scale, exact.coefficients[1]),
+            (found.bend * scale * scale, 2.0 * exact.coefficients[2]),
+            (found.of_value * variance, exact.covariance[(0, 0)]),
+            (found.of_both * scale * variance, exact.covariance[(0, 1)]),
+            (found.of_slope * scale * scale * variance, exact.covariance[(1, 1)]),
+        ];
+        for (found, exact) in pairs {
+            assert!((found - exact).abs() < 1e-10 * exact.abs(), "{found} for {exact}");
+        }
+    }
+
+    #[test]
+    fn as_many_terms_as_samples_leave_nothing_over() {
+        let fit = Orthogonal::fit(&[0.0, 1.0, 2.0, 4.0], &[1.0, -1.0, 3.0, 2.0]);
+        assert!(fit.square(4).unwrap() < 1e-28 && fit.square(5).is_none());
+        assert!((fit.at(2.0, 4).value - 3.0).abs() < 1e-13);
+        assert!((fit.at(2.0, 4).of_value - 1.0).abs() < 1e-13);
+    }
+}

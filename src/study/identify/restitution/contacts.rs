@@ -1,0 +1,217 @@
+//! The stops of a record, and its contacts with them.
+
+use std::ops::Range;
+
+use crate::study::identify::turns::{Turn, turns};
+
+use super::meeting::{Meeting, Sides};
+use super::motion::Motion;
+
+/// A turning point at a stop.
+#[derive(Debug, Clone)]
+pub struct Contact {
+    /// The sample where the record turns, and whether that is on the right stop.
+    pub at: usize,
+    pub right: bool,
+    /// The impact, where the velocity jumps there.
+    pub impact: Option<Impact>,
+    /// The samples of the flights before it and after it.
+    pub flights: Range<usize>,
+}
+
+/// What a first fit tells of an impact. SI.
+#[derive(Debug, Clone, Copy)]
+pub struct Impact {
+    pub t: f64,
+    pub x: f64,
+    /// Standard error of the place.
+    pub error: f64,
+    /// Samples nearer in time than this may lie on either side of the impact.
+    pub unsure: f64,
+    /// Speed towards the stop, once a better fit has shown it.
+    pub speed: Option<f64>,
+}
+
+/// The coefficients of the polynomials by which impacts are found.
+const TERMS: usize = 3;
+
+/// The fewest samples on either side of an impact that is found.
+const FEWEST: usize = 4;
+
+/// Two polynomials that meet must fit better than one across by the square of so many standard deviations.
+const CLEAR: f64 = 6.0;
+
+/// Impacts count as those of one stop where their places differ by less than this part of the range of the
+/// record, besides six standard errors.
+const SAME_STOP: f64 = 0.005;
+
+/// Impacts count as those of a given stop where they lie nearer to it than this part of the range.
+const NEAR_GIVEN: f64 = 0.05;
+
+impl Contact {
+    /// Its instant, as far as it is known.
+    pub fn time(&self, motion: &Motion) -> f64 {
+        self.impact.map_or(motion.times[self.at], |impact| impact.t)
+    }
+}
+
+/// The contacts in order of time, and the places of the left and the right stop where impacts show them.
+///
+/// A turning point is an impact where two parabolas that meet there fit the samples around it better than one
+/// polynomial of as many coefficients. A stop is where the outermost of these impacts lie, with no sample
+/// beyond, or where the impacts near a place `given` lie. Turning points elsewhere are not contacts.
+pub fn contacts(motion: &Motion, given: [Option<f64>; 2]) -> (Vec<Contact>, [Option<f64>; 2]) {
+    let turning = turns(motion.x, motion.back);
+    let samples = motion.x.len();
+    let mut contacts = Vec::new();
+    for (k, turn) in turning.iter().enumerate() {
+        if turn.at == 0 || turn.at + 1 >= samples {
+            continue;
+        }
+        // maxima and minima alternate
+        let before = k.checked_sub(2).map_or(0, |k| turning[k].at);
+        let after = turning.get(k + 2).map_or(samples, |turn| turn.at);
+        let from = (before + 1..=turn.at).rev().find(|i| motion.is_gap(*i)).unwrap_or(before);
+        let to = (turn.at + 1..after).find(|i| motion.is_gap(*i)).unwrap_or(after);
+        let impact = impact(motion, *turn, from..to);
+        contacts.push(Contact { at: turn.at, right: turn.maximum, impact, flights: turn.at..turn.at });
+    }
+    let stops = [false, true].map(|right| stop(motion, &contacts, right, given[usize::from(right)]));
+    contacts.retain(|contact| {
+        let Some(stop) = stops[usize::from(contact.right)] else { return false };
+        let x = |i: usize| motion.x[i];
+        match &contact.impact {
+            Some(impact) => (impact.x - stop).abs() < 6.0 * impact.error + SAME_STOP * motion.range(),
+            None => {
+                let step = [contact.at - 1, contact.at + 1].map(|i| (x(i) - x(contact.at)).abs());
+                let reach = step[0].max(step[1]) + motion.back + band(motion, &stops, contact.right);
+                (x(contact.at) - stop).abs() < reach
+            }
+        }
+    });
+    limit(motion, &mut contacts, &stops);
+    (contacts, stops)
+}
+
+/// The impact at a turning point, from the fewest samples that show it.
+fn impact(motion: &Motion, turn: Turn, within: Range<usize>) -> Option<Impact> {
+    let variance = motion.noise.powi(2);
+    let mut count = FEWEST;
+    loop {
+        let before = turn.at.saturating_sub(count).max(within.start)..turn.at;
+        let after = turn.at + 1..(turn.at + 1 + count).min(within.end);
+        let samples = before.len() + after.len();
+        let (short, long) = (before.len().min(after.len()), before.len().max(after.len()));
+        if short < FEWEST || (count > FEWEST && long < count) {
+            return None;
+        }
+        let near = (count / 4).max(1);
+        let (first, last) = (turn.at.saturating_sub(near), (turn.at + near).min(motion.x.len() - 1));
+        let inside = |t: f64| (motion.times[first]..=motion.times[last]).contains(&t);
+        let sides = Sides { before: motion.fit(before.clone()), after: motion.fit(after.clone()) };
+        let found = sides.meet(motion, TERMS, motion.times[turn.at], turn.maximum);
+        let turns_back = |found: &Meeting| found.towards > 0.0 && found.away > 0.0 && inside(found.t);
+        if let (Some(found), Some((two, _))) = (found.filter(turns_back), sides.rest(TERMS)) {
+            let one = motion.fit_both(before, after).square(2 * TERMS).unwrap_or(0.0);
+            let better = one - two > CLEAR.powi(2) * variance && two < 0.25 * one.max(100.0 * variance);
+            let fits = two < 4.0 * variance * samples as f64 || two < 0.1 * one;
+            if better && fits {
+                let error = motion.noise * found.of_x.sqrt() + (two / samples as f64).sqrt();
+                let unsure = motion.noise * found.of_t.sqrt();
+                return Some(Impact { t: found.t, x: found.x, error, unsure, speed: None });
+            }
+        }
+        count = (count * 7 / 5).max(count + 1);
+    }
+}
+
+/// The place of a stop: the median of the outermost impacts.
+fn stop(motion: &Motion, contacts: &[Contact], right: bool, given: Option<f64>) -> Option<f64> {
+    let (sign, edge) = if right { (1.0, motion.extent.1) } else { (-1.0, -motion.extent.0) };
+    let same = |impact: &Impact| 6.0 * impact.error + SAME_STOP * motion.range();
+    let counts = |impact: &Impact| match given {
+        Some(place) => (impact.x - place).abs() < NEAR_GIVEN * motion.range(),
+        None => sign * impact.x + same(impact) + motion.back > edge,
+    };
+    let of_side = contacts.iter().filter(|contact| contact.right == right);
+    let impacts: Vec<Impact> = of_side.filter_map(|contact| contact.impact).filter(counts).collect();
+    let inner = impacts.iter().map(|impact| sign * impact.x - 3.0 * impact.error);
+    let outermost = inner.fold(f64::NEG_INFINITY, f64::max);
+    let outer = impacts.iter().filter(|impact| sign * impact.x + same(impact) >= outermost);
+    median(outer.map(|impact| impact.x).collect())
+}
+
+/// Samples of the longest flight that goes from one turning point to another of its kind without reaching half
+/// of the way to the other side.
+pub fn longest_rebound(motion: &Motion) -> Option<usize> {
+    let rebound = |turns: &[Turn]| {
+        let [first, top, last] = [turns[0].at, turns[1].at, turns[2].at];
+        let height = [first, last].map(|i| (motion.x[i] - motion.x[top]).abs());
+        // the mass may rest before or after it
+        (height[0].max(height[1]) < 0.5 * motion.range()).then(|| 2 * (top - first).min(last - top))
+    };
+    turns(motion.x, motion.back).windows(3).filter_map(rebound).max()
+}
+
+/// The middle one of some values, of two the greater.
+pub fn median(mut values: Vec<f64>) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// How near to a stop samples of a mass on it lie: by noise, or by twice the way from its place to the
+/// outermost sample, since that is how well the place is known.
+fn band(motion: &Motion, stops: &[Option<f64>; 2], right: bool) -> f64 {
+    let edge = if right { motion.extent.1 } else { motion.extent.0 };
+    stops[usize::from(right)].map_or(0.0, |stop| motion.back.max(2.0 * (edge - stop).abs()))
+}
+
+/// Where a contact lies among the samples.
+struct End {
+    samples: Range<usize>,
+    right: bool,
+    impact: bool,
+}
+
+/// Finds the flights of each contact: from its instant to that of the next impact, or to where the mass comes
+/// near a stop without one, or to a gap of the record.
+pub fn limit(motion: &Motion, contacts: &mut [Contact], stops: &[Option<f64>; 2]) {
+    let end = |contact: &Contact| {
+        let between = |impact: Impact| motion.from(impact.t)..motion.from(impact.t);
+        let samples = contact.impact.map_or(contact.at..contact.at + 1, between);
+        End { samples, right: contact.right, impact: contact.impact.is_some() }
+    };
+    let ends: Vec<End> = contacts.iter().map(end).collect();
+    let bands = [false, true].map(|right| band(motion, stops, right));
+    let near = |i: usize, right: bool, part: f64| {
+        let side = usize::from(right);
+        stops[side].is_some_and(|stop| (motion.x[i] - stop).abs() < part * bands[side])
+    };
+    for (k, contact) in contacts.iter_mut().enumerate() {
+        let (start, side) = (ends[k].samples.start, contact.right);
+        // how many of the samples on the way to another contact belong to the flight
+        let flight = |samples: &mut dyn Iterator<Item = usize>, end: Option<&End>| {
+            // samples near a stop belong to a flight that ends by an impact on it
+            let ends_on = |right: bool| end.is_some_and(|end| end.impact && end.right == right);
+            let (mut count, mut left) = (0, false);
+            for i in samples {
+                left |= !near(i, side, 1.0);
+                let back = left && near(i, side, 0.5) && !ends_on(side);
+                if back || (near(i, !side, 0.5) && !ends_on(!side)) {
+                    break;
+                }
+                count += 1;
+                if motion.is_gap(if i < start { i } else { i + 1 }) {
+                    break;
+                }
+            }
+            if left { count } else { 0 }
+        };
+        let (before, after) = (k.checked_sub(1).map(|k| &ends[k]), ends.get(k + 1));
+        let first = before.map_or(0, |end| end.samples.end);
+        let last = after.map_or(motion.x.len(), |end| end.samples.start);
+        let backward = flight(&mut (first..start).rev(), before);
+        let onward = flight(&mut (start..last), after);
+        contact.flights = start - backward..start + onward;
+    }
+}

@@ -1,0 +1,126 @@
+//! Where two polynomials meet: the instant and the place of an impact, and the speeds on both sides of it.
+
+use crate::numeric::orthogonal::Orthogonal;
+
+use super::contacts::median;
+use super::motion::Motion;
+
+/// The motion before an impact and after it, as polynomials.
+pub struct Sides {
+    pub before: Orthogonal,
+    pub after: Orthogonal,
+}
+
+/// An impact. SI; variances are those for errors of variance 1 in the samples.
+#[derive(Debug, Clone, Copy)]
+pub struct Meeting {
+    pub t: f64,
+    pub x: f64,
+    /// Speed towards the stop before it, and away from the stop after it.
+    pub towards: f64,
+    pub away: f64,
+    pub of_t: f64,
+    pub of_x: f64,
+    pub of_towards: f64,
+    pub of_away: f64,
+    /// Covariance of both speeds.
+    pub of_speeds: f64,
+}
+
+/// Steps of Newton's method; two parabolas need some five.
+const MOST_STEPS: usize = 10;
+
+impl Sides {
+    /// Where the polynomials with so many coefficients meet, next to a time; `right`: the stop is above.
+    ///
+    /// This is the joint least squares fit of x_s + v_in (t - t_0) + .. before t_0 and x_s + v_out (t - t_0)
+    /// + .. after it with t_0 and x_s unknown: both have the same number of coefficients, and displacement is
+    /// continuous where the two polynomials meet. Errors are carried from the samples to first order,
+    /// that of t_0 included.
+    pub fn meet(&self, motion: &Motion, terms: usize, near: f64, right: bool) -> Option<Meeting> {
+        self.before.square(terms).and(self.after.square(terms))?;
+        let sign = if right { 1.0 } else { -1.0 };
+        let mut t = near;
+        for _ in 0..MOST_STEPS {
+            let (one, other) = (motion.at(&self.before, t, terms), motion.at(&self.after, t, terms));
+            let step = (other.value - one.value) / (one.slope - other.slope);
+            if !step.is_finite() {
+                return None;
+            }
+            t += step;
+            if step.abs() <= 1e-12 * motion.timing.step {
+                break;
+            }
+        }
+        let (one, other) = (motion.at(&self.before, t, terms), motion.at(&self.after, t, terms));
+        let jump = one.slope - other.slope;
+        // errors l of the first and r of the second value move the meeting by (r - l)/jump
+        let (a, b) = (one.bend / jump, other.bend / jump);
+        let (l, r) = (-other.slope / jump, one.slope / jump);
+        Some(Meeting {
+            t,
+            x: l * one.value + r * other.value,
+            towards: sign * one.slope,
+            away: -sign * other.slope,
+            of_t: (one.of_value + other.of_value) / jump.powi(2),
+            of_x: l * l * one.of_value + r * r * other.of_value,
+            of_towards: one.of_slope - 2.0 * a * one.of_both + a * a * (one.of_value + other.of_value),
+            of_away: other.of_slope + 2.0 * b * other.of_both + b * b * (one.of_value + other.of_value),
+            of_speeds: b * one.of_both - a * other.of_both - a * b * (one.of_value + other.of_value),
+        })
+    }
+
+    /// The sum of the squared residuals of both, and the samples less the coefficients.
+    pub fn rest(&self, terms: usize) -> Option<(f64, usize)> {
+        let square = self.before.square(terms)? + self.after.square(terms)?;
+        Some((square, self.before.samples() + self.after.samples() - 2 * terms))
+    }
+}
+
+impl Meeting {
+    /// The restitution and its variance.
+    pub fn ratio(&self) -> (f64, f64) {
+        let e = self.away / self.towards;
+        (e, self.of_residual(e) / self.towards.powi(2))
+    }
+
+    /// Variance of away - e towards.
+    fn of_residual(&self, e: f64) -> f64 {
+        self.of_away + e * (e * self.of_towards - 2.0 * self.of_speeds)
+    }
+}
+
+/// The restitution of impacts together and its variance for errors of variance 1 in the samples.
+///
+/// Both speeds have errors, so that a mean of ratios would be biased: this is the e of the greatest
+/// likelihood with the true speeds as further unknowns (Deming 1943, with a covariance for each impact), by
+/// fixed point iteration. Impacts count as independent; two that share a flight are not quite.
+pub fn restitution(impacts: &[&Meeting]) -> Option<(f64, f64)> {
+    let mut e = median(impacts.iter().map(|impact| impact.ratio().0).collect())?;
+    let mut weight = f64::NAN;
+    for _ in 0..30 {
+        let (mut product, mut square) = (0.0, 0.0);
+        weight = 0.0;
+        for impact in impacts {
+            let (residual, variance) = (impact.away - e * impact.towards, impact.of_residual(e));
+            let shift = (impact.of_speeds - e * impact.of_towards) / variance * residual;
+            let speed = impact.towards - shift;
+            product += speed * impact.away / variance;
+            square += speed * impact.towards / variance;
+            weight += speed * speed / variance;
+        }
+        let step = product / square - e;
+        e += step;
+        if !(step.abs() > 1e-14 * e.abs()) {
+            break;
+        }
+    }
+    (e.is_finite() && weight > 0.0).then(|| (e, 1.0 / weight))
+}
+
+/// The place of impacts on one stop, the mean with weights 1/variance, and its variance.
+pub fn place(impacts: &[&Meeting]) -> Option<(f64, f64)> {
+    let total: f64 = impacts.iter().map(|impact| 1.0 / impact.of_x).sum();
+    let mean = impacts.iter().map(|impact| impact.x / impact.of_x).sum::<f64>() / total;
+    mean.is_finite().then(|| (mean, 1.0 / total))
+}

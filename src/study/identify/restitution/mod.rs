@@ -1,0 +1,244 @@
+//! Coefficient of restitution from a record of displacement, or from the times of impacts.
+
+mod choice;
+mod contacts;
+mod meeting;
+mod motion;
+mod times;
+mod trials;
+
+use self::choice::Choice;
+use self::contacts::{Contact, contacts};
+use self::meeting::{place, restitution as ratio};
+use self::motion::Motion;
+use self::trials::{Single, Trial, each, together, trials};
+use super::{Identified, Identity, Unidentified};
+use crate::numeric::short;
+use crate::study::table::Table;
+
+pub use times::restitution_of_times;
+
+/// Samples that a rebound should have.
+const ENOUGH: usize = 8;
+
+/// Restitution of the impacts in a record of displacement `x` in m over `times` in s, of a mass that is shaken
+/// between stops or bounces freely.
+///
+/// A turning point is an impact where the velocity jumps, and a stop is where the outermost impacts lie, or
+/// where those near a place `given` (left, right) lie. On either side of an impact a polynomial is fitted to
+/// the flight; both meet at the impact, where their slopes are the speeds before and after it. With the
+/// `accelerations` of the base in m/s^2, what they alone make of the displacement is known and taken off
+/// before.
+///
+/// Window and degree are those with the narrowest interval, of which the differences from other windows and
+/// degrees are a part. The one number is of all impacts together. Where the stops differ by more than their
+/// intervals, its interval holds both of theirs; where the impacts of a stop differ by more than theirs, it
+/// is as much wider (Birge 1932).
+///
+/// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution`, each with `_low` and
+/// `_high`.
+pub fn restitution(
+    times: &[f64],
+    x: &[f64],
+    accelerations: Option<&[f64]>,
+    given: [Option<f64>; 2],
+) -> Result<Identified, Unidentified> {
+    let motion = Motion::new(times, x, accelerations);
+    let (mut contacts, stops) = contacts(&motion, given);
+    if contacts.is_empty() {
+        return Err(unresolved(&motion, 0));
+    }
+    let trials = trials(&motion, &mut contacts, &stops);
+    let singles = each(&trials, contacts.len());
+    let found = numbers(&contacts, &trials, &singles);
+    let (mut summary, used, mut remarks) = found.ok_or_else(|| unresolved(&motion, contacts.len()))?;
+    for (right, name) in [(false, "left_stop_m"), (true, "right_stop_m")] {
+        if let Some((place, _)) = together(&trials, |k| contacts[k].right == right, place) {
+            remarks.extend(given[usize::from(right)].and_then(|given| elsewhere(right, given, place)));
+            summary.push(Identity::new(name, place.value, place.half));
+        }
+    }
+    let counts = [
+        ("impacts_found", contacts.len()),
+        ("impacts_used", used),
+        ("impacts_left_out", contacts.len() - used),
+    ];
+    let count = |(name, count)| Identity { name, value: count as f64, interval: (f64::NAN, f64::NAN) };
+    summary.extend(counts.map(count));
+    remarks.extend(left_out(&motion, &contacts, &singles, used));
+    let (rows, fitted) = (rows(&contacts, &singles), fitted(&motion, &contacts, &singles));
+    Ok(Identified { rows, fitted, summary, remarks })
+}
+
+/// The restitutions, of how many impacts the first one is, and what to say of them.
+fn numbers(
+    contacts: &[Contact],
+    trials: &[Trial],
+    singles: &[Single],
+) -> Option<(Vec<Identity>, usize, Vec<String>)> {
+    let of = |name: &'static str, counts: fn(bool) -> bool| {
+        let (choice, used) = together(trials, |k| counts(contacts[k].right), ratio)?;
+        let singles: Vec<&Single> =
+            singles.iter().filter(|single| counts(contacts[single.contact].right)).collect();
+        let scatter = scatter(choice, &singles);
+        let identity = Identity::new(name, choice.value, choice.half * scatter.unwrap_or(1.0));
+        Some((identity, used, scatter.is_some()))
+    };
+    let sides = [of("restitution_left", |right| !right), of("restitution_right", |right| right)];
+    let mut remarks = Vec::new();
+    let mut summary = Vec::new();
+    let mut used = 0;
+    match sides {
+        [Some((left, n, _)), Some((right, m, _))] if differ(left, right) => {
+            let text =
+                "the stops differ by more than their intervals; the interval of the one number holds both";
+            remarks.push(text.to_owned());
+            summary.push(spanning(left, right));
+            used += n + m;
+        }
+        _ => {
+            let (whole, count, _) = of("restitution", |_| true)?;
+            summary.push(whole);
+            used += count;
+        }
+    }
+    if let [Some((left, ..)), Some((right, ..))] = sides {
+        summary.extend([left, right]);
+    }
+    if sides.iter().flatten().any(|(_, _, scatter)| *scatter) {
+        remarks.push(
+            "the impacts of a stop differ by more than their intervals: the restitution depends on speed or \
+             what else the rows show, and the one number is a mean"
+                .to_owned(),
+        );
+    }
+    remarks.extend(summary.iter().filter_map(above_one));
+    Some((summary, used, remarks))
+}
+
+fn half(number: Identity) -> f64 {
+    0.5 * (number.interval.1 - number.interval.0)
+}
+
+/// Whether two numbers differ by more than one and a half times the interval of their difference.
+fn differ(one: Identity, other: Identity) -> bool {
+    (one.value - other.value).abs() > 1.5 * half(one).hypot(half(other))
+}
+
+/// The mean of two numbers with weights, and an interval that holds both of theirs.
+fn spanning(one: Identity, other: Identity) -> Identity {
+    let [a, b] = [one, other].map(|number| half(number).powi(-2));
+    let interval = (one.interval.0.min(other.interval.0), one.interval.1.max(other.interval.1));
+    Identity { name: "restitution", value: (a * one.value + b * other.value) / (a + b), interval }
+}
+
+/// By how much impacts alone scatter about their common number beyond their intervals, where they do.
+fn scatter(common: Choice, singles: &[&Single]) -> Option<f64> {
+    let count = singles.len() as f64;
+    let apart = |single: &&Single| (single.ratio.value - common.value) / single.ratio.half.hypot(common.half);
+    // half of an interval is some two standard errors
+    let square = 4.0 * singles.iter().map(|single| apart(single).powi(2)).sum::<f64>() / count;
+    (square > 1.0 + 4.0 * (2.0 / count).sqrt()).then(|| square.sqrt())
+}
+
+/// What to say of a restitution above 1.
+fn above_one(number: &Identity) -> Option<String> {
+    let which = match number.name {
+        "restitution_left" => " of the left stop",
+        "restitution_right" => " of the right stop",
+        _ => "",
+    };
+    let text = if number.interval.0 > 1.0 {
+        "is above 1, which a stop at rest cannot make: the stop moves, the acceleration jumps at the impacts, or \
+         these are no impacts"
+    } else if number.value > 1.0 {
+        "is above 1 by less than its error"
+    } else {
+        return None;
+    };
+    Some(format!("the restitution{which} {text}"))
+}
+
+/// What to say where a stop lies elsewhere than was given.
+fn elsewhere(right: bool, given: f64, place: Choice) -> Option<String> {
+    let side = if right { "right" } else { "left" };
+    let [found, place_given] = [place.value, given].map(|x| short(1e3 * x));
+    let apart = (place.value - given).abs() > place.half;
+    apart.then(|| format!("the {side} stop lies at {found} mm, not at {place_given} mm"))
+}
+
+/// How many contacts were left out, and why.
+fn left_out(motion: &Motion, contacts: &[Contact], singles: &[Single], used: usize) -> Option<String> {
+    let found = contacts.len();
+    let fitted = |k: usize| singles.binary_search_by_key(&k, |single| single.contact).is_ok();
+    let missing = |(k, contact): &(usize, &Contact)| !fitted(*k) && motion.is_missing(contact.time(motion));
+    let missing = contacts.iter().enumerate().filter(missing).count().min(found - used);
+    let short = found - used - missing;
+    let part = |count: usize, why: &str| (count > 0).then(|| format!("{count} {why}"));
+    let parts = [
+        part(short, "with flights of too few samples for this rate or lost in noise"),
+        part(missing, "where samples are missing"),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    let text =
+        || format!("of {found} contacts with the stops {used} are used; left out: {}", parts.join(", "));
+    (!parts.is_empty()).then(text)
+}
+
+/// Why so many contacts give no restitution, and the rate that would do.
+fn unresolved(motion: &Motion, found: usize) -> Unidentified {
+    let (noise, rate) = (short(motion.noise), 1.0 / motion.timing.step);
+    match contacts::longest_rebound(motion).or((found > 0).then_some(2)) {
+        Some(longest) if longest < ENOUGH => {
+            let [rate, needed] = [rate, rate * ENOUGH as f64 / longest as f64].map(short);
+            Unidentified::Slow { longest, rate, needed, enough: ENOUGH }
+        }
+        _ if found > 0 => Unidentified::Noisy { found, noise },
+        _ => Unidentified::NoImpact { noise, enough: ENOUGH },
+    }
+}
+
+fn rows(contacts: &[Contact], singles: &[Single]) -> Table {
+    let right = |single: &Single| contacts[single.contact].right;
+    let outward = |single: &Single| if right(single) { 1.0 } else { -1.0 };
+    let side = |single: &Single| if right(single) { "right" } else { "left" };
+    let v_in = |single: &Single| (outward(single) * single.impact.towards, single.halves[0]);
+    let v_out = |single: &Single| (-outward(single) * single.impact.away, single.halves[1]);
+    let ratio = |single: &Single| (single.ratio.value, single.ratio.half);
+    let table = Table::new().each("t_s", singles, |single| single.impact.t).each("side", singles, side);
+    let table =
+        with_interval(table, singles, ["v_in_m_per_s", "v_in_low_m_per_s", "v_in_high_m_per_s"], v_in);
+    let table =
+        with_interval(table, singles, ["v_out_m_per_s", "v_out_low_m_per_s", "v_out_high_m_per_s"], v_out);
+    with_interval(table, singles, ["restitution", "restitution_low", "restitution_high"], ratio)
+}
+
+/// The table with a value, of which half of the interval is known, and the ends of the interval.
+fn with_interval(
+    table: Table,
+    singles: &[Single],
+    names: [&str; 3],
+    of: impl Fn(&Single) -> (f64, f64),
+) -> Table {
+    let end = |single: &Single, sign: f64| of(single).0 + sign * of(single).1;
+    table
+        .each(names[0], singles, |single| of(single).0)
+        .each(names[1], singles, |single| end(single, -1.0))
+        .each(names[2], singles, |single| end(single, 1.0))
+}
+
+/// The impacts, and how far each flight goes after it.
+fn fitted(motion: &Motion, contacts: &[Contact], singles: &[Single]) -> Table {
+    let farthest = |single: &Single| {
+        let away = |i: &usize| (motion.x[*i] - single.impact.x).abs();
+        let flight = motion.from(single.impact.t)..contacts[single.contact].flights.end;
+        flight.max_by(|a, b| away(a).total_cmp(&away(b)))
+    };
+    let ends: Vec<Option<usize>> = singles.iter().map(farthest).collect();
+    let at = |values: &[f64], end: &Option<usize>| end.map_or(f64::NAN, |i| values[i]);
+    Table::new()
+        .each("t_s", singles, |single| single.impact.t)
+        .each("x_m", singles, |single| single.impact.x)
+        .each("rebound_t_s", &ends, |end| at(motion.times, end))
+        .each("rebound_x_m", &ends, |end| at(motion.x, end))
+}

@@ -1,0 +1,107 @@
+//! A record of displacement as impacts are fitted to it, with the base's acceleration where that is known.
+
+use std::ops::Range;
+
+use crate::numeric::extent;
+use crate::numeric::orthogonal::{Orthogonal, Tangent};
+use crate::scene::Timing;
+use crate::study::identify::turns::{noise, reach};
+
+/// A record of displacement relative to the base. SI.
+pub struct Motion<'a> {
+    pub times: &'a [f64],
+    pub x: &'a [f64],
+    pub timing: Timing,
+    /// Least and greatest displacement.
+    pub extent: (f64, f64),
+    /// Noise of the displacements, and how far noise alone moves them back.
+    pub noise: f64,
+    pub back: f64,
+    /// The displacement less what the acceleration of the base alone moves the mass.
+    smooth: Vec<f64>,
+    /// What the acceleration of the base alone makes at each sample: displacement, velocity, acceleration.
+    base: Vec<[f64; 3]>,
+}
+
+impl<'a> Motion<'a> {
+    /// The record, with the acceleration of the base at the same times where it was recorded: the mass obeys
+    /// x'' = -a + smooth forces, so that -a, integrated twice with straight lines between its samples, is
+    /// known and leaves a rest that is smoother than the displacement.
+    pub fn new(times: &'a [f64], x: &'a [f64], accelerations: Option<&[f64]>) -> Self {
+        let noise = noise(x);
+        let base = accelerations.map_or(Vec::new(), |a| integrated(times, a));
+        let smooth = match base.is_empty() {
+            true => x.to_vec(),
+            false => x.iter().zip(&base).map(|(x, base)| x - base[0]).collect(),
+        };
+        let extent = extent(x.iter().copied());
+        let (timing, back) = (Timing::of(times), reach(x, noise));
+        Self { times, x, timing, extent, noise, back, smooth, base }
+    }
+
+    pub fn range(&self) -> f64 {
+        self.extent.1 - self.extent.0
+    }
+
+    /// The first sample at a time or after it.
+    pub fn from(&self, t: f64) -> usize {
+        self.times.partition_point(|time| *time < t)
+    }
+
+    /// Whether there is a gap before a sample.
+    pub fn is_gap(&self, sample: usize) -> bool {
+        let step = |i: usize| self.times[i] - self.times[i - 1];
+        (1..self.times.len()).contains(&sample) && self.timing.is_gap(step(sample))
+    }
+
+    /// Whether samples are missing about a time: those before and after it are more than three usual steps
+    /// apart, in which a short rebound may hide.
+    pub fn is_missing(&self, t: f64) -> bool {
+        let next = self.from(t);
+        let around = (1..self.times.len()).contains(&next);
+        !around || self.times[next] - self.times[next - 1] > 3.5 * self.timing.step
+    }
+
+    /// Polynomials through samples.
+    pub fn fit(&self, samples: Range<usize>) -> Orthogonal {
+        Orthogonal::fit(&self.times[samples.clone()], &self.smooth[samples])
+    }
+
+    /// Polynomials through the samples of two ranges together.
+    pub fn fit_both(&self, one: Range<usize>, other: Range<usize>) -> Orthogonal {
+        let both = |of: &[f64]| [&of[one.clone()], &of[other.clone()]].concat();
+        Orthogonal::fit(&both(self.times), &both(&self.smooth))
+    }
+
+    /// Displacement, velocity and acceleration at a time, of a fit with so many coefficients.
+    pub fn at(&self, fit: &Orthogonal, t: f64, terms: usize) -> Tangent {
+        let mut found = fit.at(t, terms);
+        if !self.base.is_empty() {
+            let k = self.from(t).clamp(1, self.times.len() - 1) - 1;
+            let ([y, v, a], h) = (self.base[k], t - self.times[k]);
+            let jerk = (self.base[k + 1][2] - a) / (self.times[k + 1] - self.times[k]);
+            found.value += y + h * (v + h * (a / 2.0 + h * jerk / 6.0));
+            found.slope += v + h * (a + h * jerk / 2.0);
+            found.bend += a + h * jerk;
+        }
+        found
+    }
+}
+
+/// Displacement, velocity and acceleration at each sample of a free mass relative to a base that accelerates
+/// along straight lines between its samples.
+fn integrated(times: &[f64], accelerations: &[f64]) -> Vec<[f64; 3]> {
+    let (mut y, mut v) = (0.0, 0.0);
+    let mut before: Option<(f64, f64)> = None;
+    let next = |(t, a): (&f64, &f64)| {
+        let a = -a;
+        if let Some((last, first)) = before {
+            let h = t - last;
+            y += h * (v + h * (2.0 * first + a) / 6.0);
+            v += 0.5 * h * (first + a);
+        }
+        before = Some((*t, a));
+        [y, v, a]
+    };
+    times.iter().zip(accelerations).map(next).collect()
+}

@@ -1,0 +1,174 @@
+//! The impacts of a record, fitted over windows of several lengths by polynomials of several degrees.
+
+use std::f64::consts::SQRT_2;
+use std::ops::RangeInclusive;
+
+use crate::numeric::orthogonal::MOST_TERMS;
+use crate::numeric::regression::student;
+
+use super::choice::{Choice, Estimates, Setting, narrowest};
+use super::contacts::{Contact, Impact, limit, median};
+use super::meeting::{Meeting, Sides};
+use super::motion::Motion;
+
+/// Coefficients of the polynomials on either side.
+const TERMS: RangeInclusive<usize> = 3..=MOST_TERMS;
+
+/// Coefficients of the fits from which the instants are taken.
+const FIRST_TERMS: usize = 4;
+
+/// The narrowest window on one side in steps of the record, and how much wider each next one is.
+const NARROWEST: f64 = 3.5;
+const WIDER: f64 = SQRT_2;
+
+/// An impact counts where its speed towards the stop is so many standard errors: the instant of a slower one
+/// is so unsure that both speeds are biased.
+const FAST: f64 = 12.0;
+
+/// Degrees of freedom that the residuals of a trial need.
+const LEAST_FREEDOM: usize = 3;
+
+/// All impacts by one window and one degree.
+pub struct Trial {
+    setting: Setting,
+    /// Variance of the samples, and the factor on a standard error that makes half of an interval.
+    variance: f64,
+    student: f64,
+    /// Numbers of the contacts with their impacts.
+    impacts: Vec<(usize, Meeting)>,
+}
+
+/// An impact alone.
+pub struct Single {
+    /// The number of its contact.
+    pub contact: usize,
+    pub impact: Meeting,
+    pub ratio: Choice,
+    /// Half of the intervals of both speeds.
+    pub halves: [f64; 2],
+}
+
+impl Trial {
+    /// The impacts of those contacts that count.
+    fn those(&self, counts: &impl Fn(usize) -> bool) -> Vec<&Meeting> {
+        self.impacts.iter().filter(|(contact, _)| counts(*contact)).map(|(_, impact)| impact).collect()
+    }
+
+    /// A value, and half of its interval from its variance for errors of variance 1 in the samples.
+    fn estimate(&self, (value, variance): (f64, f64)) -> (f64, f64) {
+        (value, self.student * (variance * self.variance).sqrt())
+    }
+}
+
+/// Fits the impacts of all contacts, from which their instants and flights become better known. A contact
+/// that has no fit is no longer an impact.
+pub fn trials(motion: &Motion, contacts: &mut [Contact], stops: &[Option<f64>; 2]) -> Vec<Trial> {
+    let mut best: Vec<Option<(f64, Impact)>> = vec![None; contacts.len()];
+    for trial in all(motion, contacts, FIRST_TERMS..=FIRST_TERMS) {
+        let error = |of: f64| (of * trial.variance).sqrt();
+        for (contact, Meeting { t, x, towards, of_t, of_x, of_towards, .. }) in trial.impacts {
+            let best = &mut best[contact];
+            if best.is_none_or(|(least, _)| error(of_towards) < least) {
+                let (unsure, speed) = (3.0 * error(of_t), Some(towards));
+                *best = Some((error(of_towards), Impact { t, x, error: error(of_x), unsure, speed }));
+            }
+        }
+    }
+    for (contact, best) in contacts.iter_mut().zip(best) {
+        contact.impact = best.map(|(_, impact)| impact);
+    }
+    limit(motion, contacts, stops);
+    all(motion, contacts, TERMS)
+}
+
+/// Trials over windows up to the usual length of a flight.
+fn all(motion: &Motion, contacts: &[Contact], terms: RangeInclusive<usize>) -> Vec<Trial> {
+    let longest = |contact: &Contact| {
+        let (t, flights) = (contact.impact?.t, &contact.flights);
+        let last = flights.end.checked_sub(1).filter(|last| *last >= flights.start)?;
+        Some((t - motion.times[flights.start]).max(motion.times[last] - t))
+    };
+    let Some(widest) = median(contacts.iter().filter_map(longest).collect()) else { return Vec::new() };
+    let mut trials = Vec::new();
+    let mut width = NARROWEST * motion.timing.step;
+    for window in 0.. {
+        let sides =
+            contacts.iter().enumerate().filter_map(|(k, contact)| Some((k, sides(motion, contact, width)?)));
+        let sides: Vec<(usize, Sides)> = sides.collect();
+        trials.extend(terms.clone().filter_map(|terms| trial(motion, contacts, &sides, (window, terms))));
+        if !(width < widest) {
+            break;
+        }
+        width *= WIDER;
+    }
+    trials
+}
+
+/// The motion on both sides of an impact over a window.
+fn sides(motion: &Motion, contact: &Contact, width: f64) -> Option<Sides> {
+    let Impact { t, unsure, .. } = contact.impact?;
+    let from = |t: f64| motion.from(t).clamp(contact.flights.start, contact.flights.end);
+    let (before, after) = (from(t - width)..from(t - unsure), from(t + unsure)..from(t + width));
+    let enough = before.len().min(after.len()) >= *TERMS.start() && !motion.is_missing(t);
+    enough.then(|| Sides { before: motion.fit(before), after: motion.fit(after) })
+}
+
+fn trial(motion: &Motion, contacts: &[Contact], sides: &[(usize, Sides)], setting: Setting) -> Option<Trial> {
+    let (_, terms) = setting;
+    let fit = |(k, sides): &(usize, Sides)| {
+        let meeting = sides.meet(motion, terms, contacts[*k].impact?.t, contacts[*k].right)?;
+        Some((*k, meeting, sides.rest(terms)?))
+    };
+    let fits: Vec<(usize, Meeting, (f64, usize))> = sides.iter().filter_map(fit).collect();
+    let freedom: usize = fits.iter().map(|(_, _, (_, freedom))| freedom).sum();
+    let variance = fits.iter().map(|(_, _, (square, _))| square).sum::<f64>() / freedom.max(1) as f64;
+    let counts = |(k, found, (square, freedom)): &(usize, Meeting, (f64, usize))| {
+        let impact = contacts[*k].impact?;
+        let error = |of: f64| (of * variance).sqrt();
+        let fast = impact.speed.unwrap_or(found.towards) > FAST * error(found.of_towards);
+        let near = (found.t - impact.t).abs() < 2.0 * motion.timing.step + 6.0 * error(found.of_t);
+        let back = found.towards > 0.0 && found.away > -3.0 * error(found.of_away);
+        // residuals of other samples than those of two flights are beyond four standard deviations
+        let usual = *freedom as f64 + 4.0 * (2.0 * *freedom as f64).sqrt() + 8.0;
+        (fast && near && back && *square <= usual * variance).then_some((*k, *found))
+    };
+    let impacts: Vec<(usize, Meeting)> = fits.iter().filter_map(counts).collect();
+    let enough = freedom >= LEAST_FREEDOM && !impacts.is_empty();
+    enough.then(|| Trial { setting, variance, student: student(freedom), impacts })
+}
+
+/// A number from those contacts that count, and from how many: `of` makes it and its variance from the
+/// impacts of one trial.
+pub fn together(
+    trials: &[Trial],
+    counts: impl Fn(usize) -> bool,
+    of: fn(&[&Meeting]) -> Option<(f64, f64)>,
+) -> Option<(Choice, usize)> {
+    let estimate = |trial: &Trial| Some((trial.setting, trial.estimate(of(&trial.those(&counts))?)));
+    let choice = narrowest(&trials.iter().filter_map(estimate).collect())?;
+    let trial = trials.iter().find(|trial| trial.setting == choice.setting)?;
+    Some((choice, trial.those(&counts).len()))
+}
+
+/// Each impact alone, of so many contacts.
+pub fn each(trials: &[Trial], contacts: usize) -> Vec<Single> {
+    let mut estimates = vec![Estimates::new(); contacts];
+    for trial in trials {
+        for (contact, impact) in &trial.impacts {
+            estimates[*contact].insert(trial.setting, trial.estimate(impact.ratio()));
+        }
+    }
+    let single = |(contact, estimates): (usize, &Estimates)| {
+        let ratio = narrowest(estimates)?;
+        let trial = trials.iter().find(|trial| trial.setting == ratio.setting)?;
+        let place = trial.impacts.binary_search_by_key(&contact, |(contact, _)| *contact).ok()?;
+        let impact = trial.impacts[place].1;
+        // what the ratio has besides noise the speeds have in the same proportion
+        let (_, noise) = trial.estimate(impact.ratio());
+        let more = (ratio.half.powi(2) - noise.powi(2)).max(0.0).sqrt() / ratio.value.abs();
+        let half = |speed: f64, variance: f64| trial.estimate((0.0, variance)).1.hypot(more * speed);
+        let halves = [half(impact.towards, impact.of_towards), half(impact.away, impact.of_away)];
+        Some(Single { contact, impact, ratio, halves })
+    };
+    estimates.iter().enumerate().filter_map(single).collect()
+}
