@@ -245,15 +245,18 @@ fn clean_records_of_the_prototype_give_its_restitution_at_all_rates() {
 
 #[test]
 fn the_acceleration_of_the_base_makes_flights_smoother() {
-    let changes = changes(&[
-        "stops=Rigid(travel_limit_mm: 3, restitution: 0.6)",
-        "run.duration_s=20",
-        "run.settle_s=0",
-    ]);
-    let record = recorded("random-shaking", &changes, 1e-3, 0.0, 1);
-    let with = restitution(&record[0], &record[1], Some(&record[2]), [None; 2]).unwrap();
-    let e = number(&with, "restitution");
-    assert!(holds(e, 0.6) && (e.value - 0.6).abs() < 0.01, "{}", e.describe());
+    let shaking =
+        "Sum([Sine(frequency_hz: 3, amplitude_g: 1.2), Noise(rms_g: 2, low_hz: 20, high_hz: 200, seed: 3)])";
+    let stops = "stops=Rigid(travel_limit_mm: 3, restitution: 0.6)";
+    let changes = changes(&[stops, &format!("excitation={shaking}"), "run.duration_s=20", "run.settle_s=0"]);
+    let record = recorded("random-shaking", &changes, 5e-4, 2e-6, 1);
+    let half = |base: Option<&[f64]>| {
+        let found = restitution(&record[0], &record[1], base, [None; 2]).unwrap();
+        let e = number(&found, "restitution");
+        assert!((e.value - 0.6).abs() < 0.02, "{}", e.describe());
+        0.5 * (e.interval.1 - e.interval.0)
+    };
+    assert!(half(Some(&record[2])) < 0.3 * half(None));
 }
 
 #[test]
