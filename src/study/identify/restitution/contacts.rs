@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::study::identify::turns::{Turn, turns};
 
 use super::meeting::{Meeting, Sides};
-use super::motion::Motion;
+use super::motion::{Motion, median};
 
 /// A turning point at a stop.
 #[derive(Debug, Clone)]
@@ -141,8 +141,8 @@ fn stop(motion: &Motion, contacts: &[Contact], right: bool, given: Option<f64>) 
     median(outer.map(|impact| impact.x).collect())
 }
 
-/// Samples of the longest flight that goes from one turning point to another of its kind without reaching half
-/// of the way to the other side.
+/// Samples of the longest flight that goes from one turning point to another of its kind without reaching
+/// half of the way to the other side.
 pub fn longest_rebound(motion: &Motion) -> Option<usize> {
     let rebound = |turns: &[Turn]| {
         let [first, top, last] = [turns[0].at, turns[1].at, turns[2].at];
@@ -151,12 +151,6 @@ pub fn longest_rebound(motion: &Motion) -> Option<usize> {
         (height[0].max(height[1]) < 0.5 * motion.range()).then(|| 2 * (top - first).min(last - top))
     };
     turns(motion.x, motion.back).windows(3).filter_map(rebound).max()
-}
-
-/// The middle one of some values, of two the greater.
-pub fn median(mut values: Vec<f64>) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// How near to a stop samples of a mass on it lie: by noise, or by twice the way from its place to the

@@ -2,8 +2,7 @@
 
 use crate::numeric::orthogonal::Orthogonal;
 
-use super::contacts::median;
-use super::motion::Motion;
+use super::motion::{Motion, median};
 
 /// The motion before an impact and after it, as polynomials.
 pub struct Sides {
@@ -33,10 +32,9 @@ const MOST_STEPS: usize = 10;
 impl Sides {
     /// Where the polynomials with so many coefficients meet, next to a time; `right`: the stop is above.
     ///
-    /// This is the joint least squares fit of x_s + v_in (t - t_0) + .. before t_0 and x_s + v_out (t - t_0)
-    /// + .. after it with t_0 and x_s unknown: both have the same number of coefficients, and displacement is
-    /// continuous where the two polynomials meet. Errors are carried from the samples to first order,
-    /// that of t_0 included.
+    /// This is the joint least squares fit of two polynomials in t - t_0 with one constant x_s, where t_0 and x_s
+    /// are unknown: it has as many unknowns as the two polynomials, and where these meet displacement is
+    /// continuous. Errors are carried from the samples to first order, that of t_0 included.
     pub fn meet(&self, motion: &Motion, terms: usize, near: f64, right: bool) -> Option<Meeting> {
         self.before.square(terms).and(self.after.square(terms))?;
         let sign = if right { 1.0 } else { -1.0 };

@@ -21,8 +21,8 @@ pub use times::restitution_of_times;
 /// Samples that a rebound should have.
 const ENOUGH: usize = 8;
 
-/// Restitution of the impacts in a record of displacement `x` in m over `times` in s, of a mass that is shaken
-/// between stops or bounces freely.
+/// Restitution of the impacts in a record of displacement `x` in m over `times` in s, of a mass that is
+/// shaken between stops or bounces freely.
 ///
 /// A turning point is an impact where the velocity jumps, and a stop is where the outermost impacts lie, or
 /// where those near a place `given` (left, right) lie. On either side of an impact a polynomial is fitted to
@@ -149,8 +149,8 @@ fn above_one(number: &Identity) -> Option<String> {
         _ => "",
     };
     let text = if number.interval.0 > 1.0 {
-        "is above 1, which a stop at rest cannot make: the stop moves, the acceleration jumps at the impacts, or \
-         these are no impacts"
+        "is above 1, which a stop at rest cannot make: the stop moves, the acceleration jumps at the impacts, \
+         or these are no impacts"
     } else if number.value > 1.0 {
         "is above 1 by less than its error"
     } else {

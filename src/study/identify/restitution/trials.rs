@@ -7,9 +7,9 @@ use crate::numeric::orthogonal::MOST_TERMS;
 use crate::numeric::regression::student;
 
 use super::choice::{Choice, Estimates, Setting, narrowest};
-use super::contacts::{Contact, Impact, limit, median};
+use super::contacts::{Contact, Impact, limit};
 use super::meeting::{Meeting, Sides};
-use super::motion::Motion;
+use super::motion::{Motion, median};
 
 /// Coefficients of the polynomials on either side.
 const TERMS: RangeInclusive<usize> = 3..=MOST_TERMS;
