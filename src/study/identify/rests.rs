@@ -155,7 +155,7 @@ struct Near {
 }
 
 enum Polynomial {
-    Smooth(Fit<4>),
+    Smooth(Box<Fit<4>>),
     Kinked(Box<Fit<8>>),
 }
 
@@ -166,7 +166,7 @@ impl Near {
             let smooth = |(u, force): &(f64, f64)| (std::array::from_fn(|k| u.powi(k as i32)), *force);
             let fit = least_squares(&samples.iter().map(smooth).collect::<Vec<_>>())?;
             let enough = fit.freedom >= FEWEST;
-            let fit = Polynomial::Smooth(fit);
+            let fit = Polynomial::Smooth(Box::new(fit));
             return enough.then_some(Self { centre, reach, kink: None, beyond: [0.0; 3], fit });
         };
         if samples.len() < FEWEST + 8 {
